@@ -4,9 +4,12 @@
 #include "config/config.h"
 #include "config/config_reference.h"
 #include "config/named_files.h"
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
+#include "pipeline/plan/build_plan.h"
 #include "pipeline/plan/build_stats.h"
 #include "storage/io/output_file.h"
 
@@ -161,6 +164,12 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   }
   if (!arguments.input_note.empty())
     note_request(arguments, config, environment.files);
+  if (environment.terminal.is_terminal && mode != execution::ProgressMode::json &&
+      mode != execution::ProgressMode::none) {
+    environment.messages << fmt::format(
+        "at most {} of memory, {}\n", execution::rounded_size_text(pipeline::memory_budget(config)),
+        counted(pipeline::thread_count(config), "threads"));
+  }
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::BuildReport report =
       pipeline::build_hierarchy(config, {arguments.force, arguments.restart, others_of(arguments)},

@@ -177,8 +177,9 @@ struct Config {
   bool weld = false;                    ///< vertices of equal position and attributes become one
   Topology topology = Topology::place;  ///< which vertices are one point of the surface
   std::filesystem::path output;         ///< a directory or file, without a slash at its end
-  std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
-  std::uint32_t threads = 0;                             ///< 0: all
+  /// Bytes, > 0; none: what pipeline::memory_budget() says of the machine.
+  std::optional<std::uint64_t> memory_budget;
+  std::uint32_t threads = 0;  ///< 0: all
   PartitionConfig partition;
   SimplifyConfig simplify;
   OutlineConfig outline;

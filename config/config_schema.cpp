@@ -130,7 +130,8 @@ ConfigKey bytes(ConfigKey key, Field field) {
                                       : static_cast<std::uint64_t>(value.get<double>());
   };
   key.show = [field](const Config& config) {
-    return Json(execution::exact_size_text(field(config)));
+    const std::optional<std::uint64_t>& bytes = field(config);
+    return bytes ? Json(execution::exact_size_text(*bytes)) : Json();
   };
   return key;
 }
@@ -254,7 +255,9 @@ std::vector<ConfigKey> make_config_keys() {
            .required = true},
           [](auto& c) -> auto& { return c.output; }),
       bytes(
-          {.path = "memory_budget", .meaning = "peak resident memory of the build"},
+          {.path = "memory_budget",
+           .meaning = "peak resident memory of the build",
+           .unset = "a quarter of the memory that the process may use, from 512 MiB to 16 GiB"},
           [](auto& c) -> auto& { return c.memory_budget; }),
       number(
           {.path = "threads", .meaning = "threads at work; 0: as many as the machine has"},

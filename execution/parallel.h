@@ -30,6 +30,13 @@ void ordered_steps(std::size_t count, std::size_t in_flight, const CancelToken& 
                    const std::function<void(std::size_t)>& work,
                    const std::function<bool(std::size_t)>& sink);
 
+/// The same of as many i as there are: read(i) says whether i is one, in the order of i, one at a
+/// time; its failure comes behind the sinks of all i before.
+void ordered_reads(std::size_t in_flight, const CancelToken& cancel,
+                   const std::function<bool(std::size_t)>& read,
+                   const std::function<void(std::size_t)>& work,
+                   const std::function<bool(std::size_t)>& sink);
+
 /// As ordered_steps; hands each result to sink(i, result).
 template <class Work, class Sink>
 void ordered_for(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
@@ -52,6 +59,21 @@ void ordered_blocks(std::size_t count, std::size_t in_flight, const CancelToken&
   ordered_steps(
       count, in_flight, cancel, [&](std::size_t i) { work(i, slots[i % in_flight]); },
       [&](std::size_t i) { return sink(slots[i % in_flight]); });
+}
+
+/// As ordered_reads, for many small items, as ordered_blocks: read(slot) fills one of `in_flight`
+/// slots or returns false.
+template <class Slot, class Read, class Work, class Sink>
+void ordered_read_blocks(std::size_t in_flight, const CancelToken& cancel, const Read& read,
+                         const Work& work, const Sink& sink) {
+  std::vector<Slot> slots(in_flight);
+  ordered_reads(
+      in_flight, cancel, [&](std::size_t i) { return read(slots[i % in_flight]); },
+      [&](std::size_t i) { work(slots[i % in_flight]); },
+      [&](std::size_t i) {
+        sink(slots[i % in_flight]);
+        return true;
+      });
 }
 
 /// Parallel work on items that a visitor hands out one by one: gathers `batch` of them in slots,

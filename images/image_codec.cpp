@@ -78,8 +78,8 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
 }
 
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality) {
-  assert(image.width >= 1 && image.width <= kMaxImageSide);
-  assert(image.height >= 1 && image.height <= kMaxImageSide);
+  assert(image.width >= 1 && image.width <= kMaxSourceSide);
+  assert(image.height >= 1 && image.height <= kMaxSourceSide);
   assert(quality >= 1 && quality <= 100);
   switch (format) {
     case ImageFormat::jpeg:

@@ -56,8 +56,8 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
                    std::uint64_t most_texels);
 
 /// Deterministic for one version of the library. `quality`: 1 ... 100, of jpeg (4:4:4 from 90 on,
-/// below it 4:2:0) and webp (lossless at 100); without effect on png. Requires sides of 1 ...
-/// kMaxImageSide, and no alpha for jpeg. Besides the picture it holds the encoded bytes, and a
+/// below it 4:2:0) and webp (lossless at 100); without effect on png. Requires sides that
+/// open_image() reads, and no alpha for jpeg. Besides the picture it holds the encoded bytes, and a
 /// texel takes up to 6 bytes of jpeg (all coefficients), 4 of webp, 21 of lossless webp.
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 

@@ -1,12 +1,14 @@
 #include "mesh_io/obj_reader.h"
 
 #include "mesh_io/input_error.h"
+#include "mesh_io/line_blocks.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/polygon_cut.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +26,6 @@ constexpr std::string_view kIgnored[] = {
     "con",   "bevel", "c_interp", "d_interp",   "lod",      "maplib", "usemap", "call",
     "csh",   "ctech", "stech",    "shadow_obj", "trace_obj"};
 
-constexpr std::string_view kPolypaint = "#MRGB";
-
 constexpr std::uint64_t kMostElements = UINT32_MAX;  // the last value means none
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
@@ -40,16 +40,60 @@ struct Kind {
   std::uint64_t highest_line = 0;  ///< where that was
 };
 
-class ObjReader {
+/// A text in memory.
+class TextStream final : public InputStream {
  public:
-  ObjReader(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor)
-      : words_(stream, path, {.joins_lines = true, .kept_comment = kPolypaint}),
+  explicit TextStream(std::string_view text) : text_(text) {}
+
+  std::size_t read(std::span<std::byte> to) override {
+    const std::size_t count = std::min(to.size(), text_.size());
+    std::memcpy(to.data(), text_.data(), count);
+    text_.remove_prefix(count);
+    return count;
+  }
+
+ private:
+  std::string_view text_;
+};
+
+/// Text from the line `lines` behind the one at its start; each ends with LF, CRLF or CR.
+std::string_view behind_lines(std::string_view text, std::uint64_t lines) {
+  for (; lines > 0; --lines) {
+    const std::size_t end = text.find_first_of("\r\n");
+    if (end == std::string_view::npos)
+      return text.substr(text.size());  // the file's last line has no end
+    const bool is_two = text[end] == '\r' && end + 1 < text.size() && text[end + 1] == '\n';
+    text.remove_prefix(end + (is_two ? 2 : 1));
+  }
+  return text;
+}
+
+}  // namespace
+
+class ObjReader::Impl {
+ public:
+  Impl(const std::filesystem::path& path, ObjVisitor& visitor)
+      : none_({}),
+        words_(none_, path, {.joins_lines = true, .kept_comment = kObjPolypaint}),
         path_(path),
         visitor_(visitor) {}
 
-  ObjCounts read() {
-    while (words_.to_row())
-      read_statement(words_.take_word());
+  void take(const ObjBlock& block) {
+    at_ = {};
+    counts_.fits_float = counts_.fits_float && block.fits_float;
+    for (const ObjRun& run : block.runs) {
+      take(block, run);
+      line_ += run.lines;
+    }
+  }
+
+  void take_rest(InputStream& rest) {
+    words_.go_on(rest, line_);
+    read_rows();
+    line_ = words_.line();
+  }
+
+  ObjCounts finish() {
     for (const Kind* kind : {&positions_, &texcoords_, &normals_})
       check_highest(*kind);
     counts_.positions = positions_.count;
@@ -59,6 +103,125 @@ class ObjReader {
   }
 
  private:
+  /// Where the next run's numbers begin.
+  struct Cursor {
+    std::size_t positions = 0, colours = 0, texcoords = 0, normals = 0, indices = 0;
+  };
+
+  void take(const ObjBlock& block, const ObjRun& run) {
+    switch (run.kind) {
+      case ObjRun::Kind::positions:
+      case ObjRun::Kind::coloured:
+        return take_positions(block, run);
+      case ObjRun::Kind::texcoords:
+        return take_texcoords(block, run);
+      case ObjRun::Kind::normals:
+        return take_normals(block, run);
+      case ObjRun::Kind::faces:
+        return take_faces(block, run);
+      case ObjRun::Kind::others:
+        return take_by_words(block, run, 0, run.lines);
+      case ObjRun::Kind::nothing:
+        return;
+    }
+  }
+
+  /// What parse() has left to words: lines [first, first + count) of a run.
+  void take_by_words(const ObjBlock& block, const ObjRun& run, std::uint32_t first,
+                     std::uint32_t count) {
+    const std::string_view text = behind_lines(
+        std::string_view(block.text.data(), block.text.size()).substr(run.begin), first);
+    const std::string_view behind = behind_lines(text, count);
+    TextStream stream(text.substr(0, text.size() - behind.size()));
+    words_.go_on(stream, line_ + first);
+    read_rows();
+  }
+
+  void read_rows() {
+    while (words_.to_row())
+      read_statement(words_.take_word());
+  }
+
+  /// Whether there may be so many more. If not, which one is too many is found by words.
+  static bool has_room(const Kind& kind, std::uint64_t more) {
+    return kind.count + more < kMostElements;
+  }
+
+  void take_positions(const ObjBlock& block, const ObjRun& run) {
+    if (!has_room(positions_, run.lines))
+      return take_by_words(block, run, 0, run.lines);
+    const bool is_coloured = run.kind == ObjRun::Kind::coloured;
+    for (std::uint32_t i = 0; i < run.lines; ++i) {
+      ++positions_.count;
+      const Vec3d& position = block.positions[at_.positions++];
+      is_coloured ? visitor_.add_position(position, block.colours[at_.colours++])
+                  : visitor_.add_position(position, std::nullopt);
+    }
+    counts_.coloured += is_coloured ? run.lines : 0;
+  }
+
+  void take_texcoords(const ObjBlock& block, const ObjRun& run) {
+    if (!has_room(texcoords_, run.lines))
+      return take_by_words(block, run, 0, run.lines);
+    texcoords_.count += run.lines;
+    for (std::uint32_t i = 0; i < run.lines; ++i)
+      visitor_.add_texcoord(block.texcoords[at_.texcoords++]);
+  }
+
+  void take_normals(const ObjBlock& block, const ObjRun& run) {
+    if (!has_room(normals_, run.lines))
+      return take_by_words(block, run, 0, run.lines);
+    normals_.count += run.lines;
+    for (std::uint32_t i = 0; i < run.lines; ++i) {
+      const auto& [x, y, z] = block.normals[at_.normals++];
+      visitor_.add_normal({x, y, z});
+    }
+  }
+
+  void take_faces(const ObjBlock& block, const ObjRun& run) {
+    for (std::uint32_t i = 0; i < run.lines; ++i) {
+      const std::int32_t* index = block.indices.data() + at_.indices;
+      at_.indices += run.indices();
+      if (!take_corners(run, index, line_ + i)) {
+        take_by_words(block, run, i, 1);  // which says what is wrong
+        continue;
+      }
+      ++counts_.faces;
+      add_polygon();
+    }
+  }
+
+  /// False if one of them refers to nothing.
+  bool take_corners(const ObjRun& run, const std::int32_t* index, std::uint64_t line) {
+    corners_.clear();
+    for (std::uint8_t i = 0; i < run.corners; ++i) {
+      ObjCorner corner;
+      if (!resolve(*index++, positions_, line, corner.position) ||
+          (run.has_texcoord && !resolve(*index++, texcoords_, line, corner.texcoord)) ||
+          (run.has_normal && !resolve(*index++, normals_, line, corner.normal)))
+        return false;
+      corners_.push_back(corner);
+    }
+    return true;
+  }
+
+  static bool resolve(std::int64_t index, Kind& kind, std::uint64_t line, std::uint32_t& number) {
+    const std::int64_t found =
+        index > 0 ? index : static_cast<std::int64_t>(kind.count) + index + 1;
+    if (found < 1)
+      return false;
+    note(kind, static_cast<std::uint64_t>(found), line);
+    number = static_cast<std::uint32_t>(found - 1);
+    return true;
+  }
+
+  static void note(Kind& kind, std::uint64_t number, std::uint64_t line) {
+    if (number <= kind.highest)
+      return;
+    kind.highest = number;
+    kind.highest_line = line;
+  }
+
   void read_statement(std::string_view word) {
     if (word == "v")
       return read_position();
@@ -73,7 +236,7 @@ class ObjReader {
     if (word == "mtllib")
       return read_libraries();
     if (word.starts_with('#'))
-      return word == kPolypaint ? read_polypaint() : words_.skip_line();
+      return word == kObjPolypaint ? read_polypaint() : words_.skip_line();
     count_statement(word);
     words_.skip_line();
   }
@@ -241,10 +404,7 @@ class ObjReader {
                       kind.name, count, in_quotes(text), in_quotes(corner)));
     }
     const std::int64_t number = *index > 0 ? *index : count + *index + 1;
-    if (static_cast<std::uint64_t>(number) > kind.highest) {
-      kind.highest = static_cast<std::uint64_t>(number);
-      kind.highest_line = words_.line();
-    }
+    note(kind, static_cast<std::uint64_t>(number), words_.line());
     return static_cast<std::uint32_t>(number - 1);
   }
 
@@ -257,7 +417,10 @@ class ObjReader {
                              kind.name, kind.count, kind.highest));
   }
 
+  TextStream none_;
   WordStream words_;
+  std::uint64_t line_ = 1;  ///< of what is taken
+  Cursor at_;
   const std::filesystem::path& path_;
   ObjVisitor& visitor_;
   Kind positions_{"vertex"}, texcoords_{"texture coordinate"}, normals_{"normal"};
@@ -266,14 +429,33 @@ class ObjReader {
   ObjCounts counts_;
 };
 
-}  // namespace
+ObjReader::ObjReader(const std::filesystem::path& path, ObjVisitor& visitor)
+    : impl_(std::make_unique<Impl>(path, visitor)) {}
+ObjReader::~ObjReader() = default;
+
+void ObjReader::take(const ObjBlock& block) {
+  impl_->take(block);
+}
+void ObjReader::take_rest(InputStream& rest) {
+  impl_->take_rest(rest);
+}
+ObjCounts ObjReader::finish() {
+  return impl_->finish();
+}
 
 bool is_obj_statement(std::string_view word) {
   return is_one_of(word, kRead) || is_one_of(word, kIgnored);
 }
 
 ObjCounts read_obj(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor) {
-  return ObjReader(stream, path, visitor).read();
+  LineBlocks lines(stream);
+  ObjReader reader(path, visitor);
+  for (ObjBlock block; lines.next(block.text);) {
+    parse(block);
+    reader.take(block);
+  }
+  reader.take_rest(lines.rest());
+  return reader.finish();
 }
 
 }  // namespace meshhier::mesh_io

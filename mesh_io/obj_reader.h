@@ -3,6 +3,7 @@
 
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/obj_block.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/unplaced.h"
 #include "mesh_io/zeroed.h"
@@ -10,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -67,6 +69,26 @@ struct ObjCounts {
   bool fits_float = true;              ///< all coordinates do (DecimalNumber)
   UnplacedVertices unplaced;           ///< are visited
   ZeroedCounts zeroed;                 ///< among normals and texcoords
+};
+
+/// Reads the blocks of a file, which were parsed apart from each other, in their order.
+///
+///   LineBlocks lines(stream);
+///   while (lines.next(block.text)): parse(block), take(block);
+///   take_rest(lines.rest()), finish().
+class ObjReader {
+ public:
+  ObjReader(const std::filesystem::path& path, ObjVisitor& visitor);
+  ~ObjReader();
+
+  /// Throws as read_obj().
+  void take(const ObjBlock& block);
+  void take_rest(InputStream& rest);
+  ObjCounts finish();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// Whether a line of an OBJ file can begin with that word.

@@ -89,7 +89,8 @@ T nearest(float value) {
 struct PlyWriter::State {
   std::shared_ptr<storage::File> file;
   PlyContent content;
-  std::vector<std::byte> buffer;
+  std::vector<std::byte> buffer;  ///< kBufferBytes
+  std::size_t filled = 0;
   std::uint64_t offset = 0;
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -100,18 +101,19 @@ struct PlyWriter::State {
     auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
     if constexpr (std::endian::native == std::endian::big)
       std::reverse(bytes.begin(), bytes.end());
-    buffer.insert(buffer.end(), bytes.begin(), bytes.end());
+    std::memcpy(buffer.data() + filled, bytes.data(), bytes.size());
+    filled += bytes.size();
   }
 
   void flush() {
-    file->write_at(offset, buffer);
-    offset += buffer.size();
-    buffer.clear();
+    file->write_at(offset, std::span(buffer).first(filled));
+    offset += filled;
+    filled = 0;
   }
 
   /// A row is never split: flushes if the largest might not fit.
   void begin_row() {
-    if (buffer.size() + kMaxRowBytes > kBufferBytes)
+    if (filled + kMaxRowBytes > kBufferBytes)
       flush();
   }
 
@@ -156,7 +158,7 @@ PlyWriter::PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& cont
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->content = content;
-  state_->buffer.reserve(kBufferBytes);
+  state_->buffer.resize(kBufferBytes);
   constexpr std::uint64_t kMaxIntVertices = std::uint64_t{1} << 31;
   const std::string header =
       header_text(content, content.vertex_count < kMaxIntVertices ? "int" : "uint");

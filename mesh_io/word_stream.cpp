@@ -2,6 +2,7 @@
 
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/text_chars.h"
 
 #include <algorithm>
 #include <array>
@@ -19,13 +20,6 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kCapacity = std::size_t{1} << 18;
 constexpr std::size_t kLookAhead = std::size_t{1} << 16;
 
-bool is_line_end(char c) {
-  return c == '\n' || c == '\r';
-}
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
 std::string not_finite(const char* what, std::string_view word) {
   return fmt::format("expected a finite number for {}, found {}", what, in_quotes(word));
 }
@@ -33,11 +27,18 @@ std::string not_finite(const char* what, std::string_view word) {
 }  // namespace
 
 WordStream::WordStream(InputStream& stream, std::filesystem::path path, Rules rules)
-    : stream_(stream),
+    : stream_(&stream),
       path_(std::move(path)),
       rules_(rules),
       buffer_(std::make_unique_for_overwrite<char[]>(kCapacity)) {
   skip_byte_order_mark();
+}
+
+void WordStream::go_on(InputStream& stream, std::uint64_t line) {
+  stream_ = &stream;
+  line_ = line;
+  begin_ = end_ = 0;
+  ended_ = false;
 }
 
 void WordStream::skip_byte_order_mark() {
@@ -54,7 +55,7 @@ bool WordStream::look_ahead(std::size_t bytes) {
   end_ -= begin_;
   begin_ = 0;
   const std::span<char> room(buffer_.get() + end_, kCapacity - end_);
-  const std::size_t count = stream_.read(std::as_writable_bytes(room));
+  const std::size_t count = stream_->read(std::as_writable_bytes(room));
   ended_ = count < room.size();
   end_ += count;
   return end_ > begin_;

@@ -32,6 +32,9 @@ class WordStream {
 
   WordStream(InputStream& stream, std::filesystem::path path, Rules rules);
 
+  /// Goes on with the start of another stream, which is that line.
+  void go_on(InputStream& stream, std::uint64_t line);
+
   std::uint64_t line() const { return line_; }
   /// Goes on to the next word, over line ends; false at the end.
   bool to_row();
@@ -74,7 +77,7 @@ class WordStream {
   bool skip_joint();
   void skip_comment();
 
-  InputStream& stream_;
+  InputStream* stream_;
   std::filesystem::path path_;
   Rules rules_;
   bool ended_ = false;

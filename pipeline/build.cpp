@@ -53,7 +53,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   storage::FileSystem& files = environment.files;
   config::Config config = asked;
   config.output = storage::followed(files, asked.output);
-  execution::configure_allocator(config.memory_budget);
+  execution::configure_allocator(memory_budget(config));
 
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);

@@ -28,7 +28,7 @@ constexpr std::size_t kLongestPath = 4096;
 nlohmann::ordered_json whole_config(const config::Config& config) {
   nlohmann::ordered_json whole{{"input", config::find_config_key("input")->show(config)},
                                {"output", config.output.string()},
-                               {"memory_budget", execution::exact_size_text(config.memory_budget)},
+                               {"memory_budget", execution::exact_size_text(memory_budget(config))},
                                {"threads", config.threads}};
   whole.update(config::resolved_json(config));
   whole["storage"]["container"] = config::find_config_key("storage.container")->show(config);
@@ -42,7 +42,7 @@ BuildStats make_stats(const storage::HierarchyReader& made, const StageContext& 
   BuildStats stats;
   stats.config = whole_config(config);
   stats.threads = plan.threads;
-  stats.memory_budget_bytes = config.memory_budget;
+  stats.memory_budget_bytes = memory_budget(config);
   stats.vertices = source.vertices;
   stats.triangles = source.triangles;
   stats.partitions = plan.tree.partition_count();
@@ -194,9 +194,10 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.total = meter.total();
   const SourceSummary& source = made.manifest().source;
   report.text = made_text(made, context.config.output, outcome.output_bytes) +
-                fmt::format("took {} and {} of memory\n",
+                fmt::format("took {} and {} of memory, of a budget of {}\n",
                             execution::duration_text(report.stats.total.wall_seconds),
-                            execution::rounded_size_text(report.stats.total.peak_resident_bytes));
+                            execution::rounded_size_text(report.stats.total.peak_resident_bytes),
+                            execution::rounded_size_text(memory_budget(context.config)));
   if (!outcome.found.empty())
     report.text += outcome.found + '\n';
   report.text += notes_text(made, context.config, outcome.has_area);

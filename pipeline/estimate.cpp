@@ -70,7 +70,7 @@ namespace {
 void count_by_reading(const config::Config& config, importing::MeshInput& input,
                       storage::FileSystem& files, storage::MemoryPool& pool,
                       const execution::CancelToken& cancel) {
-  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
   check_import_disk(import_disk(input, config), config.output, files);
   const std::filesystem::path beside =
       storage::existing_directory(files, config.output) / config.output.filename();
@@ -129,13 +129,13 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
                          .input = config.input,
                          .output = config.output};
   if (input.needs_import())
-    describe_import(input.files(), importing::plan_import(config.memory_budget), estimate);
+    describe_import(input.files(), importing::plan_import(memory_budget(config)), estimate);
   input.drop();
   storage::check_output(files, {config.output, config.storage.container}, force);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(expected_tiles(estimate.plan.job));
   estimate.time = estimate_time(config, estimate.plan, estimate.mesh.file_bytes);
-  estimate.memory_budget_bytes = config.memory_budget;
+  estimate.memory_budget_bytes = memory_budget(config);
   estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);
   return estimate;

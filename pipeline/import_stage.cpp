@@ -27,7 +27,7 @@ bool is_to_be_looked_at(const config::Config& config) {
 }  // namespace
 
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
-  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
   const std::uint64_t imported =
       input.needs_import() ? importing::predict_import(input.files(), memory) : 0;
   if (!is_to_be_looked_at(config))
@@ -93,11 +93,11 @@ BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materi
 BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
                         storage::MemoryPool& pool, const config::Config& config,
                         const BuildEnvironment& environment) {
-  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
   pool.set_capacity(memory.pool_bytes);
   environment.progress.expect(import_time(input, config));
   read_once(input, config, place_of(directory, pool, memory.sort_bytes, environment));
-  execution::release_free_memory(config.memory_budget);
+  execution::release_free_memory(memory_budget(config));
   return plan_of(input, input.materials(), config, environment.files);
 }
 
@@ -124,7 +124,7 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
                   storage::MemoryPool& pool, const StageContext& context) {
   const mesh_io::MeshDescription recalled = input.description();
   const std::uint64_t sort_bytes =
-      std::min(importing::plan_import(context.config.memory_budget).sort_bytes,
+      std::min(importing::plan_import(memory_budget(context.config)).sort_bytes,
                context.memory().work_bytes / 4);
   read_once(
       input, context.config,

@@ -55,7 +55,7 @@ BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescriptio
                      std::uint64_t imported_bytes, TexturePlan textures) {
   const Tree tree = plan_tree(config, mesh.places(), textures);
   const JobSize job = job_size(config, mesh, imported_bytes, tree, textures);
-  const MemoryPlan memory = plan_memory(config.memory_budget, memory_costs(job));
+  const MemoryPlan memory = plan_memory(memory_budget(config), memory_costs(job));
   const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));
   return {tree,
           job.threads,

@@ -11,6 +11,7 @@
 #include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
+#include "storage/io/usable_memory.h"
 
 #include <algorithm>
 
@@ -83,6 +84,13 @@ Tree plan_tree(const config::Config& config, std::uint64_t vertex_count,
 std::size_t thread_count(const config::Config& config) {
   return config.threads > 0 ? config.threads
                             : static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+std::uint64_t memory_budget(const config::Config& config) {
+  constexpr std::uint64_t kLeast = std::uint64_t{512} << 20;
+  constexpr std::uint64_t kMost = std::uint64_t{16} << 30;
+  static const std::uint64_t usable = storage::usable_memory();
+  return config.memory_budget.value_or(std::clamp(usable / 4, kLeast, kMost));
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,

@@ -42,6 +42,10 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
 /// Threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);
 
+/// Bytes of memory that it may use: of a config that does not say it a quarter of what the process
+/// may use, but 512 MiB at least and 16 GiB at most.
+std::uint64_t memory_budget(const config::Config& config);
+
 /// A replaced output is removed, and the input must not go with it: throws Error(usage) if a file
 /// of it lies there.
 void check_apart(const config::Config& config, storage::FileSystem& files);

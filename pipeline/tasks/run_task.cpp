@@ -381,7 +381,7 @@ TaskReport run_tasks(const TaskRequest& request, const BuildEnvironment& environ
   if (request.memory_budget > 0)
     plan.config.memory_budget = request.memory_budget;
   const TaskStage stage = find_stage(plan, request.stage);
-  execution::configure_allocator(plan.config.memory_budget);
+  execution::configure_allocator(memory_budget(plan.config));
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(plan.config));
   if (stage.kind == TaskKind::finish)

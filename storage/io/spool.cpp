@@ -120,20 +120,21 @@ void ScratchFile::release(std::uint64_t offset, std::uint64_t bytes) {
 Spool::Spool(Spool&& other) noexcept
     : scratch_(other.scratch_),
       block_bytes_(other.block_bytes_),
+      end_(std::exchange(other.end_, nullptr)),
+      room_(std::exchange(other.room_, 0)),
       size_(std::exchange(other.size_, 0)),
       checksum_(std::exchange(other.checksum_, 0)),
       blocks_(std::move(other.blocks_)) {
   other.blocks_.clear();
 }
 
-void Spool::append(std::span<const std::byte> bytes) {
+void Spool::append_to_blocks(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const std::size_t used = size_ % block_bytes_;
-    if (used == 0)
+    if (room_ == 0)
       open_block();
-    const std::size_t count = std::min(bytes.size(), block_bytes_ - used);
-    std::memcpy(blocks_.back().memory() + used, bytes.data(), count);
-    size_ += count;
+    const std::size_t count = std::min(bytes.size(), room_);
+    std::memcpy(end_, bytes.data(), count);
+    grow(count);
     bytes = bytes.subspan(count);
   }
 }
@@ -145,13 +146,16 @@ void Spool::open_block() {
   if (size_ == 0 || scratch_->pool().try_take(block_bytes_)) {
     auto memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
     blocks_.push_back(Block::in_memory(memory.get()));
-    memory.release();
+    end_ = memory.release();
+    room_ = block_bytes_;
     return;
   }
   std::byte* memory = blocks_.back().memory();
   const std::uint64_t offset = scratch_->append({memory, block_bytes_});
   blocks_.push_back(Block::in_memory(memory));
   blocks_[blocks_.size() - 2] = Block::on_disk(offset);
+  end_ = memory;
+  room_ = block_bytes_;
 }
 
 void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
@@ -188,6 +192,8 @@ StoredSpool Spool::store() {
     }
     stored.blocks.push_back(block.offset());
   }
+  end_ = nullptr;
+  room_ = 0;
   stored.checksum = checksum_;
   return stored;
 }
@@ -232,6 +238,8 @@ void Spool::clear() {
       scratch_->pool().give_back(block_bytes_);
   }
   blocks_ = {};
+  end_ = nullptr;
+  room_ = 0;
   size_ = 0;
   checksum_ = 0;
 }

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -141,7 +142,12 @@ class Spool {
   Spool& operator=(Spool&&) = delete;
   ~Spool() { clear(); }
 
-  void append(std::span<const std::byte> bytes);
+  void append(std::span<const std::byte> bytes) {
+    if (bytes.empty() || bytes.size() > room_)
+      return append_to_blocks(bytes);
+    std::memcpy(end_, bytes.data(), bytes.size());
+    grow(bytes.size());
+  }
   std::uint64_t size() const { return size_; }
 
   /// Copies bytes.size() bytes from `offset`. Requires offset + bytes.size() <= size().
@@ -179,12 +185,20 @@ class Spool {
     explicit Block(std::uint64_t word) : word_(word) {}  // addresses of arrays are even
     std::uint64_t word_;
   };
+  void append_to_blocks(std::span<const std::byte> bytes);
   void open_block();
+  void grow(std::size_t bytes) {
+    end_ += bytes;
+    room_ -= bytes;
+    size_ += bytes;
+  }
   /// Of a block, the last one included.
   std::size_t used_bytes(std::size_t block) const;
 
   ScratchFile* scratch_;
   std::size_t block_bytes_;
+  std::byte* end_ = nullptr;  ///< where the next byte goes, while the last block has room
+  std::size_t room_ = 0;
   std::uint64_t size_ = 0;
   std::uint64_t checksum_ = 0;  ///< of all blocks, each seeded with those before; without the last
                                 ///< one as long as it is open

@@ -272,6 +272,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"storage/io/link_free_paths.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/posix_file.h", {"fcntl.h", "sys/stat.h", "unistd.h"}},
       {"storage/io/process.cpp", {"fcntl.h", "sys/resource.h", "unistd.h"}},
+      {"storage/io/usable_memory.cpp", {"sys/resource.h", "unistd.h"}},
       {"storage/io/shared_library.cpp", {"dlfcn.h"}},
       {"storage/io/stream.cpp", {"csignal", "fcntl.h", "poll.h", "sys/stat.h", "unistd.h"}}};
   const bool is_system =

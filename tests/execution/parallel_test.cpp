@@ -244,6 +244,75 @@ TEST(OrderedBlocksTest, ACancelledJobEnds) {
   EXPECT_LT(sunk, 100U);
 }
 
+TEST(OrderedReadBlocksTest, ReadsUntilNothingIsLeftAndHandsOnInOrder) {
+  for (const std::size_t in_flight : {1U, 2U, 16U}) {
+    for (const std::size_t count : {0U, 1U, 500U}) {
+      std::size_t read = 0;
+      std::vector<std::size_t> taken;
+      ordered_read_blocks<std::size_t>(
+          in_flight, CancelToken(),
+          [&](std::size_t& slot) {
+            slot = read;
+            return read++ < count;
+          },
+          [](std::size_t& slot) { slot = uneven_work(slot); },
+          [&](std::size_t slot) { taken.push_back(slot); });
+      ASSERT_EQ(taken.size(), count);
+      for (std::size_t i = 0; i < count; ++i)
+        EXPECT_EQ(taken[i], uneven_work(i));
+      EXPECT_EQ(read, count + 1) << "nothing is read behind the end";
+    }
+  }
+}
+
+TEST(OrderedReadBlocksTest, OfSeveralFailuresTheFirstInOrderIsThrownBehindAllResultsBeforeIt) {
+  for (const char* failing : {"read", "work", "sink"}) {
+    const std::string which = failing;
+    std::vector<std::size_t> taken;
+    std::size_t read = 0;
+    const auto fail_if = [&](const char* what, std::size_t i, std::size_t at) {
+      if (which == what && i >= at)
+        throw Error(ErrorCode::io, std::to_string(i));
+    };
+    try {
+      ordered_read_blocks<std::size_t>(
+          8, CancelToken(),
+          [&](std::size_t& slot) {
+            fail_if("read", read, 60);
+            slot = read++;
+            return true;
+          },
+          [&](std::size_t& slot) {
+            fail_if("work", slot, 60);
+            uneven_work(slot);
+          },
+          [&](std::size_t slot) {
+            fail_if("sink", slot, 60);
+            taken.push_back(slot);
+          });
+      ADD_FAILURE() << which;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.what(), std::string("60")) << which;
+    }
+    EXPECT_EQ(taken.size(), 60U) << which;
+  }
+}
+
+TEST(OrderedReadBlocksTest, ACancelledJobEnds) {
+  CancelToken cancel;
+  std::size_t read = 0;
+  EXPECT_THROW(ordered_read_blocks<std::size_t>(
+                   4, cancel,
+                   [&](std::size_t&) {
+                     if (++read == 100)
+                       cancel.cancel();
+                     return true;
+                   },
+                   [](std::size_t&) {}, [](std::size_t) {}),
+               Error);
+  EXPECT_LT(read, 200U);
+}
+
 TEST(BatchedWorkTest, HandsEveryResultOnInOrder) {
   for (const std::size_t batch : {1U, 2U, 7U, 1000U}) {
     std::vector<std::size_t> results;

@@ -71,7 +71,7 @@ std::size_t count_places(const bench::LoadedMesh& mesh) {
 /// A mesh of which nothing can be measured has no errors.
 void check_bounds(MemoryFiles& files, const config::Config& config) {
   execution::NoProgress progress;
-  const inspection::ErrorOptions options{Level{}, 300, config.memory_budget};
+  const inspection::ErrorOptions options{Level{}, 300, memory_budget(config)};
   for (const auto& level :
        inspection::measure_errors(files, config.output, options, progress, {})) {
     if (level.triangles > 0 && !level.problems.empty())

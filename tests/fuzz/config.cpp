@@ -41,7 +41,8 @@ void check_config(const Config& config) {
   const auto is_tile = [](std::uint32_t vertices) { return vertices >= 4 && vertices <= 32768; };
   require(!config.input.empty() && !config.output.empty(), "paths are there");
   require(config.output.has_filename(), "the output has a name");
-  require(config.memory_budget > 0 && config.threads <= 4096, "budget and threads are in range");
+  require(config.memory_budget.value_or(1) > 0 && config.threads <= 4096,
+          "budget and threads are in range");
   require(is_tile(config.partition.vertices), "partition.vertices is in range");
   require(config.partition.count.value_or(1) >= 1, "partition.count is in range");
   const TargetVertexCounts asked = config.simplify.vertices.value_or(4);

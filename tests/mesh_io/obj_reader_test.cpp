@@ -1,9 +1,14 @@
 // OBJ files: what is read, and what is refused.
 #include "mesh_io/obj_reader.h"
 
+#include "hierarchy/error.h"
 #include "streams.h"
 #include "support/gzip.h"
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -22,10 +27,28 @@ using ::testing::IsEmpty;
 /// What was taken, as short texts.
 class Taken final : public ObjVisitor {
  public:
-  explicit Taken(const std::string& content) {
-    Streamed streamed(content);
-    counts = read_obj(streamed.stream(), "mesh", *this);
+  /// How the file is read: in blocks, or all of it word by word.
+  enum class By { blocks, words };
+
+  explicit Taken(const std::string& content, By by = By::blocks) {
+    if (by == By::blocks) {
+      Streamed streamed(content);
+      counts = read_obj(streamed.stream(), "mesh", *this);
+      return;
+    }
+    const std::filesystem::path path("mesh");
+    ObjReader reader(path, *this);
+    Streamed words(content.starts_with("\xEF\xBB\xBF") ? content.substr(3) : content);
+    reader.take_rest(words.stream());
+    counts = reader.finish();
   }
+  void add_polypaint(const ObjColour& c) override {
+    statements.push_back(fmt::format("{} {} {}", c[0], c[1], c[2]));
+  }
+  void use_material(const std::string& name) override {
+    statements.push_back(fmt::format("{} before {}", name, triangles.size()));
+  }
+  void use_libraries(const std::string& names) override { statements.push_back(names); }
   Vec3d position(std::uint32_t number) override { return places.at(number); }
   void add_position(Vec3d p, const std::optional<ObjColour>& colour) override {
     places.push_back(p);
@@ -50,12 +73,32 @@ class Taken final : public ObjVisitor {
   }
 
   std::vector<Vec3d> places;
-  std::vector<std::string> positions, texcoords, normals, triangles;
+  std::vector<std::string> positions, texcoords, normals, triangles, statements;
   ObjCounts counts;
 };
 
 std::string obj_refusal(const std::string& content) {
   return input_error_of([&] { Taken{content}; });
+}
+
+/// All that was taken, or why nothing was.
+std::vector<std::string> all_of(const std::string& content, Taken::By by) {
+  std::vector<std::string> all;
+  try {
+    const Taken taken(content, by);
+    for (const auto* some :
+         {&taken.positions, &taken.texcoords, &taken.normals, &taken.triangles, &taken.statements})
+      all.insert(all.end(), some->begin(), some->end());
+    const ObjCounts& c = taken.counts;
+    all.push_back(fmt::format(
+        "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", c.positions, c.coloured, c.painted,
+        c.texcoords, c.normals, c.faces, c.triangles, c.degenerate_triangles, c.corners,
+        c.textured_corners, c.normal_corners, c.groups, c.others, c.points_and_lines, c.fits_float,
+        c.zeroed.normals + c.zeroed.texcoords, c.unplaced.first));
+  } catch (const Error& error) {
+    all = {error.what()};
+  }
+  return all;
 }
 
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -141,6 +184,137 @@ TEST(ObjReader, ABackslashJoinsLinesThatHaveNoComment) {
   const Taken taken(std::string(kSquare) + "g a#b \\\nv 8 8 8\nf 1 2 \\\n 3\n");
   EXPECT_THAT(taken.positions, SizeIs(4)) << "a '#' within a word is none";
   EXPECT_THAT(taken.triangles, SizeIs(1));
+}
+
+/// Lines of every kind, mostly plain ones.
+std::string random_lines(std::uint32_t seed, std::size_t bytes) {
+  std::mt19937 random(seed);
+  static constexpr std::array kPlain{"v 1 2 3",
+                                     "v -0.5 1e-3 +7",
+                                     "v 1 2 3 0.5 0.25 1",
+                                     "vt 0.5 0.25",
+                                     "vt 0.5 0.25 0",
+                                     "vn 0 0 1",
+                                     "f 1 2 3",
+                                     "f 1 2 3 4",
+                                     "f 1/1 2/1 3/1",
+                                     "f 1//1 2//1 3//1",
+                                     "f 1/1/1 2/1/1 3/1/1",
+                                     "f -1 -2 -3",
+                                     "f -1/-1 -2/-1 -3/-1",
+                                     "",
+                                     "# a comment"};
+  static constexpr std::array kOdd{"  v 1 2 3  ",  "\tf 1 2\t3",      "v 1 2 3 # x",
+                                   "v 1 2 3 0.5",  "v 1 2 3 1 0 0 1", "v nan 0 0",
+                                   "vt 0.5",       "vt nan 0",        "vn inf 0 0",
+                                   "f 1 2 3 # y",  "f 1 2",           "f",
+                                   "f 1/1 2 3",    "f 3 2 1 1 2 3 1", "usemtl a # b",
+                                   "mtllib a.mtl", "g left right",    "o",
+                                   "s off",        "l 1 2",           "#MRGB ff00ff00ff102030",
+                                   "#MRGBx",       "# ends in \\",    "g a \\",
+                                   "f 1 \\",       "v 1 \\",          " 2 3",
+                                   "\v",           "v\f1 2 3",        "v 100000.1 2 3",
+                                   "vp 1 2",       "f +1 2 3",        "f 1/1/ 2/1/ 3/1/"};
+  static constexpr std::array kWrong{"f 1 2 99999999", "f 0 1 2",          "f 1 2 -99999",
+                                     "v 1 2",          "v 1 2 1e60",       "vx 1 2",
+                                     "f 1 2 3x",       "f 4294967296 1 2", "vn 1 2 x"};
+  static constexpr std::array kEnds{"\n", "\r\n", "\r"};
+  const bool is_wrong = random() % 4 == 0;
+  const std::size_t odd = random() % 3 == 0 ? 2 : 200;
+  const char* const end = kEnds[random() % kEnds.size()];
+  std::string text(random() % 3 == 0 ? "\xEF\xBB\xBF" : "");
+  text += "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\n";
+  while (text.size() < bytes) {
+    const bool is_odd = random() % odd == 0;
+    text += is_odd ? kOdd[random() % kOdd.size()] : kPlain[random() % kPlain.size()];
+    if (is_wrong && random() % (bytes / 8) == 0)
+      text += std::string(end) + kWrong[random() % kWrong.size()];
+    text += random() % 50 == 0 ? kEnds[random() % kEnds.size()] : end;
+  }
+  return text + (random() % 2 == 0 ? "f 1 2 3" : "");
+}
+
+// Blocks are cut wherever a quarter of a MiB ends; nobody may see that.
+TEST(ObjReader, BlocksOfLinesSayWhatWordsSay) {
+  int refused = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const std::string text = random_lines(seed, seed % 4 == 0 ? 600'000 : 3000);
+    const std::vector<std::string> by_words = all_of(text, Taken::By::words);
+    ASSERT_EQ(all_of(text, Taken::By::blocks), by_words) << "seed " << seed;
+    refused += by_words.size() == 1 ? 1 : 0;
+  }
+  EXPECT_GT(refused, 5);
+  EXPECT_LT(refused, 40);
+}
+
+TEST(ObjReader, EveryLineAloneSaysWhatWordsSay) {
+  for (const char* line : {"v 1 2 3",
+                           "v 1 2 3 4",
+                           "v 1 2 3 4 5",
+                           "v 1 2 3 0 0 0",
+                           "v 1 2 3 0 0 nan",
+                           "v 1 2 3 0 0 1e39",
+                           "v 1 2 3 4 5 6 7",
+                           "v 1 2 3 4 5 6 7 8",
+                           "v 8.6e37 0 0",
+                           "v 1e999 0 0",
+                           "v 1e-400 0 0",
+                           "v 0x1 0 0",
+                           "v 1,5 0 0",
+                           "v1 2 3",
+                           "vt",
+                           "vt 1",
+                           "vt 1 2 3",
+                           "vt 1 2 3 4",
+                           "vt1 2",
+                           "vn 1 2",
+                           "vn 1 2 3 4",
+                           "vn 1e39 0 0",
+                           "f 1 2",
+                           "f 1 2 3 4 4",
+                           "f 2147483648 1 2",
+                           "f 2147483647 1 2",
+                           "f 1 2 3 ",
+                           "f 1 2 3\t",
+                           "f 1 2 3\v",
+                           "f 1/ 2/ 3/",
+                           "f 1// 2// 3//",
+                           "f 1/1/1 2/1/1 3/1",
+                           "f 1 2 1",
+                           "fo 1 2 3",
+                           "f 1 2 3 #",
+                           "f 1 2 3#",
+                           "f 01 002 3",
+                           "f +1 2 3",
+                           "f --1 2 3",
+                           "f 1.0 2 3",
+                           "f -4 -3 -2",
+                           "f -5 1 2",
+                           "#",
+                           "#MRGB",
+                           "#MRGB 01020304",
+                           "\\",
+                           "v 1 2 3\\",
+                           "v 1 2\\\n 3",
+                           "f 1 2\\\r\n 3 4"}) {
+    for (const char* end : {"", "\n", "\r\n", "\r", "\nf 1 2 4\n"}) {
+      const std::string text = std::string(kSquare) + "vt 0 0\nvn 0 0 1\n" + line + end;
+      EXPECT_EQ(all_of(text, Taken::By::blocks), all_of(text, Taken::By::words)) << line;
+    }
+  }
+}
+
+TEST(ObjReader, ALineLongerThanABlockIsReadByWords) {
+  std::string face = "f";
+  for (int i = 0; i < 300'000; ++i)
+    face += " 1 2 3 4";
+  for (const std::string& line :
+       {face, "g " + std::string(700'000, 'x'), "# " + std::string(700'000, 'x')}) {
+    const std::string text = std::string(kSquare) + line + "\nv 9 9 9\nf 1 2 5\n";
+    const std::vector<std::string> all = all_of(text, Taken::By::blocks);
+    EXPECT_GT(all.size(), 6U);
+    EXPECT_EQ(all, all_of(text, Taken::By::words));
+  }
 }
 
 TEST(ObjReader, CountsWhatIsNoSurface) {

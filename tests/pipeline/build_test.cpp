@@ -169,7 +169,7 @@ class BuildTest : public testing::Test {
     const std::string before = "larger by ";
     const std::size_t at = message.find(before);
     ASSERT_NE(at, std::string::npos) << message;
-    config.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
+    *config.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
   }
 
   /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
@@ -178,7 +178,7 @@ class BuildTest : public testing::Test {
     std::uint64_t refused = accepted - kMiB;
     while (accepted - refused > 1) {
       config.memory_budget = (refused + accepted) / 2;
-      (refusal(config).empty() ? accepted : refused) = config.memory_budget;
+      (refusal(config).empty() ? accepted : refused) = *config.memory_budget;
     }
     return accepted;
   }

@@ -171,8 +171,8 @@ TEST_F(EstimateTest, TheBudgetIsDividedWholly) {
   const nlohmann::ordered_json memory = to_json(estimate)["memory"];
   EXPECT_EQ(memory["fixed_bytes"].get<std::uint64_t>() + memory["work_bytes"].get<std::uint64_t>() +
                 memory["pool_bytes"].get<std::uint64_t>(),
-            config().memory_budget);
-  EXPECT_LE(estimate.least_budget_bytes, config().memory_budget);
+            memory_budget(config()));
+  EXPECT_LE(estimate.least_budget_bytes, memory_budget(config()));
   config::Config least = config();
   least.memory_budget = estimate.least_budget_bytes;
   EXPECT_NO_THROW(pipeline::estimate_build(least, false, files_));

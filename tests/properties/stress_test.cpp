@@ -145,7 +145,7 @@ TEST_P(StressCaseTest, IsWithinItsBounds) {
     SCOPED_TRACE(name);
     use_method(method);
     ASSERT_NO_THROW(build());
-    const inspection::ErrorOptions options{inspection::AllLevels{}, 2000, config_.memory_budget};
+    const inspection::ErrorOptions options{inspection::AllLevels{}, 2000, memory_budget(config_)};
     for (const inspection::ErrorMeasurement& level :
          inspection::measure_errors(files_, config_.output, options, progress_, cancel_)) {
       if (level.triangles == 0)

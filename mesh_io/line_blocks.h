@@ -1,0 +1,43 @@
+// A text in blocks of whole lines, which can be read one by one and in any order.
+#pragma once
+
+#include "mesh_io/input_stream.h"
+
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Lines end with LF, CRLF or CR; a backslash before a line's end joins it with the next one. A
+/// byte order mark of UTF-8 at the start is left out.
+class LineBlocks {
+ public:
+  /// Of a block, at most.
+  static constexpr std::size_t kBytes = std::size_t{1} << 18;
+
+  explicit LineBlocks(InputStream& stream);
+  ~LineBlocks();
+
+  /// The next lines, as many as fit; the file's last one may have no end. False at the end of the
+  /// file, or if the next line does not fit: then rest() has it and all behind it.
+  bool next(std::vector<char>& block);
+  /// What next() has not handed out, as a stream; valid as long as this object.
+  InputStream& rest();
+
+ private:
+  class Rest;
+
+  InputStream& stream_;
+  std::vector<char> left_;  ///< of the block before: the start of a line
+  bool has_begun_ = false;
+  bool has_ended_ = false;
+  std::unique_ptr<Rest> rest_;
+};
+
+/// The bytes of the first lines of `text` up to the last line end at which it can be cut; 0 if
+/// there is none. `is_all`: nothing follows.
+std::size_t whole_lines(std::string_view text, bool is_all);
+
+}  // namespace meshhier::mesh_io

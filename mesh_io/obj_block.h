@@ -1,0 +1,63 @@
+// Lines of an OBJ file whose numbers are parsed apart from those before and behind them.
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Begins a comment that is none: colours of ZBrush.
+inline constexpr std::string_view kObjPolypaint = "#MRGB";
+
+/// Lines that follow one another and say the same kind of thing, a line each.
+struct ObjRun {
+  enum class Kind : std::uint8_t {
+    positions,  ///< v x y z
+    coloured,   ///< v x y z r g b
+    texcoords,  ///< vt u v [w]
+    normals,    ///< vn x y z
+    faces,      ///< f of 3 or more corners that all name the same kinds of things
+    nothing,    ///< blank, or a comment
+    others      ///< whatever else: to be read by words
+  };
+  Kind kind = Kind::nothing;
+  std::uint8_t corners = 0;   ///< of a face
+  bool has_texcoord = false;  ///< its corners: v/vt or v/vt/vn
+  bool has_normal = false;    ///< v//vn or v/vt/vn
+  std::uint32_t lines = 0;
+  std::uint32_t begin = 0;  ///< the place of its text in that of the block
+
+  bool is_like(const ObjRun& run) const {
+    return kind == run.kind && corners == run.corners && has_texcoord == run.has_texcoord &&
+           has_normal == run.has_normal;
+  }
+  /// Numbers of each face.
+  std::size_t indices() const {
+    return corners * (std::size_t{1} + (has_texcoord ? 1 : 0) + (has_normal ? 1 : 0));
+  }
+};
+
+/// Numbers are sound in themselves: what refers to what is not looked at.
+struct ObjBlock {
+  std::vector<char> text;  ///< whole lines
+  std::vector<ObjRun> runs;
+  std::vector<Vec3d> positions;                 ///< coordinates, in range
+  std::vector<std::array<float, 3>> colours;    ///< of runs of coloured ones
+  std::vector<std::array<float, 2>> texcoords;  ///< finite
+  std::vector<std::array<float, 3>> normals;    ///< finite
+  std::vector<std::int32_t> indices;            ///< of faces, as the file has them: v [vt] [vn] ...
+  bool fits_float = true;                       ///< all coordinates do (DecimalNumber)
+};
+
+/// Of a block of LineBlocks::kBytes, at most: a line of 8 bytes is a run and a position.
+inline constexpr std::uint64_t kObjBlockBytes = std::uint64_t{7} << 18;
+
+/// Fills all but the text. What is not as simple as above is left to the reader by words; it never
+/// fails. O(bytes).
+void parse(ObjBlock& block);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,88 @@
+#include "storage/io/usable_memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace meshhier::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t machine_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = sysconf(_SC_PAGESIZE);
+  return pages > 0 && page_bytes > 0
+             ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes)
+             : UINT64_MAX;
+}
+
+std::uint64_t address_space() {
+  rlimit limit{};
+  const bool is_limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_limited ? limit.rlim_cur : UINT64_MAX;
+}
+
+/// The number in a file; none if there is another word ("max") or no file.
+std::uint64_t limit_in(const fs::path& file) {
+  std::ifstream stream(file);
+  std::uint64_t limit = 0;
+  return stream >> limit ? limit : UINT64_MAX;
+}
+
+/// Of a group and of all above it. `top`: where they lie; `group`: its path from there.
+std::uint64_t limit_of(const fs::path& top, const fs::path& group, const char* file) {
+  std::uint64_t least = limit_in(top / file);
+  fs::path folder = top;
+  for (const fs::path& part : group.relative_path()) {
+    folder /= part;
+    least = std::min(least, limit_in(folder / file));
+  }
+  return least;
+}
+
+bool has_memory(std::string_view controllers) {
+  constexpr std::string_view kMemory = "memory";
+  for (std::string_view rest = controllers; !rest.empty();) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    if (rest.substr(0, end) == kMemory)
+      return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+/// Lines of /proc/self/cgroup: "0::/group" of version 2, "4:memory,cpu:/group" of version 1.
+std::uint64_t group_limit(const fs::path& root) {
+  const fs::path groups = root / "sys/fs/cgroup";
+  std::ifstream stream(root / "proc/self/cgroup");
+  std::uint64_t least = UINT64_MAX;
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t first = line.find(':');
+    if (first == std::string::npos)
+      continue;
+    const std::size_t second = line.find(':', first + 1);
+    if (second == std::string::npos)
+      continue;
+    const std::string_view controllers =
+        std::string_view(line).substr(first + 1, second - first - 1);
+    const fs::path group = line.substr(second + 1);
+    if (controllers.empty())
+      least = std::min(least, limit_of(groups, group, "memory.max"));
+    else if (has_memory(controllers))
+      least = std::min(least, limit_of(groups / "memory", group, "memory.limit_in_bytes"));
+  }
+  return least;
+}
+
+}  // namespace
+
+std::uint64_t usable_memory(const fs::path& root) {
+  return std::min({machine_memory(), address_space(), group_limit(root)});
+}
+
+}  // namespace meshhier::storage
