@@ -514,7 +514,7 @@ std::uint64_t append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoo
 void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMesh& mesh,
                   const ImportRoom& room) {
   SplitVertices vertices(room.scratch);
-  CornerSplitter splitter(room);
+  CornerSplitter splitter(parts.positions.size(), room);
   if (look.surface) {
     import.layout.tints = import.counts.coloured > 0 && do_colours_tint(parts, *look.surface, room);
     add_shown_corners(parts, *look.surface, import.layout.tints, mesh, splitter, room);
@@ -524,10 +524,10 @@ void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMe
   parts.triangles.clear();
   if (look.paint && parts.colours.size() > 0) {
     execution::SpoolCursor colours(parts.colours, room.cancel);
-    splitter.split(parts.positions.size(), vertices, mesh,
+    splitter.split(vertices, mesh,
                    [&](std::uint32_t position) { return is_colour(colours.at(position)); });
   } else {
-    splitter.split(parts.positions.size(), vertices, mesh);
+    splitter.split(vertices, mesh);
   }
   append_vertices(parts, vertices, look, import, mesh, room);
   import.split_vertices = vertices.count() - parts.positions.size();

@@ -104,10 +104,10 @@ void add_corners(const OffParts& parts, ColourType type, CornerSplitter& splitte
 /// Vertices with the colour of their faces, behind normals and before texture coordinates.
 void append_coloured(const OffParts& parts, const AttributeLayout& given,
                      const AttributeLayout& layout, RawMesh& mesh, const ImportRoom& room) {
-  CornerSplitter splitter(room);
+  CornerSplitter splitter(parts.positions.size(), room);
   add_corners(parts, layout.colour, splitter, room);
   SplitVertices vertices(room.scratch);
-  splitter.split(parts.positions.size(), vertices, mesh);
+  splitter.split(vertices, mesh);
   execution::SpoolCursor numbers(vertices.positions, room.cancel);
   execution::SpoolCursor positions(parts.positions, room.cancel);
   execution::SpoolCursor attributes(parts.attributes, room.cancel);

@@ -148,7 +148,7 @@ class PlyImporter {
   }
 
   void append_textured() {
-    CornerSplitter splitter(room_);
+    CornerSplitter splitter(source_.description().vertex_count, room_);
     add_shown_corners(splitter);
     import_.layout = given_.without_texcoords();
     import_.layout.texcoords = import_.layout.material = true;
@@ -195,7 +195,7 @@ class PlyImporter {
   }
 
   void append_coloured() {
-    CornerSplitter splitter(room_);
+    CornerSplitter splitter(source_.description().vertex_count, room_);
     execution::SpoolCursor triangles(triangles_.all, room_.cancel);
     execution::SpoolCursor colours(triangles_.colours, room_.cancel);
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
@@ -221,7 +221,7 @@ class PlyImporter {
   void append_split(CornerSplitter& splitter, const Append& append) {
     triangles_.clear();
     SplitVertices vertices(room_.scratch);
-    splitter.split(source_.description().vertex_count, vertices, mesh_);
+    splitter.split(vertices, mesh_);
     import_.split_vertices = vertices.count() - source_.description().vertex_count;
     execution::SpoolCursor positions(vertices.positions, room_.cancel);
     std::array<execution::SpoolCursor<std::uint32_t>, CornerParts::kCount> parts{

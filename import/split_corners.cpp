@@ -1,5 +1,6 @@
 #include "import/split_corners.h"
 
+#include "execution/spool_cursor.h"
 #include "hierarchy/error.h"
 
 #include <span>
@@ -16,44 +17,98 @@ void SplitVertices::add(const CornerParts& vertex) {
   }
 }
 
+/// Gives vertices their numbers, position by position, of each in the order of their parts.
+class CornerSplitter::Numbering {
+ public:
+  Numbering(const std::function<bool(std::uint32_t)>& hides_material, SplitVertices& vertices)
+      : hides_material_(hides_material), vertices_(vertices) {}
+
+  /// Of corners at a position that show the same. Ascending.
+  std::uint64_t number(CornerParts shown) {
+    // The material is the last part, so that equal ones stay together without it.
+    if (hides_material_ && hides_material_(shown.position))
+      shown.parts[CornerParts::kMaterial] = 0;
+    if (vertices_.count() == 0 || shown != last_)
+      vertices_.add(shown);
+    last_ = shown;
+    return vertices_.count() - 1;
+  }
+  /// Of a position that no corner uses.
+  void add_unused(std::uint32_t position) {
+    last_ = {position};
+    vertices_.add(last_);
+  }
+
+ private:
+  const std::function<bool(std::uint32_t)>& hides_material_;
+  SplitVertices& vertices_;
+  CornerParts last_{};
+};
+
+CornerSplitter::CornerSplitter(std::uint64_t positions, const ImportRoom& room)
+    : positions_(positions),
+      room_(room),
+      firsts_(positions <= room.sort_bytes / kTableBytes ? positions : 0),
+      vertices_(firsts_.size(), kUnused),
+      shown_(room.scratch, kImportSpoolBytes),
+      sort_bytes_(has_table() ? room.sort_bytes / 2 : room.sort_bytes),
+      uses_(room.scratch, sort_bytes_) {}
+
 void CornerSplitter::add(const CornerParts& corner) {
-  uses_.add(
-      {corner, static_cast<std::uint32_t>(corners_ >> 32), static_cast<std::uint32_t>(corners_)});
-  ++corners_;
+  const std::uint64_t number = corners_++;
+  const Use use{corner, static_cast<std::uint32_t>(number >> 32),
+                static_cast<std::uint32_t>(number)};
+  if (!has_table())
+    return uses_.add(use);
+  shown_.append(corner);
+  if (vertices_[corner.position] == kUnused) {
+    vertices_[corner.position] = 0;  // some number: it is used
+    firsts_[corner.position] = corner.parts;
+  } else if (firsts_[corner.position] != corner.parts) {
+    uses_.add(use);
+  }
 }
 
-void CornerSplitter::split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh,
+void CornerSplitter::split(SplitVertices& vertices, RawMesh& mesh,
                            const std::function<bool(std::uint32_t)>& hides_material) {
-  CornerSort corners(room_.scratch, room_.sort_bytes);
-  number(positions, hides_material, vertices, corners);
-  append_triangles(corners, mesh.vertex_count(), mesh);
+  CornerSort corners(room_.scratch, sort_bytes_);
+  Numbering numbering(hides_material, vertices);
+  number(numbering, corners);
+  if (has_table())
+    append_looked_up(corners, mesh.vertex_count(), mesh);
+  else
+    append_triangles(corners, mesh.vertex_count(), mesh);
 }
 
-void CornerSplitter::number(std::uint64_t positions,
-                            const std::function<bool(std::uint32_t)>& hides_material,
-                            SplitVertices& vertices, CornerSort& corners) {
+void CornerSplitter::number(Numbering& numbering, CornerSort& corners) {
   uses_.sort();
-  std::uint32_t next = 0;  // position
-  CornerParts last{};
+  std::uint32_t at = 0;
+  bool is_done = false;  // what the table has at this position, or some use there
+  const auto take_first = [&] {
+    vertices_[at] = static_cast<std::uint32_t>(numbering.number({at, firsts_[at]}));
+    is_done = true;
+  };
+  const auto leave = [&] {
+    if (!is_done && has_table() && vertices_[at] != kUnused)
+      take_first();
+    else if (!is_done)
+      numbering.add_unused(at);
+    is_done = false;
+    ++at;
+  };
   uses_.for_each_block([&](std::span<const Use> block) {
     room_.cancel.check();
     for (const Use& use : block) {
-      const bool is_first = next <= use.shown.position;
-      while (next < use.shown.position)
-        vertices.add({next++});
-      CornerParts shown = use.shown;
-      // The material is the last part, so that equal ones stay together without it.
-      if (hides_material && hides_material(shown.position))
-        shown.parts[CornerParts::kMaterial] = 0;
-      if (is_first || shown != last)
-        vertices.add(shown);
-      next = shown.position + 1;
-      last = shown;
-      corners.add({use.corner(), vertices.count() - 1});
+      while (at < use.shown.position)
+        leave();
+      if (has_table() && !is_done && firsts_[at] < use.shown.parts)
+        take_first();
+      corners.add({use.corner(), numbering.number(use.shown)});
+      is_done = is_done || !has_table();
     }
   });
-  while (next < positions)
-    vertices.add({next++});
+  while (at < positions_)
+    leave();
 }
 
 void CornerSplitter::append_triangles(CornerSort& corners, std::uint64_t base, RawMesh& mesh) {
@@ -67,6 +122,25 @@ void CornerSplitter::append_triangles(CornerSort& corners, std::uint64_t base, R
         mesh.triangles.append(triangle);
     }
   });
+}
+
+/// `corners`: those that show something else than the table has.
+void CornerSplitter::append_looked_up(CornerSort& corners, std::uint64_t base, RawMesh& mesh) {
+  corners.sort();
+  std::span<const CornerVertex> others = corners.next_block();
+  execution::SpoolCursor shown(shown_, room_.cancel);
+  Triangle<std::uint32_t> triangle{};
+  for (std::uint64_t i = 0; i < corners_; ++i) {
+    const CornerParts& corner = shown.at(i);
+    std::uint64_t vertex = vertices_[corner.position];
+    if (!others.empty() && others.front().corner == i) {
+      vertex = others.front().vertex;
+      others = others.size() > 1 ? others.subspan(1) : corners.next_block();
+    }
+    triangle[i % 3] = static_cast<std::uint32_t>(base + vertex);
+    if (i % 3 == 2)
+      mesh.triangles.append(triangle);
+  }
 }
 
 }  // namespace meshhier::importing

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 namespace meshhier::importing {
 
@@ -41,21 +42,26 @@ struct SplitVertices {
   std::array<std::uint64_t, CornerParts::kCount> without{};  ///< vertices whose part is 0
 };
 
-/// Takes the corners of triangles, three after three, then sorts them.
+/// Takes the corners of triangles, three after three, then numbers their vertices.
+///
+/// Most positions are used in one combination alone. If a table of the first one of each position
+/// fits into memory, only corners that show another one are sorted; else all are. The result is the
+/// same.
 class CornerSplitter {
  public:
-  explicit CornerSplitter(const ImportRoom& room)
-      : room_(room), uses_(room.scratch, room.sort_bytes) {}
+  /// `positions`: how many the file has.
+  CornerSplitter(std::uint64_t positions, const ImportRoom& room);
 
+  /// Requires corner.position < positions.
   void add(const CornerParts& corner);
   /// Appends the triangles to `mesh`, whose next vertices will be `vertices`: they are ordered by
-  /// position, then by their parts. `positions`: how many the file has. `hides_material`: asked of
-  /// ascending positions, of the same one perhaps again, whether corners there have no material
-  /// after all; empty: none. Once.
-  void split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh,
+  /// position, then by their parts. `hides_material`: asked of ascending positions, of the same one
+  /// perhaps again, whether corners there have no material after all; empty: none. Once.
+  void split(SplitVertices& vertices, RawMesh& mesh,
              const std::function<bool(std::uint32_t)>& hides_material = {});
 
  private:
+  using Parts = std::array<std::uint32_t, CornerParts::kCount>;
   struct Use {
     CornerParts shown;
     std::uint32_t corner_high, corner_low;  ///< not a u64, so that nothing is padded
@@ -77,13 +83,23 @@ class CornerSplitter {
     std::uint64_t operator()(const CornerVertex& c) const { return c.corner; }
   };
   using CornerSort = partition::ExternalSort<CornerVertex, CornerKey>;
+  class Numbering;
 
-  void number(std::uint64_t positions, const std::function<bool(std::uint32_t)>& hides_material,
-              SplitVertices& vertices, CornerSort& corners);
+  bool has_table() const { return !firsts_.empty(); }
+  void number(Numbering& numbering, CornerSort& corners);
   void append_triangles(CornerSort& corners, std::uint64_t base, RawMesh& mesh);
+  void append_looked_up(CornerSort& corners, std::uint64_t base, RawMesh& mesh);
 
+  static constexpr std::uint32_t kUnused = UINT32_MAX;
+  static constexpr std::uint64_t kTableBytes = sizeof(Parts) + sizeof(std::uint32_t);
+
+  std::uint64_t positions_;
   const ImportRoom& room_;
-  partition::ExternalSort<Use, UseKey> uses_;
+  std::vector<Parts> firsts_;  ///< of each position what the first corner there shows; or empty
+  std::vector<std::uint32_t> vertices_;        ///< of these; kUnused until there is a corner
+  storage::RecordSpool<CornerParts> shown_;    ///< all corners, if there is a table
+  std::uint64_t sort_bytes_;                   ///< of each of two sorts
+  partition::ExternalSort<Use, UseKey> uses_;  ///< of all corners, or of what is not in the table
   std::uint64_t corners_ = 0;
 };
 

@@ -10,8 +10,6 @@
 namespace meshhier::mesh_io {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 /// Whether a line ends with the character at `at`, and the next one can begin behind it.
 bool ends_line(std::string_view text, std::size_t at, bool is_all) {
   if (!is_line_end(text[at]))

@@ -1,7 +1,12 @@
 // What separates words and lines.
 #pragma once
 
+#include <string_view>
+
 namespace meshhier::mesh_io {
+
+/// Of UTF-8, at the start of a file.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 constexpr bool is_line_end(char c) {
   return c == '\n' || c == '\r';

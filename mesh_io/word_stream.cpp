@@ -16,7 +16,6 @@
 namespace meshhier::mesh_io {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kCapacity = std::size_t{1} << 18;
 constexpr std::size_t kLookAhead = std::size_t{1} << 16;
 
