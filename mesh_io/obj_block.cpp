@@ -95,7 +95,7 @@ class BlockParser {
 
  private:
   /// Lines of many kinds one after the other are not worth more memory.
-  static constexpr std::size_t kMostRuns = 8192;
+  static constexpr std::size_t kMostRuns = 16384;
 
   /// Returns where the next one begins.
   const char* parse_line(const char* at) {
