@@ -20,6 +20,7 @@
 #include "support/memory_files.h"
 #include "support/simplify_methods.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -59,19 +60,21 @@ bench::LoadedMesh take_mesh(Take& take) {
   return mesh;
 }
 
-/// Where the vertices lie: -0 equals 0.
+/// Where the vertices lie: -0 equals 0, and those that are not finite lie nowhere.
 std::size_t count_places(const bench::LoadedMesh& mesh) {
   std::set<std::array<std::uint64_t, 3>> places;
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value + 0.0); };
-  for (const Vec3d& p : mesh.positions)
-    places.insert({bits(p.x), bits(p.y), bits(p.z)});
-  return places.size();
+  for (const Vec3d& p : mesh.positions) {
+    if (is_finite(p))
+      places.insert({bits(p.x), bits(p.y), bits(p.z)});
+  }
+  return std::max<std::size_t>(places.size(), 1);
 }
 
 /// A mesh of which nothing can be measured has no errors.
 void check_bounds(MemoryFiles& files, const config::Config& config) {
   execution::NoProgress progress;
-  const inspection::ErrorOptions options{Level{}, 300, memory_budget(config)};
+  const inspection::ErrorOptions options{Level{}, 300, pipeline::memory_budget(config)};
   for (const auto& level :
        inspection::measure_errors(files, config.output, options, progress, {})) {
     if (level.triangles > 0 && !level.problems.empty())
