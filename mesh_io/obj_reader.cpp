@@ -47,7 +47,8 @@ class TextStream final : public InputStream {
 
   std::size_t read(std::span<std::byte> to) override {
     const std::size_t count = std::min(to.size(), text_.size());
-    std::memcpy(to.data(), text_.data(), count);
+    if (count > 0)
+      std::memcpy(to.data(), text_.data(), count);
     text_.remove_prefix(count);
     return count;
   }

@@ -35,7 +35,7 @@ std::uint64_t fixed_memory(const BuildEstimate& e) {
 std::string memory_text(const BuildEstimate& e) {
   const MemoryPlan& memory = e.plan.memory;
   return fmt::format(
-      "memory      {} asked for, {} would do\n"
+      "memory      {} at most, {} would do\n"
       "            {} program, index and allocator, {} stages at work, {} data kept off the "
       "disk\n"
       "            in flight: {}, {}, {}; rank table {}\n",

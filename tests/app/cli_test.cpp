@@ -523,7 +523,8 @@ TEST_F(CommandLine, ABuildEndsWithThreeLines) {
   EXPECT_EQ(made.substr(0, made.rfind(',')),
             "made " + (mesh.parent_path() / "it's.hier").string() +
                 ": 2500 vertices, 4802 triangles in 1 partition, 1 level, 1 tile");
-  EXPECT_THAT(took, ::testing::MatchesRegex("took [0-9.]+ s and [0-9.]+ MiB of memory"));
+  EXPECT_THAT(took, ::testing::MatchesRegex("took [0-9.]+ s and [0-9.]+ MiB of memory, of a "
+                                            "budget of [0-9.]+ [MG]iB"));
   EXPECT_EQ(next, "next: " MESHHIER_BINARY " serve '" + mesh.parent_path().string() + "' --open");
   EXPECT_FALSE(std::getline(lines, more)) << more;
 }
