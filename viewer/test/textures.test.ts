@@ -171,7 +171,7 @@ describe('TileObject', () => {
   it.each([true, false])('multiplies the picture by colours that tint it: unlit %s', async (unlit) => {
     const parts = { ...SQUARE, picture: { ...PICTURE, unlit } };
     const { material } = await made({ ...parts, coloursTint: true });
-    expect(material).toMatchObject({ vertexColors: true, map: expect.anything() });
+    expect(material).toMatchObject({ vertexColors: true, map: expect.anything() as unknown });
     const other = (await made(parts)).material;
     expect(other.vertexColors).toBe(false);
     expect(material.customProgramCacheKey()).not.toBe(other.customProgramCacheKey());
