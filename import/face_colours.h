@@ -12,10 +12,9 @@
 namespace meshhier::importing {
 
 using FaceColour = std::array<float, 4>;
-using FaceColourParts = std::array<std::uint32_t, CornerParts::kCount>;
 
 /// The numbers of a colour as parts of a corner, and back: integers of 16 bits, or three floats.
-inline FaceColourParts parts_of(const FaceColour& colour, ColourType type) {
+inline CornerParts::Parts parts_of(const FaceColour& colour, ColourType type) {
   if (type == ColourType::f32) {
     return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]),
             std::bit_cast<std::uint32_t>(colour[2])};
@@ -26,7 +25,7 @@ inline FaceColourParts parts_of(const FaceColour& colour, ColourType type) {
   return {pair(0), pair(2), 0};
 }
 
-inline FaceColour colour_of(const FaceColourParts& parts, ColourType type) {
+inline FaceColour colour_of(const CornerParts::Parts& parts, ColourType type) {
   if (type == ColourType::f32) {
     return {std::bit_cast<float>(parts[0]), std::bit_cast<float>(parts[1]),
             std::bit_cast<float>(parts[2]), 0};

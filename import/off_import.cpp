@@ -95,7 +95,7 @@ void add_corners(const OffParts& parts, ColourType type, CornerSplitter& splitte
     FaceColour colour = colours.at(i);
     for (float& number : colour)
       number = std::isnan(number) ? full_number(type) : number;
-    const FaceColourParts shown = parts_of(colour, type);
+    const CornerParts::Parts shown = parts_of(colour, type);
     for (const VertexId corner : triangles.at(i))
       splitter.add({raw(corner), shown});
   }
@@ -140,36 +140,34 @@ OffImport import_off(mesh_io::InputStream& stream, const std::filesystem::path& 
   OffParts parts(room.scratch);
   SpoolLookup<Vec3d> places(parts.positions);
   FaceColours colours(parts);
-  OffImport import;
-  import.counts = mesh_io::read_off(
+  OffImport made;
+  made.counts = mesh_io::read_off(
       stream, path,
       [&](Vec3d position, std::span<const float> attributes) {
         parts.positions.append(position);
-  parts.attributes.append(attributes);
-},
-      [&](std::span<const Triangle<VertexId>> triangles) {
-  room.cancel.check();
-  parts.triangles.append(triangles);
+        parts.attributes.append(attributes);
       },
-      [&](std::uint64_t triangles, const auto& colour) {
-  colours.add(triangles, colour); },
-      [&](std::uint32_t vertex) {
-  return places.at(vertex); });
-const AttributeLayout& given = import.counts.attributes;
-import.layout = given;
-import.ignored_colours = import.counts.unknown_colours;
-const std::uint64_t before = mesh.vertex_count();
-if (colours.coloured() == 0 || given.colour != ColourType::none) {
-  import.ignored_colours += colours.coloured();
-  append_plain(parts, mesh, room);
-  return import;
+      [&](std::span<const Triangle<VertexId>> triangles) {
+        room.cancel.check();
+        parts.triangles.append(triangles);
+      },
+      [&](std::uint64_t triangles, const auto& colour) { colours.add(triangles, colour); },
+      [&](std::uint32_t vertex) { return places.at(vertex); });
+  const AttributeLayout& given = made.counts.attributes;
+  made.layout = given;
+  made.ignored_colours = made.counts.unknown_colours;
+  if (colours.coloured() == 0 || given.colour != ColourType::none) {
+    made.ignored_colours += colours.coloured();
+    append_plain(parts, mesh, room);
+    return made;
+  }
+  made.layout.colour = colours.type();
+  made.layout.alpha = colours.has_alpha();
+  made.white_faces = colours.plain();
+  const std::uint64_t before = mesh.vertex_count();
+  append_coloured(parts, given, made.layout, mesh, room);
+  made.split_vertices = mesh.vertex_count() - before - parts.positions.size();
+  return made;
 }
-import.layout.colour = colours.type();
-import.layout.alpha = colours.has_alpha();
-import.white_faces = colours.plain();
-append_coloured(parts, given, import.layout, mesh, room);
-import.split_vertices = mesh.vertex_count() - before - parts.positions.size();
-return import;
-}  // namespace meshhier::importing
 
 }  // namespace meshhier::importing

@@ -2,8 +2,8 @@
 
 #include "execution/spool_cursor.h"
 #include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "import/renumber_triangles.h"
+#include "mesh_io/input_error.h"
 
 #include <algorithm>
 #include <span>
@@ -38,13 +38,12 @@ void move_vertices(const RawMesh& mesh, RawMesh& placed,
 
 void count_unplaced(const mesh_io::VertexBlock& block, const std::filesystem::path& path,
                     mesh_io::UnplacedVertices& unplaced) {
-  constexpr std::size_t kLongestPath = 4096;
   std::uint64_t vertex = block.first;
   const auto count = [&](const auto& position) {
     if (!is_finite(position) && unplaced.count++ == 0) {
-      unplaced.first = fmt::format(
-          "{}: vertex {} has the coordinates {} {} {}, which are not finite",
-          plain_text(path.string(), kLongestPath), vertex, position.x, position.y, position.z);
+      unplaced.first = mesh_io::file_message(
+          path, fmt::format("vertex {} has the coordinates {} {} {}, which are not finite", vertex,
+                            position.x, position.y, position.z));
     }
     ++vertex;
   };

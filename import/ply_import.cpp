@@ -26,7 +26,6 @@ constexpr std::size_t kU = 0;  ///< its bits
 constexpr std::size_t kV = 1;
 
 using Texcoord = std::array<float, 2>;
-
 using mesh_io::PlyTexcoords;
 
 struct FaceTriangle {
@@ -153,7 +152,7 @@ class PlyImporter {
     import_.layout = given_.without_texcoords();
     import_.layout.texcoords = import_.layout.material = true;
     const auto channels = static_cast<std::size_t>(given_.texcoord_offset());
-    append_split(splitter, [&](std::span<const float> given, const FaceColourParts& parts) {
+    append_split(splitter, [&](std::span<const float> given, const CornerParts::Parts& parts) {
       mesh_.attributes.append(given.first(channels));
       append_shown(given, parts);
     });
@@ -175,15 +174,15 @@ class PlyImporter {
     }
   }
 
-  void append_shown(std::span<const float> given, const FaceColourParts& parts) {
+  void append_shown(std::span<const float> given, const CornerParts::Parts& parts) {
     // A vertex that no triangle uses has no material: any will do.
     const std::uint32_t part = parts[CornerParts::kMaterial];
     const std::uint32_t material = std::max(part, std::uint32_t{1}) - 1;
     std::array<float, 3> shown{0, 0, static_cast<float>(material)};
-    const bool shows_picture = mesh_.materials.list().materials[material].image.has_value();
-    import_.hidden_colours +=
-        part > 0 && !shows_picture && given_.colour != ColourType::none ? 1 : 0;
-    if (part > 0 && shows_picture) {
+    const bool shows_picture = part > 0 && mesh_.materials.list().materials[material].image;
+    if (part > 0 && !shows_picture && given_.colour != ColourType::none)
+      ++import_.hidden_colours;
+    if (shows_picture) {
       const auto texcoord = static_cast<std::size_t>(given_.texcoord_offset());
       const Texcoord at = has_own_texcoords() ? Texcoord{std::bit_cast<float>(parts[kU]),
                                                          std::bit_cast<float>(parts[kV])}
@@ -199,7 +198,7 @@ class PlyImporter {
     execution::SpoolCursor triangles(triangles_.all, room_.cancel);
     execution::SpoolCursor colours(triangles_.colours, room_.cancel);
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-      const FaceColourParts parts = parts_of(colours.at(i), plan_.face_colour);
+      const CornerParts::Parts parts = parts_of(colours.at(i), plan_.face_colour);
       for (const std::uint32_t corner : triangles.at(i).corners)
         splitter.add({corner, parts});
     }
@@ -208,7 +207,7 @@ class PlyImporter {
     import_.layout.alpha = plan_.face_alpha;
     const auto before = static_cast<std::size_t>(import_.layout.colour_offset());
     const auto count = static_cast<std::size_t>(import_.layout.colour_channels());
-    append_split(splitter, [&](std::span<const float> given, const FaceColourParts& parts) {
+    append_split(splitter, [&](std::span<const float> given, const CornerParts::Parts& parts) {
       const FaceColour colour = colour_of(parts, plan_.face_colour);
       mesh_.attributes.append(given.first(before));
       mesh_.attributes.append(std::span(colour).first(count));

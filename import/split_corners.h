@@ -19,8 +19,9 @@ struct CornerParts {
   static constexpr std::size_t kCount = 3;
   static constexpr std::size_t kMaterial = 2;  ///< its number in the mesh's table, from 1 on
 
+  using Parts = std::array<std::uint32_t, kCount>;
   std::uint32_t position = 0;
-  std::array<std::uint32_t, kCount> parts{};
+  Parts parts{};
   friend bool operator==(const CornerParts&, const CornerParts&) = default;
 };
 
@@ -61,7 +62,7 @@ class CornerSplitter {
              const std::function<bool(std::uint32_t)>& hides_material = {});
 
  private:
-  using Parts = std::array<std::uint32_t, CornerParts::kCount>;
+  using Parts = CornerParts::Parts;
   struct Use {
     CornerParts shown;
     std::uint32_t corner_high, corner_low;  ///< not a u64, so that nothing is padded

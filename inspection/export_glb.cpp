@@ -78,7 +78,7 @@ class GlbLayout {
         static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
     return {{{"POSITION", "VEC3", storage::kF32, n, 12},
              {"NORMAL", "VEC3", storage::kF32, has_normals ? n : 0, 12},
-             {format_.textures && !layout.tints ? "_COLOR_0" : "COLOR_0",
+             {storage::colour_attribute(layout, format_.textures.has_value()),
               layout.alpha ? "VEC4" : "VEC3", colour, has_colours ? n : 0,
               storage::aligned4(colour_bytes), colour != storage::kF32},
              {"TEXCOORD_0", "VEC2", storage::kF32, has_texcoords ? n : 0, 8},

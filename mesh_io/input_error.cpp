@@ -9,14 +9,10 @@
 
 namespace meshhier::mesh_io {
 
-namespace {
-
 std::string file_message(const std::filesystem::path& path, const std::string& message) {
   constexpr std::size_t kLongestPath = 4096;
   return fmt::format("{}: {}", plain_text(path.string(), kLongestPath), message);
 }
-
-}  // namespace
 
 void fail_file(const std::filesystem::path& path, const std::string& message) {
   throw Error(ErrorCode::input, file_message(path, message));

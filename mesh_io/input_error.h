@@ -8,7 +8,9 @@
 
 namespace meshhier::mesh_io {
 
-/// Throws Error(input): "PATH: MESSAGE".
+/// "PATH: MESSAGE".
+std::string file_message(const std::filesystem::path& path, const std::string& message);
+/// Throws Error(input) that says so.
 [[noreturn]] void fail_file(const std::filesystem::path& path, const std::string& message);
 /// Throws Error(input): "PATH: byte OFFSET: MESSAGE". The first byte of a file is 0.
 [[noreturn]] void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,

@@ -5,33 +5,33 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace meshhier::mesh_io {
 namespace {
 
 /// Whether a line ends with the character at `at`, and the next one can begin behind it.
-bool ends_line(std::string_view text, std::size_t at, bool is_all) {
+bool ends_line(std::string_view text, std::size_t at) {
   if (!is_line_end(text[at]))
     return false;
-  const bool is_last = at + 1 == text.size();
-  if (text[at] == '\r' && (is_last ? !is_all : text[at + 1] == '\n'))
+  if (text[at] == '\r' && (at + 1 == text.size() || text[at + 1] == '\n'))
     return false;
   const bool is_second = text[at] == '\n' && at > 0 && text[at - 1] == '\r';
   const std::size_t end = at - (is_second ? 1 : 0);
   return end == 0 || text[end - 1] != '\\';
 }
 
-}  // namespace
-
-std::size_t whole_lines(std::string_view text, bool is_all) {
-  if (is_all)
-    return text.size();
+/// The bytes of the first lines of `text`, up to the last line end at which it can be cut; 0 if
+/// there is none. More text follows.
+std::size_t whole_lines(std::string_view text) {
   std::size_t end = text.size();
-  while (end > 0 && !ends_line(text, end - 1, is_all))
+  while (end > 0 && !ends_line(text, end - 1))
     --end;
   return end;
 }
+
+}  // namespace
 
 /// The text that was read, then the stream.
 class LineBlocks::Rest final : public InputStream {
@@ -73,7 +73,7 @@ bool LineBlocks::next(std::vector<char>& block) {
   if (!has_begun_ && std::string_view(block.data(), size).starts_with(kByteOrderMark))
     block.erase(block.begin(), block.begin() + kByteOrderMark.size());
   has_begun_ = true;
-  const std::size_t whole = whole_lines({block.data(), block.size()}, has_ended_);
+  const std::size_t whole = has_ended_ ? block.size() : whole_lines({block.data(), block.size()});
   left_.assign(block.begin() + static_cast<std::ptrdiff_t>(whole), block.end());
   block.resize(whole);
   if (whole > 0)

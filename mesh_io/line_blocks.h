@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <string_view>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -35,9 +34,5 @@ class LineBlocks {
   bool has_ended_ = false;
   std::unique_ptr<Rest> rest_;
 };
-
-/// The bytes of the first lines of `text` up to the last line end at which it can be cut; 0 if
-/// there is none. `is_all`: nothing follows.
-std::size_t whole_lines(std::string_view text, bool is_all);
 
 }  // namespace meshhier::mesh_io

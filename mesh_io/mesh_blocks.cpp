@@ -106,7 +106,7 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
   const int first_colour = kFirstAttributeSlot + layout_.colour_offset();
   const int last_colour = first_colour + layout_.colour_channels();
   for (std::size_t row = 0; row < count; ++row) {
-    if (!checks.unplaced && !is_placed(first + row))
+    if (!checks.places && !is_placed(first + row))
       continue;
     for (int slot = 0; slot < slots; ++slot) {
       const double value = value_of(first + row, slot);

@@ -38,9 +38,8 @@ class LineParser {
     at_ += is_there ? 1 : 0;
     return is_there;
   }
-  /// The next word; empty at the end of the line, or if it has letters of no number.
+  /// The word here; empty if it has letters of no number.
   std::string_view take_number() {
-    skip_blanks();
     const char* const first = at_;
     while (at_ != end_ && is_of_number(*at_))
       ++at_;

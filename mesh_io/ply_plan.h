@@ -47,7 +47,7 @@ struct PlyElementPlan {
 /// What is looked for in rows of vertices besides what is always wrong.
 struct RowChecks {
   bool colours = false;  ///< must be integers from 0 to 255
-  bool unplaced = true;  ///< coordinates must be finite; else a row where one is not is let through
+  bool places = true;    ///< coordinates must be finite; else a row where one is not is let through
 };
 
 /// Where the coordinates in pictures are.

@@ -24,7 +24,7 @@ class PlyFileSource final : public PlySource {
       : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
     const PlyHeader header = read_header();
     plan_ = make_ply_plan(header, file_bytes_, file_->path(), writer);
-    plan_.checks.unplaced = unplaced == Unplaced::refused;
+    plan_.checks.places = unplaced == Unplaced::refused;
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
     locate_fixed_elements();

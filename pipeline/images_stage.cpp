@@ -107,10 +107,14 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
     std::string why;
     try {
       const auto reader = images::open_source(materials.images[i], context.files.input());
-      AlphaWatch watch(*reader);
-      pictures.add(watch, step);
-      if (watch.is_any() && is_alpha_unsaid(static_cast<std::uint32_t>(i), materials))
-        transparent.push_back(materials.images[i].name);
+      if (is_alpha_unsaid(static_cast<std::uint32_t>(i), materials)) {
+        AlphaWatch watch(*reader);
+        pictures.add(watch, step);
+        if (watch.is_any())
+          transparent.push_back(materials.images[i].name);
+      } else {
+        pictures.add(*reader, step);
+      }
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)
         throw;

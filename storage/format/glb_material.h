@@ -1,6 +1,7 @@
 // Materials and pictures of a GLB.
 #pragma once
 
+#include "hierarchy/attributes.h"
 #include "hierarchy/texture.h"
 
 #include <cstddef>
@@ -8,6 +9,12 @@
 #include <nlohmann/json_fwd.hpp>
 
 namespace meshhier::storage {
+
+/// What colours of vertices are called. Viewers multiply pictures by `COLOR_0`, and pass over the
+/// other one.
+constexpr const char* colour_attribute(const AttributeLayout& layout, bool is_textured) {
+  return is_textured && !layout.tints ? "_COLOR_0" : "COLOR_0";
+}
 
 inline constexpr const char* kWebpExtension = "EXT_texture_webp";
 inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";

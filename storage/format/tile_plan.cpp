@@ -19,9 +19,6 @@ constexpr std::array<const char*, kPartCount> kKeys{
     "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",   "splitOf",
     "rawNormals", "rawColours", "rawTexcoords", "image"};
 
-/// Of colours that do not tint the picture: viewers multiply it by `COLOR_0`.
-constexpr const char* kHiddenColour = "_COLOR_0";
-
 std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
 }
@@ -92,8 +89,8 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
 }
 
 const char* attribute_name(const TilePlan& plan, Part part) {
-  const bool is_hidden = part == Part::colour && plan.shape().textures && !plan.layout().tints;
-  return is_hidden ? kHiddenColour : key_of(part);
+  return part == Part::colour ? colour_attribute(plan.layout(), plan.shape().textures.has_value())
+                              : key_of(part);
 }
 
 /// Accessors have the numbers of their buffer views: the parts with an accessor come first.

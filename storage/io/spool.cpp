@@ -146,15 +146,14 @@ void Spool::open_block() {
   if (size_ == 0 || scratch_->pool().try_take(block_bytes_)) {
     auto memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
     blocks_.push_back(Block::in_memory(memory.get()));
-    end_ = memory.release();
-    room_ = block_bytes_;
-    return;
+    memory.release();
+  } else {
+    std::byte* memory = blocks_.back().memory();
+    const std::uint64_t offset = scratch_->append({memory, block_bytes_});
+    blocks_.push_back(Block::in_memory(memory));
+    blocks_[blocks_.size() - 2] = Block::on_disk(offset);
   }
-  std::byte* memory = blocks_.back().memory();
-  const std::uint64_t offset = scratch_->append({memory, block_bytes_});
-  blocks_.push_back(Block::in_memory(memory));
-  blocks_[blocks_.size() - 2] = Block::on_disk(offset);
-  end_ = memory;
+  end_ = blocks_.back().memory();
   room_ = block_bytes_;
 }
 
