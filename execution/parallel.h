@@ -18,71 +18,82 @@ namespace meshhier::execution {
 /// more than there are threads for.
 std::size_t useful_blocks(std::uint64_t memory_bytes, std::uint64_t block_bytes);
 
+/// Of items that hold memory only while they are at work, how many to let in where there is memory
+/// for so many: no more are at work than there are threads, others wait for those before them.
+std::size_t with_those_that_wait(std::size_t in_flight);
+
 /// Runs work(i) for all i in [0, count) in parallel, in any order. The first exception ends it and
 /// is thrown again here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Runs work(i) for all i in [0, count) in parallel, at most `in_flight` at a time, and sink(i) in
-/// the order of i, one at a time, which returns whether to go on. Work on i is done, and its place
-/// i % in_flight left, before i + in_flight is let in. If several fail, the exception of the least
-/// i is thrown here; none of an i behind the one that ended it.
-void ordered_steps(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
-                   const std::function<void(std::size_t)>& work,
-                   const std::function<bool(std::size_t)>& sink);
+/// What is done with the items 0, 1, 2, ...
+struct OrderedSteps {
+  std::function<bool(std::size_t)> read;     ///< whether there is such an item; in order
+  std::function<void(std::size_t)> work;     ///< in parallel
+  std::function<bool(std::size_t)> sink;     ///< whether to go on; in order
+  std::function<void(std::size_t)> after{};  ///< in parallel, if it was sunk; may be none
+};
 
-/// The same of as many i as there are: read(i) says whether i is one, in the order of i, one at a
-/// time; its failure comes behind the sinks of all i before.
-void ordered_reads(std::size_t in_flight, const CancelToken& cancel,
-                   const std::function<bool(std::size_t)>& read,
-                   const std::function<void(std::size_t)>& work,
-                   const std::function<bool(std::size_t)>& sink);
+/// Runs the steps of all items, one after the other for each, at most `in_flight` items at a time.
+/// Those in order run one at a time. All is done with i, and its place i % in_flight left, before
+/// i + in_flight is read. If several fail, the exception of the least i is thrown here, behind the
+/// sinks of all i before; none of an i behind the one that ended it.
+void ordered_steps(std::size_t in_flight, const CancelToken& cancel, const OrderedSteps& steps);
 
-/// As ordered_steps; hands each result to sink(i, result).
+/// work(i) for all i in [0, count), each result to sink(i, result), as ordered_steps.
 template <class Work, class Sink>
 void ordered_for(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
                  const Work& work, const Sink& sink) {
   std::vector<std::optional<decltype(work(std::size_t{}))>> results(in_flight);
-  ordered_steps(
-      count, in_flight, cancel, [&](std::size_t i) { results[i % in_flight].emplace(work(i)); },
-      [&](std::size_t i) {
-        sink(i, *std::exchange(results[i % in_flight], std::nullopt));
-        return true;
-      });
+  ordered_steps(in_flight, cancel,
+                {[&](std::size_t i) { return i < count; },
+                 [&](std::size_t i) { results[i % in_flight].emplace(work(i)); },
+                 [&](std::size_t i) {
+                   sink(i, *std::exchange(results[i % in_flight], std::nullopt));
+                   return true;
+                 }});
 }
 
-/// As ordered_steps, for many small items: work(i, slot) leaves its result in one of `in_flight`
-/// slots, whose memory is used again and again, and sink(slot) returns whether to go on.
+/// As ordered_for, for many small items: work(i, slot) leaves its result in one of `in_flight`
+/// slots, whose memory is used again and again, sink(slot) returns whether to go on, and
+/// after(slot) may follow it in parallel.
 template <class Slot, class Work, class Sink>
 void ordered_blocks(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
-                    const Work& work, const Sink& sink) {
+                    const Work& work, const Sink& sink,
+                    const std::function<void(Slot&)>& after = {}) {
   std::vector<Slot> slots(in_flight);
-  ordered_steps(
-      count, in_flight, cancel, [&](std::size_t i) { work(i, slots[i % in_flight]); },
-      [&](std::size_t i) { return sink(slots[i % in_flight]); });
+  OrderedSteps steps{[&](std::size_t i) { return i < count; },
+                     [&](std::size_t i) { work(i, slots[i % in_flight]); },
+                     [&](std::size_t i) { return sink(slots[i % in_flight]); }};
+  if (after)
+    steps.after = [&](std::size_t i) { after(slots[i % in_flight]); };
+  ordered_steps(in_flight, cancel, steps);
 }
 
-/// As ordered_reads, for many small items, as ordered_blocks: read(slot) fills one of `in_flight`
-/// slots or returns false.
+/// As ordered_blocks, of as many items as there are: read(slot), in order, fills a slot or returns
+/// false; its failure comes behind the sinks of all items before.
 template <class Slot, class Read, class Work, class Sink>
 void ordered_read_blocks(std::size_t in_flight, const CancelToken& cancel, const Read& read,
                          const Work& work, const Sink& sink) {
   std::vector<Slot> slots(in_flight);
-  ordered_reads(
-      in_flight, cancel, [&](std::size_t i) { return read(slots[i % in_flight]); },
-      [&](std::size_t i) { work(slots[i % in_flight]); },
-      [&](std::size_t i) {
-        sink(slots[i % in_flight]);
-        return true;
-      });
+  ordered_steps(in_flight, cancel,
+                {[&](std::size_t i) { return read(slots[i % in_flight]); },
+                 [&](std::size_t i) { work(slots[i % in_flight]); },
+                 [&](std::size_t i) {
+                   sink(slots[i % in_flight]);
+                   return true;
+                 }});
 }
 
 /// Parallel work on items that a visitor hands out one by one: gathers `batch` of them in slots,
-/// works on all in parallel, and hands the slots to the sink in order. finish() does the rest.
+/// works on all in parallel, hands the slots to the sink in order, and runs after() on all in
+/// parallel, if there is one. finish() does the rest.
 template <class Slot>
 class BatchedWork {
  public:
-  BatchedWork(std::size_t batch, std::function<void(Slot&)> work, std::function<void(Slot&)> sink)
-      : slots_(batch), work_(std::move(work)), sink_(std::move(sink)) {}
+  using Step = std::function<void(Slot&)>;
+  BatchedWork(std::size_t batch, Step work, Step sink, Step after = {})
+      : slots_(batch), work_(std::move(work)), sink_(std::move(sink)), after_(std::move(after)) {}
 
   /// The slot for the next item, as its last use left it. Fill it before the next call.
   Slot& next() {
@@ -95,14 +106,15 @@ class BatchedWork {
     parallel_for(filled_, [&](std::size_t i) { work_(slots_[i]); });
     for (std::size_t i = 0; i < filled_; ++i)
       sink_(slots_[i]);
+    if (after_)
+      parallel_for(filled_, [&](std::size_t i) { after_(slots_[i]); });
     filled_ = 0;
   }
 
  private:
   std::vector<Slot> slots_;
   std::size_t filled_ = 0;
-  std::function<void(Slot&)> work_;
-  std::function<void(Slot&)> sink_;
+  Step work_, sink_, after_;
 };
 
 }  // namespace meshhier::execution

@@ -155,7 +155,7 @@ ImageStore::ImageStore(storage::ScratchFile& scratch, std::uint64_t cache_bytes)
 
 ImageStore::~ImageStore() = default;
 
-void ImageStore::add(ImageReader& reader, const std::function<void(std::uint64_t texels)>& step) {
+StoredImage ImageStore::write(ImageReader& reader, const Step& step) const {
   const ImageInfo& info = reader.info();
   PyramidWriter writer(impl_->scratch, info);
   std::vector<std::uint8_t> row(std::size_t{info.width} * info.channels);
@@ -165,7 +165,11 @@ void ImageStore::add(ImageReader& reader, const std::function<void(std::uint64_t
     if ((y + 1) % kBlockSide == 0 || y + 1 == info.height)
       step(std::uint64_t{info.width} * (y % kBlockSide + 1));
   }
-  impl_->images.push_back(writer.finish());
+  return writer.finish();
+}
+
+void ImageStore::add(StoredImage written) {
+  impl_->images.push_back(std::move(written));
 }
 
 bool ImageStore::restore(std::span<const StoredImage> images) {

@@ -29,7 +29,7 @@ struct TexelRect {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
-/// Thread-safe but for add().
+/// Thread-safe but for add() and restore().
 class ImageStore {
  public:
   static constexpr std::uint32_t kBlockSide = 64;
@@ -38,10 +38,16 @@ class ImageStore {
   ImageStore(storage::ScratchFile& scratch, std::uint64_t cache_bytes);
   ~ImageStore();
 
-  /// Decodes a picture into the next number. `step` is called after each row of blocks with the
-  /// texels it had, and may throw. Throws as ImageReader. O(texels) time, O(width) memory besides
+  /// Called after each row of blocks of a picture with the texels it had; may throw.
+  using Step = std::function<void(std::uint64_t texels)>;
+
+  /// Decodes a picture, to be added. Throws as ImageReader. O(texels) time, O(width) memory besides
   /// the reader's.
-  void add(ImageReader& reader, const std::function<void(std::uint64_t texels)>& step);
+  StoredImage write(ImageReader& reader, const Step& step) const;
+  /// Gives the next number to a picture that was written.
+  void add(StoredImage written);
+  /// Both.
+  void add(ImageReader& reader, const Step& step) { add(write(reader, step)); }
 
   /// Takes pictures that an earlier process added, all or none: false if the scratch file does not
   /// hold what was stored; reads it all. On an empty store, before anything is appended there.
@@ -61,7 +67,7 @@ class ImageStore {
   /// Bytes of scratch space that a picture of this size takes, pyramid and all.
   static std::uint64_t stored_bytes(std::uint32_t width, std::uint32_t height,
                                     std::uint32_t channels);
-  /// Bytes of memory that add() holds besides the reader's.
+  /// Bytes of memory that write() holds besides the reader's.
   static std::uint64_t adding_bytes(std::uint32_t width, std::uint32_t height,
                                     std::uint32_t channels);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -132,6 +133,7 @@ class Buckets {
     buckets_.reserve(count);
     for (std::uint64_t i = 0; i < count; ++i)
       buckets_.emplace_back(room.scratch, bytes);
+    locks_ = std::vector<std::mutex>(count);
     settling_bytes_ = (room.memory_bytes - writing) / 2;
     // Hashes are about even: few buckets have twice what they have on average.
     in_flight_ = std::clamp<std::uint64_t>(
@@ -144,9 +146,15 @@ class Buckets {
                 [&](const Vertex& vertex) { return hash_bits(vertex.hash(), 0, bits_); });
   }
 
+  /// In any order, which decides nothing. Thread-safe.
   void append(Grouped<Words>& spread) {
-    for (std::size_t i = 0; i < buckets_.size(); ++i)
-      buckets_[i].append(spread.group(i));
+    for (std::size_t i = 0; i < buckets_.size(); ++i) {
+      const std::span<Vertex> group = spread.group(i);
+      if (group.empty())
+        continue;
+      const std::lock_guard lock(locks_[i]);
+      buckets_[i].append(group);
+    }
   }
 
   CopyList settle(storage::ScratchFile& list) {
@@ -241,7 +249,8 @@ class Buckets {
   }
 
   const LookRoom& room_;
-  std::vector<Bucket> buckets_;  ///< 2^bits_, by the first bits of the hash
+  std::vector<Bucket> buckets_;    ///< 2^bits_, by the first bits of the hash
+  std::vector<std::mutex> locks_;  ///< per bucket, of who appends
   int bits_ = 0;
   std::uint64_t settling_bytes_ = 0;
   std::size_t in_flight_ = 1;
@@ -271,11 +280,8 @@ CopyList look_at(mesh_io::MeshSource& source, storage::ScratchFile& list, const 
     for (const Vec3<Scalar>& position : positions_of<Scalar>(block))
       slot.vertices.push_back(located(position, id++));
     buckets.spread(slot.vertices, slot.spread);
-  };
-  const auto keep = [&](Slot& slot) {
     buckets.append(slot.spread);
     room.progress.advance(slot.vertices.size());
-    return true;
   };
   if (source.description().vertices_in_place) {
     execution::ordered_blocks<Slot>(
@@ -283,13 +289,12 @@ CopyList look_at(mesh_io::MeshSource& source, storage::ScratchFile& list, const 
         [&](std::uint64_t i, Slot& slot) {
           spread(source.read_vertex_block(i, slot.memory), slot);
         },
-        keep);
+        [](const Slot&) { return true; });
   } else {
     Slot slot;
     source.read_vertices([&](const mesh_io::VertexBlock& block) {
       room.cancel.check();
       spread(block, slot);
-      keep(slot);
     });
   }
   return buckets.settle(list);

@@ -48,7 +48,9 @@ void MeshInput::look_for_copies(const Place& place) {
   place.progress.stage("import", description_.vertex_count, "vertices");
   const std::unique_ptr<mesh_io::MeshSource> imported = in_place_ ? nullptr : open_imported();
   mesh_io::MeshSource& source = in_place_ ? *in_place_ : *imported;
-  storage::ScratchFile scratch(system_, place.scratch, place.pool);
+  using storage::ScratchFile;
+  ScratchFile scratch(system_, place.scratch, place.pool, ScratchFile::Stays::no,
+                      ScratchFile::Files::one_a_thread);
   const std::uint64_t memory = place.sort_bytes;
   copy_scratch_.emplace(system_, place.copies, place.pool);
   copies_ = importing::find_copies(

@@ -7,10 +7,12 @@
 #include "storage/io/spool.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,14 +20,15 @@ namespace meshhier::partition {
 
 /// What a corner of a triangle becomes where the mesh has copies.
 struct WedgeRank {
-  std::uint32_t rank = 0;  ///< provisional, of the place
-  std::uint32_t wedge = 0;
+  std::uint32_t rank;  ///< provisional, of the place
+  std::uint32_t wedge;
 };
+static_assert(std::is_trivially_default_constructible_v<WedgeRank>);
 
 /// What the corner of a copy becomes.
 struct RankedCopy {
   std::uint32_t id = 0;
-  WedgeRank rank;
+  WedgeRank rank{};
 };
 
 /// Finds the ranks of copies. for_each(visit) calls visit(copy) for all of them in the order of
@@ -68,27 +71,27 @@ class RankTable {
       : scratch_(scratch),
         memory_bytes_(memory_bytes),
         plan_(plan_renumbering(vertex_count, sizeof(Rank), memory_bytes)),
-        spooled_(scratch, kSpoolBytes) {
+        count_(vertex_count),
+        spooled_(scratch, kSpoolBytes),
+        ranked_copies_(scratch, kSpoolBytes) {
     if (is_in_memory())
-      table_.reserve(vertex_count);
+      table_ = std::make_unique_for_overwrite<Rank[]>(vertex_count);
   }
 
-  /// The ranks of the next ids.
-  void append(std::span<const Rank> ranks) {
-    is_in_memory() ? void(table_.insert(table_.end(), ranks.begin(), ranks.end()))
-                   : spooled_.append(ranks);
+  bool is_in_memory() const { return plan_.blocks == 1; }
+
+  /// The ranks of the ids from `first` on, with copies among them, whose ranks follow in settle().
+  /// For a table in memory, in any order; thread-safe.
+  void put(std::span<const Rank> ranks, std::uint64_t first, std::span<const CopyVertex> copies) {
+    for_each_run(ranks, first, copies, [&](std::span<const Rank> run) {
+      std::ranges::copy(run, table_.get() + first);
+      first += run.size();
+    });
   }
-  /// Likewise from id `first` on, with copies among them, whose ranks follow in settle().
+  /// The same for a spooled table, in the order of ids.
   void append(std::span<const Rank> ranks, std::uint64_t first,
               std::span<const CopyVertex> copies) {
-    for (const CopyVertex& copy : copies) {
-      const auto before = static_cast<std::size_t>(copy.id - first);
-      append(ranks.first(before));
-      append(std::span<const Rank>(&kUnknown, 1));
-      ranks = ranks.subspan(before);
-      first = std::uint64_t{copy.id} + 1;
-    }
-    append(ranks);
+    for_each_run(ranks, first, copies, [&](std::span<const Rank> run) { spooled_.append(run); });
   }
 
   /// Gives copies the ranks of their places. for_each(visit) calls visit(copy) for all copies in
@@ -99,11 +102,14 @@ class RankTable {
     is_in_memory() ? settle_in_memory(for_each, take) : settle_spooled(for_each, take);
   }
 
-  /// Call once.
+  /// Refers to the table. Call once.
   Renumberer<Rank> renumberer() {
     if (is_in_memory())
-      return {std::move(table_), scratch_};
-    return {settled_ ? *settled_ : spooled_, plan_, scratch_};
+      return {std::move(table_), count_, scratch_};
+    const auto read = [this](std::uint64_t id, std::span<Rank> values) {
+      read_spooled(id, values);
+    };
+    return {{0, count_, read, true}, plan_, scratch_};
   }
 
  private:
@@ -114,7 +120,7 @@ class RankTable {
   class Reader {
    public:
     explicit Reader(const storage::RecordSpool<Rank>& spool) : spool_(spool) {}
-    const Rank& operator[](std::uint64_t i) {
+    Rank operator[](std::uint64_t i) {
       if (i >= first_ + block_.size()) {
         first_ = i;
         block_.resize(std::min(kBlock, spool_.size() - i));
@@ -130,7 +136,19 @@ class RankTable {
     std::vector<Rank> block_;
   };
 
-  bool is_in_memory() const { return plan_.blocks == 1; }
+  /// Calls visit(ranks) for those of the ids from `first` on, with unknown ones for copies.
+  template <class Visit>
+  static void for_each_run(std::span<const Rank> ranks, std::uint64_t first,
+                           std::span<const CopyVertex> copies, const Visit& visit) {
+    for (const CopyVertex& copy : copies) {
+      const auto before = static_cast<std::size_t>(copy.id - first);
+      visit(ranks.first(before));
+      visit(std::span<const Rank>(&kUnknown, 1));
+      ranks = ranks.subspan(before);
+      first = std::uint64_t{copy.id} + 1;
+    }
+    visit(ranks);
+  }
 
   template <class ForEach, class Take>
   void settle_in_memory(const ForEach& for_each, const Take& take) {
@@ -142,31 +160,55 @@ class RankTable {
 
   template <class ForEach, class Take>
   void settle_spooled(const ForEach& for_each, const Take& take) {
-    storage::RecordSpool<Rank>& settled = settled_.emplace(scratch_, kSpoolBytes);
-    Reader firsts(spooled_), table(spooled_);
-    std::uint64_t next = 0;
-    const auto copy_until = [&](std::uint64_t id) {
-      for (; next < id; ++next)
-        settled.append(table[next]);
-    };
+    Reader firsts(spooled_);
     rank_copies(
         for_each, [&](std::uint32_t first) { return firsts[first].rank; }, scratch_, memory_bytes_,
         [&](const RankedCopy& copy) {
-          copy_until(copy.id);
-          settled.append(copy.rank);
-          ++next;
+          ranked_copies_.append(copy);
           take(copy.rank.rank);
         });
-    copy_until(spooled_.size());
-    spooled_.clear();
+  }
+
+  /// Reads the ranks of the ids from `id` on, copies included. Thread-safe.
+  void read_spooled(std::uint64_t id, std::span<Rank> values) const {
+    spooled_.read(id, values);
+    if constexpr (std::is_same_v<Rank, WedgeRank>) {
+      std::array<RankedCopy, 256> some;
+      for (std::uint64_t i = first_copy_from(id); i < ranked_copies_.size(); i += some.size()) {
+        const std::span<RankedCopy> read =
+            std::span(some).first(std::min<std::uint64_t>(some.size(), ranked_copies_.size() - i));
+        ranked_copies_.read(i, read);
+        for (const RankedCopy& copy : read) {
+          if (copy.id - id >= values.size())
+            return;
+          values[copy.id - id] = copy.rank;
+        }
+      }
+    }
+  }
+
+  /// The first of the ranked copies whose id is not below `id`.
+  std::uint64_t first_copy_from(std::uint64_t id) const {
+    std::uint64_t begin = 0, end = ranked_copies_.size();
+    while (begin < end) {
+      const std::uint64_t middle = (begin + end) / 2;
+      RankedCopy copy;
+      ranked_copies_.read(middle, std::span(&copy, 1));
+      if (copy.id < id)
+        begin = middle + 1;
+      else
+        end = middle;
+    }
+    return begin;
   }
 
   storage::ScratchFile& scratch_;
   std::uint64_t memory_bytes_;
   RenumberPlan plan_;
-  std::vector<Rank> table_;
+  std::uint64_t count_;
+  std::unique_ptr<Rank[]> table_;
   storage::RecordSpool<Rank> spooled_;
-  std::optional<storage::RecordSpool<Rank>> settled_;  ///< with the ranks of copies
+  storage::RecordSpool<RankedCopy> ranked_copies_;  ///< by id
 };
 
 }  // namespace meshhier::partition

@@ -15,22 +15,19 @@
 #pragma once
 
 #include "hierarchy/triangle.h"
+#include "partition/bucketed.h"
 #include "storage/io/spool.h"
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 namespace meshhier::partition {
-
-struct RenumberReport {
-  std::uint64_t triangles = 0;
-  std::uint64_t table_blocks = 1;   ///< 1: the table is in memory as a whole
-  std::uint64_t spooled_bytes = 0;  ///< appended to spools; each is read once
-};
 
 /// How a table is cut into blocks, and blocks are grouped.
 struct RenumberPlan {
@@ -66,16 +63,9 @@ template <class Value>
 struct Renumbered {
   std::vector<Triangle<Value>> finished;  ///< corners as they were
 
-  struct Fresh {
-    std::uint32_t bucket;
-    Triangle<std::uint32_t> ids;
-  };
-  struct Begun {
-    std::uint32_t bucket;
-    WaitingTriangle<Value> triangle;
-  };
-  std::vector<Fresh> fresh;  ///< to wait, nothing translated yet
-  std::vector<Begun> begun;
+  // To wait, by what for:
+  Bucketed<Triangle<std::uint32_t>> fresh;  ///< nothing translated yet
+  Bucketed<WaitingTriangle<Value>> begun;
   std::vector<Triangle<std::uint32_t>> read_fresh;  ///< of a batch
   std::vector<WaitingTriangle<Value>> read_begun;
 };
@@ -85,8 +75,9 @@ template <class Value>
 struct RenumberTable {
   std::uint64_t first = 0;  ///< id
   std::uint64_t entries = 0;
-  /// Reads the values of the ids from `id` on.
+  /// Reads the values of the ids from `id` on. Called by several threads if `in_parallel`.
   std::function<void(std::uint64_t id, std::span<Value> values)> read;
+  bool in_parallel = false;
 };
 
 /// Translates triangles in rounds:
@@ -94,9 +85,8 @@ struct RenumberTable {
 ///   translate() and keep() all triangles of the source;
 ///   while next_round(): translate_batch() and keep() all batches of the round.
 ///
-/// The translating functions are const and thread-safe for different results; keep() must be called
-/// for one result at a time, in an order that is the same every time if that of the triangles is to
-/// be. Every triangle is in `finished` of exactly one result.
+/// These functions are thread-safe for different results, next_round() apart. Every triangle is in
+/// `finished` of exactly one result, in any order.
 template <class Value>
 class Renumberer {
   static_assert(std::is_trivially_copyable_v<Value>);
@@ -107,8 +97,8 @@ class Renumberer {
   /// Entry i of the table is the value of id i. Refers to it.
   Renumberer(const storage::RecordSpool<Value>& table, const RenumberPlan& plan,
              storage::ScratchFile& scratch);
-  /// The whole table in memory: nothing waits.
-  Renumberer(std::vector<Value> table, storage::ScratchFile& scratch);
+  /// The whole table in memory, so many values: nothing waits.
+  Renumberer(std::unique_ptr<Value[]> table, std::uint64_t count, storage::ScratchFile& scratch);
 
   /// Ids are unsigned integers or enums of 32 bits. Throws Error(internal) if the table has no such
   /// id: sources check their ids.
@@ -124,27 +114,28 @@ class Renumberer {
   std::uint64_t batches() const;
   void translate_batch(std::uint64_t batch, Renumbered<Value>& result) const;
 
-  const RenumberReport& report() const { return report_; }
-
  private:
   using Waiting = WaitingTriangle<Value>;
   /// Triangles that wait for one block, or for a group of blocks.
   struct Bucket {
     storage::RecordSpool<Triangle<std::uint32_t>> fresh;  ///< nothing translated yet
     storage::RecordSpool<Waiting> begun;
+    std::mutex mutex{};  ///< of who appends
     std::uint64_t fresh_batches() const { return (fresh.size() + kBatch - 1) / kBatch; }
     std::uint64_t begun_batches() const { return (begun.size() + kBatch - 1) / kBatch; }
   };
 
   /// Triangles read from a bucket at a time: a few hundred KiB.
   static constexpr std::uint64_t kBatch = 16384;
+  /// Values that a thread reads at a time.
+  static constexpr std::uint64_t kReadValues = std::uint64_t{1} << 18;
 
   void make_buckets();
   void load(std::uint64_t block);
   template <class Id>
   void translate(std::span<const Triangle<Id>> triangles, std::uint32_t first_id,
                  Renumbered<Value>& result) const;
-  bool is_loaded(std::uint32_t id) const { return id - first_ < loaded_.size(); }
+  bool is_loaded(std::uint32_t id) const { return id - first_ < loaded_count_; }
   void route_fresh(const Triangle<std::uint32_t>& ids, Renumbered<Value>& result) const;
   void route_begun(Waiting& triangle, Renumbered<Value>& result) const;
   /// Number of the bucket that waits for `id`: those of this group's blocks, then all groups'.
@@ -156,11 +147,11 @@ class Renumberer {
   RenumberPlan plan_;
   storage::ScratchFile& scratch_;
   std::uint64_t first_ = 0;  ///< id of the loaded block's first entry
-  std::vector<Value> loaded_;
+  std::unique_ptr<Value[]> loaded_;
+  std::uint64_t loaded_count_ = 0;
   std::uint64_t block_ = 0, group_ = 0;  ///< loaded
-  std::vector<Bucket> buckets_;
+  std::vector<std::unique_ptr<Bucket>> buckets_;
   Bucket* draining_ = nullptr;
-  RenumberReport report_;
 };
 
 }  // namespace meshhier::partition

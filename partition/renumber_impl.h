@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/error.h"
+#include "partition/parallel_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,6 @@ template <class Value>
 Renumberer<Value>::Renumberer(RenumberTable<Value> table, const RenumberPlan& plan,
                               storage::ScratchFile& scratch)
     : table_(std::move(table)), entries_(table_.entries), plan_(plan), scratch_(scratch) {
-  report_.table_blocks = plan_.blocks;
   if (plan_.blocks > 1)
     make_buckets();
   load(0);
@@ -60,13 +60,15 @@ Renumberer<Value>::Renumberer(RenumberTable<Value> table, const RenumberPlan& pl
 template <class Value>
 Renumberer<Value>::Renumberer(const storage::RecordSpool<Value>& table, const RenumberPlan& plan,
                               storage::ScratchFile& scratch)
-    : Renumberer({0, table.size(),
-                  [&table](std::uint64_t id, std::span<Value> values) { table.read(id, values); }},
-                 plan, scratch) {}
+    : Renumberer(
+          {0, table.size(),
+           [&table](std::uint64_t id, std::span<Value> values) { table.read(id, values); }, true},
+          plan, scratch) {}
 
 template <class Value>
-Renumberer<Value>::Renumberer(std::vector<Value> table, storage::ScratchFile& scratch)
-    : entries_(table.size()), scratch_(scratch), loaded_(std::move(table)) {
+Renumberer<Value>::Renumberer(std::unique_ptr<Value[]> table, std::uint64_t count,
+                              storage::ScratchFile& scratch)
+    : entries_(count), scratch_(scratch), loaded_(std::move(table)), loaded_count_(count) {
   plan_.block_entries = std::max<std::uint64_t>(entries_, 1);
 }
 
@@ -74,7 +76,8 @@ template <class Value>
 void Renumberer<Value>::make_buckets() {
   const std::uint64_t count = plan_.group_blocks + (plan_.groups > 1 ? plan_.groups : 0);
   for (std::uint64_t i = 0; i < count; ++i)
-    buckets_.push_back({{scratch_, plan_.bucket_bytes}, {scratch_, plan_.bucket_bytes}});
+    buckets_.emplace_back(
+        new Bucket{{scratch_, plan_.bucket_bytes}, {scratch_, plan_.bucket_bytes}});
 }
 
 template <class Value>
@@ -82,8 +85,14 @@ void Renumberer<Value>::load(std::uint64_t block) {
   block_ = block;
   group_ = block / plan_.group_blocks;
   first_ = block * plan_.block_entries;
-  loaded_.resize(std::min(plan_.block_entries, entries_ - first_));
-  table_.read(table_.first + first_, loaded_);
+  loaded_count_ = std::min(plan_.block_entries, entries_ - first_);
+  if (!loaded_)
+    loaded_ = std::make_unique_for_overwrite<Value[]>(loaded_count_);  // no block has more
+  const std::uint64_t at_a_time =
+      table_.in_parallel ? kReadValues : std::max<std::uint64_t>(loaded_count_, 1);
+  for_each_part(loaded_count_, at_a_time, [&](std::uint64_t first, std::uint64_t count) {
+    table_.read(table_.first + first_ + first, std::span(loaded_.get() + first, count));
+  });
 }
 
 template <class Value>
@@ -106,8 +115,8 @@ template <class Id>
 void Renumberer<Value>::translate(std::span<const Triangle<Id>> triangles, std::uint32_t first_id,
                                   Renumbered<Value>& result) const {
   result.finished.clear();
-  result.fresh.clear();
-  result.begun.clear();
+  result.fresh.clear(buckets_.size());
+  result.begun.clear(buckets_.size());
   for (const Triangle<Id>& triangle : triangles) {
     Triangle<std::uint32_t> ids;
     for (std::size_t corner = 0; corner < 3; ++corner)
@@ -130,7 +139,7 @@ void Renumberer<Value>::route_fresh(const Triangle<std::uint32_t>& ids,
     result.finished.push_back(
         {loaded_[ids[0] - first_], loaded_[ids[1] - first_], loaded_[ids[2] - first_]});
   } else if (!a && !b && !c) {
-    result.fresh.push_back({bucket_of(std::min({ids[0], ids[1], ids[2]})), ids});
+    result.fresh.add(bucket_of(std::min({ids[0], ids[1], ids[2]})), ids);
   } else {
     Waiting triangle{.slots = {}, .open = 7};
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -159,7 +168,7 @@ void Renumberer<Value>::route_begun(Waiting& triangle, Renumbered<Value>& result
     }
   }
   if (triangle.open != 0) {
-    result.begun.push_back({bucket_of(least), triangle});
+    result.begun.add(bucket_of(least), triangle);
     return;
   }
   Triangle<Value>& finished = result.finished.emplace_back();
@@ -169,13 +178,14 @@ void Renumberer<Value>::route_begun(Waiting& triangle, Renumbered<Value>& result
 
 template <class Value>
 void Renumberer<Value>::keep(const Renumbered<Value>& result) {
-  for (const auto& [bucket, ids] : result.fresh)
-    buckets_[bucket].fresh.append(ids);
-  for (const auto& [bucket, triangle] : result.begun)
-    buckets_[bucket].begun.append(triangle);
-  report_.triangles += result.finished.size();
-  report_.spooled_bytes +=
-      result.fresh.size() * sizeof(Triangle<std::uint32_t>) + result.begun.size() * sizeof(Waiting);
+  for (std::uint32_t b = 0; b < buckets_.size(); ++b) {
+    if (!result.fresh.has(b) && !result.begun.has(b))
+      continue;
+    Bucket& bucket = *buckets_[b];
+    const std::lock_guard lock(bucket.mutex);
+    result.fresh.for_each(b, [&](const auto& ids) { bucket.fresh.append(ids); });
+    result.begun.for_each(b, [&](const Waiting& triangle) { bucket.begun.append(triangle); });
+  }
 }
 
 template <class Value>
@@ -189,7 +199,7 @@ bool Renumberer<Value>::next_round() {
   load(block_ + 1);
   // What waits for the first block of a group has waited for the group.
   const std::uint64_t in_group = block_ % plan_.group_blocks;
-  draining_ = &buckets_[in_group == 0 ? plan_.group_blocks + group_ : in_group];
+  draining_ = buckets_[in_group == 0 ? plan_.group_blocks + group_ : in_group].get();
   return true;
 }
 

@@ -1,5 +1,6 @@
 #include "partition/top_tree.h"
 
+#include "partition/parallel_parts.h"
 #include "partition/parallel_sort.h"
 #include "partition/select.h"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 namespace meshhier::partition {
 namespace {
@@ -23,6 +25,9 @@ constexpr double kMedianVariance = 0.25;
 constexpr double variance_below(double variance) {
   return kMedianVariance + variance / 2;
 }
+
+// What select() takes at least.
+constexpr std::uint64_t kSelectBytes = 1 << 20;
 
 // Undecided vertices are read back in blocks of this many.
 constexpr std::size_t kReadBlock = 4096;
@@ -230,7 +235,7 @@ void Sweep::count_all(std::span<const Vec3f> positions, const IdOf& id_of,
                       SweepBlock& block) const {
   const std::vector<PlannedSplit>& splits = plan_.splits;
   block.passed.assign(2 * splits.size() + 1, 0);
-  block.undecided.clear();
+  block.undecided.clear(splits.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const std::uint32_t id = id_of(i);
     std::uint32_t node = cells_.start(positions[i]);
@@ -241,7 +246,7 @@ void Sweep::count_all(std::span<const Vec3f> positions, const IdOf& id_of,
       } else if (key > splits[node].high) {
         node = 2 * node + 2;
       } else {
-        block.undecided.push_back({node, {positions[i], id}});
+        block.undecided.add(node, {positions[i], id});
         break;
       }
     }
@@ -291,7 +296,10 @@ void ChunkSearch::find(std::span<const Vec3f> positions, std::span<const std::ui
 
 TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
                          std::uint64_t memory_bytes)
-    : tree_(tree), memory_bytes_(memory_bytes), left_counts_(plan.splits.size()) {
+    : tree_(tree),
+      memory_bytes_(memory_bytes),
+      left_counts_(plan.splits.size()),
+      locks_(plan.splits.size()) {
   // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its
   // bookkeeping.
   const std::size_t block = std::clamp<std::size_t>(
@@ -302,25 +310,19 @@ TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::Scratch
 }
 
 void TopSelector::add(const SweepBlock& block) {
-  for (std::size_t node = 0; node < left_counts_.size(); ++node)
+  for (std::uint32_t node = 0; node < left_counts_.size(); ++node) {
+    if (block.left_counts[node] == 0 && !block.undecided.has(node))
+      continue;
+    const std::lock_guard lock(locks_[node]);
     left_counts_[node] += block.left_counts[node];
-  for (const SweepBlock::Undecided& u : block.undecided)
-    undecided_[u.node].append(u.point);
+    block.undecided.for_each(node, [&](const IdPoint& point) { undecided_[node].append(point); });
+  }
 }
 
 std::vector<SplitPlane> TopSelector::settle(TopPlan& plan) {
-  // A node is settled only if those above it are: else its counts are of other vertices than it
-  // will have.
-  const auto ready = [&](std::uint32_t node) {
-    return node == 0 || plan.splits[(node - 1) / 2].settled;
-  };
   bool all = true;
-  for (std::uint32_t node = 0; node < left_counts_.size(); ++node) {
-    if (ready(node))
-      settle_node(node, plan.splits[node]);
-    all = all && plan.splits[node].settled;
-    undecided_[node].clear();
-  }
+  for (std::uint32_t first = 0; first < left_counts_.size(); first = 2 * first + 1)
+    all = settle_level(first, first + 1, plan) && all;
   if (!all) {
     Planner(plan, tree_).plan_again();
     return {};
@@ -331,7 +333,30 @@ std::vector<SplitPlane> TopSelector::settle(TopPlan& plan) {
   return planes;
 }
 
-void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
+bool TopSelector::settle_level(std::uint32_t first, std::uint32_t count, TopPlan& plan) {
+  // A node is settled only if those above it are: else its counts are of other vertices than it
+  // will have.
+  const auto ready = [&](std::uint32_t node) {
+    return node == 0 || plan.splits[(node - 1) / 2].settled;
+  };
+  const std::uint64_t at_once = std::clamp<std::uint64_t>(
+      memory_bytes_ / kSelectBytes, 1,
+      std::min<std::uint64_t>(count,
+                              static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency())));
+  for_each_part(count, (count + at_once - 1) / at_once,
+                [&](std::uint64_t begin, std::uint64_t part) {
+                  for (std::uint64_t i = begin; i < begin + part; ++i) {
+                    const auto node = static_cast<std::uint32_t>(first + i);
+                    if (ready(node))
+                      settle_node(node, plan.splits[node], memory_bytes_ / at_once);
+                    undecided_[node].clear();
+                  }
+                });
+  return std::all_of(plan.splits.begin() + first, plan.splits.begin() + first + count,
+                     [](const PlannedSplit& split) { return split.settled; });
+}
+
+void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split, std::uint64_t memory_bytes) {
   const auto& spool = undecided_[node];
   const auto for_each_block = [&](const auto& visit) {
     std::vector<IdPoint> block(std::min<std::uint64_t>(kReadBlock, spool.size()));
@@ -373,7 +398,7 @@ void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
       visit(found);
     });
   };
-  const SplitPlane plane{split.direction, select(keys, inside, target - left, memory_bytes_)};
+  const SplitPlane plane{split.direction, select(keys, inside, target - left, memory_bytes)};
   split.low = split.high = plane.first_right;
   split.settled = true;
   if (2 * node + 1 < left_counts_.size()) {

@@ -12,12 +12,14 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/tree.h"
+#include "partition/bucketed.h"
 #include "partition/direction.h"
 #include "partition/split_cells.h"
 #include "partition/split_plane.h"
 #include "storage/io/spool.h"
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -66,13 +68,9 @@ TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis);
 
 /// What one block of vertices adds to the counts.
 struct SweepBlock {
-  struct Undecided {
-    std::uint32_t node;  ///< in heap order
-    IdPoint point;
-  };
   std::vector<std::uint32_t> left_counts;  ///< per node: vertices certainly left of it
-  std::vector<Undecided> undecided;
-  std::vector<std::uint32_t> passed;  ///< per node, leaves included: vertices certainly in it
+  Bucketed<IdPoint> undecided;             ///< by node, in heap order
+  std::vector<std::uint32_t> passed;       ///< per node, leaves included: vertices certainly in it
 };
 
 /// One sweep over the vertices, block by block. Thread-safe for different blocks.
@@ -147,20 +145,25 @@ class TopSelector {
   TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
               std::uint64_t memory_bytes);
 
+  /// In any order, which decides nothing. Thread-safe.
   void add(const SweepBlock& block);
 
   /// The planes of all splits, or none if a median missed its window: `plan` then has new windows,
-  /// and wants another sweep with a new selector. Call once.
+  /// and wants another sweep with a new selector. Call once. In parallel on the caller's TBB arena.
   std::vector<SplitPlane> settle(TopPlan& plan);
 
  private:
-  /// Finds the node's median and hands its kept-aside vertices down; or notes a miss.
-  void settle_node(std::uint32_t node, PlannedSplit& split);
+  /// settle_node() for those of a level that are ready for it; whether all are settled.
+  bool settle_level(std::uint32_t first, std::uint32_t count, TopPlan& plan);
+  /// Finds the node's median and hands its kept-aside vertices down; or notes a miss. Thread-safe
+  /// for nodes of one level.
+  void settle_node(std::uint32_t node, PlannedSplit& split, std::uint64_t memory_bytes);
 
   const Tree& tree_;
   std::uint64_t memory_bytes_;
   std::vector<std::uint64_t> left_counts_;
   std::vector<storage::RecordSpool<IdPoint>> undecided_;
+  std::vector<std::mutex> locks_;  ///< per node, of who adds
 };
 
 }  // namespace meshhier::partition

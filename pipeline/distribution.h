@@ -22,11 +22,11 @@ namespace meshhier::pipeline {
 /// Under which progress tells of it.
 inline constexpr const char* kPartitionStage = "partition";
 
-/// Hands a share of the vertices to parallel work(block, slot) and a serial sink(slot) in the order
-/// of ids.
-template <class Slot, class Work, class Sink>
+/// Hands a share of the vertices to parallel work(block, slot), a serial sink(slot) in the order of
+/// ids, and after(slot), parallel again.
+template <class Slot, class Work, class Sink, class After>
 void for_each_block(const SourceMesh& mesh, const Share& share, const StageContext& context,
-                    const Work& work, const Sink& sink) {
+                    const Work& work, const Sink& sink, const After& after) {
   struct Read {
     mesh_io::BlockMemory memory;
     std::size_t count = 0;
@@ -44,7 +44,8 @@ void for_each_block(const SourceMesh& mesh, const Share& share, const StageConte
         sink(read.slot);
         context.progress.advance(read.count);
         return true;
-      });
+      },
+      [&](Read& read) { after(read.slot); });
 }
 
 /// The first vertices of the places in a block, and the copies among its vertices.
@@ -117,42 +118,30 @@ struct DistributedBlock {
   }
 };
 
-/// Gives the places' first vertices of a block their ranks.
-class Ranker {
- public:
-  explicit Ranker(const Chunks& chunks) : next_(chunks.count()) {
-    for (std::uint32_t c = 0; c < chunks.count(); ++c)
-      next_[c] = chunks.map().first_rank(c);
-  }
-
-  template <class Rank>
-  void rank(const ChunkedVertices& block, std::vector<Rank>& ranks) {
-    ranks.clear();
-    for (const std::uint32_t chunk : block.chunk_of)
-      ranks.push_back(Rank{next_[chunk]++});
-  }
-
- private:
-  std::vector<std::uint32_t> next_;
-};
-
-/// Distributes the places' first vertices of a share; keep(ranks, block) gets their ranks.
-template <class Rank, class Keep>
+/// Distributes the places' first vertices of a share; keep(ranks, block) gets their ranks in the
+/// order of ids, and put(ranks, block) in any order, in parallel.
+template <class Rank, class Keep, class Put>
 void distribute_places(const SourceMesh& mesh, const importing::CopyList& copies,
                        const partition::TopTree& top, const Share& share, Chunks& chunks,
-                       const Keep& keep, const StageContext& context) {
+                       const Keep& keep, const Put& put, const StageContext& context) {
+  struct Ranked {
+    DistributedBlock block;
+    std::vector<Rank> ranks;
+  };
   const partition::ChunkSearch search(top, mesh.stored_bounds());
-  Ranker ranker(chunks);
-  std::vector<Rank> ranks;
-  for_each_block<DistributedBlock>(
+  Ranker ranker(chunks.map());
+  for_each_block<Ranked>(
       mesh, share, context,
-      [&](const SourceVertices& block, DistributedBlock& distributed) {
-        distributed.sort(block, copies, search, chunks.count());
+      [&](const SourceVertices& block, Ranked& ranked) {
+        ranked.block.sort(block, copies, search, chunks.count());
       },
-      [&](const DistributedBlock& distributed) {
-        ranker.rank(distributed.sorted, ranks);
-        keep(ranks, distributed);
-        chunks.append(distributed.sorted);
+      [&](Ranked& ranked) {
+        ranker.rank(ranked.block.sorted, ranked.ranks);
+        keep(ranked.ranks, ranked.block);
+      },
+      [&](const Ranked& ranked) {
+        put(ranked.ranks, ranked.block);
+        chunks.append(ranked.block.sorted);
       });
 }
 
@@ -201,14 +190,16 @@ class TriangleDistribution {
     return mesh_.read_triangle_blocks<Slot>(
         share, in_flight(), context_.cancel,
         [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) { sort(triangles, slot); },
-        [&](const Slot& slot) { keep_read(slot); });
+        [&](const Slot& slot) { context_.progress.advance(slot.read); },
+        [&](const Slot& slot) { keep(slot); });
   }
   /// As SourceMesh::read_triangles_from().
   mesh_io::FaceCounts take_from(std::uint64_t face) {
     return mesh_.read_triangles_from<Slot>(
         face, in_flight(), context_.cancel,
         [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) { sort(triangles, slot); },
-        [&](const Slot& slot) { keep_read(slot); });
+        [&](const Slot& slot) { context_.progress.advance(slot.read); },
+        [&](const Slot& slot) { keep(slot); });
   }
   /// Those that wait for a part of the table. Call once, at the end.
   void finish() {
@@ -218,11 +209,9 @@ class TriangleDistribution {
           [&](std::uint64_t batch, Slot& slot) {
             renumberer_.translate_batch(batch, slot.renumbered);
             slot.sort(chunks_.map());
-          },
-          [&](const Slot& slot) {
             keep(slot);
-            return true;
-          });
+          },
+          [](const Slot&) { return true; });
     }
   }
 
@@ -236,10 +225,6 @@ class TriangleDistribution {
   void keep(const Slot& slot) {
     renumberer_.keep(slot.renumbered);
     chunks_.append(slot.chunked);
-  }
-  void keep_read(const Slot& slot) {
-    keep(slot);
-    context_.progress.advance(slot.read);
   }
 
   SourceMesh& mesh_;

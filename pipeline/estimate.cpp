@@ -58,7 +58,8 @@ Json memory_json(const BuildEstimate& e) {
           {"table_bytes", memory.table_bytes},
           {"blocks_in_flight", memory.blocks_in_flight},
           {"chunks_in_flight", memory.chunks_in_flight},
-          {"tiles_in_flight", memory.tiles_in_flight}};
+          {"tiles_in_flight", memory.tiles_in_flight},
+          {"pictures_in_flight", memory.pictures_in_flight}};
 }
 
 }  // namespace

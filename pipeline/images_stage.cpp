@@ -1,11 +1,13 @@
 #include "pipeline/images_stage.h"
 
+#include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "images/open_source.h"
 #include "pipeline/tiles/texture_store.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -88,45 +90,70 @@ std::vector<std::string> broken_pictures(const TexturePlan& plan, const BuildJou
   return why;
 }
 
+namespace {
+
+/// A picture on its way into the store.
+struct Decoded {
+  images::StoredImage stored;
+  std::string broken;  ///< why it is; empty: it is not
+  bool has_unsaid_alpha = false;
+};
+
+Decoded decode(std::uint32_t image, const images::ImageStore& pictures,
+               const StageContext& context) {
+  const images::MaterialList& materials = context.plan.textures.materials;
+  const auto step = [&](std::uint64_t texels) {
+    context.cancel.check();
+    context.progress.advance(texels);
+  };
+  Decoded decoded;
+  try {
+    const auto reader = images::open_source(materials.images[image], context.files.input());
+    if (!is_alpha_unsaid(image, materials)) {
+      decoded.stored = pictures.write(*reader, step);
+      return decoded;
+    }
+    AlphaWatch watch(*reader);
+    decoded.stored = pictures.write(watch, step);
+    decoded.has_unsaid_alpha = watch.is_any();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input)
+      throw;
+    if (context.config.missing_images != config::MissingImages::ignore)
+      throw with_picture_hint(error);
+    decoded.broken = error.what();
+    NoPicture none;
+    decoded.stored = pictures.write(none, step);
+  }
+  return decoded;
+}
+
+}  // namespace
+
 images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
                                    const StageContext& context) {
   const TexturePlan& plan = context.plan.textures;
   images::MaterialList materials = plan.materials;
+  const std::size_t first = pictures.size();
   std::uint64_t left = 0;
-  for (std::size_t i = 0; i < plan.heads.size(); ++i) {
-    if (i >= pictures.size())
-      left += std::uint64_t{plan.heads[i].width} * plan.heads[i].height;
-  }
+  for (std::size_t i = first; i < plan.heads.size(); ++i)
+    left += std::uint64_t{plan.heads[i].width} * plan.heads[i].height;
   context.progress.stage("images", left, "texels");
   std::vector<std::string> transparent;
-  for (std::size_t i = pictures.size(); i < plan.heads.size(); ++i) {
-    const auto step = [&](std::uint64_t texels) {
-      context.cancel.check();
-      context.progress.advance(texels);
-    };
-    std::string why;
-    try {
-      const auto reader = images::open_source(materials.images[i], context.files.input());
-      if (is_alpha_unsaid(static_cast<std::uint32_t>(i), materials)) {
-        AlphaWatch watch(*reader);
-        pictures.add(watch, step);
-        if (watch.is_any())
-          transparent.push_back(materials.images[i].name);
-      } else {
-        pictures.add(*reader, step);
-      }
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::input)
-        throw;
-      if (context.config.missing_images != config::MissingImages::ignore)
-        throw with_picture_hint(error);
-      why = error.what();
-      NoPicture none;
-      pictures.add(none, step);
-    }
-    plan.check_unchanged(i, context.files);
-    journal.note_image(pictures.stored(static_cast<std::uint32_t>(i)), why);
-  }
+  execution::ordered_for(
+      plan.heads.size() - std::min(first, plan.heads.size()), context.memory().pictures_in_flight,
+      context.cancel,
+      [&](std::size_t i) {
+        return decode(static_cast<std::uint32_t>(first + i), pictures, context);
+      },
+      [&](std::size_t i, Decoded decoded) {
+        const std::size_t image = first + i;
+        plan.check_unchanged(image, context.files);
+        journal.note_image(decoded.stored, decoded.broken);
+        pictures.add(std::move(decoded.stored));
+        if (decoded.has_unsaid_alpha)
+          transparent.push_back(materials.images[image].name);
+      });
   for (const auto& [image, why] : journal.broken_images())
     leave_out(image, materials);
   warn_of_broken(broken_pictures(plan, journal), context.progress);
@@ -138,7 +165,7 @@ StageMemory images_memory(const JobSize& job) {
   if (!job.textured)
     return {};
   const std::uint64_t item = job.decoder_bytes + job.adding_bytes;
-  return {item, 1, item, item};
+  return {item, job.threads, item, job.threads * item};
 }
 
 StageTime images_time(const JobSize& job) {

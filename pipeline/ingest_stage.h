@@ -14,6 +14,7 @@
 #include "pipeline/plan/stage_context.h"
 #include "storage/io/spool.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -87,22 +88,24 @@ class SourceMesh {
                          const Visit& visit) const;
 
   /// Reads all triangles once and counts them. work(triangles, slot) runs in parallel, each with
-  /// one of `in_flight` slots; sink(slot) follows in file order. What work() is given may turn out
-  /// to be none of the file's triangles: then no sink() follows. As ordered_blocks.
+  /// one of `in_flight` slots; sink(slot) follows in file order. As ordered_blocks.
   template <class Slot, class Work, class Sink>
   mesh_io::FaceCounts read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
                                      const Work& work, const Sink& sink);
   /// The first part of it: a share of the faces that can be read in blocks as triangles, up to the
-  /// first that is none. Means nothing unless those before it are triangles.
+  /// first that is none. Means nothing unless those before it are triangles. What work() is given
+  /// may turn out to be none of the file's triangles: then no sink() follows. after(slot) follows a
+  /// sink() in parallel.
   template <class Slot, class Work, class Sink>
   FaceBlocks read_triangle_blocks(const Share& share, std::size_t in_flight,
                                   const execution::CancelToken& cancel, const Work& work,
-                                  const Sink& sink);
+                                  const Sink& sink, const std::function<void(Slot&)>& after = {});
   /// The rest: all faces from that one on, those before being sound triangles. Counts only these.
   template <class Slot, class Work, class Sink>
   mesh_io::FaceCounts read_triangles_from(std::uint64_t face, std::size_t in_flight,
                                           const execution::CancelToken& cancel, const Work& work,
-                                          const Sink& sink);
+                                          const Sink& sink,
+                                          const std::function<void(Slot&)>& after = {});
 
   /// The input's storage::FileChecksum; cheap when all has been read.
   std::uint64_t checksum(const execution::CancelToken& cancel) {
@@ -170,7 +173,8 @@ mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
 template <class Slot, class Work, class Sink>
 FaceBlocks SourceMesh::read_triangle_blocks(const Share& share, std::size_t in_flight,
                                             const execution::CancelToken& cancel, const Work& work,
-                                            const Sink& sink) {
+                                            const Sink& sink,
+                                            const std::function<void(Slot&)>& after) {
   struct Read {
     mesh_io::BlockMemory memory;
     mesh_io::TriangleBlock block;
@@ -191,6 +195,10 @@ FaceBlocks SourceMesh::read_triangle_blocks(const Share& share, std::size_t in_f
         all.counts.triangles += read.block.triangles.size();
         all.whole = read.block.whole;
         return all.whole;
+      },
+      [&](Read& read) {
+        if (after)
+          after(read.slot);
       });
   all.counts.degenerate_triangles = all.counts.faces - all.counts.triangles;
   return all;
@@ -199,7 +207,8 @@ FaceBlocks SourceMesh::read_triangle_blocks(const Share& share, std::size_t in_f
 template <class Slot, class Work, class Sink>
 mesh_io::FaceCounts SourceMesh::read_triangles_from(std::uint64_t face, std::size_t in_flight,
                                                     const execution::CancelToken& cancel,
-                                                    const Work& work, const Sink& sink) {
+                                                    const Work& work, const Sink& sink,
+                                                    const std::function<void(Slot&)>& after) {
   struct Copied {
     std::vector<Triangle<VertexId>> triangles;
     Slot slot;
@@ -207,7 +216,11 @@ mesh_io::FaceCounts SourceMesh::read_triangles_from(std::uint64_t face, std::siz
   execution::BatchedWork<Copied> rest(
       in_flight,
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
-      [&](Copied& copied) { sink(copied.slot); });
+      [&](Copied& copied) { sink(copied.slot); },
+      [&](Copied& copied) {
+        if (after)
+          after(copied.slot);
+      });
   const mesh_io::FaceCounts counts =
       source_->read_triangles_from(face, [&](std::span<const Triangle<VertexId>> triangles) {
         cancel.check();

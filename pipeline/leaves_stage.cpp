@@ -98,7 +98,8 @@ void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Sh
   context.progress.stage("leaves", partitions, "partitions");
   check_fit(chunks, left, context);
   execution::ordered_for(
-      left.size(), context.memory().chunks_in_flight, context.cancel,
+      left.size(), execution::with_those_that_wait(context.memory().chunks_in_flight),
+      context.cancel,
       [&](std::size_t i) {
         return put_leaves(chunks, left[i], context.config.partition.axis, forest);
       },

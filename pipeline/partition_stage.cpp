@@ -32,10 +32,15 @@ void fill_table(const SourceMesh& mesh, const importing::CopyList& copies, const
                 Chunks& chunks, RankTable<Rank>& table, storage::RecordSpool<float>& copy_rows,
                 const StageContext& context) {
   const auto keep = [&](const std::vector<Rank>& ranks, const DistributedBlock& block) {
-    table.append(ranks, block.first, block.places.copies);
+    if (!table.is_in_memory())
+      table.append(ranks, block.first, block.places.copies);
     copy_rows.append(std::span<const float>(block.copy_rows));
   };
-  distribute_places<Rank>(mesh, copies, top, {}, chunks, keep, context);
+  const auto put = [&](const std::vector<Rank>& ranks, const DistributedBlock& block) {
+    if (table.is_in_memory())
+      table.put(ranks, block.first, block.places.copies);
+  };
+  distribute_places<Rank>(mesh, copies, top, {}, chunks, keep, put, context);
 }
 
 /// Gives copies the ranks of their places, and their rows to the chunks.
@@ -113,7 +118,7 @@ TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
           else
             sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
         },
-        [&](const Slot& slot) { selector.add(slot.swept); });
+        [](const Slot&) {}, [&](const Slot& slot) { selector.add(slot.swept); });
     std::vector<partition::SplitPlane> planes = selector.settle(plan);
     if (!planes.empty())
       return {plan.chunks, std::move(planes)};
@@ -198,19 +203,19 @@ DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory) {
   const double chunks = vertices * job.vertex_bytes() +
                         Chunks::expected_triangle_bytes(job.place_count, job.face_count,
                                                         job.wedged_triangles(), kBoundaryShare);
-  // Copies: their list, and their rows until the ranks of their places are known; then the table is
-  // there twice.
+  // Copies: their list, and their rows until the ranks of their places are known; then these ranks.
   const auto copies = static_cast<double>(job.vertex_count - job.place_count);
   const double list = copies * sizeof(CopyVertex);
   const double rows = copies * job.vertex_bytes();
   const double ranks = vertices * static_cast<double>(rank_bytes(job));
   using enum DiskMoment;
-  return {{partition::expected_window_bytes(job.place_count), splits, splits, true},
-          {list, splits, triangles, true},
-          {ranks + (job.has_copies() ? std::max(rows, ranks) : 0), triangles, triangles, true},
-          {waiting, triangles, triangles, true},
-          {chunks + copies * sizeof(float), triangles, triangles, true},
-          {chunks + copies * sizeof(float), noted, leaves}};
+  return {
+      {partition::expected_window_bytes(job.place_count), splits, splits, true},
+      {list, splits, triangles, true},
+      {ranks + std::max(rows, copies * sizeof(partition::RankedCopy)), triangles, triangles, true},
+      {waiting, triangles, triangles, true},
+      {chunks + copies * sizeof(float), triangles, triangles, true},
+      {chunks + copies * sizeof(float), noted, leaves}};
 }
 
 }  // namespace meshhier::pipeline

@@ -226,7 +226,8 @@ void distribute_vertices(SlicedInput& input, const partition::TopTree& top, cons
     input.ranks.put(next++, ranks);
     copy_rows.append(std::span<const float>(block.copy_rows));
   };
-  distribute_places<std::uint32_t>(mesh, input.copies, top, slice, chunks, keep, context);
+  const auto put = [](const std::vector<std::uint32_t>&, const DistributedBlock&) {};
+  distribute_places<std::uint32_t>(mesh, input.copies, top, slice, chunks, keep, put, context);
 }
 
 void distribute_copies(SlicedInput& input, const Share& slice,

@@ -1,5 +1,6 @@
 #include "pipeline/journal/build_journal.h"
 
+#include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "pipeline/journal/material_json.h"
 #include "pipeline/journal/record_json.h"
@@ -412,10 +413,17 @@ void BuildJournal::note_source(const DistributedSource& source) {
 }
 
 void BuildJournal::note_chunks() {
-  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
-    if (chunks_.has(chunk))
-      sink_->append({{"partition", {chunk, chunks_.store(chunk)}}});
-  }
+  constexpr std::size_t kInFlight = 64;  // an entry has some KiB
+  execution::ordered_for(
+      chunks_.count(), kInFlight, cancel_,
+      [&](std::size_t i) {
+        const auto chunk = static_cast<std::uint32_t>(i);
+        return chunks_.has(chunk) ? chunks_.store(chunk) : Value();
+      },
+      [&](std::size_t chunk, const Value& stored) {
+        if (!stored.is_null())
+          sink_->append({{"partition", {chunk, stored}}});
+      });
 }
 
 void BuildJournal::note_image(const images::StoredImage& stored, const std::string& why) {

@@ -42,12 +42,15 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
 }
 
 Workshop::Workshop(const std::filesystem::path& directory, const AttributeLayout& layout,
-                   storage::MemoryPool& pool, const StageContext& context,
+                   storage::MemoryPool& pool, storage::ScratchFile::Files files,
+                   const StageContext& context,
                    const std::function<BuildJournal(const Workpieces&)>& open_journal)
-    : mesh_scratch(context.files, directory / "mesh", pool, storage::ScratchFile::Stays::yes),
-      tile_scratch(context.files, directory / "tiles", pool, storage::ScratchFile::Stays::yes),
-      picture_scratch(context.files, directory / "pictures", pool,
-                      storage::ScratchFile::Stays::yes),
+    : mesh_scratch(context.files, directory / "mesh", pool, storage::ScratchFile::Stays::yes,
+                   files),
+      tile_scratch(context.files, directory / "tiles", pool, storage::ScratchFile::Stays::yes,
+                   files),
+      picture_scratch(context.files, directory / "pictures", pool, storage::ScratchFile::Stays::yes,
+                      files),
       chunks(context.tree(), layout.channels(), context.plan.job.has_copies(), mesh_scratch,
              context.memory().spool_block_bytes),
       forest(context.tree(), chunks.level(), layout, tile_scratch,
@@ -64,19 +67,21 @@ Workpieces Workshop::pieces(const StageContext& context) {
 Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
                    const AttributeLayout& layout, storage::MemoryPool& pool,
                    const StageContext& context)
-    : Workshop(work, layout, pool, context, [&](const Workpieces& pieces) {
-        return BuildJournal(context.files, work, identity, pool.scratch_use(), pieces,
-                            context.cancel);
-      }) {}
+    : Workshop(work, layout, pool, storage::ScratchFile::Files::one_a_thread, context,
+               [&](const Workpieces& pieces) {
+                 return BuildJournal(context.files, work, identity, pool.scratch_use(), pieces,
+                                     context.cancel);
+               }) {}
 
 Workshop::Workshop(const std::filesystem::path& directory, const std::filesystem::path& built,
                    const BuildIdentity& identity, const AttributeLayout& layout,
                    storage::MemoryPool& pool, std::unique_ptr<storage::EntrySink> sink,
                    const StageContext& context)
-    : Workshop(directory, layout, pool, context, [&](const Workpieces& pieces) {
-        return BuildJournal(context.files, built, identity, pieces, std::move(sink),
-                            context.cancel);
-      }) {}
+    : Workshop(directory, layout, pool, storage::ScratchFile::Files::one, context,
+               [&](const Workpieces& pieces) {
+                 return BuildJournal(context.files, built, identity, pieces, std::move(sink),
+                                     context.cancel);
+               }) {}
 
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context) {

@@ -38,7 +38,8 @@ struct Workshop {
 
  private:
   Workshop(const std::filesystem::path& directory, const AttributeLayout& layout,
-           storage::MemoryPool& pool, const StageContext& context,
+           storage::MemoryPool& pool, storage::ScratchFile::Files files,
+           const StageContext& context,
            const std::function<BuildJournal(const Workpieces&)>& open_journal);
   Workpieces pieces(const StageContext& context);
 };

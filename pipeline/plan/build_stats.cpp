@@ -40,14 +40,15 @@ std::string rate_cell(double rate) {
   return rate > 0 ? fmt::format("{:.2f}", rate / 1e6) : "-";
 }
 
-constexpr const char* kRow = "{:<10} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n";
+constexpr const char* kRow = "{:<10} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n";
 
 std::string row(const BuildStats& stats, const StageStats& stage) {
-  return fmt::format(kRow, stage.name, fmt::format("{:.2f}", stage.wall_seconds),
-                     fmt::format("{:.2f}", stage.cpu_seconds()), bytes_cell(stage.bytes.input_read),
-                     bytes_cell(stage.bytes.output_written), bytes_cell(stage.bytes.temporary_read),
-                     bytes_cell(stage.bytes.temporary_written),
-                     bytes_cell(stage.peak_resident_bytes), rate_cell(triangle_rate(stats, stage)));
+  return fmt::format(
+      kRow, stage.name, fmt::format("{:.2f}", stage.wall_seconds),
+      fmt::format("{:.2f}", stage.cpu_seconds()), fmt::format("{:.2f}", stage.serial_seconds),
+      bytes_cell(stage.bytes.input_read), bytes_cell(stage.bytes.output_written),
+      bytes_cell(stage.bytes.temporary_read), bytes_cell(stage.bytes.temporary_written),
+      bytes_cell(stage.peak_resident_bytes), rate_cell(triangle_rate(stats, stage)));
 }
 
 // As JSON.
@@ -58,6 +59,7 @@ Json stage_json(const BuildStats& stats, const StageStats& stage) {
           {"cpu_seconds", rounded(stage.cpu_seconds(), 1e6)},
           {"user_seconds", rounded(stage.user_seconds, 1e6)},
           {"system_seconds", rounded(stage.system_seconds, 1e6)},
+          {"serial_seconds", rounded(stage.serial_seconds, 1e6)},
           {"input_read_bytes", stage.bytes.input_read},
           {"output_written_bytes", stage.bytes.output_written},
           {"temporary_read_bytes", stage.bytes.temporary_read},
@@ -106,6 +108,7 @@ StageMeter::Reading StageMeter::read() const {
   const storage::ScratchUse& scratch = sources_.scratch;
   Reading reading;
   reading.clock = sources_.clock();
+  reading.serial = sources_.serial();
   reading.usage = sources_.usage();
   reading.bytes.temporary_read = scratch.bytes_read();
   reading.bytes.temporary_written = scratch.bytes_written();
@@ -116,6 +119,7 @@ StageMeter::Reading StageMeter::read() const {
 
 void StageMeter::add_difference(const Reading& from, const Reading& to, StageStats& stage) {
   stage.wall_seconds += to.clock - from.clock;
+  stage.serial_seconds += to.serial - from.serial;
   stage.user_seconds += to.usage.user_seconds - from.usage.user_seconds;
   stage.system_seconds += to.usage.system_seconds - from.usage.system_seconds;
   stage.peak_resident_bytes = to.usage.peak_resident_bytes;
@@ -129,8 +133,8 @@ void StageMeter::add_difference(const Reading& from, const Reading& to, StageSta
 }
 
 std::string stats_text(const BuildStats& stats) {
-  std::string text = fmt::format(kRow, "stage", "wall s", "CPU s", "read", "written", "temp. in",
-                                 "temp. out", "peak mem", "Mtri/s");
+  std::string text = fmt::format(kRow, "stage", "wall s", "CPU s", "serial s", "read", "written",
+                                 "temp. in", "temp. out", "peak mem", "Mtri/s");
   for (const StageStats& stage : stats.stages)
     text += row(stats, stage);
   text += row(stats, stats.total);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "execution/progress.h"
+#include "execution/serial_time.h"
 #include "storage/io/file.h"
 #include "storage/io/process.h"
 #include "storage/io/scratch_use.h"
@@ -35,6 +36,7 @@ struct StageStats {
   double wall_seconds = 0;
   double user_seconds = 0;
   double system_seconds = 0;
+  double serial_seconds = 0;  ///< of the CPU's, one step after another (execution/serial_time.h)
   Traffic bytes;
   std::uint64_t peak_resident_bytes = 0;  ///< of the process, up to the end of the stage
 
@@ -52,6 +54,7 @@ class StageMeter final : public execution::Progress {
     const storage::ScratchUse& scratch;
     std::function<storage::ProcessUsage()> usage = storage::process_usage;
     execution::Clock clock = execution::steady_clock();
+    std::function<double()> serial = execution::serial_seconds;
   };
   explicit StageMeter(Sources sources);
 
@@ -75,6 +78,7 @@ class StageMeter final : public execution::Progress {
  private:
   struct Reading {
     double clock = 0;
+    double serial = 0;
     storage::ProcessUsage usage;
     Traffic bytes;
   };

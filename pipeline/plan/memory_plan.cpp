@@ -36,7 +36,8 @@ std::uint64_t wanted_work_bytes(const MemoryCosts& costs) {
 }
 
 std::size_t items_in_flight(std::uint64_t bytes, const StageMemory& stage) {
-  return std::clamp<std::uint64_t>(bytes / stage.item_bytes, 1, stage.most_items);
+  return std::clamp<std::uint64_t>(bytes / std::max<std::uint64_t>(stage.item_bytes, 1), 1,
+                                   stage.most_items);
 }
 
 }  // namespace
@@ -67,6 +68,7 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const MemoryCosts& costs) {
   plan.blocks_in_flight = items_in_flight(plan.work_bytes / kBlockParts, costs.partition);
   plan.chunks_in_flight = items_in_flight(plan.work_bytes, costs.leaves);
   plan.tiles_in_flight = items_in_flight(plan.work_bytes, costs.simplify);
+  plan.pictures_in_flight = items_in_flight(plan.work_bytes, costs.images);
   plan.spool_block_bytes = costs.chunk_spools.block_bytes(plan.work_bytes);
   plan.table_bytes =
       plan.work_bytes - std::min(plan.work_bytes - kLeastTableBytes,

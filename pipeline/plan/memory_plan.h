@@ -19,6 +19,7 @@ struct MemoryPlan {
   std::size_t blocks_in_flight = 1;  ///< blocks of input
   std::size_t chunks_in_flight = 1;
   std::size_t tiles_in_flight = 1;
+  std::size_t pictures_in_flight = 1;
   std::size_t spool_block_bytes = 0;  ///< of each of a stage's many spools
   std::uint64_t table_bytes = 0;      ///< for renumbering the triangles
 };

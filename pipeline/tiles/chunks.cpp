@@ -54,8 +54,8 @@ void ChunkedVertices::sort(std::uint32_t chunk_count, std::span<const Vec3f> pos
 void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
                             const partition::ChunkMap& map) {
   starts.assign(map.count() + 1, 0);
-  shared.clear();
-  wedged.clear();
+  shared.clear(map.count());
+  wedged.clear(map.count());
   wide.fill(0);
   chunk_of_.resize(triangles.size());
   ChunkFinder finder(map);
@@ -70,11 +70,11 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
       continue;
     }
     chunk_of_[i] = kShared;
-    shared.push_back({a, t});
+    shared.add(a, t);
     if (b != a)
-      shared.push_back({b, t});
+      shared.add(b, t);
     if (c != a && c != b) {
-      shared.push_back({c, t});
+      shared.add(c, t);
       if (b != a)
         ++wide[levels_apart(a, b, c)];
     }
@@ -95,12 +95,12 @@ void ChunkedTriangles::sort_wedged(std::span<const WedgedTriangle> triangles,
     const std::uint32_t a = finder.chunk_of(t.ranks[0]);
     const std::uint32_t b = finder.chunk_of(t.ranks[1]);
     const std::uint32_t c = finder.chunk_of(t.ranks[2]);
-    wedged.emplace_back(a, t);
+    wedged.add(a, t);
     if (b != a)
-      wedged.emplace_back(b, t);
+      wedged.add(b, t);
     if (c == a || c == b)
       continue;
-    wedged.emplace_back(c, t);
+    wedged.add(c, t);
     if (b != a)
       ++wide[levels_apart(a, b, c)];
   }
@@ -108,10 +108,13 @@ void ChunkedTriangles::sort_wedged(std::span<const WedgedTriangle> triangles,
 
 Chunks::Chunks(const Tree& tree, int channels, bool has_copies, storage::ScratchFile& scratch,
                std::size_t block_bytes)
-    : level_(partition::chunk_level(tree)), map_(tree, level_), channels_(channels) {
+    : level_(partition::chunk_level(tree)),
+      map_(tree, level_),
+      channels_(channels),
+      locks_(map_.count()) {
   static_assert(partition::kChunkVertices <= std::uint64_t{1} << 21, "PackedTriangle");
   for (std::uint32_t i = 0; i < map_.count(); ++i) {
-    vertices_.emplace_back(scratch, block_bytes);
+    vertices_.emplace_back(scratch, block_bytes, row_width());
     inner_.emplace_back(scratch, block_bytes);
     shared_.emplace_back(scratch, block_bytes);
   }
@@ -125,25 +128,29 @@ void Chunks::append(const ChunkedVertices& block) {
   const std::size_t width = row_width();
   for (std::uint32_t c = 0; c < count(); ++c) {
     const std::size_t rows = block.starts[c + 1] - block.starts[c];
-    if (rows > 0)
-      vertices_[c].append(std::span(block.rows).subspan(block.starts[c] * width, rows * width));
+    if (rows == 0)
+      continue;
+    const std::lock_guard lock(locks_[c]);
+    vertices_[c].append(block.first_ranks[c] - map_.first_rank(c),
+                        std::span(block.rows).subspan(block.starts[c] * width, rows * width));
   }
 }
 
 void Chunks::append(const ChunkedTriangles& block) {
   for (std::uint32_t c = 0; c < count(); ++c) {
     const std::size_t triangles = block.starts[c + 1] - block.starts[c];
-    if (triangles > 0)
-      inner_[c].append(std::span(block.inner).subspan(block.starts[c], triangles));
+    if (triangles == 0 && !block.shared.has(c) && !block.wedged.has(c))
+      continue;
+    const std::lock_guard lock(locks_[c]);
+    inner_[c].append(std::span(block.inner).subspan(block.starts[c], triangles));
+    block.shared.for_each(c, [&](const RankTriangle& t) { shared_[c].append(t); });
+    block.wedged.for_each(c, [&](const WedgedTriangle& t) { wedged_[c].append(t); });
   }
-  for (const auto& [chunk, triangle] : block.shared)
-    shared_[chunk].append(triangle);
-  for (const auto& [chunk, triangle] : block.wedged)
-    wedged_[chunk].append(triangle);
   add_wide(block.wide);
 }
 
 void Chunks::add_wide(const WideCounts& wide) {
+  const std::lock_guard lock(wide_lock_);
   for (std::size_t k = 0; k < wide_.size(); ++k)
     wide_[k] += wide[k];
 }
@@ -206,17 +213,14 @@ void Chunks::read_vertices(std::uint32_t chunk, VertexArray& vertices) const {
   vertices.positions.resize(map_.size(chunk));
   vertices.attributes.resize(map_.size(chunk) * static_cast<std::size_t>(channels_));
   const std::size_t width = row_width();
-  std::vector<float> rows;
-  for (std::uint64_t first = 0; first < map_.size(chunk); first += kBatch) {
-    rows.resize(std::min<std::uint64_t>(kBatch, map_.size(chunk) - first) * width);
-    vertices_[chunk].read(first * width, rows);
+  vertices_[chunk].for_each(kBatch, [&](std::uint64_t first, std::span<const float> rows) {
     Vec3f* position = vertices.positions.data() + first;
     float* attributes = vertices.attributes.data() + first * (width - 3);
     for (std::size_t at = 0; at < rows.size(); at += width) {
       *position++ = {rows[at], rows[at + 1], rows[at + 2]};
       attributes = std::copy_n(rows.data() + at + 3, width - 3, attributes);
     }
-  }
+  });
 }
 
 Copies Chunks::read_copies(std::uint32_t chunk) const {
@@ -250,7 +254,7 @@ void Chunks::drop(std::uint32_t chunk) {
 }
 
 nlohmann::json Chunks::store(std::uint32_t chunk) {
-  nlohmann::json stored = {pipeline::store(vertices_[chunk]), pipeline::store(inner_[chunk]),
+  nlohmann::json stored = {vertices_[chunk].store(), pipeline::store(inner_[chunk]),
                            pipeline::store(shared_[chunk])};
   if (has_copies()) {
     stored.push_back(pipeline::store(copies_[chunk]));
@@ -260,8 +264,7 @@ nlohmann::json Chunks::store(std::uint32_t chunk) {
 }
 
 bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
-  return pipeline::restore(vertices_[chunk], stored.at(0)) &&
-         pipeline::restore(inner_[chunk], stored.at(1)) &&
+  return vertices_[chunk].restore(stored.at(0)) && pipeline::restore(inner_[chunk], stored.at(1)) &&
          pipeline::restore(shared_[chunk], stored.at(2)) &&
          (!has_copies() || (pipeline::restore(copies_[chunk], stored.at(3)) &&
                             pipeline::restore(wedged_[chunk], stored.at(4))));

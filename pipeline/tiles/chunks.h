@@ -3,16 +3,18 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/tree.h"
+#include "partition/bucketed.h"
 #include "partition/chunk.h"
 #include "pipeline/tiles/joined_spool.h"
+#include "pipeline/tiles/row_spool.h"
 #include "storage/io/spool.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -47,6 +49,8 @@ struct ChunkedVertices {
   std::vector<std::uint32_t> chunk_of;  ///< per vertex; filled before sort()
   std::vector<std::uint32_t> starts;    ///< per chunk: its first row; one entry more than chunks
   std::vector<float> rows;              ///< per vertex its position and attributes
+  /// Per chunk: the rank of its first row; by Ranker.
+  std::vector<std::uint32_t> first_ranks;
 
   void sort(std::uint32_t chunk_count, std::span<const Vec3f> positions,
             std::span<const float> attributes);
@@ -69,12 +73,9 @@ using WideCounts = std::array<std::uint64_t, 32>;
 struct ChunkedTriangles {
   std::vector<std::uint32_t> starts;  ///< per chunk: its first in `inner`; one entry more
   std::vector<PackedTriangle> inner;  ///< all corners in one chunk
-  struct Shared {
-    std::uint32_t chunk;
-    partition::RankTriangle triangle;
-  };
-  std::vector<Shared> shared;  ///< the others, once for each chunk they touch
-  std::vector<std::pair<std::uint32_t, WedgedTriangle>> wedged;  ///< as `shared`, by sort_wedged()
+  /// The others, once for each chunk they touch.
+  partition::Bucketed<partition::RankTriangle> shared;
+  partition::Bucketed<WedgedTriangle> wedged;  ///< likewise, by sort_wedged()
   WideCounts wide{};
 
   void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
@@ -137,7 +138,7 @@ class Chunks {
   /// Numbers that a vertex has: its position and attributes.
   std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
 
-  /// Blocks in the order of ids.
+  /// Blocks in any order, once they are ranked. Thread-safe.
   void append(const ChunkedVertices& block);
   void append(const ChunkedTriangles& block);
   /// A copy of the place that has this provisional rank, after all copies before it.
@@ -179,9 +180,7 @@ class Chunks {
   std::uint64_t copy_bytes(std::uint32_t chunk) const;
 
   /// Places of the chunk whose first vertices are there.
-  std::uint64_t place_count(std::uint32_t chunk) const {
-    return vertices_[chunk].size() / row_width();
-  }
+  std::uint64_t place_count(std::uint32_t chunk) const { return vertices_[chunk].size(); }
 
   /// Of all triangles that were appended; add_wide() takes those of other processes.
   const WideCounts& wide() const { return wide_; }
@@ -197,12 +196,35 @@ class Chunks {
   Level level_;
   partition::ChunkMap map_;
   int channels_;
-  std::vector<JoinedSpool<float>> vertices_;
+  std::vector<RowSpool> vertices_;
   std::vector<JoinedSpool<PackedTriangle>> inner_;
   std::vector<JoinedSpool<partition::RankTriangle>> shared_;
   std::vector<JoinedSpool<float>> copies_;  ///< rank in the chunk as bits, then as vertices
   std::vector<JoinedSpool<WedgedTriangle>> wedged_;
   WideCounts wide_{};
+  std::vector<std::mutex> locks_;  ///< per chunk, of who appends
+  std::mutex wide_lock_;
+};
+
+/// Gives the places' first vertices their ranks, block by block in the order of ids.
+class Ranker {
+ public:
+  explicit Ranker(const partition::ChunkMap& map) : next_(map.count()) {
+    for (std::uint32_t c = 0; c < map.count(); ++c)
+      next_[c] = map.first_rank(c);
+  }
+
+  /// Also says in the block where its rows go.
+  template <class Rank>
+  void rank(ChunkedVertices& block, std::vector<Rank>& ranks) {
+    block.first_ranks = next_;
+    ranks.clear();
+    for (const std::uint32_t chunk : block.chunk_of)
+      ranks.push_back(Rank{next_[chunk]++});
+  }
+
+ private:
+  std::vector<std::uint32_t> next_;
 };
 
 }  // namespace meshhier::pipeline

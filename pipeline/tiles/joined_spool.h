@@ -43,6 +43,14 @@ class JoinedSpool {
     more_.clear();
   }
 
+  /// Calls visit(spool) for each, in their order; the first may be empty.
+  template <class Visit>
+  void for_each_part(const Visit& visit) const {
+    visit(first_);
+    for (const storage::RecordSpool<Record>& part : more_)
+      visit(part);
+  }
+
   /// Of what was appended.
   storage::StoredSpool store() { return first_.store(); }
   /// Takes what was stored behind what is there; false if `stored` contradicts itself.

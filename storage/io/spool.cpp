@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <numeric>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace meshhier::storage {
 
@@ -20,10 +24,18 @@ bool MemoryPool::try_take(std::uint64_t bytes) {
 }
 
 ScratchFile::ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
-                         Stays stays)
-    : files_(files), path_(std::move(path)), pool_(pool), stays_(stays) {
-  if (stays == Stays::yes && files_.exists(path_))
-    file_ = files_.reopen(path_);
+                         Stays stays, Files files_at_once)
+    : files_(files),
+      path_(std::move(path)),
+      pool_(pool),
+      stays_(stays),
+      own_(files_at_once == Files::one ? 1 : kMostFiles) {
+  if (stays == Stays::no)
+    return;
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (files_.exists(path_of(i)))
+      own_[i].file = files_.reopen(path_of(i));
+  }
 }
 
 ScratchFile::~ScratchFile() {
@@ -35,18 +47,35 @@ ScratchFile::~ScratchFile() {
   }
 }
 
+std::filesystem::path ScratchFile::path_of(std::size_t own) const {
+  std::filesystem::path path = path_;
+  if (own > 0)
+    path += '.' + std::to_string(own);
+  return path;
+}
+
+std::uint64_t ScratchFile::size() const {
+  const std::lock_guard lock(mutex_);
+  return std::accumulate(own_.begin(), own_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const Own& own) { return sum + own.size; });
+}
+
 void ScratchFile::remove() {
-  if (!file_)
-    return;
-  file_.reset();
-  pool_.scratch_use().add_removed(size_.exchange(0));
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (!own_[i].file)
+      continue;
+    own_[i].file.reset();
+    pool_.scratch_use().add_removed(std::exchange(own_[i].size, 0));
+    files_.remove_all(path_of(i));
+  }
   free_.clear();
-  files_.remove_all(path_);
 }
 
 void ScratchFile::sync(const std::function<void()>& check) {
-  if (file_)
-    file_->sync(check);
+  for (const Own& own : own_) {
+    if (own.file)
+      own.file->sync(check);
+  }
 }
 
 void ScratchFile::mount(std::unique_ptr<File> file) {
@@ -59,7 +88,7 @@ Error ScratchFile::changed(std::uint64_t offset) const {
   constexpr const char* kWhat =
       " is not what was written to it: the disk, or another program, changed it";
   if (!is_mounted(offset))
-    return {ErrorCode::io, path_.string() + kWhat};
+    return {ErrorCode::io, path_of(place_of(offset).own).string() + kWhat};
   return {ErrorCode::corrupt,
           file_at(offset).path().string() + kWhat + "; remove it, and run its task again"};
 }
@@ -70,17 +99,25 @@ bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {
     const std::uint64_t there = offset >> kPlaceBits > mounted_.size() ? 0 : file_at(offset).size();
     return place <= there && bytes <= there - place;
   }
-  if (!file_)
+  const Place place = place_of(offset);
+  Own& own = own_[place.own];
+  if (!own.file)
     return bytes == 0;
-  const std::uint64_t there = file_->size();
-  if (offset > there || bytes > there - offset)
+  const std::uint64_t there = own.file->size();
+  if (place.offset > there || bytes > there - place.offset)
     return false;
-  const std::uint64_t end = offset + bytes;
-  if (end > size_) {
-    pool_.scratch_use().add_grown(end - size_);
-    size_ = end;
+  const std::uint64_t end = place.offset + bytes;
+  if (end > own.size) {
+    pool_.scratch_use().add_grown(end - own.size);
+    own.size = end;
   }
   return true;
+}
+
+std::size_t ScratchFile::own_of_this_thread() const {
+  static std::atomic<std::size_t> threads = 0;
+  thread_local const std::size_t thread = threads++;
+  return thread % own_.size();
 }
 
 std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
@@ -89,25 +126,37 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
   bool grows = false;
   {
     const std::lock_guard lock(mutex_);
-    if (!file_)
-      file_ = files_.create(path_);
-    file = file_.get();
     const auto free = free_.find(bytes.size());
     grows = free == free_.end() || free->second.empty();
+    std::size_t own = 0;
     if (grows) {
-      offset = size_.fetch_add(bytes.size());
+      own = own_of_this_thread();
+      if (!own_[own].file)
+        own_[own].file = files_.create(path_of(own));
+      offset = std::uint64_t{own} << kFileBits | own_[own].size;
+      own_[own].size += bytes.size();
+      require_room(own);
     } else {
       offset = free->second.back();
       free->second.pop_back();
+      own = place_of(offset).own;
     }
+    file = own_[own].file.get();
   }
-  if (offset + bytes.size() > kOffsetMask)
-    throw Error(ErrorCode::io, path_.string() + " would be larger than 16 TiB");
-  file->write_at(offset, bytes);
+  file->write_at(place_of(offset).offset, bytes);
   pool_.scratch_use().add_written(bytes.size());
   if (grows)
     pool_.scratch_use().add_grown(bytes.size());
   return offset;
+}
+
+/// Of a file that has grown.
+void ScratchFile::require_room(std::size_t own) const {
+  const int bits = own_.size() == 1 ? kPlaceBits : kFileBits;
+  if (own_[own].size > std::uint64_t{1} << bits) {
+    throw Error(ErrorCode::io, fmt::format("{} would be larger than {} TiB", path_of(own).string(),
+                                           std::uint64_t{1} << (bits - 40)));
+  }
 }
 
 void ScratchFile::release(std::uint64_t offset, std::uint64_t bytes) {

@@ -45,8 +45,9 @@ class MemoryPool {
   ScratchUse scratch_use_;
 };
 
-/// One temporary file shared by many spools; made when the first block must leave memory, removed
-/// at the end.
+/// A temporary file shared by many spools; made when the first block must leave memory, removed at
+/// the end. It may be several files, PATH, PATH.1, ...: threads that write to one file wait for
+/// each other in the system, whatever they write.
 class ScratchFile {
  public:
   /// Whether the file is there when its object is gone.
@@ -55,19 +56,26 @@ class ScratchFile {
     yes  ///< for a later process; one that an earlier process left is gone on with
   };
 
+  /// How many files it may be.
+  enum class Files { one, one_a_thread };
+
   ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
-              Stays stays = Stays::no);
+              Stays stays = Stays::no, Files files_at_once = Files::one);
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
   ~ScratchFile();
 
   /// Another file, `name`, beside this one and of the same pool: for what is needed for a while
   /// only, as disk space comes back with a whole file.
-  ScratchFile beside(const char* name) const { return {files_, path_.parent_path() / name, pool_}; }
+  ScratchFile beside(const char* name) const {
+    return {files_, path_.parent_path() / name, pool_, Stays::no,
+            own_.size() == 1 ? Files::one : Files::one_a_thread};
+  }
+  /// Of the one file, or of the first.
   const std::filesystem::path& path() const { return path_; }
 
   /// Bytes on disk.
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const;
   MemoryPool& pool() { return pool_; }
 
   /// Writes `bytes` to where as many were released, or else to the end; returns where.
@@ -98,28 +106,50 @@ class ScratchFile {
   /// Removes the file; nothing is left of what was appended.
   void remove();
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
-    file_at(offset).read_exact(offset & kOffsetMask, bytes);
+    file_at(offset).read_exact(is_mounted(offset) ? offset & kOffsetMask : place_of(offset).offset,
+                               bytes);
     pool_.scratch_use().add_read(bytes.size());
   }
 
  private:
-  static constexpr int kPlaceBits = 44;  // 16 TiB for each file
+  static constexpr int kPlaceBits = 44;  // 16 TiB
+  static constexpr int kFileBits = 40;   // of them, for each file where there are several
+  static constexpr std::size_t kMostFiles = std::size_t{1} << (kPlaceBits - kFileBits);
   static constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kPlaceBits) - 1;
   static constexpr std::uint64_t kMostMounted = std::uint64_t{1}
                                                 << 18;  // a spool's block has 63 bits
   static constexpr std::uint64_t kNowhere = (kMostMounted + 1) << kPlaceBits;
 
-  const File& file_at(std::uint64_t offset) const {
-    return is_mounted(offset) ? *mounted_[(offset >> kPlaceBits) - 1] : *file_;
+  /// One of the files; offsets in it are below place_of()'s.
+  struct Own {
+    std::unique_ptr<File> file;
+    std::uint64_t size = 0;
+  };
+  /// Where bytes are: in which of the own files, if they are not in a mounted one, and where there.
+  struct Place {
+    std::size_t own;
+    std::uint64_t offset;
+  };
+  Place place_of(std::uint64_t offset) const {
+    const std::uint64_t place = offset & kOffsetMask;
+    return own_.size() == 1
+               ? Place{0, place}
+               : Place{place >> kFileBits, place & ((std::uint64_t{1} << kFileBits) - 1)};
   }
+  std::filesystem::path path_of(std::size_t own) const;
+  const File& file_at(std::uint64_t offset) const {
+    return is_mounted(offset) ? *mounted_[(offset >> kPlaceBits) - 1]
+                              : *own_[place_of(offset).own].file;
+  }
+  std::size_t own_of_this_thread() const;
+  void require_room(std::size_t own) const;
 
   FileSystem& files_;
   std::filesystem::path path_;
   MemoryPool& pool_;
   Stays stays_;
-  std::mutex mutex_;  ///< guards file_, until it is made, and free_
-  std::unique_ptr<File> file_;
-  std::atomic<std::uint64_t> size_{0};
+  mutable std::mutex mutex_;  ///< guards own_, but for files once they are made, and free_
+  std::vector<Own> own_;
   std::map<std::uint64_t, std::vector<std::uint64_t>> free_;  ///< offsets by size
   std::vector<std::unique_ptr<File>> mounted_;
 };

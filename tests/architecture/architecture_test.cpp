@@ -217,6 +217,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"tbb/",
        [](const Source& s) {
          return s.is_in({"execution", "inspection", "pipeline", "pipeline/plan", "progressive"}) ||
+                s.path == "partition/parallel_parts.cpp" ||
                 s.path == "partition/parallel_sort.cpp" || s.path == "partition/top_tree.cpp";
        }},
       {"oneapi/", in({})},

@@ -230,6 +230,59 @@ TEST(OrderedBlocksTest, OfSeveralFailuresTheFirstInOrderIsThrown) {
   }
 }
 
+TEST(OrderedBlocksTest, WhatFollowsASinkRunsForEachThatWasSunk) {
+  for (const std::size_t in_flight : {1U, 3U, 16U}) {
+    std::vector<std::atomic<int>> followed(500);
+    std::size_t sunk = 0;
+    ordered_blocks<std::size_t>(
+        followed.size(), in_flight, CancelToken(),
+        [](std::size_t i, std::size_t& slot) {
+          uneven_work(i);
+          slot = i;
+        },
+        [&](std::size_t slot) {
+          EXPECT_EQ(slot, sunk++);
+          EXPECT_EQ(followed[slot], 0);
+          return sunk <= 400;
+        },
+        [&](std::size_t& slot) {
+          uneven_work(slot);
+          ++followed[slot];
+        });
+    EXPECT_EQ(sunk, 401U);
+    for (std::size_t i = 0; i < followed.size(); ++i)
+      EXPECT_EQ(followed[i], i <= 400 ? 1 : 0) << i;
+  }
+}
+
+TEST(OrderedBlocksTest, OfFailuresInAllStepsTheFirstInOrderIsThrown) {
+  for (int round = 0; round < 20; ++round) {
+    const auto fail_at = [](std::size_t i, std::size_t at) {
+      if (i == at)
+        throw Error(ErrorCode::input, std::to_string(i));
+    };
+    try {
+      ordered_blocks<std::size_t>(
+          200, 8, CancelToken(),
+          [&](std::size_t i, std::size_t& slot) {
+            slot = i;
+            fail_at(i, 52);
+          },
+          [&](std::size_t slot) {
+            fail_at(slot, 51);
+            return true;
+          },
+          [&](std::size_t& slot) {
+            uneven_work(7);
+            fail_at(slot, 50);
+          });
+      FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "50");
+    }
+  }
+}
+
 TEST(OrderedBlocksTest, ACancelledJobEnds) {
   CancelToken cancel;
   std::size_t sunk = 0;
@@ -341,6 +394,20 @@ TEST(BatchedWorkTest, GathersNoMoreThanABatch) {
   work.finish();
   work.finish();
   EXPECT_THAT(results, ElementsAre(1, 2, 3, 4));
+}
+
+TEST(BatchedWorkTest, WhatFollowsRunsForEachOnceItIsSunk) {
+  std::vector<int> sunk;
+  std::atomic<int> followed = 0;
+  BatchedWork<int> work(
+      3, [](int& slot) { slot *= 2; }, [&](int& slot) { sunk.push_back(slot); },
+      [&](int& slot) { followed += slot; });
+  for (int i = 0; i < 7; ++i)
+    work.next() = i;
+  EXPECT_EQ(followed, 2 * (0 + 1 + 2 + 3 + 4 + 5));
+  work.finish();
+  EXPECT_EQ(followed, 2 * 21);
+  EXPECT_THAT(sunk, ElementsAre(0, 2, 4, 6, 8, 10, 12));
 }
 
 TEST(BatchedWorkTest, AFailureIsThrownAgain) {

@@ -60,7 +60,7 @@ class RankTableTest : public testing::Test {
         if (!std::ranges::binary_search(here, id, {}, &CopyVertex::id))
           ranks.push_back(rank_of(id));
       }
-      table.append(ranks, first, here);
+      table.is_in_memory() ? table.put(ranks, first, here) : table.append(ranks, first, here);
       copies = copies.subspan(here.size());
     }
   }

@@ -140,9 +140,10 @@ pipeline::BuildStats sample() {
   stats.peak_temporary_bytes = 500;
   stats.predicted_temporary_bytes = 600;
   stats.predicted_output_bytes = 3500;
-  stats.stages = {{"leaves", 4, 1.5, 0.5, {.input_read = 1000, .temporary_written = 2048}, 4096},
-                  {"publish", 1, 0.5, 0.25, {.output_written = 3000}, 8192}};
-  stats.total = {"total", 5, 2, 0.75, {1000, 3000, 2048, 2048}, 8192};
+  stats.stages = {
+      {"leaves", 4, 1.5, 0.5, 0.25, {.input_read = 1000, .temporary_written = 2048}, 4096},
+      {"publish", 1, 0.5, 0.25, 0.125, {.output_written = 3000}, 8192}};
+  stats.total = {"total", 5, 2, 0.75, 0.375, {1000, 3000, 2048, 2048}, 8192};
   return stats;
 }
 
@@ -157,6 +158,7 @@ TEST(BuildStatsTest, TheJsonHasEveryFigureInBytesAndSeconds) {
   ASSERT_EQ(json["stages"].size(), 2U);
   EXPECT_EQ(json["stages"][0]["name"], "leaves");
   EXPECT_DOUBLE_EQ(json["stages"][0]["cpu_seconds"], 2);
+  EXPECT_DOUBLE_EQ(json["stages"][0]["serial_seconds"], 0.25);
   EXPECT_EQ(json["stages"][0]["temporary_written_bytes"], 2048);
   EXPECT_EQ(json["stages"][0]["triangles_per_second"], 500'000);
   EXPECT_EQ(json["stages"][1]["peak_resident_bytes"], 8192);

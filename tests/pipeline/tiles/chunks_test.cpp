@@ -1,5 +1,6 @@
 #include "pipeline/tiles/chunks.h"
 
+#include "execution/parallel.h"
 #include "pipeline/plan/tile_room.h"
 #include "tests/support/sample_hierarchy.h"
 
@@ -38,24 +39,35 @@ class ChunksTest : public testing::Test {
   storage::MemoryPool pool_{0};
   storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
   Chunks chunks_{tree_, 1, false, scratch_, 4096};
+
+  /// As the first block of all.
+  static void rank(ChunkedVertices& block, const Chunks& chunks) {
+    std::vector<std::uint32_t> ranks;
+    Ranker(chunks.map()).rank(block, ranks);
+  }
 };
 
-TEST_F(ChunksTest, VerticesKeepTheirOrderWithinTheirChunk) {
+TEST_F(ChunksTest, VerticesKeepTheirOrderWithinTheirChunkInWhateverOrderBlocksCome) {
   ASSERT_EQ(chunks_.count(), 4U);
-  ChunkedVertices block;
+  Ranker ranker(chunks_.map());
+  std::vector<ChunkedVertices> blocks;
+  std::vector<std::uint32_t> ranks;
   for (std::uint32_t first = 0; first < 300'000; first += 1000) {
     std::vector<Vec3f> positions;
     std::vector<float> attributes;
-    block.chunk_of.clear();
+    ChunkedVertices& block = blocks.emplace_back();
     for (std::uint32_t id = first; id < first + 1000; ++id) {
       positions.push_back({static_cast<float>(id), 1, 2});
       attributes.push_back(static_cast<float>(id) + 0.5F);
       block.chunk_of.push_back(id * 7 % 4);
     }
     block.sort(4, positions, attributes);
-    chunks_.append(block);
+    ranker.rank(block, ranks);
   }
+  execution::parallel_for(blocks.size(),
+                          [&](std::size_t i) { chunks_.append(blocks[i * 7 % blocks.size()]); });
   for (std::uint32_t c = 0; c < 4; ++c) {
+    EXPECT_TRUE(chunks_.is_whole(c));
     const partition::ChunkMesh chunk = chunks_.take(c);
     ASSERT_EQ(chunk.vertices.size(), 75'000U);
     std::uint32_t id = 0;
@@ -104,6 +116,7 @@ TEST_F(ChunksTest, ATriangleGoesToEachChunkItTouches) {
     std::vector<float> attributes(75'000);
     none.chunk_of.assign(75'000, chunk);
     none.sort(4, positions, attributes);
+    rank(none, chunks_);
     chunks_.append(none);
     return chunks_.take(chunk).triangles;
   };
@@ -128,6 +141,7 @@ TEST_F(ChunksTest, WhatSlicesHaveStoredIsOneBehindTheOther) {
       positions.push_back(place(id));
     vertices.chunk_of.assign(positions.size(), 2);
     vertices.sort(4, positions, std::vector<float>(positions.size(), 7));
+    rank(vertices, *chunks);
     chunks->append(vertices);
     ChunkedTriangles triangles;
     triangles.sort(std::vector<RankTriangle>{{150'000 + first, 150'000 + end - 1, 150'001},
@@ -159,9 +173,9 @@ TEST_F(ChunksTest, WhatSlicesHaveStoredIsOneBehindTheOther) {
                   RankTriangle{150'000, 169'999, 150'001}, RankTriangle{170'000, 170'000, 150'001},
                   RankTriangle{170'001, 224'999, 150'001}, RankTriangle{0, 150'000, 150'001},
                   RankTriangle{20'000, 150'000, 150'001}, RankTriangle{20'001, 150'000, 150'001}));
-  EXPECT_FALSE(chunks_.restore(
-      2,
-      {{3, 0, 4096, {0}}, {0, 0, 8, nlohmann::json::array()}, {0, 0, 8, nlohmann::json::array()}}))
+  EXPECT_FALSE(chunks_.restore(2, {{3, 0, 4096, {0}, 1},
+                                   {0, 0, 8, nlohmann::json::array()},
+                                   {0, 0, 8, nlohmann::json::array()}}))
       << "no whole numbers";
 }
 
@@ -176,6 +190,7 @@ class CopiedChunksTest : public ChunksTest {
       block.chunk_of.push_back(rank / 75'000);
     }
     block.sort(4, positions_, attributes_);
+    rank(block, copied_);
     copied_.append(block);
   }
 
