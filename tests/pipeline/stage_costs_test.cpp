@@ -123,6 +123,27 @@ TEST_F(StageCostsTest, EachStageWritesWhatItTells) {
   }
 }
 
+// Shares of CPU time, which are alike on any machine, whatever else runs on it.
+TEST_F(StageCostsTest, LittleOfAStageGoesOneStepAfterAnotherWithManyThreads) {
+  tests::write_ply(tests::torus(2'000'000), mesh_path());
+  config::Config with = config(4096);
+  with.threads = 16;
+  with.simplify.method = config::SimplifyMethod::cluster;
+  with.preview = false;
+  for (const std::uint64_t mebibytes : {96U, 512U}) {  // the table of ranks is spooled; it is not
+    with.memory_budget = mebibytes << 20;
+    execution::NoProgress progress;
+    const BuildStats stats =
+        build_hierarchy(with, {.force = true}, {*files_, progress, execution::CancelToken()}).stats;
+    std::map<std::string, double> shares;
+    for (const StageStats& stage : stats.stages)
+      shares[stage.name] = stage.serial_seconds / stage.cpu_seconds();
+    EXPECT_LT(shares["partition"], 0.15) << mebibytes;
+    EXPECT_LT(shares["import"], 0.25) << mebibytes;
+    EXPECT_LT(shares["publish"], 0.25) << mebibytes;
+  }
+}
+
 TEST_F(StageCostsTest, VerticesOfTextAreWrittenOnceMore) {
   write_text(tests::sphere(600'000));
   expect_told(config(1000), 1.2);
