@@ -1,5 +1,6 @@
 #include "import/import_input.h"
 
+#include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "import/gltf_import.h"
@@ -11,9 +12,11 @@
 #include "import/raw_mesh.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/line_blocks.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
+#include "mesh_io/stl_block.h"
 #include "mesh_io/stl_reader.h"
 #include "storage/io/file_checksum.h"
 
@@ -346,7 +349,7 @@ class Import {
     };
     const mesh_io::StlCounts counts = std::is_same_v<Point, Vec3f>
                                           ? mesh_io::read_binary_stl(stream, path, take)
-                                          : mesh_io::read_text_stl(stream, path, take);
+                                          : read_text_stl(stream, path, take);
     const WeldCounts welded = weld_soup(corners, mesh_, room_);
     checked_base(path, 0);
     count("welded_corners", welded.merged);
@@ -354,6 +357,19 @@ class Import {
     count("ignored_facet_attributes", counts.attributes);
     count("ignored_bytes_behind", counts.bytes_behind);
     return {{}, counts.fits_float, counts.facets, welded.degenerate_triangles};
+  }
+
+  /// Blocks of facets are parsed in parallel. While it reads no sort runs.
+  mesh_io::StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
+                                   const mesh_io::SoupVisitor& visit) const {
+    mesh_io::LineBlocks blocks(stream, mesh_io::whole_facets);
+    mesh_io::StlTextReader reader(path, visit);
+    execution::ordered_read_blocks<mesh_io::StlBlock>(
+        execution::useful_blocks(2 * room_.sort_bytes, mesh_io::kStlBlockBytes), room_.cancel,
+        [&](mesh_io::StlBlock& block) { return blocks.next(block.text); }, mesh_io::parse_facets,
+        [&](const mesh_io::StlBlock& block) { reader.take(block); });
+    reader.take_rest(blocks.rest());
+    return reader.finish();
   }
 
   Added add_off(InputStream& stream, const std::filesystem::path& path) {

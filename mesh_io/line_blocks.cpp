@@ -22,16 +22,14 @@ bool ends_line(std::string_view text, std::size_t at) {
   return end == 0 || text[end - 1] != '\\';
 }
 
-/// The bytes of the first lines of `text`, up to the last line end at which it can be cut; 0 if
-/// there is none. More text follows.
+}  // namespace
+
 std::size_t whole_lines(std::string_view text) {
   std::size_t end = text.size();
   while (end > 0 && !ends_line(text, end - 1))
     --end;
   return end;
 }
-
-}  // namespace
 
 /// The text that was read, then the stream.
 class LineBlocks::Rest final : public InputStream {
@@ -54,7 +52,7 @@ class LineBlocks::Rest final : public InputStream {
   InputStream* stream_;
 };
 
-LineBlocks::LineBlocks(InputStream& stream) : stream_(stream) {}
+LineBlocks::LineBlocks(InputStream& stream, LineCut cut) : stream_(stream), cut_(cut) {}
 LineBlocks::~LineBlocks() = default;
 
 bool LineBlocks::next(std::vector<char>& block) {
@@ -73,7 +71,7 @@ bool LineBlocks::next(std::vector<char>& block) {
   if (!has_begun_ && std::string_view(block.data(), size).starts_with(kByteOrderMark))
     block.erase(block.begin(), block.begin() + kByteOrderMark.size());
   has_begun_ = true;
-  const std::size_t whole = has_ended_ ? block.size() : whole_lines({block.data(), block.size()});
+  const std::size_t whole = has_ended_ ? block.size() : cut_({block.data(), block.size()});
   left_.assign(block.begin() + static_cast<std::ptrdiff_t>(whole), block.end());
   block.resize(whole);
   if (whole > 0)

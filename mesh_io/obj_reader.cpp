@@ -4,6 +4,7 @@
 #include "mesh_io/line_blocks.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/polygon_cut.h"
+#include "mesh_io/text_stream.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
@@ -38,23 +39,6 @@ struct Kind {
   std::uint64_t count = 0;
   std::uint64_t highest = 0;       ///< number, from 1 on, that was referred to
   std::uint64_t highest_line = 0;  ///< where that was
-};
-
-/// A text in memory.
-class TextStream final : public InputStream {
- public:
-  explicit TextStream(std::string_view text) : text_(text) {}
-
-  std::size_t read(std::span<std::byte> to) override {
-    const std::size_t count = std::min(to.size(), text_.size());
-    if (count > 0)
-      std::memcpy(to.data(), text_.data(), count);
-    text_.remove_prefix(count);
-    return count;
-  }
-
- private:
-  std::string_view text_;
 };
 
 /// Text from the line `lines` behind the one at its start; each ends with LF, CRLF or CR.

@@ -2,7 +2,10 @@
 
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/line_blocks.h"
 #include "mesh_io/ply_values.h"
+#include "mesh_io/stl_block.h"
+#include "mesh_io/text_stream.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
@@ -103,31 +106,71 @@ class BinaryStl {
   StlCounts counts_;
 };
 
-class TextStl {
- public:
-  TextStl(InputStream& stream, const std::filesystem::path& path) : words_(stream, path, {}) {}
+}  // namespace
 
-  StlCounts read(const SoupVisitor& visit) {
-    while (words_.to_row()) {
-      expect("solid");
-      words_.skip_line();
-      ++counts_.solids;
-      while (read_facet()) {
-        if (block_.size() == kBlockFacets) {
-          visit(block_);
-          block_.clear();
-        }
-      }
+bool is_stl_keyword(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, {}, lower);
+}
+
+StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
+                          const SoupVisitor& visit) {
+  return BinaryStl(stream, path).read(visit);
+}
+
+class StlTextReader::Impl {
+ public:
+  Impl(const std::filesystem::path& path, const SoupVisitor& visit)
+      : none_({}), words_(none_, path, {}), visit_(visit) {}
+
+  void take(const StlBlock& block) {
+    if (!block.is_plain || block.begins_in_solid != in_solid_) {
+      TextStream text({block.text.data(), block.text.size()});
+      take_rest(text);
+      return;
     }
-    visit(block_);
+    visit_(block.facets);
+    in_solid_ = block.ends_in_solid;
+    counts_.facets += block.facets.size();
+    counts_.solids += block.solids;
+    counts_.fits_float = counts_.fits_float && block.fits_float;
+    line_ += block.lines;
+  }
+
+  void take_rest(InputStream& rest) {
+    words_.go_on(rest, line_);
+    while (words_.to_row()) {
+      if (in_solid_)
+        in_solid_ = read_facet();
+      else
+        begin_solid();
+      if (facets_.size() == kBlockFacets)
+        flush();
+    }
+    flush();
+    line_ = words_.line();
+  }
+
+  StlCounts finish() {
+    if (in_solid_)
+      words_.fail("expected 'facet' or 'endsolid', found the end of the file (truncated)");
     return counts_;
   }
 
  private:
+  void flush() {
+    visit_(facets_);
+    facets_.clear();
+  }
+
+  void begin_solid() {
+    expect("solid");
+    words_.skip_line();
+    ++counts_.solids;
+    in_solid_ = true;
+  }
+
   /// False at the end of the solid.
   bool read_facet() {
-    if (!words_.to_row())
-      words_.fail("expected 'facet' or 'endsolid', found the end of the file (truncated)");
     const std::string word(words_.take_word());
     if (!is_stl_keyword(word, "facet")) {
       if (!ends_solid(word))
@@ -138,8 +181,8 @@ class TextStl {
     words_.skip_line();  // the normal
     expect_row("outer");
     words_.skip_line();
-    block_.emplace_back();
-    for (Vec3d& corner : block_.back())
+    facets_.emplace_back();
+    for (Vec3d& corner : facets_.back())
       corner = read_vertex();
     expect_row("endloop");
     expect_row("endfacet");
@@ -175,25 +218,39 @@ class TextStl {
       words_.fail(fmt::format("expected '{}', found {}", keyword, in_quotes(word)));
   }
 
+  TextStream none_;
   WordStream words_;
-  std::vector<SoupTriangle> block_;
+  const SoupVisitor& visit_;
+  std::vector<SoupTriangle> facets_;  ///< read by words, not handed out yet
+  std::uint64_t line_ = 1;
+  bool in_solid_ = false;
   StlCounts counts_;
 };
 
-}  // namespace
+StlTextReader::StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit)
+    : impl_(std::make_unique<Impl>(path, visit)) {}
+StlTextReader::~StlTextReader() = default;
 
-bool is_stl_keyword(std::string_view word, std::string_view keyword) {
-  return std::ranges::equal(word, keyword, {}, lower);
+void StlTextReader::take(const StlBlock& block) {
+  impl_->take(block);
 }
-
-StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
-                          const SoupVisitor& visit) {
-  return BinaryStl(stream, path).read(visit);
+void StlTextReader::take_rest(InputStream& rest) {
+  impl_->take_rest(rest);
+}
+StlCounts StlTextReader::finish() {
+  return impl_->finish();
 }
 
 StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                         const SoupVisitor& visit) {
-  return TextStl(stream, path).read(visit);
+  LineBlocks blocks(stream, whole_facets);
+  StlTextReader reader(path, visit);
+  for (StlBlock block; blocks.next(block.text);) {
+    parse_facets(block);
+    reader.take(block);
+  }
+  reader.take_rest(blocks.rest());
+  return reader.finish();
 }
 
 }  // namespace meshhier::mesh_io

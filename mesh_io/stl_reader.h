@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -40,8 +41,29 @@ bool is_stl_keyword(std::string_view word, std::string_view keyword);
 StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
                           const SoupVisitor& visit);
 
-/// The same of an ASCII file, of one solid or several; errors name the line. A solid's end may be
-/// glued to its name, or be two words.
+struct StlBlock;
+
+/// Reads an ASCII file, of one solid or several, block by block: their numbers were parsed, each
+/// apart from the others. Else as read_text_stl().
+class StlTextReader {
+ public:
+  /// Both must outlive it.
+  StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit);
+  ~StlTextReader();
+
+  /// The blocks of the file in their order (LineBlocks, by whole_facets()).
+  void take(const StlBlock& block);
+  /// What is behind them, by words. Once, after all blocks.
+  void take_rest(InputStream& rest);
+  StlCounts finish();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The same as read_binary_stl() of an ASCII file; errors name the line. A solid's end may be glued
+/// to its name, or be two words.
 StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                         const SoupVisitor& visit);
 

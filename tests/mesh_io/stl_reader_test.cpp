@@ -1,6 +1,8 @@
 // STL files, binary and ASCII: what is read, and what is refused.
 #include "mesh_io/stl_reader.h"
 
+#include "mesh_io/line_blocks.h"
+#include "mesh_io/stl_block.h"
 #include "streams.h"
 #include "support/gzip.h"
 
@@ -8,10 +10,12 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <regex>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -107,6 +111,102 @@ TEST(StlReader, ReadsTextOfSeveralSolidsInAnyCase) {
   EXPECT_EQ(taken.counts.solids, 2U);
   EXPECT_EQ(taken.counts.facets, 2U);
   EXPECT_TRUE(taken.counts.fits_float);
+}
+
+/// What blocks say of a text; the error if there is one.
+std::string outcome(const std::string& content, bool by_words) {
+  StlTaken taken;
+  const std::string error = input_error_of([&] {
+    taken = take(content, [&](InputStream& stream, const std::filesystem::path& path,
+                              const SoupVisitor& visit) {
+      if (!by_words)
+        return read_text_stl(stream, path, visit);
+      StlTextReader reader(path, visit);
+      reader.take_rest(stream);
+      return reader.finish();
+    });
+  });
+  return error.empty()
+             ? fmt::format("{}; {} facets, {} solids, {}", fmt::join(taken.facets, "; "),
+                           taken.counts.facets, taken.counts.solids, taken.counts.fits_float)
+             : error;
+}
+
+TEST(StlReader, BlocksOfFacetsSayWhatTheirWordsSay) {
+  const std::string facet = facet_text();
+  const std::vector<std::string> pieces = {
+      facet,
+      facet_text("1e-3 -.5 +2."),
+      facet_text("0.1234567890123 1 2"),
+      facet_text("1 2"),
+      facet_text("1 2 3 4"),
+      facet_text("nan 1 2"),
+      facet_text("1e39 1 2"),
+      facet_text("1 2 3 # here"),
+      "\n \t\n",
+      "# endfacet\n",
+      "endsolid a\nsolid b\n",
+      "ENDSOLID\nSOLID c\n",
+      "endsolidname\nsolid\n",
+      "end solid\nsolid\n",
+      "endsolid\n",
+      "solid\n",
+      "endfacet\n",
+      "endloop endfacet\n",
+      "facet normal 0 0 1 outer\nouter\nvertex 1 2 3\n",
+      "vertex 4 5 6\nvertex 7 8 9\nendloop endfacet facet\n",
+      "outer loop\nvertex 1 2 3\n\nvertex 1 2 4\nvertex 1 3 3\n"
+      "endloop\n endfacet \n",
+      "text\n"};
+  // Mostly what is right, so that much is read before an error ends it.
+  std::uint64_t state = 1;
+  const auto random = [&](std::size_t below) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::size_t>(state >> 33) % below;
+  };
+  int read = 0;
+  for (int round = 0; round < 400; ++round) {
+    std::string text = random(4) == 0 ? "" : "solid a\n";
+    const std::size_t odd = 1 + random(30);
+    for (std::size_t i = random(12); i > 0; --i)
+      text += random(odd) == 0 ? pieces[random(pieces.size())] : pieces[random(3)];
+    if (random(3) > 0)
+      text += "endsolid";
+    if (random(3) == 0)
+      text = std::regex_replace(text, std::regex("\n"), random(2) == 0 ? "\r\n" : "\r");
+    const std::string expected = outcome(text, true);
+    ASSERT_EQ(outcome(text, false), expected) << text;
+    read += expected.find(" facets, ") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(read, 100);
+  EXPECT_LT(read, 390);
+}
+
+TEST(StlReader, LargeTextsAreTheSameInBlocks) {
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    for (const char* odd :
+         {"", "\nendsolid a\nsolid b\n", "facet normal\n", "vertex 1 2 x\n", "#\n"}) {
+      std::string text = "\xEF\xBB\xBFsolid\n";
+      for (int i = 0; i < 9000; ++i) {
+        text += facet_text(fmt::format("{} {} {}", i, i * 0.125, i % 7));
+        if (i == 7000)
+          text += odd;
+      }
+      text = std::regex_replace(text + "endsolid", std::regex("\n"), end);
+      ASSERT_GT(text.size(), 2 * LineBlocks::kBytes);
+      const std::string bare = text.substr(3);
+      ASSERT_EQ(outcome(text, false), outcome(bare, true)) << odd;
+    }
+  }
+}
+
+TEST(StlReader, AFacetLongerThanABlockIsReadByWords) {
+  std::string text = "solid\n" + facet_text();
+  text += "facet " + std::string(LineBlocks::kBytes, 'x') + "\n" +
+          facet_text().substr(facet_text().find(" outer"));
+  text += facet_text() + "endsolid\n";
+  EXPECT_EQ(outcome(text, false), outcome(text, true));
+  EXPECT_THAT(outcome(text, false), HasSubstr("3 facets"));
 }
 
 TEST(StlReader, HandsOutManyFacetsOfAText) {
