@@ -38,6 +38,8 @@ class SpoolTest : public testing::Test {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) / (std::string("spool_") + info.name());
     std::filesystem::remove(path_);
+    for (int i = 1; i < 16; ++i)
+      std::filesystem::remove(path_.string() + "." + std::to_string(i));
   }
 
   FaultyFileSystem files_;
@@ -245,6 +247,98 @@ TEST_F(SpoolTest, ThreadsFillTheirSpoolsAtOnce) {
     thread.join();
   for (std::size_t i = 0; i < spools.size(); ++i)
     EXPECT_EQ(content(spools[i]), pattern(20000, i));
+}
+
+/// The files of a scratch file, of which there may be several.
+std::size_t files_of(const std::filesystem::path& path) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path())) {
+    const std::string name = entry.path().filename().string();
+    const std::string first = path.filename().string();
+    count += name == first || name.starts_with(first + ".") ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(SpoolTest, ThreadsWriteToFilesOfTheirOwn) {
+  MemoryPool pool(0);
+  {
+    ScratchFile scratch(files_, path_, pool, ScratchFile::Stays::no,
+                        ScratchFile::Files::one_a_thread);
+    constexpr std::size_t kThreads = 6;
+    std::vector<Spool> spools;
+    for (std::size_t i = 0; i < kThreads; ++i)
+      spools.emplace_back(scratch, 64);
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < kThreads; ++i)
+      threads.emplace_back([&, i] { append_in_steps(spools[i], pattern(10'000, i), 33 + i); });
+    for (std::thread& thread : threads)
+      thread.join();
+    EXPECT_EQ(files_of(path_), kThreads);
+    EXPECT_EQ(scratch.size(), kThreads * 9984U) << "the last blocks are open";
+    EXPECT_EQ(pool.scratch_use().bytes_on_disk(), scratch.size());
+    for (std::size_t i = 0; i < kThreads; ++i)
+      EXPECT_EQ(content(spools[i]), pattern(10'000, i));
+    for (Spool& spool : spools)
+      spool.clear();
+    Spool next(scratch, 64);
+    next.append(pattern(kThreads * 9984, 9));
+    EXPECT_EQ(scratch.size(), kThreads * 9984U) << "places in any of the files are used again";
+    EXPECT_EQ(content(next), pattern(kThreads * 9984, 9));
+  }
+  EXPECT_EQ(files_of(path_), 0U);
+  EXPECT_EQ(pool.scratch_use().bytes_on_disk(), 0U);
+}
+
+TEST_F(SpoolTest, ALaterProcessGoesOnWithAllFiles) {
+  MemoryPool pool(0);
+  std::vector<StoredSpool> stored;
+  const auto open = [&] {
+    return std::make_unique<ScratchFile>(files_, path_, pool, ScratchFile::Stays::yes,
+                                         ScratchFile::Files::one_a_thread);
+  };
+  constexpr std::size_t kThreads = 3;
+  {
+    const auto scratch = open();
+    std::vector<Spool> written;
+    for (std::size_t i = 0; i < kThreads; ++i) {
+      std::thread([&] {
+        Spool& spool = written.emplace_back(*scratch, 100);
+        spool.append(pattern(950, i));
+        stored.push_back(spool.store());
+      }).join();
+    }
+    scratch->sync([] {});
+  }
+  ASSERT_EQ(files_of(path_), kThreads);
+  const auto scratch = open();
+  std::vector<Spool> spools;
+  for (std::size_t i = 0; i < kThreads; ++i) {
+    Spool& spool = spools.emplace_back(*scratch, 100);
+    ASSERT_TRUE(spool.restore(stored[i]));
+    ASSERT_TRUE(spool.is_as_stored());
+  }
+  EXPECT_EQ(scratch->size(), kThreads * 950);
+  for (std::size_t i = 0; i < 2 * kThreads; ++i) {
+    std::thread([&] {
+      Spool more(*scratch, 100);
+      more.append(pattern(950, 7));
+      EXPECT_EQ(content(more), pattern(950, 7));
+    }).join();
+  }
+  for (std::size_t i = 0; i < kThreads; ++i)
+    EXPECT_EQ(content(spools[i]), pattern(950, i)) << "nothing was written over";
+  StoredSpool beyond = stored[1];
+  beyond.blocks[0] += 1'000'000;
+  Spool other(*scratch, 100);
+  ASSERT_TRUE(other.restore(beyond));
+  EXPECT_FALSE(other.is_as_stored());
+  beyond.blocks[0] = stored[1].blocks[0] + (std::uint64_t{9} << 40);
+  Spool none(*scratch, 100);
+  ASSERT_TRUE(none.restore(beyond));
+  EXPECT_FALSE(none.is_as_stored()) << "in a file that is not there";
+  scratch->remove();
+  EXPECT_EQ(files_of(path_), 0U);
 }
 
 TEST_F(SpoolTest, TheScratchFileIsRemovedAtTheEnd) {
