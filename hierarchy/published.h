@@ -10,9 +10,11 @@
 #include "hierarchy/tree.h"
 #include "hierarchy/unit.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier {
@@ -106,6 +108,11 @@ struct SourceSummary {
 
   /// Of the bounding box.
   double diagonal() const { return length(bounds.max - bounds.min); }
+  /// Of `counts`; 0 if there is none of that name.
+  std::uint64_t count_of(std::string_view name) const {
+    const auto found = std::ranges::find(counts, name, &SourceCount::name);
+    return found == counts.end() ? 0 : found->count;
+  }
 };
 
 }  // namespace meshhier

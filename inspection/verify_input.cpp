@@ -352,10 +352,6 @@ bool was_welded(const VerifyJob& job) {
   return weld != config.end() && weld->is_boolean() && weld->get<bool>();
 }
 
-bool has_count(const SourceSummary& source, std::string_view name) {
-  return std::ranges::find(source.counts, name, &SourceCount::name) != source.counts.end();
-}
-
 /// As the build did.
 importing::Textures textures_of(const SourceSummary& source) {
   return importing::shows_materials(source) ? importing::Textures::use
@@ -383,7 +379,7 @@ void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
   importing::MeshInput files(job.options.input, was_welded(job), job.files, textures_of(expected));
-  if (has_count(expected, importing::kDroppedUnplaced))
+  if (expected.count_of(importing::kDroppedUnplaced) > 0)
     files.note_unplaced();
   if (files.needs_import()) {
     files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
@@ -397,7 +393,7 @@ void verify_input(const VerifyJob& job) {
   if (job.reader.manifest().screen_colours)
     kept.space = expected.attributes.space;  // which these formats did not tell apart
   kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
-  if (kept.colour != ColourType::none && has_count(expected, importing::kColoursTakenForBytes))
+  if (kept.colour != ColourType::none && expected.count_of(importing::kColoursTakenForBytes) > 0)
     kept.colour = ColourType::u8;
   if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");

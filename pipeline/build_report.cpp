@@ -84,9 +84,9 @@ std::string warning_text(const SourceSummary& source, bool has_area) {
   else if (source.degenerate_triangles > source.triangles)
     warn("most triangles of the mesh are degenerate");
   for (const CountWarning& warning : kCountWarnings) {
-    const auto found = std::ranges::find(source.counts, warning.count, &SourceCount::name);
-    if (found != source.counts.end())
-      warn(counted(found->count, warning.what) + warning.became);
+    const std::uint64_t count = source.count_of(warning.count);
+    if (count > 0)
+      warn(counted(count, warning.what) + warning.became);
   }
   if (source.triangles > 0 && source.unreferenced_vertices > source.vertices / 2)
     warn("most vertices of the mesh belong to no triangle");

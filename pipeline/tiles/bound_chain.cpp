@@ -1,5 +1,7 @@
 #include "pipeline/tiles/bound_chain.h"
 
+#include "partition/parallel_parts.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -42,8 +44,11 @@ void BoundChain::add(Level level, std::span<const Step> steps) {
   for (const Step& step : steps)
     most_certain_ = std::max(most_certain_, step.certain);
   std::vector<Sum> sums(steps.size());
-  for (std::uint32_t i = 0; i < steps.size(); ++i)
-    sums[i] = sum_of({level, i}, steps);
+  constexpr std::uint64_t kPart = 64;
+  partition::for_each_part(steps.size(), kPart, [&](std::uint64_t first, std::uint64_t count) {
+    for (std::uint64_t i = first; i < first + count; ++i)
+      sums[i] = sum_of({level, static_cast<std::uint32_t>(i)}, steps);
+  });
   for (std::uint32_t i = 0; i < steps.size(); ++i)
     note({level, i}, steps[i], sums[i]);
   below_ = std::move(sums);

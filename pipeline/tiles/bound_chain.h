@@ -90,7 +90,8 @@ class BoundChain {
   /// coordinates between which there are longer ones (mesh_io/coordinate_range.h).
   BoundChain(const Tree& tree, double diagonal);
 
-  /// `steps`: one per node of the level, the next above the last call's.
+  /// `steps`: one per node of the level, the next above the last call's. In parallel on the
+  /// caller's TBB arena.
   void add(Level level, std::span<const Step> steps);
 
   /// Of the levels added so far; 0 for the partitions.

@@ -181,9 +181,7 @@ class ImportTest : public testing::Test {
     return storage::HierarchyReader(files_, config.output).manifest().source;
   }
   std::uint64_t count_of(const config::Config& config, const std::string& name) {
-    const SourceSummary summary = source(config);
-    const auto found = std::ranges::find(summary.counts, name, &SourceCount::name);
-    return found == summary.counts.end() ? 0 : found->count;
+    return source(config).count_of(name);
   }
 
   std::vector<std::string> problems(const config::Config& config, const mesh_io::InputPaths& with) {

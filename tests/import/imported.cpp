@@ -34,8 +34,7 @@ std::string colour_text(const std::array<float, 4>& colour) {
 }  // namespace
 
 std::uint64_t Imported::count(const std::string& name) const {
-  const auto found = std::ranges::find(summary.counts, name, &SourceCount::name);
-  return found == summary.counts.end() ? 0 : found->count;
+  return summary.count_of(name);
 }
 
 std::vector<std::string> Imported::companions() const {
