@@ -1,6 +1,5 @@
 #include "import/import_input.h"
 
-#include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "import/gltf_import.h"
@@ -10,9 +9,9 @@
 #include "import/place_vertices.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
+#include "import/text_blocks.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
-#include "mesh_io/line_blocks.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
@@ -359,17 +358,12 @@ class Import {
     return {{}, counts.fits_float, counts.facets, welded.degenerate_triangles};
   }
 
-  /// Blocks of facets are parsed in parallel. While it reads no sort runs.
   mesh_io::StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                                    const mesh_io::SoupVisitor& visit) const {
-    mesh_io::LineBlocks blocks(stream, mesh_io::whole_facets);
     mesh_io::StlTextReader reader(path, visit);
-    execution::ordered_read_blocks<mesh_io::StlBlock>(
-        execution::useful_blocks(2 * room_.sort_bytes, mesh_io::kStlBlockBytes), room_.cancel,
-        [&](mesh_io::StlBlock& block) { return blocks.next(block.text); }, mesh_io::parse_facets,
-        [&](const mesh_io::StlBlock& block) { reader.take(block); });
-    reader.take_rest(blocks.rest());
-    return reader.finish();
+    return read_text_blocks<mesh_io::StlBlock>(mesh_io::LineBlocks(stream, mesh_io::whole_facets),
+                                               mesh_io::kStlBlockBytes, mesh_io::parse_facets,
+                                               reader, room_);
   }
 
   Added add_off(InputStream& stream, const std::filesystem::path& path) {

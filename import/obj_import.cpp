@@ -1,14 +1,13 @@
 #include "import/obj_import.h"
 
-#include "execution/parallel.h"
 #include "execution/spool_cursor.h"
 #include "hierarchy/small_letters.h"
 #include "import/material_colours.h"
 #include "import/obj_textures.h"
 #include "import/place_lookup.h"
 #include "import/split_corners.h"
+#include "import/text_blocks.h"
 #include "mesh_io/input_error.h"
-#include "mesh_io/line_blocks.h"
 #include "partition/external_sort.h"
 
 #include <algorithm>
@@ -535,17 +534,11 @@ void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMe
   import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;
 }
 
-/// Blocks of lines are parsed in parallel. While it reads no sort runs.
 mesh_io::ObjCounts read_parts(mesh_io::InputStream& stream, const std::filesystem::path& path,
                               ObjParts& parts, const ImportRoom& room) {
-  mesh_io::LineBlocks lines(stream);
   mesh_io::ObjReader reader(path, parts);
-  execution::ordered_read_blocks<mesh_io::ObjBlock>(
-      execution::useful_blocks(2 * room.sort_bytes, mesh_io::kObjBlockBytes), room.cancel,
-      [&](mesh_io::ObjBlock& block) { return lines.next(block.text); }, mesh_io::parse,
-      [&](const mesh_io::ObjBlock& block) { reader.take(block); });
-  reader.take_rest(lines.rest());
-  return reader.finish();
+  return read_text_blocks<mesh_io::ObjBlock>(mesh_io::LineBlocks(stream), mesh_io::kObjBlockBytes,
+                                             mesh_io::parse, reader, room);
 }
 
 }  // namespace

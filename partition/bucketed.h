@@ -21,7 +21,6 @@ class Bucketed {
     last_[bucket] = static_cast<std::uint32_t>(links_.size() - 1);
   }
 
-  std::size_t buckets() const { return last_.size(); }
   /// In all buckets.
   std::size_t size() const { return links_.size(); }
   bool has(std::uint32_t bucket) const { return last_[bucket] != kNone; }

@@ -3,6 +3,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/tiles/joined_spool.h"
+#include "pipeline/tiles/spool_json.h"
 #include "storage/io/spool.h"
 
 #include <algorithm>
@@ -62,13 +63,14 @@ class RowSpool {
   }
   /// As spool_json.h, with the number of rows behind.
   nlohmann::json store() {
-    const storage::StoredSpool stored = runs_.store();
-    return {stored.bytes, stored.checksum, stored.block_bytes, stored.blocks, counts_[0]};
+    nlohmann::json stored = pipeline::store(runs_);
+    stored.push_back(counts_[0]);
+    return stored;
   }
   bool restore(const nlohmann::json& stored) {
     const std::uint32_t count = stored.at(4);
     const bool is_empty = runs_.size() == 0;
-    if (!runs_.restore({stored.at(0), stored.at(1), stored.at(2), stored.at(3)}))
+    if (!pipeline::restore(runs_, stored))
       return false;
     if (is_empty)
       counts_[0] = count;

@@ -72,10 +72,16 @@ void ScratchFile::remove() {
 }
 
 void ScratchFile::sync(const std::function<void()>& check) {
-  for (const Own& own : own_) {
-    if (own.file)
-      own.file->sync(check);
+  std::vector<File*> files;
+  {
+    const std::lock_guard lock(mutex_);  // others may make files meanwhile
+    for (const Own& own : own_) {
+      if (own.file)
+        files.push_back(own.file.get());
+    }
   }
+  for (File* file : files)
+    file->sync(check);
 }
 
 void ScratchFile::mount(std::unique_ptr<File> file) {

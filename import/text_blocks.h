@@ -1,0 +1,26 @@
+// Texts whose blocks are parsed in parallel.
+#pragma once
+
+#include "execution/parallel.h"
+#include "import/raw_mesh.h"
+#include "mesh_io/line_blocks.h"
+
+#include <cstdint>
+
+namespace meshhier::importing {
+
+/// Hands the blocks of a text to `reader` in their order, each after parse(block), and the rest to
+/// be read by words; returns what its finish() does. `block_bytes`: of a block at work. While it
+/// reads no sort runs.
+template <class Block, class Reader>
+auto read_text_blocks(mesh_io::LineBlocks lines, std::uint64_t block_bytes, void (*parse)(Block&),
+                      Reader& reader, const ImportRoom& room) {
+  execution::ordered_read_blocks<Block>(
+      execution::useful_blocks(2 * room.sort_bytes, block_bytes), room.cancel,
+      [&](Block& block) { return lines.next(block.text); }, parse,
+      [&](const Block& block) { reader.take(block); });
+  reader.take_rest(lines.rest());
+  return reader.finish();
+}
+
+}  // namespace meshhier::importing
