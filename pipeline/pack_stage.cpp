@@ -5,24 +5,29 @@
 #include "storage/format/tileset.h"
 
 #include <functional>
+#include <span>
+#include <vector>
 
 namespace meshhier::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Names relative to the hierarchy, in the archive's order: what a reader opens first comes first.
+/// Names relative to the hierarchy, in the archive's order: what a reader opens first comes first,
+/// and where it lies follows from sizes that the manifest and the index tell.
 void for_each_name(const storage::HierarchyReader& made,
                    const std::function<void(const fs::path&)>& visit) {
+  const std::vector<TileRecord>& tiles = made.records();
   visit(storage::manifest_path({}));
+  visit(storage::tile_path({}, tiles.front().node));
   visit(storage::index_path({}));
   visit(storage::outline_path({}));
   if (made.manifest().preview)
     visit(storage::preview_path({}));
-  storage::for_each_tileset(made.manifest(), made.tree(), made.records(),
-                            [&](const storage::TilesetFile& file) { visit(file.path); });
-  for (const TileRecord& record : made.records())
+  for (const TileRecord& record : std::span(tiles).subspan(1))
     visit(storage::tile_path({}, record.node));
+  storage::for_each_tileset(made.manifest(), made.tree(), tiles,
+                            [&](const storage::TilesetFile& file) { visit(file.path); });
 }
 
 }  // namespace

@@ -7,8 +7,9 @@ namespace meshhier::server {
 namespace {
 
 // What hierarchies, streams and the viewer's page consist of.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 19> kTypes{
-    {{".css", "text/css; charset=utf-8"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kTypes{
+    {{".3tz", "application/vnd.maxar.archive.3tz+zip"},
+     {".css", "text/css; charset=utf-8"},
      {".glb", "model/gltf-binary"},
      {".gltf", "model/gltf+json"},
      {".html", "text/html; charset=utf-8"},

@@ -1,5 +1,6 @@
 #include "server/gallery.h"
 
+#include "server/folder_scan.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
 
@@ -11,8 +12,16 @@ namespace {
 /// Pages ask every few seconds, each of them: the disk is asked once for all.
 constexpr std::chrono::seconds kFreshFor{1};
 
+std::string directory_of(const Model& model) {
+  return model.path.empty() ? "models/" : "models/" + encode_path(model.path) + '/';
+}
+
+/// An archive without its slash would be the archive itself, which is read in parts.
 std::string url_of(const Model& model) {
-  return model.path.empty() ? "models" : "models/" + encode_path(model.path);
+  std::string url = directory_of(model);
+  if (!is_archive_name(model.path))
+    url.pop_back();
+  return url;
 }
 
 nlohmann::ordered_json json_of(const Model& model) {
@@ -22,7 +31,7 @@ nlohmann::ordered_json json_of(const Model& model) {
   if (model.modified > 0)
     json["modified"] = model.modified;
   if (model.has_preview)
-    json["preview"] = url_of(model) + '/' + storage::preview_path({}).string();
+    json["preview"] = directory_of(model) + storage::preview_path({}).string();
   return json;
 }
 

@@ -87,10 +87,21 @@ std::vector<Model> Hierarchies::list() {
 }
 
 std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
+  if (is_archive_name(path))
+    return open_archive(std::string(path));
   const std::optional<Split> found = split(path);
   if (!found || !is_published(found->hierarchy, found->name))
     return std::nullopt;
   return open_in(found->hierarchy, found->name);
+}
+
+std::optional<PublishedFile> Hierarchies::open_archive(const std::string& path) {
+  if (!look_if_readable(path))
+    return std::nullopt;
+  std::shared_ptr<const storage::File> file = folder_->open(path);
+  if (!file)
+    return std::nullopt;
+  return PublishedFile{std::move(file)};
 }
 
 bool Hierarchies::is_published(const std::string& hierarchy, const std::string& name) {

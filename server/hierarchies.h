@@ -46,8 +46,8 @@ class Hierarchies {
   /// its file cannot be opened: there may be one.
   std::optional<Model> look(const std::string& path);
 
-  /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb". Nothing if it is
-  /// no file of a hierarchy or stream that can be read, whatever else lies in the folder. Throws
+  /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
+  /// archive, "sub/david.3tz". Nothing if it is no file of a hierarchy or stream that can be read, whatever else lies in the folder. Throws
   /// Error(io) if that file, of a hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
 
@@ -75,6 +75,7 @@ class Hierarchies {
                                 const Read& read);
   std::shared_ptr<const storage::Archive> archive(const std::string& path,
                                                   std::unique_ptr<storage::File> file);
+  std::optional<PublishedFile> open_archive(const std::string& path);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
   void tell_left_out(const std::string& cause);
   void tell_once(const std::string& message);

@@ -10,7 +10,7 @@ export default defineConfig({
     target: 'es2022',
     chunkSizeWarningLimit: 1000,
     modulePreload: false,
-    rollupOptions: { input: 'page/element.ts', output: { entryFileNames: 'meshhier-viewer.js' } },
+    rollupOptions: { input: 'page/element.ts', output: { entryFileNames: 'meshhier-viewer.js', inlineDynamicImports: true } },
   },
   worker: { format: 'es' },
 });

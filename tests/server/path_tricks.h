@@ -52,7 +52,6 @@ inline const std::vector<std::string> kPathTricks = {
     "/models",
     "/models/notes.txt",
     "/models/broken.hier/tiles.bin",
-    "/models/packed.3tz",
     "/models/packed.3tz/@3dtilesIndex1@",
     "/models/packed.3tz/../notes.txt",
     "/models/packed.3tz/tiles/00/../../../notes.txt",

@@ -93,7 +93,7 @@ TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   EXPECT_EQ(reply.header("Cache-Control"), "no-cache");
   const json document = json::parse(reply.text);
   EXPECT_FALSE(document.contains("jobs"));
-  EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/plain.hier",
+  EXPECT_THAT(listed(), ElementsAre("models/packed.3tz/", "models/plain.hier",
                                     "models/sub%20dir/zipped.hier"));
   const json model = document["models"][1];
   EXPECT_EQ(model["name"], "plain");
@@ -130,7 +130,7 @@ TEST_F(SiteTest, AHierarchyThatIsNotCompleteIsListedWhenItIs) {
     fs::rename(file, away);
     open({});
     told_.clear();
-    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/sub%20dir/zipped.hier"));
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz/", "models/sub%20dir/zipped.hier"));
     EXPECT_THAT(told_, testing::Contains(HasSubstr(file.string() + " is not there")));
     fs::rename(away, file);
     EXPECT_THAT(listed(), testing::Contains("models/plain.hier"));
@@ -139,7 +139,7 @@ TEST_F(SiteTest, AHierarchyThatIsNotCompleteIsListedWhenItIs) {
 
 TEST_F(SiteTest, AnArchiveIsListedInCapitalsToo) {
   fs::rename(folder_.models() / "packed.3tz", folder_.models() / "PACKED.3TZ");
-  EXPECT_THAT(listed(), testing::Contains("models/PACKED.3TZ"));
+  EXPECT_THAT(listed(), testing::Contains("models/PACKED.3TZ/"));
   EXPECT_EQ(get("/models/PACKED.3TZ/tiles.bin").status, 200);
 }
 
@@ -156,7 +156,7 @@ TEST_F(SiteTest, AHierarchyThatCannotBeReadIsToldOnce) {
 TEST_F(SiteTest, AManifestThatMayNotBeReadHidesNoOther) {
   open_refusing({"plain.hier/hierarchy.json", "broken.hier/"});
   for (int i = 0; i < 2; ++i)
-    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/sub%20dir/zipped.hier"));
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz/", "models/sub%20dir/zipped.hier"));
   EXPECT_EQ(get("/models/plain.hier/tiles.bin").status, 404);
   EXPECT_EQ(get("/models/packed.3tz/tiles.bin").status, 200);
   EXPECT_THAT(told_, testing::UnorderedElementsAre(
@@ -167,7 +167,7 @@ TEST_F(SiteTest, AManifestThatMayNotBeReadHidesNoOther) {
 TEST_F(SiteTest, ADirectoryThatMayNotBeReadHidesNoOther) {
   open_refusing({"sub dir/", "broken.hier/"});
   for (int i = 0; i < 2; ++i)
-    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/plain.hier"));
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz/", "models/plain.hier"));
   EXPECT_THAT(told_, testing::UnorderedElementsAre("not shown: cannot open sub dir: refused",
                                                    "not shown: cannot open broken.hier: refused"));
 }
@@ -332,6 +332,23 @@ TEST_F(SiteTest, APartInAnArchiveIsOfTheFileInIt) {
   const Reply reply = site_->answer(part);
   EXPECT_EQ(reply.status, 206);
   EXPECT_EQ(body_of(reply), "MHTILES\n");
+}
+
+TEST_F(SiteTest, AnArchiveIsAFileToo) {
+  const std::string whole = text_of(folder_.models() / "packed.3tz");
+  Reply reply = get("/models/packed.3tz");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.header("Content-Type"), "application/vnd.maxar.archive.3tz+zip");
+  EXPECT_EQ(reply.header("Accept-Ranges"), "bytes");
+  EXPECT_EQ(body_of(reply), whole);
+  Request part = request("/models/packed.3tz");
+  part.range = "bytes=100-199";
+  reply = site_->answer(part);
+  EXPECT_EQ(reply.status, 206);
+  EXPECT_EQ(body_of(reply), whole.substr(100, 100));
+  std::ofstream(folder_.models() / "other.3tz") << "no hierarchy";
+  for (const char* other : {"/models/other.3tz", "/models/none.3tz", "/models/plain.hier"})
+    EXPECT_EQ(get(other).status, 404) << other;
 }
 
 TEST_F(SiteTest, APartOfAnotherVersionIsTheWholeFile) {

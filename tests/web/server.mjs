@@ -38,8 +38,26 @@ function fileOf(url, directories) {
   return null;
 }
 
-/// Serves `directories` ({prefix: directory}). Resolves to {origin, close}.
-export function serve(directories) {
+/// Of a file of `size` bytes, as {start, end}, the last one included; null: the request asks for no part.
+function partOf(request, size) {
+  const match = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
+  return match && { start: Number(match[1]), end: Math.min(Number(match[2]), size - 1) };
+}
+
+/// As hosts of files do that know ranges, with CORS as short as it works.
+function sendPart(request, response, file) {
+  const { size, mtimeMs } = statSync(file);
+  const headers = { 'Accept-Ranges': 'bytes', 'Access-Control-Allow-Origin': '*', 'Last-Modified': new Date(mtimeMs).toUTCString() };
+  const part = partOf(request, size);
+  if (part === null) response.writeHead(200, { ...headers, 'Content-Length': size });
+  else if (part.start > part.end) response.writeHead(416, headers);
+  else response.writeHead(206, { ...headers, 'Content-Length': part.end + 1 - part.start, 'Content-Range': `bytes ${part.start}-${part.end}/${size}` });
+  if (request.method === 'HEAD' || response.statusCode === 416) response.end();
+  else createReadStream(file, part ?? {}).pipe(response);
+}
+
+/// Serves `directories` ({prefix: directory}), archives in parts if `ranges` says so. Resolves to {origin, close}.
+export function serve(directories, { ranges = false } = {}) {
   const server = createServer((request, response) => {
     const file = fileOf(request.url, directories);
     if (file === null) {
@@ -47,6 +65,10 @@ export function serve(directories) {
       return;
     }
     const type = path.extname(file);
+    if (ranges && type === '.3tz') {
+      sendPart(request, response, file);
+      return;
+    }
     const sent = isFile(`${file}.gz`) ? `${file}.gz` : file;
     const headers = { 'Content-Type': TYPES[type] ?? 'application/octet-stream' };
     if (sent !== file || (type === '.glb' && isGzip(file))) headers['Content-Encoding'] = 'gzip';

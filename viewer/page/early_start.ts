@@ -1,5 +1,8 @@
-// What the first picture needs is asked for before the code that draws it is there: the root tile, and a worker
-// that decodes it.
+// What the first picture needs is asked for before the code that draws it is there: the root tile, or the beginning of an
+// archive, which tells where it is; and a worker that decodes it.
+import { HEAD_BYTES, isArchiveUrl } from '../src/hierarchy/archive_format.js';
+import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
+import { rangeHeader } from '../src/hierarchy/ranged_file.js';
 import TileWorker from '../src/hierarchy/tile_worker.js?worker';
 import { tilePath } from '../src/hierarchy/tree.js';
 import { follow } from './signals.js';
@@ -9,23 +12,26 @@ const ROOT = tilePath({ level: 0, index: 0 });
 export class EarlyStart {
   private readonly url: string;
   private readonly ending = new AbortController();
-  private root: Promise<Response> | null;
+  private first: Promise<Response> | null;
   private worker: Worker | null;
 
   /// `url`: of the hierarchy.
   constructor(url: string) {
-    this.url = `${url}/${ROOT}`;
-    this.root = fetch(this.url, { priority: 'high', signal: this.ending.signal });
-    this.root.catch(() => undefined); // whoever asks for it is told
+    const isArchive = isArchiveUrl(url);
+    this.url = isArchive ? url : `${withoutLastSlashes(url)}/${ROOT}`;
+    const init: RequestInit = { priority: 'high', signal: this.ending.signal };
+    if (isArchive) init.headers = rangeHeader(0, HEAD_BYTES);
+    this.first = fetch(this.url, init);
+    this.first.catch(() => undefined); // whoever asks for it is told
     this.worker = new TileWorker();
     this.worker.addEventListener('error', () => { this.worker = null; }); // whoever has it by then is told
   }
 
-  /// As the global one; the root was asked for already, and ends with the signal of whoever takes it.
+  /// As the global one; what is asked for first was asked for already, and ends with the signal of whoever takes it.
   readonly fetch = (url: string, init?: RequestInit): Promise<Response> => {
-    const early = url === this.url ? this.root : null;
+    const early = url === this.url ? this.first : null;
     if (early === null) return fetch(url, init);
-    this.root = null;
+    this.first = null;
     if (init?.signal) follow(this.ending, init.signal);
     return early;
   };
@@ -39,8 +45,8 @@ export class EarlyStart {
 
   /// Ends what nobody took.
   close(): void {
-    if (this.root !== null) this.ending.abort();
-    this.root = null;
+    if (this.first !== null) this.ending.abort();
+    this.first = null;
     this.worker?.terminate();
     this.worker = null;
   }

@@ -1,5 +1,6 @@
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
+import { isArchiveUrl } from '../src/hierarchy/archive_format.js';
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 import { words } from './words/words.js';
 
@@ -92,15 +93,18 @@ export function resolveUrl(path: string, base: string): string | null {
   }
 }
 
-/// Of the directory of a hierarchy, without slashes at its end. Null of one that its files' names cannot follow.
-function resolveDirectory(path: string, base: string): string | null {
+/// Of an archive, or of the directory of a hierarchy, without slashes at its end but where it could be taken for an archive.
+/// Null of a directory that its files' names cannot follow.
+function resolveHierarchy(path: string, base: string): string | null {
   const url = resolveUrl(path, base);
-  return url === null || /[?#]/.test(url) ? null : withoutLastSlashes(url);
+  if (url === null || isArchiveUrl(url)) return url;
+  const directory = withoutLastSlashes(url);
+  return /[?#]/.test(url) ? null : isArchiveUrl(directory) ? `${directory}/` : directory;
 }
 
 /// A model of which nothing but the path is known. Null if it cannot be fetched, or is longer than a path may be.
 export function modelOfPath(path: string, base: string): Model | null {
-  const url = path === '' || path.length > MOST_TEXT ? null : resolveDirectory(path, base);
+  const url = path === '' || path.length > MOST_TEXT ? null : resolveHierarchy(path, base);
   if (url === null) return null;
   return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null };
 }

@@ -3,6 +3,7 @@ import { describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { placeOf, verticesAt } from '../src/hierarchy/copies.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { remoteFiles } from '../src/hierarchy/remote_files.js';
 import { RemoteHierarchy } from '../src/hierarchy/remote_hierarchy.js';
 import { readTile, type Tile } from '../src/hierarchy/tile.js';
 import type { ExpectedCounts } from '../src/hierarchy/tile_counts.js';
@@ -244,7 +245,7 @@ describe('RemoteHierarchy', () => {
     const files: Record<string, TileParts> = { 'tiles/00/000000.glb': TETRAHEDRON, 'tiles/01/000000.glb': computed, 'tiles/01/000001.glb': { ...none, index: 1 } };
     const fetch = async (url: string): Promise<Response> => Promise.resolve(new Response(tileBytes(files[url.slice('here/'.length)]) as Uint8Array<ArrayBuffer>));
     const { signal } = new AbortController();
-    const remote = new RemoteHierarchy('here', fetch, new TileDecoder(undefined, 0), signal);
+    const remote = new RemoteHierarchy(remoteFiles('here', fetch), new TileDecoder(undefined, 0), signal);
     await remote.root();
     const record = ({ own, copyOf = [], splitOf = [], interior }: TileParts): TileRecord =>
       ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });

@@ -3,6 +3,7 @@ import path from 'node:path';
 import { afterAll, describe, expect, it, vi } from 'vitest';
 import { readManifest } from '../src/hierarchy/manifest.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { remoteFiles } from '../src/hierarchy/remote_files.js';
 import { RemoteHierarchy } from '../src/hierarchy/remote_hierarchy.js';
 import { TileDecoder } from '../src/hierarchy/tile_decoder.js';
 import { Tree } from '../src/hierarchy/tree.js';
@@ -12,7 +13,7 @@ import type { Fetch } from '../src/hierarchy/bytes.js';
 const ROOT = { level: 0, index: 0 };
 
 function remote(fetch: Fetch): RemoteHierarchy {
-  return new RemoteHierarchy('', fetch, new TileDecoder(undefined, 0), new AbortController().signal);
+  return new RemoteHierarchy(remoteFiles('', fetch), new TileDecoder(undefined, 0), new AbortController().signal);
 }
 
 function whenCome(): { promise: Promise<void>; come: () => void } {
@@ -132,7 +133,7 @@ describe('readManifest', () => {
   const textured = (textures: unknown, texture: unknown): string => {
     const source = { file_name: 'a.obj', file_bytes: 1, vertices: 3, triangles: 1, attributes: { colours: 'none', normals: false }, bounds: { min: [0, 0, 0], max: [1, 1, 1] }, double_precision: false, textures };
     return JSON.stringify({ format: 'meshhier', format_version: 6, source, origin: [0, 0, 0], up: 'y', transform: null, licence: '', partitions: 1, total_bytes: 1,
-      storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 } });
+      storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 }, outline: { file: 'outline.glb', bytes: 9 } });
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
 

@@ -1,7 +1,9 @@
 // What a cell shows of a model, fetched when it is asked for.
-import type { Fetch } from '../../src/hierarchy/bytes.js';
-import { fetchManifest } from '../../src/hierarchy/manifest.js';
+import { isArchiveUrl } from '../../src/hierarchy/archive_format.js';
+import { withoutLastSlashes, type Fetch } from '../../src/hierarchy/bytes.js';
+import { fetchManifest, type NamedFile } from '../../src/hierarchy/manifest.js';
 import { fetchOutline } from '../../src/hierarchy/outline.js';
+import { remoteFiles, type RemoteFiles } from '../../src/hierarchy/remote_files.js';
 import { shapeOf, type Shape } from './shape.js';
 
 const MOST_TRIES = 2;
@@ -17,14 +19,18 @@ export interface Facts {
 
 export class ModelSource {
   private readonly ending = new AbortController();
+  private readonly files: RemoteFiles;
+  private picture: string | null = null; // made of an archive's
   private tries = MOST_TRIES; // that are left
   private waits = false;
 
   /// `url`: of the hierarchy.
   constructor(
     private readonly url: string,
-    private readonly fetch: Fetch = (url, init) => globalThis.fetch(url, init),
-  ) {}
+    fetch: Fetch = (url, init) => globalThis.fetch(url, init),
+  ) {
+    this.files = remoteFiles(url, fetch);
+  }
 
   /// Null: it is on its way or was given already, or failed too often. Rejects with an Error that names the file.
   outline(): Promise<Shape> | null {
@@ -36,8 +42,18 @@ export class ModelSource {
 
   /// From the manifest. Rejects with an Error that names the file.
   async facts(): Promise<Facts> {
-    const { source, totalBytes, preview } = await fetchManifest(this.fetch, `${this.url}/`, this.ending.signal);
-    return { vertices: source.vertices, triangles: source.triangles, bytes: totalBytes, preview: preview === null ? null : `${this.url}/${preview}` };
+    const { source, totalBytes, preview } = await fetchManifest(this.files, this.ending.signal);
+    const picture = preview === null ? null : await this.pictureOf(preview);
+    return { vertices: source.vertices, triangles: source.triangles, bytes: totalBytes, preview: picture };
+  }
+
+  /// Its address: that of a file in an archive is the page's own.
+  private async pictureOf({ file, bytes }: NamedFile): Promise<string> {
+    if (!isArchiveUrl(this.url)) return `${withoutLastSlashes(this.url)}/${file}`;
+    const content = await this.files.whole(file, bytes, { signal: this.ending.signal });
+    this.ending.signal.throwIfAborted();
+    this.picture ??= URL.createObjectURL(new Blob([content], { type: 'image/webp' }));
+    return this.picture;
   }
 
   get ended(): boolean {
@@ -47,11 +63,12 @@ export class ModelSource {
   /// What is on its way is given up.
   close(): void {
     this.ending.abort();
+    if (this.picture !== null) URL.revokeObjectURL(this.picture);
   }
 
   private async readOutline(): Promise<Shape> {
     try {
-      const shape = shapeOf(await fetchOutline(this.fetch, `${this.url}/`, this.ending.signal));
+      const shape = shapeOf(await fetchOutline(this.files, this.ending.signal));
       this.tries = 0;
       return shape;
     } finally {

@@ -14,21 +14,7 @@ function isGzip(bytes: Uint8Array): boolean {
   return bytes[0] === 0x1f && bytes[1] === 0x8b;
 }
 
-/// At most `most` bytes of a stream; more is a problem of `name`.
-export async function drain(stream: ReadableStream<Uint8Array>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
-  const pieces: Uint8Array[] = [];
-  let length = 0;
-  const reader = stream.getReader();
-  for (;;) {
-    const { done, value } = await reader.read();
-    if (done) break;
-    length += value.length;
-    if (length > most) {
-      await reader.cancel();
-      throw new HierarchyProblem(name, `larger than ${most} bytes`);
-    }
-    pieces.push(value);
-  }
+function joined(pieces: readonly Uint8Array[], length: number): Uint8Array<ArrayBuffer> {
   const all = new Uint8Array(length);
   let at = 0;
   for (const piece of pieces) {
@@ -38,8 +24,30 @@ export async function drain(stream: ReadableStream<Uint8Array>, most: number, na
   return all;
 }
 
+/// Hands out all that a stream gives, at most `most` bytes; more is a problem of `name`. Returns how many they were.
+async function pour(stream: ReadableStream<Uint8Array>, most: number, name: string, take: (piece: Uint8Array) => void): Promise<number> {
+  let length = 0;
+  const reader = stream.getReader();
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return length;
+    length += value.length;
+    if (length > most) {
+      await reader.cancel();
+      throw new HierarchyProblem(name, `larger than ${most} bytes`);
+    }
+    take(value);
+  }
+}
+
+/// At most `most` bytes of a stream; more is a problem of `name`.
+export async function drain(stream: ReadableStream<Uint8Array>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  const pieces: Uint8Array[] = [];
+  return joined(pieces, await pour(stream, most, name, (piece) => { pieces.push(piece); }));
+}
+
 /// A host that does not send Content-Encoding with a file in gzip leaves it to us.
-async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
+export async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
   if (!isGzip(bytes)) return bytes;
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
   try {
@@ -50,7 +58,8 @@ async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, name: stri
   }
 }
 
-async function respond(fetch: Fetch, url: string, name: string, init: RequestInit): Promise<Response> {
+/// The host's answer, if it is a good one. Throws HierarchyProblem of `name`, and what ends `init.signal`.
+export async function respond(fetch: Fetch, url: string, name: string, init: RequestInit): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(url, init);
@@ -63,18 +72,32 @@ async function respond(fetch: Fetch, url: string, name: string, init: RequestIni
   throw new HierarchyProblem(name, `the host answered ${response.status}`, response.status >= 429);
 }
 
-async function receive(
-  body: ReadableStream<Uint8Array>,
+/// The pieces of an answer's body as they come, at most `most` bytes. Returns how many they were. Throws as respond() does.
+export async function receivePieces(
+  { body }: Response,
   most: number,
   name: string,
   signal: AbortSignal | null | undefined,
-): Promise<Uint8Array<ArrayBuffer>> {
+  take: (piece: Uint8Array) => void,
+): Promise<number> {
+  if (body === null) throw new HierarchyProblem(name, 'is empty');
   try {
-    return await drain(body, most, name);
+    return await pour(body, most, name, take);
   } catch (problem) {
     if (signal?.aborted || problem instanceof HierarchyProblem) throw problem;
     throw new HierarchyProblem(name, 'broke off', true);
   }
+}
+
+/// The body of an answer, at most `most` bytes. Throws as respond() does.
+export async function receive(
+  response: Response,
+  most: number,
+  name: string,
+  signal: AbortSignal | null | undefined,
+): Promise<Uint8Array<ArrayBuffer>> {
+  const pieces: Uint8Array[] = [];
+  return joined(pieces, await receivePieces(response, most, name, signal, (piece) => { pieces.push(piece); }));
 }
 
 /// The content of a file of at most `most` bytes, out of its gzip.
@@ -86,8 +109,7 @@ export async function fetchBytes(
   init: RequestInit = {},
 ): Promise<Uint8Array<ArrayBuffer>> {
   const response = await respond(fetch, url, name, init);
-  if (response.body === null) throw new HierarchyProblem(name, 'is empty');
-  return unpacked(await receive(response.body, most, name, init.signal), most, name);
+  return unpacked(await receive(response, most, name, init.signal), most, name);
 }
 
 /// More than this is not fetched whole for a part of it.

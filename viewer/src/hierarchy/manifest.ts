@@ -1,7 +1,7 @@
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
-import { fetchBytes, type Fetch } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
+import type { RemoteFiles } from './remote_files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 
@@ -37,15 +37,23 @@ export interface Manifest {
   readonly licence: string;
   readonly partitions: number;
   readonly totalBytes: number;
-  /// The file of the model's picture; null: it has none.
-  readonly preview: string | null;
-  readonly index: { readonly file: string; readonly bytes: number };
+  readonly index: NamedFile;
+  readonly outline: NamedFile;
+  /// The model's picture; null: it has none.
+  readonly preview: NamedFile | null;
 }
 
-const FILE = 'hierarchy.json';
+/// Of a hierarchy.
+export interface NamedFile {
+  readonly file: string;
+  readonly bytes: number;
+}
+
+export const MANIFEST = 'hierarchy.json';
 const FORMAT_VERSION = 8; // 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
-const MOST_BYTES = 2 ** 20;
+export const MOST_MANIFEST_BYTES = 2 ** 20;
+const MOST_PREVIEW_BYTES = 40_000;
 
 const MOST_SHORT_BITS = 16;
 
@@ -83,14 +91,14 @@ function readSource(source: JsonValue, storage: JsonValue): Manifest['source'] {
   };
 }
 
-function readFile(file: JsonValue, leastBytes: number, mostBytes: number): { file: string; bytes: number } {
+function readFile(file: JsonValue, leastBytes: number, mostBytes: number): NamedFile {
   return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes) };
 }
 
 /// Throws HierarchyProblem.
 export function readManifest(text: string): Manifest {
   const refuse: Fail = (what) => {
-    throw new HierarchyProblem(FILE, what);
+    throw new HierarchyProblem(MANIFEST, what);
   };
   const root = JsonValue.parse(text, refuse);
   root.at('format').oneOf('meshhier');
@@ -112,13 +120,14 @@ export function readManifest(text: string): Manifest {
     licence: root.at('licence').text(),
     partitions,
     totalBytes: root.at('total_bytes').count(),
-    preview: root.has('preview') ? root.at('preview').at('file').fileName() : null,
     index: readFile(root.at('index'), indexBytes, indexBytes),
+    outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
+    preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
   };
 }
 
-/// Of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem.
-export async function fetchManifest(fetch: Fetch, base: string, signal: AbortSignal): Promise<Manifest> {
-  const text = await fetchBytes(fetch, base + FILE, FILE, MOST_BYTES, { signal });
+/// Throws HierarchyProblem, and what ends `signal`.
+export async function fetchManifest(files: RemoteFiles, signal: AbortSignal): Promise<Manifest> {
+  const text = await files.whole(MANIFEST, MOST_MANIFEST_BYTES, { signal });
   return readManifest(new TextDecoder().decode(text));
 }

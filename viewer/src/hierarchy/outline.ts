@@ -1,8 +1,8 @@
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
-import { fetchBytes, type Fetch } from './bytes.js';
 import { readFirstView, type FirstView } from './first_view.js';
 import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
+import type { RemoteFiles } from './remote_files.js';
 
 export interface Outline {
   /// Three numbers a vertex, relative to the hierarchy's origin.
@@ -101,7 +101,7 @@ export function readOutline(bytes: Uint8Array): Outline {
   return { positions: new Float32Array(), segments: new Uint16Array(), formSegments, up, matrix, firstView };
 }
 
-/// The outline of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem, and what ends `signal`.
-export async function fetchOutline(fetch: Fetch, base: string, signal: AbortSignal): Promise<Outline> {
-  return readOutline(await fetchBytes(fetch, base + FILE, FILE, MOST_BYTES, { signal }));
+/// Throws HierarchyProblem, and what ends `signal`.
+export async function fetchOutline(files: RemoteFiles, signal: AbortSignal): Promise<Outline> {
+  return readOutline(await files.whole(FILE, MOST_BYTES, { signal }));
 }

@@ -1,10 +1,10 @@
 // A hierarchy at a URL: its root first, then what tells of the rest.
-import { fetchBytes, fetchRange, withoutLastSlashes, type Fetch } from './bytes.js';
 import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
 import { MOST_SIDE } from './limits.js';
 import { mostPictureBytes } from './picture.js';
+import type { RemoteFiles } from './remote_files.js';
 import { letGo, type NormalSource, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';
 import type { TileDecoder } from './tile_decoder.js';
@@ -38,22 +38,19 @@ function expectedOf({ level, index }: Node, record: TileRecord): ExpectedCounts 
 }
 
 export class RemoteHierarchy {
-  private readonly base: string;
   private normalsFrom: NormalSource | null = null;
+  private index: TileIndex | null = null;
 
   /// `signal`: ends all that is under way.
   constructor(
-    url: string,
-    private readonly fetch: Fetch,
+    private readonly files: RemoteFiles,
     private readonly decoder: TileDecoder,
     private readonly signal: AbortSignal,
-  ) {
-    this.base = `${withoutLastSlashes(url)}/`;
-  }
+  ) {}
 
   async root(): Promise<Tile> {
     const path = tilePath(ROOT);
-    const bytes = await fetchBytes(this.fetch, this.base + path, path, MOST_ROOT, { priority: 'high', signal: this.signal });
+    const bytes = await this.files.whole(path, MOST_ROOT, { priority: 'high', signal: this.signal });
     const tile = await this.decoder.decode(bytes, path, null);
     if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(path, 'not a root');
     this.normalsFrom = tile.normalsFrom;
@@ -63,7 +60,7 @@ export class RemoteHierarchy {
   /// After the root. `record`: what the index says of it; a tile that is another one is refused.
   async tile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
     const path = tilePath(node);
-    const bytes = await fetchBytes(this.fetch, this.base + path, path, mostBytes(record, node.level), { signal });
+    const bytes = await this.files.whole(path, mostBytes(record, node.level), { signal }, this.index?.whereabouts(node) ?? undefined);
     const tile = await this.decoder.decode(bytes, path, expectedOf(node, record));
     if (tile.normalsFrom === this.normalsFrom) return tile;
     letGo(tile);
@@ -71,11 +68,11 @@ export class RemoteHierarchy {
   }
 
   async outline(): Promise<Outline> {
-    return fetchOutline(this.fetch, this.base, this.signal);
+    return fetchOutline(this.files, this.signal);
   }
 
   async manifest(): Promise<Manifest> {
-    return fetchManifest(this.fetch, this.base, this.signal);
+    return fetchManifest(this.files, this.signal);
   }
 
   /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into. `root`
@@ -85,6 +82,7 @@ export class RemoteHierarchy {
     const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
     await index.open();
+    this.index = index;
     const record = index.record(ROOT);
     if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== (root.picture?.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
@@ -92,8 +90,7 @@ export class RemoteHierarchy {
   }
 
   private async indexBytes({ index: { file, bytes } }: Manifest, first: number, end: number): Promise<Uint8Array> {
-    const url = this.base + file;
-    if (first === 0 && end === bytes) return fetchBytes(this.fetch, url, file, bytes, { signal: this.signal });
-    return fetchRange(this.fetch, url, file, [first, end], bytes, this.signal);
+    if (first === 0 && end === bytes) return this.files.whole(file, bytes, { signal: this.signal });
+    return this.files.part(file, [first, end], bytes, this.signal);
   }
 }

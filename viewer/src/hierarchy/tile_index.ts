@@ -1,8 +1,10 @@
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
+import { archivedBytes } from './archive_format.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_SIDE, mostSplits } from './limits.js';
 import { HierarchyProblem } from './problem.js';
-import { keyOf, type Node, type Tree } from './tree.js';
+import type { Whereabouts } from './remote_files.js';
+import { keyOf, tilePath, type Node, type Tree } from './tree.js';
 
 type Triple = readonly [number, number, number];
 
@@ -43,6 +45,19 @@ export function indexSize(tiles: number): number {
   return HEADER_BYTES + tiles * RECORD_BYTES;
 }
 
+function nodeAt(view: DataView, at: number): Node {
+  return { level: view.getUint32(at, true), index: view.getUint32(at + 4, true) };
+}
+
+function bytesAt(view: DataView, at: number): number {
+  return Number(view.getBigUint64(at + 104, true));
+}
+
+/// The record of a page whose file those of the others follow: the root's lies elsewhere.
+function firstOf(page: number): number {
+  return page === 0 ? 1 : 0;
+}
+
 function readRecord(view: DataView, at: number, place: Triple): TileRecord {
   const u32 = (offset: number): number => view.getUint32(at + offset, true);
   const f32 = (offset: number): number => view.getFloat32(at + offset, true);
@@ -61,7 +76,7 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
     error: f32(48),
     min: corner(60, -bound),
     max: corner(72, bound),
-    bytes: Number(view.getBigUint64(at + 104, true)),
+    bytes: bytesAt(view, at),
   };
 }
 
@@ -81,6 +96,7 @@ interface Absent {
 export class TileIndex {
   private readonly pages = new Map<number, DataView | Absent>();
   private readonly damaged = new Set<number>();
+  private readonly distances = new Map<number, Float64Array>(); // by page
 
   /// `place`: what decoded tiles' positions are relative to, itself relative to the origin. `onPage` is called when a
   /// page has come, `onProblem` when one did not, or a record is damaged.
@@ -114,8 +130,33 @@ export class TileIndex {
     return this.damaged.has(keyOf(level, index));
   }
 
+  /// Where the file of a tile, but for the root, lies in an archive, in which tiles are side by side; null while its page is not there.
+  whereabouts(node: Node): Whereabouts | null {
+    const number = this.tree.record(node);
+    const page = Math.floor(number / PAGE_RECORDS);
+    const view = this.pages.get(page);
+    if (!(view instanceof DataView)) return null;
+    const at = (number - page * PAGE_RECORDS) * RECORD_BYTES;
+    const anchor = nodeAt(view, firstOf(page) * RECORD_BYTES);
+    return { anchor: tilePath(anchor), distance: this.distancesOf(page, view)[at / RECORD_BYTES], bytes: bytesAt(view, at) };
+  }
+
+  /// Of each record's file from the first one of the page.
+  private distancesOf(page: number, view: DataView): Float64Array {
+    let distances = this.distances.get(page);
+    if (distances !== undefined) return distances;
+    distances = new Float64Array(view.byteLength / RECORD_BYTES);
+    for (let i = firstOf(page) + 1; i < distances.length; ++i) {
+      const at = (i - 1) * RECORD_BYTES;
+      distances[i] = distances[i - 1] + archivedBytes(tilePath(nodeAt(view, at)), bytesAt(view, at));
+    }
+    this.distances.set(page, distances);
+    return distances;
+  }
+
   private recordAt(view: DataView, at: number, node: Node): TileRecord | null {
-    const isIts = view.getUint32(at, true) === node.level && view.getUint32(at + 4, true) === node.index;
+    const { level, index } = nodeAt(view, at);
+    const isIts = level === node.level && index === node.index;
     const record = readRecord(view, at, this.place);
     if (isIts && isSound(record)) return record;
     if (!this.isDamaged(node)) {

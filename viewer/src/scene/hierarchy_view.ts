@@ -10,6 +10,7 @@ import type { Fetch } from '../hierarchy/bytes.js';
 import { directionOf } from '../hierarchy/first_view.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
+import { remoteFiles } from '../hierarchy/remote_files.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
@@ -105,7 +106,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private isFirstFrame = true;
   private outline: Promise<OutlineObject | null> | null = null;
 
-  /// `url`: of the hierarchy's directory.
+  /// `url`: of the hierarchy's directory, or of its archive.
   constructor(url: string, options: ViewOptions = {}) {
     super();
     this.currentSettings = changedSettings(options.settings ?? {});
@@ -113,7 +114,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.currentStanding = changedStanding(options.standing ?? {}, DEFAULT_STANDING);
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
-    this.remote = new RemoteHierarchy(url, fetch, this.decoder, this.ending.signal);
+    this.remote = new RemoteHierarchy(remoteFiles(url, fetch), this.decoder, this.ending.signal);
     this.rate = new FrameRate(this.settings.framesPerSecond);
     this.store = this.makeStore(options.requests ?? REQUESTS);
     this.add(this.tiles);

@@ -35,6 +35,14 @@ describe('an early start', () => {
     expect(asked[0].signal?.aborted).toBe(false);
   });
 
+  it('asks for the beginning of an archive', async () => {
+    const early = new EarlyStart('http://host/a.3tz');
+    await early.fetch('http://host/a.3tz');
+    await early.fetch('http://host/a.3tz');
+    early.close();
+    expect(asked.map(({ url }) => url)).toEqual(['http://host/a.3tz', 'http://host/a.3tz']);
+  });
+
   it('ends the root with whoever took it', async () => {
     const early = new EarlyStart('http://host/a.hier');
     const taker = new AbortController();

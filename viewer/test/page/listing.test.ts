@@ -81,6 +81,9 @@ describe('a path', () => {
 
   it('may have slashes at its end, and a thousand characters', () => {
     expect(modelOfPath('a.hier///', URL_)?.url).toBe('http://host/dir/a.hier');
+    expect(modelOfPath('a.3tz', URL_)?.url).toBe('http://host/dir/a.3tz');
+    expect(modelOfPath('a.3tz//', URL_)?.url).toBe('http://host/dir/a.3tz/');
+    expect(modelOfPath('https://bucket/a.3tz?signature=1', URL_)?.url).toBe('https://bucket/a.3tz?signature=1');
     expect(modelOfPath('a'.repeat(1000), URL_)).not.toBeNull();
     expect(modelOfPath('a'.repeat(1001), URL_)).toBeNull();
   });

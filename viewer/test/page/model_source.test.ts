@@ -1,10 +1,12 @@
-import { readdirSync, statSync } from 'node:fs';
+import { resolveObjectURL } from 'node:buffer';
+import { readdirSync, readFileSync, statSync } from 'node:fs';
 import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { describe, expect, it } from 'vitest';
 import { ModelSource } from '../../page/gallery/model_source.js';
 import { outlineBytes } from '../hierarchy/outline_bytes.js';
 import { fetchFrom, hasProgram, Workshop } from '../support/meshhier.js';
+import { RangedHost } from '../support/ranged_host.js';
 
 const LINE = new Uint8Array(outlineBytes({ positions: [0, 0, 0, 1, 0, 0], segments: [0, 1] }));
 const LOST = new Response(null, { status: 404 });
@@ -80,6 +82,23 @@ describe('the source of a model', () => {
     expect(vertices).toBeGreaterThan(500);
     expect(bytes).toBe(readdirSync(hierarchy, { recursive: true, withFileTypes: true }).reduce(
       (sum, entry) => sum + (entry.isFile() && entry.name !== 'hierarchy.json' ? statSync(path.join(entry.parentPath, entry.name)).size : 0), 0));
+    workshop.remove();
+  });
+
+  it.runIf(hasProgram)('knows those of an archive, and its picture and outline', async () => {
+    const workshop = new Workshop();
+    const mesh = ['surface', '--triangles', '2000'];
+    const host = new RangedHost(new Uint8Array(readFileSync(workshop.buildArchive('small', mesh, {}))));
+    const picture = new Uint8Array(readFileSync(path.join(workshop.build('small', mesh, {}), 'preview.webp')));
+    const source = new ModelSource('http://host/a.3tz', host.fetch);
+    const { triangles, preview } = await source.facts();
+    expect(triangles).toBeGreaterThan(1000);
+    expect(preview).toMatch(/^blob:/);
+    const blob = resolveObjectURL(preview!);
+    expect(new Uint8Array(await blob!.arrayBuffer())).toEqual(picture);
+    expect((await source.outline())!.ends.length).toBeGreaterThan(0);
+    source.close();
+    expect(resolveObjectURL(preview!)).toBeUndefined();
     workshop.remove();
   });
 

@@ -41,9 +41,19 @@ export class Workshop {
   }
 
   buildMesh(name: string, mesh: string, config: object): string {
-    const output = path.join(this.directory, `${name}.hier`);
+    return this.buildInto(`${name}.hier`, mesh, config);
+  }
+
+  /// The same as an archive.
+  buildArchive(name: string, meshgen: readonly string[], config: object): string {
+    this.build(name, meshgen, config);
+    return this.buildInto(`${name}.3tz`, path.join(this.directory, `${name}.ply`), { ...config, storage: { container: '3tz' } });
+  }
+
+  private buildInto(file: string, mesh: string, config: object): string {
+    const output = path.join(this.directory, file);
     if (existsSync(output)) return output;
-    const json = path.join(this.directory, `${name}.json`);
+    const json = path.join(this.directory, `${file}.json`);
     writeFileSync(json, JSON.stringify({ input: mesh, output, ...config }));
     execFileSync(MESHHIER, ['build', json, '--progress', 'none']);
     return output;

@@ -1,0 +1,179 @@
+// The files in an archive on any host that knows ranges (docs/file_format.md, section 8).
+//
+// An archive begins with the manifest, the root tile and the index of tiles: they are found from its beginning, and so is
+// what follows them side by side. All else is found by the index of names at its end.
+import { archivedBytes, beginsAsArchive, findInIndex, HEAD_BYTES, MOST_END_BYTES, MOST_LOCAL_BYTES, readEnd, readLocalHeader, type IndexPlace, type LocalHeader } from './archive_format.js';
+import { unpacked, type Fetch } from './bytes.js';
+import { MANIFEST, MOST_MANIFEST_BYTES, readManifest, type Manifest } from './manifest.js';
+import { HierarchyProblem } from './problem.js';
+import { RangedFile } from './ranged_file.js';
+import type { RemoteFiles, Whereabouts } from './remote_files.js';
+import { tilePath } from './tree.js';
+
+/// Read of the end: index and directory of some 700 files.
+const TAIL_BYTES = 2 ** 16;
+/// Read of a file of unknown size.
+const PEEK_BYTES = 2 ** 15;
+
+const FIRST_TILE = tilePath({ level: 1, index: 0 });
+
+interface Place {
+  /// Of the content.
+  readonly offset: number;
+  readonly bytes: number;
+}
+
+/// Bytes of the archive from `first` on.
+interface Piece {
+  readonly first: number;
+  readonly bytes: Uint8Array;
+}
+
+interface Tail extends Piece {
+  readonly index: IndexPlace;
+}
+
+/// The last path segment of a URL.
+function nameOfUrl(url: string): string {
+  return url.replace(/[?#].*$/, '').replace(/^.*\//, '');
+}
+
+export class RemoteArchive implements RemoteFiles {
+  private readonly file: RangedFile;
+  private readonly name: string;
+  private readonly known = new Map<string, Place>();
+  /// Where the header of the tile behind the root is; null: not known yet, or an older archive.
+  private firstTile: number | null = null;
+  private readonly started = new Map<string, Promise<unknown>>();
+
+  constructor(url: string, fetch: Fetch) {
+    this.name = nameOfUrl(url);
+    this.file = new RangedFile(url, this.name, fetch);
+  }
+
+  async whole(name: string, most: number, init: RequestInit = {}, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
+    const bytes = where === undefined ? await this.contentOf(name, most, init) : await this.contentAt(name, where, most, init);
+    return unpacked(bytes, most, name);
+  }
+
+  async part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
+    const place = await this.placeOf(name);
+    if (place.bytes !== length) throw new HierarchyProblem(name, 'has another length than the manifest says');
+    return this.file.read(place.offset + first, place.offset + end, { signal });
+  }
+
+  /// Once; what failed may be tried again.
+  private once<T>(key: string, make: () => Promise<T>): Promise<T> {
+    const started = this.started.get(key) as Promise<T> | undefined;
+    if (started !== undefined) return started;
+    const made = make();
+    this.started.set(key, made);
+    made.catch(() => this.started.delete(key));
+    return made;
+  }
+
+  /// The beginning: with the manifest and the header behind it.
+  private head(): Promise<Piece> {
+    return this.once('head', async () => {
+      let bytes = await this.file.readUpTo(0, HEAD_BYTES, { priority: 'high' });
+      const first = beginsAsArchive(bytes) ? readLocalHeader(bytes, this.name) : null;
+      if (first?.name !== MANIFEST || first.bytes > MOST_MANIFEST_BYTES)
+        throw new HierarchyProblem(this.name, 'is no archive of a hierarchy: the host sent something else, or it is damaged');
+      const end = first.headerBytes + first.bytes;
+      if (bytes.length < end) bytes = await this.file.read(0, end + MOST_LOCAL_BYTES);
+      this.note(first, 0);
+      this.place(readManifest(new TextDecoder().decode(bytes.subarray(first.headerBytes, end))), bytes.subarray(end), end);
+      return { first: 0, bytes };
+    });
+  }
+
+  /// Of what follows the manifest. Older archives have another order: there it is looked up.
+  private place({ index, outline, preview }: Manifest, bytes: Uint8Array, from: number): void {
+    const root = readLocalHeader(bytes, this.name);
+    if (root?.name !== tilePath({ level: 0, index: 0 })) return;
+    let at = from;
+    const others = [index, outline, ...(preview === null ? [] : [preview])].map(({ file, bytes }) => ({ name: file, bytes, headerBytes: archivedBytes(file, 0) }));
+    for (const file of [root, ...others]) {
+      this.note(file, at);
+      at += file.headerBytes + file.bytes;
+    }
+    this.firstTile = at;
+  }
+
+  private note({ name, bytes, headerBytes }: LocalHeader, at: number): Place {
+    const place = { offset: at + headerBytes, bytes };
+    this.known.set(name, place);
+    return place;
+  }
+
+  private tail(): Promise<Tail> {
+    return this.once('tail', async () => {
+      const total = await this.file.size();
+      const first = Math.max(0, total - TAIL_BYTES);
+      const bytes = await this.file.read(first, total);
+      return { first, bytes, index: readEnd(bytes.subarray(-MOST_END_BYTES), total, this.name) };
+    });
+  }
+
+  /// Of the local header of a file. Throws HierarchyProblem if there is no such file.
+  private offsetOf(name: string): Promise<number> {
+    return this.once(`offset of ${name}`, async () => {
+      await this.head();
+      if (this.firstTile !== null && name === FIRST_TILE) return this.firstTile;
+      const [tail, { md5 }] = await Promise.all([this.tail(), import('@noble/hashes/legacy')]);
+      const read = async (first: number, end: number): Promise<Uint8Array> =>
+        first >= tail.first ? tail.bytes.subarray(first - tail.first, end - tail.first) : this.file.read(first, end);
+      const offset = await findInIndex(md5(new TextEncoder().encode(name)), tail.index, read, this.name);
+      if (offset === null) throw new HierarchyProblem(name, `is not in ${this.name}`);
+      if (offset >= tail.index.offset) throw new HierarchyProblem(this.name, 'its index of files is damaged');
+      return offset;
+    });
+  }
+
+  private async placeOf(name: string): Promise<Place> {
+    await this.head();
+    const place = this.known.get(name);
+    if (place !== undefined) return place;
+    const at = await this.offsetOf(name);
+    return this.note(this.headerOf(name, await this.file.read(at, at + archivedBytes(name, 0))), at);
+  }
+
+  /// `bytes` begin with it. Throws HierarchyProblem if it is of another file.
+  private headerOf(name: string, bytes: Uint8Array): LocalHeader {
+    const header = readLocalHeader(bytes, this.name);
+    if (header?.name !== name) throw new HierarchyProblem(this.name, `has something else where ${name} should be: it is damaged, or has become another file`);
+    return header;
+  }
+
+  /// Of a file of any size.
+  private async contentOf(name: string, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+    const head = await this.head();
+    const place = this.known.get(name);
+    if (place !== undefined) return this.contentIn(place, head, name, most, init);
+    const at = await this.offsetOf(name);
+    const tail = await this.tail();
+    const piece = { first: at, bytes: await this.file.read(at, Math.min(at + MOST_LOCAL_BYTES + PEEK_BYTES, tail.index.offset), init) };
+    return this.contentIn(this.note(this.headerOf(name, piece.bytes), at), piece, name, most, init);
+  }
+
+  /// A content of which `piece` may have the beginning.
+  private async contentIn({ offset, bytes }: Place, piece: Piece, name: string, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+    if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
+    const there = piece.bytes.slice(offset - piece.first, offset - piece.first + bytes);
+    if (there.length === bytes) return there;
+    const all = new Uint8Array(bytes);
+    all.set(there);
+    all.set(await this.file.read(offset + there.length, offset + bytes, init), there.length);
+    return all;
+  }
+
+  /// Of a file whose place and size are known.
+  private async contentAt(name: string, { anchor, distance, bytes }: Whereabouts, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+    if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
+    const at = (await this.offsetOf(anchor)) + distance;
+    const all = await this.file.read(at, at + archivedBytes(name, bytes), init);
+    const header = this.headerOf(name, all);
+    if (header.bytes !== bytes) throw new HierarchyProblem(name, 'has another length than the index says');
+    return all.subarray(header.headerBytes);
+  }
+}
