@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "inspection/export.h"
 
@@ -14,7 +15,8 @@ namespace meshhier::app {
 namespace {
 
 struct ExportArguments {
-  std::string directory;
+  std::string hierarchy;
+  WebOptions web;
   std::optional<Level> level;
   std::optional<NodeId> node;
   std::string cut;
@@ -42,10 +44,11 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                                           arguments.memory_budget, arguments.force};
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
-  const std::string line = inspection::export_mesh(environment.files, arguments.directory, options,
-                                                   *progress, environment.cancel);
+  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
+  const std::string line =
+      inspection::export_mesh(place.files(), place.path(), options, *progress, environment.cancel);
   progress->finish(arguments.output);
-  account << line << '\n';
+  account << line << '\n' << place.account();
   return 0;
 }
 
@@ -68,8 +71,7 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
       parser.add_subcommand("export", "Write part of a hierarchy as a PLY, GLB or OBJ file");
-  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
-      ->required();
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
 
   CLI::App* what = command->add_option_group("What", "Exactly one of these");
   add_place_options(*what, arguments->level, arguments->node);

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "inspection/inspect.h"
 
@@ -13,21 +14,21 @@ namespace meshhier::app {
 namespace {
 
 struct InspectArguments {
-  std::string directory;
+  std::string hierarchy;
+  WebOptions web;
   inspection::InspectOptions options;
   bool json = false;
 };
 
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
+  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.json) {
-    environment.out << inspection::inspect_json(environment.files, arguments.directory,
-                                                arguments.options)
-                           .dump(2)
-                    << '\n';
+    environment.out
+        << inspection::inspect_json(place.files(), place.path(), arguments.options).dump(2) << '\n';
   } else {
-    environment.out << inspection::inspect_text(environment.files, arguments.directory,
-                                                arguments.options);
+    environment.out << inspection::inspect_text(place.files(), place.path(), arguments.options);
   }
+  environment.messages << place.account();
   return 0;
 }
 
@@ -42,8 +43,7 @@ constexpr const char* kInspectFooter = R"(Examples:
 void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command = parser.add_subcommand("inspect", "Tell what a hierarchy holds");
-  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
-      ->required();
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);

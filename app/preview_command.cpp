@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "inspection/preview.h"
@@ -25,7 +26,8 @@ namespace {
 using inspection::PreviewOptions;
 
 struct PreviewArguments {
-  std::string directory;
+  std::string hierarchy;
+  WebOptions web;
   std::string output;
   PreviewOptions options;
   std::optional<Level> level;
@@ -129,10 +131,11 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
     options.selection = *arguments.level;
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
-  const std::string line = inspection::make_picture(environment.files, arguments.directory, options,
-                                                    *progress, environment.cancel);
+  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
+  const std::string line =
+      inspection::make_picture(place.files(), place.path(), options, *progress, environment.cancel);
   progress->finish(arguments.output);
-  account << line << '\n';
+  account << line << '\n' << place.account();
   return 0;
 }
 
@@ -228,8 +231,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<PreviewArguments>();
   CLI::App* command =
       parser.add_subcommand("preview", "Draw a picture of a hierarchy, a level or a cut of it");
-  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
-      ->required();
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   add_what(*command, *arguments);
   add_look(*command, *arguments);
   add_file_output_options(*command, "The picture: .png or .webp", arguments->output,

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
@@ -22,7 +23,8 @@ namespace meshhier::app {
 namespace {
 
 struct VerifyArguments {
-  std::string directory;
+  std::string hierarchy;
+  WebOptions web;
   std::vector<std::string> input;
   inspection::VerifyOptions options;
   bool measures_error = false;
@@ -77,10 +79,11 @@ int exit_code(std::size_t problems) {
   return problems == 0 ? 0 : static_cast<int>(ErrorCode::corrupt);
 }
 
-int run_error(VerifyArguments arguments, execution::Progress& progress, Environment& environment) {
+int run_error(VerifyArguments arguments, const HierarchyPlace& place, execution::Progress& progress,
+              Environment& environment) {
   arguments.error.memory_budget = arguments.options.memory_budget;
   const Measurements measurements = inspection::measure_errors(
-      environment.files, arguments.directory, arguments.error, progress, environment.cancel);
+      place.files(), place.path(), arguments.error, progress, environment.cancel);
   std::size_t problems = 0;
   for (const inspection::ErrorMeasurement& measurement : measurements)
     problems += measurement.problems.size();
@@ -94,12 +97,16 @@ int run_error(VerifyArguments arguments, execution::Progress& progress, Environm
 int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environment& environment) {
   arguments.options.input.assign(arguments.input.begin(), arguments.input.end());
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.measures_error)
-    return run_error(arguments, *progress, environment);
+    return run_error(arguments, place, *progress, environment);
+  if (place.is_remote())
+    arguments.options.scratch_folder = std::filesystem::temp_directory_path();
   const inspection::VerifyReport report = inspection::verify_hierarchy(
-      environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
+      place.files(), place.path(), arguments.options, *progress, environment.cancel);
   progress->finish(verdict(report.problems.size()));
   environment.out << (arguments.json ? json_text(report) : plain_text(report));
+  environment.messages << place.account();
   return exit_code(report.problems.size());
 }
 
@@ -168,8 +175,7 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
   inspection::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
-  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
-      ->required();
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   CLI::Option* input_option = command->add_option(
       "--input", arguments->input, "The mesh it was made from; several in the order of the config");
   input_option->type_name("MESH")->take_all();

@@ -19,10 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside the hierarchy, and unlike that of another run of verify. Nothing else depends on chance.
-fs::path scratch_path(storage::FileSystem& files, const fs::path& directory) {
+/// Unlike that of another run of verify. Nothing else depends on chance.
+fs::path scratch_path(storage::FileSystem& files, const fs::path& directory,
+                      const VerifyOptions& options) {
   std::random_device chance;
-  return storage::verify_scratch_path(files.canonical(directory), chance());
+  return storage::verify_scratch_path(options.scratch_folder
+                                          ? *options.scratch_folder / directory.filename()
+                                          : files.canonical(directory),
+                                      chance());
 }
 
 /// Nothing if it is an archive of which the list of files is broken.
@@ -149,7 +153,7 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
       require_manifest(*place, directory);
     if (const auto reader = open_hierarchy(place->files(), directory, problems)) {
       storage::MemoryPool pool(options.memory_budget / 8);
-      storage::ScratchFile scratch(files, scratch_path(files, directory), pool);
+      storage::ScratchFile scratch(files, scratch_path(files, directory, options), pool);
       TileStore tiles(*reader, options.memory_budget / 4, problems);
       verify_all({place->files(), *reader, options, scratch, tiles, problems, report.checks,
                   progress, cancel});

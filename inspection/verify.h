@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct VerifyOptions {
   std::uint32_t cuts = 20;    ///< random cuts whose seams are looked at
   std::uint64_t seed = 1;     ///< of the random cuts
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
+  /// Where temporary files lie; if not given, beside the hierarchy.
+  std::optional<std::filesystem::path> scratch_folder{};
 };
 
 struct VerifyReport {
@@ -29,9 +32,8 @@ struct VerifyReport {
 /// (counts, bounds, parent maps, ghosts, border lists, chains, errors); that every simplified tile
 /// is the image of its children, which proves every cut seamless; the seams of random cuts; and,
 /// given the input, that the partitions are exactly the input. Goes on after a problem and lists up
-/// to a hundred. Memory stays about `memory_budget`; temporary files lie beside the hierarchy and
-/// are removed. Throws Error(io) if there is no hierarchy, Error(input) if the input mesh is
-/// broken, Error(interrupted).
+/// to a hundred. Memory stays about `memory_budget`; temporary files are removed. Throws Error(io)
+/// if there is no hierarchy, Error(input) if the input mesh is broken, Error(interrupted).
 VerifyReport verify_hierarchy(storage::FileSystem& files, const std::filesystem::path& directory,
                               const VerifyOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel);

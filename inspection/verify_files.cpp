@@ -73,8 +73,12 @@ void find_strange_entries(const VerifyJob& job, const std::set<fs::path>& known,
 }
 
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
-std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& tilesets) {
+/// Nothing if nothing can be listed.
+std::optional<std::uint64_t> find_extra_files(const VerifyJob& job,
+                                              const std::set<fs::path>& tilesets) {
   const fs::path& directory = job.reader.directory();
+  if (!job.files.can_list(directory))
+    return std::nullopt;
   const std::vector<fs::path> found = job.files.list(directory);
   for (const fs::path& path : found) {
     if (is_known(job, tilesets, path.lexically_relative(directory)))
@@ -148,11 +152,14 @@ std::set<fs::path> check_tilesets(const VerifyJob& job) {
 }  // namespace
 
 void verify_files(const VerifyJob& job) {
-  const std::uint64_t count = find_extra_files(job, check_tilesets(job));
+  const std::optional<std::uint64_t> count = find_extra_files(job, check_tilesets(job));
   check_outline(job);
   verify_preview(job);
-  job.checks.push_back(fmt::format("files: {} found, {} in the index", count,
-                                   counted(job.reader.records().size(), "tiles")));
+  const std::string tiles = counted(job.reader.records().size(), "tiles");
+  job.checks.push_back(count ? fmt::format("files: {} found, {} in the index", *count, tiles)
+                             : fmt::format("files: {} in the index; on the web nothing can be "
+                                           "listed, so others that lie beside them are not seen",
+                                           tiles));
 }
 
 }  // namespace meshhier::inspection

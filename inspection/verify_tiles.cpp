@@ -249,6 +249,10 @@ void verify_tiles(const VerifyJob& job) {
   BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
   CopyClaims claims(job.tree(), job.scratch, job.options.memory_budget / 8);
   job.progress.stage("verify", records.size(), "tiles");
+  std::vector<NodeId> nodes;
+  for (const TileRecord& record : records)
+    nodes.push_back(record.node);
+  job.reader.will_read(nodes);
   for (const TileRecord& record : records) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {

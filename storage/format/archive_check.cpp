@@ -85,10 +85,24 @@ void check_index(CheckJob& job, const ArchiveEntry& index) {
   }
 }
 
+/// What will be read.
+void announce(const Archive& archive) {
+  std::vector<File::Range> ranges;
+  archive.for_each([&](const ArchiveEntry& entry) {
+    std::uint64_t begin = entry.offset;
+    for (std::uint64_t end = entry.content(); end < entry.end(); begin = end) {
+      end += std::min<std::uint64_t>(kCheckedBlock, entry.end() - end);
+      ranges.push_back({begin, end - begin});
+    }
+  });
+  archive.file().will_read(ranges);
+}
+
 }  // namespace
 
 void check_archive(const Archive& archive, const std::function<void()>& check,
                    const std::function<void(const std::string&)>& tell) {
+  announce(archive);
   CheckJob job{archive, check, tell, {}};
   archive.for_each([&](const ArchiveEntry& entry) {
     check_header(job, entry);

@@ -51,7 +51,7 @@ std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<
 }
 
 ArchiveFiles::ArchiveFiles(FileSystem& others, const std::filesystem::path& archive)
-    : others_(others), archive_(others.open(archive)), root_(archive.string() + '/') {}
+    : ForwardingFiles(others), archive_(others.open(archive)), root_(archive.string() + '/') {}
 
 std::optional<std::string> ArchiveFiles::name_of(const std::filesystem::path& path) const {
   const std::string& text = path.native();
@@ -63,7 +63,7 @@ std::optional<std::string> ArchiveFiles::name_of(const std::filesystem::path& pa
 std::unique_ptr<File> ArchiveFiles::open(const std::filesystem::path& path) {
   const std::optional<std::string> name = name_of(path);
   if (!name)
-    return others_.open(path);
+    return others().open(path);
   const std::optional<Archive::Place> place = archive_.find(*name);
   if (!place) {
     throw Error(ErrorCode::io,
@@ -74,19 +74,19 @@ std::unique_ptr<File> ArchiveFiles::open(const std::filesystem::path& path) {
 
 FileIdentity ArchiveFiles::identity(const std::filesystem::path& path) {
   if (!name_of(path))
-    return others_.identity(path);
-  return {open(path)->size(), others_.identity(archive_.file().path()).modified_ns};
+    return others().identity(path);
+  return {open(path)->size(), others().identity(archive_.file().path()).modified_ns};
 }
 
 bool ArchiveFiles::exists(const std::filesystem::path& path) {
   const std::optional<std::string> name = name_of(path);
-  return name ? archive_.find(*name).has_value() : others_.exists(path);
+  return name ? archive_.find(*name).has_value() : others().exists(path);
 }
 
 std::vector<std::filesystem::path> ArchiveFiles::list(const std::filesystem::path& directory) {
   const std::string start = directory.string() + '/';
   if (!start.starts_with(root_))
-    return others_.list(directory);
+    return others().list(directory);
   std::vector<std::filesystem::path> found;
   archive_.for_each([&](const ArchiveEntry& entry) {
     if (entry.name != kArchiveIndexName && (root_ + entry.name).starts_with(start))
@@ -96,51 +96,18 @@ std::vector<std::filesystem::path> ArchiveFiles::list(const std::filesystem::pat
   return found;
 }
 
-std::unique_ptr<File> ArchiveFiles::create(const std::filesystem::path& path) {
-  return others_.create(path);
+bool ArchiveFiles::can_list(const std::filesystem::path& directory) {
+  return (directory.string() + '/').starts_with(root_) || others().can_list(directory);
 }
-std::unique_ptr<File> ArchiveFiles::reopen(const std::filesystem::path& path) {
-  return others_.reopen(path);
-}
-std::unique_ptr<FileLock> ArchiveFiles::try_lock(const std::filesystem::path& path) {
-  return others_.try_lock(path);
-}
-std::unique_ptr<File> ArchiveFiles::open_stream(const std::filesystem::path& path,
-                                                const std::function<void()>& check) {
-  return others_.open_stream(path, check);
-}
-FileKind ArchiveFiles::kind(const std::filesystem::path& path) {
-  return others_.kind(path);
-}
-std::filesystem::path ArchiveFiles::canonical(const std::filesystem::path& path) {
-  return others_.canonical(path);
-}
-std::vector<std::filesystem::path> ArchiveFiles::children(const std::filesystem::path& directory) {
-  return others_.children(directory);
-}
-void ArchiveFiles::make_directories(const std::filesystem::path& path) {
-  others_.make_directories(path);
-}
-void ArchiveFiles::remove_all(const std::filesystem::path& path) {
-  others_.remove_all(path);
-}
-void ArchiveFiles::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
-  others_.rename(from, to);
-}
-bool ArchiveFiles::rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
-  return others_.rename_new(from, to);
-}
-bool ArchiveFiles::exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
-  return others_.exchange(a, b);
-}
-void ArchiveFiles::sync_directory(const std::filesystem::path& directory) {
-  others_.sync_directory(directory);
-}
-void ArchiveFiles::sync_tree(const std::filesystem::path& directory) {
-  others_.sync_tree(directory);
-}
-std::uint64_t ArchiveFiles::free_bytes(const std::filesystem::path& directory) {
-  return others_.free_bytes(directory);
+
+void ArchiveFiles::will_read(std::span<const std::filesystem::path> files) {
+  std::vector<File::Range> ranges;
+  for (const std::filesystem::path& path : files) {
+    const std::optional<std::string> name = name_of(path);
+    if (const auto place = name ? archive_.find(*name) : std::nullopt)
+      ranges.push_back({place->offset, place->bytes});
+  }
+  archive_.file().will_read(ranges);
 }
 
 HierarchyFiles::HierarchyFiles(FileSystem& files, const std::filesystem::path& hierarchy)

@@ -3,10 +3,12 @@
 
 #include "storage/format/archive.h"
 #include "storage/io/file.h"
+#include "storage/io/forwarding_files.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<
 /// Another file system, in which an archive is a directory as well: what is in it can be opened,
 /// looked at and listed. All else is done by the other one, which refuses to change what is below a
 /// file. Thread-safe as far as the other one is.
-class ArchiveFiles final : public FileSystem {
+class ArchiveFiles final : public ForwardingFiles {
  public:
   /// Opens the archive; throws as Archive does. `others` must outlive this.
   ArchiveFiles(FileSystem& others, const std::filesystem::path& archive);
@@ -28,32 +30,16 @@ class ArchiveFiles final : public FileSystem {
   const Archive& archive() const { return archive_; }
 
   std::unique_ptr<File> open(const std::filesystem::path& path) override;
-  std::unique_ptr<File> open_stream(const std::filesystem::path& path,
-                                    const std::function<void()>& check) override;
   FileIdentity identity(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
-
-  std::unique_ptr<File> create(const std::filesystem::path& path) override;
-  std::unique_ptr<File> reopen(const std::filesystem::path& path) override;
-  std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override;
-  FileKind kind(const std::filesystem::path& path) override;
-  std::filesystem::path canonical(const std::filesystem::path& path) override;
-  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
-  void make_directories(const std::filesystem::path& path) override;
-  void remove_all(const std::filesystem::path& path) override;
-  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
-  bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override;
-  bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) override;
-  void sync_directory(const std::filesystem::path& directory) override;
-  void sync_tree(const std::filesystem::path& directory) override;
-  std::uint64_t free_bytes(const std::filesystem::path& directory) override;
+  bool can_list(const std::filesystem::path& directory) override;
+  void will_read(std::span<const std::filesystem::path> files) override;
 
  private:
   /// The name in the archive; nothing if the path leads elsewhere.
   std::optional<std::string> name_of(const std::filesystem::path& path) const;
 
-  FileSystem& others_;
   Archive archive_;
   std::string root_;  ///< with a slash at its end
 };

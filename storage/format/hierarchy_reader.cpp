@@ -110,6 +110,14 @@ const TileRecord& HierarchyReader::record(NodeId node) const {
   return record_of(records_, tree_.tile_node(node));
 }
 
+void HierarchyReader::will_read(std::span<const NodeId> nodes) const {
+  std::vector<std::filesystem::path> paths;
+  paths.reserve(nodes.size());
+  for (const NodeId node : nodes)
+    paths.push_back(tile_path(directory_, record(node).node));
+  files_.will_read(paths);
+}
+
 PublishedTile HierarchyReader::read_tile(NodeId node) const {
   const TileRecord& expected = record(node);
   const auto path = tile_path(directory_, expected.node);

@@ -9,6 +9,7 @@
 #include "storage/io/file.h"
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 namespace meshhier::storage {
@@ -31,6 +32,8 @@ class HierarchyReader {
   /// Of the tile that stands for the node (Tree::tile_node). Requires tree().contains(node).
   const TileRecord& record(NodeId node) const;
 
+  /// These tiles will be read soon, in that order: a hint.
+  void will_read(std::span<const NodeId> nodes) const;
   /// Reads one tile, checks its size and checksum, and that its counts are those of the index.
   PublishedTile read_tile(NodeId node) const;
   /// Reads the outline, checks its size and checksum.

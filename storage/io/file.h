@@ -47,6 +47,13 @@ class File {
   /// The same in steps of at most some tenths of a second, before each of which `check` is called;
   /// it may throw. For large files.
   void sync(const std::function<void()>& check);
+  /// What will be read soon, in that order, as it will be asked for: a hint.
+  struct Range {
+    std::uint64_t offset = 0;
+    std::uint64_t bytes = 0;
+    friend bool operator==(const Range&, const Range&) = default;
+  };
+  virtual void will_read(std::span<const Range> /*ranges*/) const {}
   /// Lets the disk begin with what was written, so that a later sync() has less to wait for.
   void start_sync() { write_out(0, 0, Wait::no); }
 
@@ -141,6 +148,8 @@ class FileSystem {
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   /// Every file below `directory`, links as themselves; ascending.
   virtual std::vector<std::filesystem::path> list(const std::filesystem::path& directory) = 0;
+  /// Whether that can be told of a directory.
+  virtual bool can_list(const std::filesystem::path& /*directory*/) { return true; }
   /// Files and directories directly in `directory`; ascending.
   virtual std::vector<std::filesystem::path> children(const std::filesystem::path& directory) = 0;
   virtual void make_directories(const std::filesystem::path& path) = 0;
@@ -162,6 +171,9 @@ class FileSystem {
   /// Why no file can be made in that directory, as far as it can be known before: "Permission
   /// denied"; empty if nothing speaks against it.
   virtual std::string why_not_writable(const std::filesystem::path& /*directory*/) { return ""; }
+
+  /// Whole files that will be read soon, in that order: a hint.
+  virtual void will_read(std::span<const std::filesystem::path> /*files*/) {}
 
   /// The one to read a mesh with, and what a mesh names. It may refuse links, and what lies
   /// elsewhere.

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -168,6 +169,29 @@ TEST_F(ServeTest, RequestsAreToldOnlyWhereThatIsAskedFor) {
   verbose.end(SIGTERM);
   EXPECT_THAT(verbose.messages(),
               AllOf(HasSubstr("127.0.0.1 GET /nothing?x 404"), HasSubstr("127.0.0.1 - - 400 0")));
+}
+
+TEST_F(ServeTest, OtherCommandsReadWhatIsServed) {
+  const std::uint16_t port = serve({}).port();
+  const auto run = [&](const std::string& words) {
+    const fs::path out = folder_.path() / "out";
+    const std::string line = "'" MESHHIER_BINARY "' " + words + " > '" + out.string() + "' 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << words << '\n' << text_of(out);
+    return text_of(out);
+  };
+  const std::string local = "'" + (folder_.models() / "packed.3tz").string() + "'";
+  for (const char* name : {"packed.3tz", "packed.3tz/"}) {
+    const std::string address = fmt::format("http://127.0.0.1:{}/models/{}", port, name);
+    EXPECT_THAT(run("inspect " + address), HasSubstr("fetched "));
+    EXPECT_THAT(run("verify " + address), HasSubstr("No problem found."));
+    const std::string here = (folder_.path() / "here.ply").string();
+    const std::string there = (folder_.path() / "there.ply").string();
+    run("export " + local + " --level 1 --force -o '" + here + "'");
+    EXPECT_THAT(run("export " + address + " --level 1 --force -o '" + there + "'"),
+                HasSubstr("fetched "));
+    EXPECT_EQ(text_of(there), text_of(here));
+    run("preview " + address + " --size 64x64 --force -o '" + here + ".png'");
+  }
 }
 
 TEST_F(ServeTest, APortThatIsTakenIsAnError) {

@@ -229,6 +229,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"CGAL/", of({"inspection/triangle_search.cpp", "mesh_io/polygon_turns.cpp"})},
       {"benchmark/", in({"bench"})},
       {"proj.h", of({"geodesy/proj_library.h"})},
+      {"curl/", of({"storage/io/http_client.cpp"})},
       {"md5.h", of({"storage/io/hash.cpp"})},
       {"xxhash.h", of({"storage/io/hash.cpp"})},
       {"png.h", in({"images"})},

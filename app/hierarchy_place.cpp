@@ -1,0 +1,105 @@
+#include "app/hierarchy_place.h"
+
+#include "app/options.h"
+#include "execution/size_text.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <random>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::app {
+namespace {
+
+/// Of a file with headers.
+constexpr std::uint64_t kMostHeaderBytes = 65536;
+
+/// A header goes to the host as it is: a line that is none could say something else there. Its
+/// value may be a secret: no message has it.
+void require_header(const std::string& line) {
+  const std::size_t colon = line.find(':');
+  const std::string_view name = std::string_view(line).substr(0, colon);
+  const bool is_name =
+      colon != std::string::npos && !name.empty() && std::ranges::all_of(name, [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+      });
+  const bool is_line = std::ranges::none_of(
+      line, [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; });
+  if (!is_name || !is_line)
+    throw Error(ErrorCode::usage, "--header: expected \"NAME: VALUE\", or @FILE with such lines");
+}
+
+std::vector<std::string> lines_of(storage::FileSystem& files, const std::string& file) {
+  const auto bytes = storage::read_file(files, file, kMostHeaderBytes);
+  std::istringstream text(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) {
+    if (line.ends_with('\r'))
+      line.pop_back();
+    if (!line.empty())
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+storage::HttpOptions http_options(storage::FileSystem& files, const WebOptions& web) {
+  storage::HttpOptions options{{}, web.bytes_per_second};
+  for (const std::string& header : web.headers) {
+    const std::vector<std::string> lines = header.starts_with('@')
+                                               ? lines_of(files, header.substr(1))
+                                               : std::vector<std::string>{header};
+    options.headers.insert(options.headers.end(), lines.begin(), lines.end());
+  }
+  std::ranges::for_each(options.headers, require_header);
+  return options;
+}
+
+/// In TMPDIR, else /tmp. Nothing else depends on chance.
+std::filesystem::path temporary_path() {
+  std::random_device chance;
+  return std::filesystem::temp_directory_path() /
+         fmt::format(".meshhier-fetched-{:08x}{:08x}", chance(), chance());
+}
+
+}  // namespace
+
+void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web) {
+  command
+      .add_option("HIERARCHY", hierarchy,
+                  "A directory, a 3tz archive, or the address of one of them")
+      ->required();
+  command
+      .add_option("--header", web.headers,
+                  "Of an address: a line of the requests (\"Authorization: Bearer ...\"), or @FILE "
+                  "with such lines; ~/.netrc counts, too")
+      ->type_name("LINE|@FILE")
+      ->allow_extra_args(false);
+  add_size_option(command, "--limit-rate", "Of an address: fetch no more bytes a second",
+                  web.bytes_per_second);
+}
+
+HierarchyPlace::HierarchyPlace(Environment& environment, const std::string& hierarchy,
+                               const WebOptions& web)
+    : files_(environment.files), path_(hierarchy) {
+  if (!storage::is_web_address(hierarchy))
+    return;
+  remote_ = std::make_unique<storage::RemoteFiles>(
+      files_, hierarchy, temporary_path(), http_options(files_, web),
+      [&cancel = environment.cancel] { cancel.check(); });
+  path_ = remote_->root();
+}
+
+std::string HierarchyPlace::account() const {
+  if (!remote_)
+    return "";
+  const storage::HttpCounters& counters = remote_->counters();
+  return fmt::format("fetched {} in {}\n", execution::rounded_size_text(counters.bytes),
+                     counted(counters.requests, "requests"));
+}
+
+}  // namespace meshhier::app

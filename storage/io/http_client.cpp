@@ -1,0 +1,455 @@
+#include "storage/io/http_client.h"
+
+#include "hierarchy/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include <curl/curl.h>
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr long kConnectSeconds = 30;
+constexpr long kSilentSeconds = 30;  ///< without a byte
+constexpr long kMostRedirects = 10;
+constexpr int kMostTries = 5;
+constexpr std::chrono::milliseconds kMostWait = 60s;  ///< however long the host asks for
+
+constexpr long kWhole = 200, kPart = 206, kNotSatisfiable = 416;
+
+bool may_pass(CURLcode code) {
+  switch (code) {
+    case CURLE_COULDNT_RESOLVE_HOST:
+    case CURLE_COULDNT_CONNECT:
+    case CURLE_OPERATION_TIMEDOUT:
+    case CURLE_GOT_NOTHING:
+    case CURLE_SEND_ERROR:
+    case CURLE_RECV_ERROR:
+    case CURLE_PARTIAL_FILE:
+    case CURLE_HTTP2:
+    case CURLE_HTTP2_STREAM:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool may_pass(long status) {
+  return status == 408 || status == 425 || status == 429 || (status >= 500 && status != 501);
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
+    text.remove_prefix(1);
+  while (!text.empty() && (text.back() == '\r' || text.back() == '\n' || text.back() == ' '))
+    text.remove_suffix(1);
+  return text;
+}
+
+std::optional<std::uint64_t> number(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+bool equals_ignoring_case(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](char x, char y) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : int{c}; };
+    return lower(x) == lower(y);
+  });
+}
+
+/// What one answer says of itself, of the last of several that redirects make.
+struct Head {
+  std::string etag;
+  std::string modified;
+  std::optional<std::uint64_t> first;  ///< of Content-Range
+  std::optional<std::uint64_t> total;
+  std::optional<std::uint64_t> length;
+
+  void add(std::string_view line) {
+    if (line.starts_with("HTTP/")) {
+      *this = {};
+      return;
+    }
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos)
+      return;
+    const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
+    if (equals_ignoring_case(name, "etag"))
+      etag = value.starts_with("W/") ? value.substr(2) : value;
+    else if (equals_ignoring_case(name, "last-modified"))
+      modified = value;
+    else if (equals_ignoring_case(name, "content-length"))
+      length = number(value);
+    else if (equals_ignoring_case(name, "content-range"))
+      add_range(value);
+  }
+
+  std::string version() const { return etag.empty() ? modified : etag; }
+
+ private:
+  /// "bytes 0-99/1234", or "bytes */1234" of what there is none of.
+  void add_range(std::string_view value) {
+    constexpr std::string_view kUnit = "bytes ";
+    const std::size_t slash = value.find('/');
+    if (!value.starts_with(kUnit) || slash == std::string_view::npos)
+      return;
+    total = number(value.substr(slash + 1));
+    const std::size_t dash = value.find('-');
+    if (dash != std::string_view::npos && dash < slash)
+      first = number(value.substr(kUnit.size(), dash - kUnit.size()));
+  }
+};
+
+/// One request on its way.
+struct Transfer {
+  CURL* handle = nullptr;
+  const std::function<void()>& check;
+  std::uint64_t first = 0, count = 0;
+  HttpAnswer& answer;
+  std::uint64_t before = 0;  ///< bytes of earlier tries in the answer
+  Head head;
+  bool is_too_much = false;
+  std::exception_ptr thrown;
+};
+
+std::size_t take_header(char* data, std::size_t size, std::size_t count, void* to) {
+  static_cast<Transfer*>(to)->head.add({data, size * count});
+  return size * count;
+}
+
+long status_of(CURL* handle) {
+  long status = 0;
+  curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+  return status;
+}
+
+std::size_t take_body(char* data, std::size_t size, std::size_t count, void* to) {
+  auto& transfer = *static_cast<Transfer*>(to);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size * count));
+  const long status = status_of(transfer.handle);
+  if (status != kWhole && status != kPart)
+    return bytes.size();  // what a host says to people
+  HttpAnswer& answer = transfer.answer;
+  if (status == kWhole && !answer.is_whole) {
+    answer.bytes.clear();
+    answer.is_whole = true;
+  }
+  const std::uint64_t most = answer.is_whole ? HttpClient::kMostWhole : transfer.count;
+  transfer.is_too_much = answer.bytes.size() + bytes.size() > most;
+  if (transfer.is_too_much)
+    return 0;
+  try {
+    answer.bytes.insert(answer.bytes.end(), bytes.begin(), bytes.end());
+  } catch (...) {
+    transfer.thrown = std::current_exception();
+    return 0;
+  }
+  return bytes.size();
+}
+
+int look_up(void* to, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  auto& transfer = *static_cast<Transfer*>(to);
+  try {
+    transfer.check();
+    return 0;
+  } catch (...) {
+    transfer.thrown = std::current_exception();
+    return 1;
+  }
+}
+
+[[noreturn]] void fail(const HttpAddress& address, const std::string& what) {
+  throw Error(ErrorCode::io, fmt::format("{}: {}", address.shown, what));
+}
+
+std::string refusal(long status) {
+  switch (status) {
+    case 401:
+    case 403:
+      return fmt::format(
+          "the host does not let everybody read it ({}); give credentials in "
+          "~/.netrc or with --header",
+          status);
+    case 404:
+    case 410:
+      return fmt::format("there is no such file ({})", status);
+    default:
+      return fmt::format("the host answered {}", status);
+  }
+}
+
+/// Once a process, before there are threads that use it.
+void set_up() {
+  static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
+  if (code != CURLE_OK)
+    throw Error(ErrorCode::io, fmt::format("cannot use libcurl: {}", curl_easy_strerror(code)));
+}
+
+}  // namespace
+
+/// A connection that is used again and again, by one thread at a time.
+class HttpClient::Connection {
+ public:
+  Connection(const HttpOptions& options, const std::function<void()>& check)
+      : check_(check),
+        first_wait_(options.first_wait),
+        headers_(list_of(options.headers)),
+        handle_(curl_easy_init()) {
+    if (handle_ == nullptr)
+      throw std::bad_alloc();
+    set(CURLOPT_NOSIGNAL, 1L);
+    set(CURLOPT_FOLLOWLOCATION, 1L);
+    set(CURLOPT_MAXREDIRS, kMostRedirects);
+    set(CURLOPT_PROTOCOLS_STR, "http,https");
+    set(CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
+    set(CURLOPT_NETRC, long{CURL_NETRC_OPTIONAL});
+    set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
+    set(CURLOPT_LOW_SPEED_LIMIT, 1L);
+    set(CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
+    set(CURLOPT_USERAGENT, "meshhier");
+    set(CURLOPT_HTTPHEADER, headers_.get());
+    set(CURLOPT_NOPROGRESS, 0L);
+    set(CURLOPT_XFERINFOFUNCTION, look_up);
+    set(CURLOPT_HEADERFUNCTION, take_header);
+    set(CURLOPT_WRITEFUNCTION, take_body);
+    set(CURLOPT_MAX_RECV_SPEED_LARGE, static_cast<curl_off_t>(options.bytes_per_second));
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() { curl_easy_cleanup(handle_); }
+
+  /// Adds to `answer` what is missing of the part, or fills it with the whole.
+  void get(const HttpAddress& address, std::uint64_t first, std::uint64_t count,
+           HttpAnswer& answer) {
+    persist(address, [&] {
+      const std::uint64_t got = answer.bytes.size();
+      set(CURLOPT_HTTPGET, 1L);
+      set(CURLOPT_RANGE, fmt::format("{}-{}", first + got, first + count - 1).c_str());
+      Transfer transfer{handle_, check_, first + got, count, answer, got, {}, false, nullptr};
+      const CURLcode code = perform(address, transfer);
+      return settle(address, transfer, code);
+    });
+  }
+
+  bool has(const HttpAddress& address) {
+    HttpAnswer none;
+    long status = 0;
+    persist(address, [&] {
+      set(CURLOPT_RANGE, nullptr);
+      set(CURLOPT_NOBODY, 1L);
+      Transfer transfer{handle_, check_, 0, 0, none, 0, {}, false, nullptr};
+      const CURLcode code = perform(address, transfer);
+      set(CURLOPT_NOBODY, 0L);
+      status = status_of(handle_);
+      if (code != CURLE_OK)
+        return failed(address, code);
+      if (status == kWhole || status == 404 || status == 410)
+        return std::string();
+      return refused(address, status);
+    });
+    return status == kWhole;
+  }
+
+  std::uint64_t bytes = 0;     ///< that have come since this was set to 0
+  std::uint64_t requests = 0;  ///< likewise
+
+ private:
+  template <class Value>
+  void set(CURLoption option, Value value) {
+    curl_easy_setopt(handle_, option, value);
+  }
+
+  CURLcode perform(const HttpAddress& address, Transfer& transfer) {
+    set(CURLOPT_URL, address.url.c_str());
+    set(CURLOPT_HEADERDATA, &transfer);
+    set(CURLOPT_WRITEDATA, &transfer);
+    set(CURLOPT_XFERINFODATA, &transfer);
+    const CURLcode code = curl_easy_perform(handle_);
+    curl_off_t size = 0;
+    curl_easy_getinfo(handle_, CURLINFO_SIZE_DOWNLOAD_T, &size);
+    bytes += static_cast<std::uint64_t>(size);
+    ++requests;
+    if (transfer.thrown)
+      std::rethrow_exception(transfer.thrown);
+    return code;
+  }
+
+  /// What may pass, or nothing if all is there.
+  std::string settle(const HttpAddress& address, Transfer& transfer, CURLcode code) {
+    HttpAnswer& answer = transfer.answer;
+    const long status = status_of(handle_);
+    if (transfer.is_too_much && answer.is_whole) {
+      fail(address, fmt::format("the host sends files whole, but no parts of them (HTTP ranges), "
+                                "and this one has more than {} bytes",
+                                kMostWhole));
+    }
+    if (transfer.is_too_much)
+      fail(address, "the host sent more than the part that was asked for");
+    if (code != CURLE_OK && code != CURLE_PARTIAL_FILE)
+      return failed(address, code);
+    if (status == kNotSatisfiable && transfer.before == 0) {  // the file ends before
+      answer.total = transfer.head.total;
+      answer.version = transfer.head.version();
+      return {};
+    }
+    if (status != kWhole && status != kPart)
+      return refused(address, status);
+    if (status == kPart && transfer.head.first.value_or(transfer.first) != transfer.first)
+      fail(address, "the host sent another part than was asked for");
+    note(address, transfer, status);
+    if (code == CURLE_PARTIAL_FILE)
+      return failed(address, code);
+    return {};
+  }
+
+  void note(const HttpAddress& address, const Transfer& transfer, long status) {
+    HttpAnswer& answer = transfer.answer;
+    const std::string version = transfer.head.version();
+    if (transfer.before > 0 && answer.version != version)
+      fail(address, "it has become another file on the host while it was read");
+    answer.version = version;
+    answer.total = status == kWhole ? transfer.head.length : transfer.head.total;
+  }
+
+  std::string failed(const HttpAddress& address, CURLcode code) {
+    const std::string what = code == CURLE_PEER_FAILED_VERIFICATION
+                                 ? "its certificate is not valid, so nobody knows who answers"
+                                 : std::string(curl_easy_strerror(code));
+    if (!may_pass(code))
+      fail(address, what);
+    return what;
+  }
+
+  std::string refused(const HttpAddress& address, long status) {
+    if (!may_pass(status))
+      fail(address, refusal(status));
+    return refusal(status);
+  }
+
+  /// `attempt` returns what may pass, nothing if all is well.
+  void persist(const HttpAddress& address, const std::function<std::string()>& attempt) {
+    std::chrono::milliseconds pause = first_wait_;
+    for (int tries = 1;; ++tries, pause *= 2) {
+      const std::string what = attempt();
+      if (what.empty())
+        return;
+      if (tries == kMostTries)
+        fail(address, fmt::format("{}, {} times", what, kMostTries));
+      curl_off_t asked = 0;
+      curl_easy_getinfo(handle_, CURLINFO_RETRY_AFTER, &asked);
+      const std::chrono::milliseconds wished = std::chrono::seconds(asked);
+      wait(std::min(std::max(pause, wished), kMostWait));
+    }
+  }
+
+  void wait(std::chrono::milliseconds time) {
+    constexpr std::chrono::milliseconds kStep = 50ms;
+    for (; time > 0ms; time -= kStep) {
+      check_();
+      std::this_thread::sleep_for(std::min(time, kStep));
+    }
+  }
+
+  struct FreeList {
+    void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+  };
+  using List = std::unique_ptr<curl_slist, FreeList>;
+
+  static List list_of(const std::vector<std::string>& lines) {
+    List list;
+    for (const std::string& line : lines) {
+      curl_slist* const more = curl_slist_append(list.get(), line.c_str());
+      if (more == nullptr)
+        throw std::bad_alloc();
+      (void)list.release();
+      list.reset(more);
+    }
+    return list;
+  }
+
+  const std::function<void()>& check_;
+  std::chrono::milliseconds first_wait_;
+  List headers_;
+  CURL* handle_;
+};
+
+struct HttpClient::Idle {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Connection>> connections;
+  std::mutex one_at_a_time;  ///< where there is a limit: it is a connection's
+};
+
+/// A connection as long as one thread needs it.
+class HttpClient::Lease {
+ public:
+  explicit Lease(HttpClient& client)
+      : client_(client), alone_(client.idle_->one_at_a_time, std::defer_lock) {
+    if (client.options_.bytes_per_second > 0)
+      alone_.lock();
+    const std::lock_guard lock(client.idle_->mutex);
+    auto& idle = client.idle_->connections;
+    if (idle.empty()) {
+      connection_ = std::make_unique<Connection>(client.options_, client.check_);
+      return;
+    }
+    connection_ = std::move(idle.back());
+    idle.pop_back();
+  }
+  Lease(const Lease&) = delete;
+  Lease& operator=(const Lease&) = delete;
+  ~Lease() {
+    client_.counters_.bytes += std::exchange(connection_->bytes, 0);
+    client_.counters_.requests += std::exchange(connection_->requests, 0);
+    const std::lock_guard lock(client_.idle_->mutex);
+    client_.idle_->connections.push_back(std::move(connection_));
+  }
+
+  Connection& connection() { return *connection_; }
+
+ private:
+  HttpClient& client_;
+  std::unique_lock<std::mutex> alone_;
+  std::unique_ptr<Connection> connection_;
+};
+
+HttpClient::HttpClient(HttpOptions options, std::function<void()> check)
+    : options_(std::move(options)), check_(std::move(check)), idle_(std::make_unique<Idle>()) {
+  set_up();
+}
+HttpClient::~HttpClient() = default;
+
+HttpAnswer HttpClient::get(const HttpAddress& address, std::uint64_t first, std::uint64_t count) {
+  HttpAnswer answer;
+  Lease lease(*this);
+  lease.connection().get(address, first, count, answer);
+  return answer;
+}
+
+bool HttpClient::has(const HttpAddress& address) {
+  Lease lease(*this);
+  return lease.connection().has(address);
+}
+
+bool is_web_address(std::string_view text) {
+  const auto begins_with = [&](std::string_view scheme) {
+    return equals_ignoring_case(text.substr(0, scheme.size()), scheme);
+  };
+  return begins_with("http://") || begins_with("https://");
+}
+
+}  // namespace meshhier::storage
