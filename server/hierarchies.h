@@ -47,8 +47,9 @@ class Hierarchies {
   std::optional<Model> look(const std::string& path);
 
   /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
-  /// archive, "sub/david.3tz". Nothing if it is no file of a hierarchy or stream that can be read, whatever else lies in the folder. Throws
-  /// Error(io) if that file, of a hierarchy that can be read, cannot be opened.
+  /// archive, "sub/david.3tz". Nothing if it is no file of a hierarchy or stream that can be read,
+  /// whatever else lies in the folder. Throws Error(io) if that file, of a hierarchy that can be
+  /// read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
 
  private:
