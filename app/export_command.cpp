@@ -20,13 +20,16 @@ struct ExportArguments {
   std::optional<Level> level;
   std::optional<NodeId> node;
   std::string cut;
+  std::optional<double> error;
   bool outline = false;
+  std::optional<BoundsD> box;
+  bool clip = false;
   std::string output;
   bool force = false;
   std::uint64_t memory_budget = inspection::ExportOptions{}.memory_budget;
 };
 
-/// Requires that exactly one of the four was given.
+/// Requires that exactly one of them was given.
 inspection::ExportSelection selection(const ExportArguments& arguments) {
   if (arguments.level)
     return *arguments.level;
@@ -34,14 +37,17 @@ inspection::ExportSelection selection(const ExportArguments& arguments) {
     return *arguments.node;
   if (!arguments.cut.empty())
     return std::filesystem::path(arguments.cut);
+  if (arguments.error)
+    return inspection::LargestError{*arguments.error};
   return inspection::OutlineSelection{};
 }
 
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  const inspection::ExportOptions options{selection(arguments), arguments.output,
-                                          arguments.memory_budget, arguments.force};
+  const inspection::ExportOptions options{selection(arguments),    arguments.output,
+                                          arguments.memory_budget, arguments.force,
+                                          arguments.box,           arguments.clip};
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
@@ -63,6 +69,8 @@ Examples:
   meshhier export david.hier --outline -o outline.ply
   meshhier export church.hier --level 3 -o church.glb
   meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
+  meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
+  meshhier export https://example.org/town.3tz --level 4 -o town.ply
 )";
 
 }  // namespace
@@ -80,8 +88,11 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
       ->check([](const std::string& text) {
         return text.empty() ? "expected a file, found nothing" : "";
       });
+  add_error_option(*what, [arguments](double error) { arguments->error = error; });
   what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
   what->require_option(1);
+  CLI::Option* box = add_box_option(*command, arguments->box);
+  command->add_flag("--clip", arguments->clip, "Cut triangles where the box ends")->needs(box);
 
   add_file_output_options(*command, "What to write: .glb or .obj, with textures, or else a PLY",
                           arguments->output, arguments->force);

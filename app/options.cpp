@@ -1,11 +1,15 @@
 #include "app/options.h"
 
+#include "app/number_text.h"
 #include "app/process.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "storage/io/output_file.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <ostream>
@@ -31,7 +35,46 @@ std::optional<std::uint64_t> parse_integer(std::string_view text, std::uint64_t 
   throw CLI::ValidationError(option, fmt::format("expected {}, found \"{}\"", expected, found));
 }
 
+Vec3d parse_corner(const std::string& text) {
+  std::array<double, 3> numbers{};
+  std::string_view left = text;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t comma = i + 1 < numbers.size() ? left.find(',') : left.size();
+    const auto number = parse_number<double>(left.substr(0, comma));
+    if (!number || !std::isfinite(*number))
+      refuse("--box", "two corners X,Y,Z", text);
+    numbers[i] = *number;
+    left.remove_prefix(
+        std::min(comma == std::string_view::npos ? left.size() : comma + 1, left.size()));
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
 }  // namespace
+
+CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store) {
+  const auto take = [store](const std::string& text) {
+    const auto error = parse_number<double>(text);
+    if (!error || !(*error >= 0))
+      refuse("--error", "a number of 0 or more, in the units of the input", text);
+    store(*error);
+  };
+  return command
+      .add_option_function<std::string>(
+          "--error", take, "The coarsest tiles that are no farther than this from the original")
+      ->type_name("LENGTH");
+}
+
+CLI::Option* add_box_option(CLI::App& command, std::optional<BoundsD>& box) {
+  const auto take = [&box](const std::vector<std::string>& corners) {
+    box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
+  };
+  return command
+      .add_option_function<std::vector<std::string>>(
+          "--box", take, "Only what lies between these two corners, in the input's coordinates")
+      ->type_name("X,Y,Z")
+      ->expected(2);
+}
 
 std::string pretty_json(const nlohmann::ordered_json& object) {
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';

@@ -3,6 +3,7 @@
 
 #include "app/command.h"
 #include "execution/progress.h"
+#include "hierarchy/bounds.h"
 #include "hierarchy/ids.h"
 
 #include <cstdint>
@@ -71,6 +72,11 @@ struct PlaceOptions {
 };
 PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
                                std::optional<NodeId>& node);
+
+/// --error LENGTH: the coarsest tiles that are no farther from the original
+CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
+/// --box X,Y,Z X,Y,Z
+CLI::Option* add_box_option(CLI::App& command, std::optional<BoundsD>& box);
 
 /// A result as text, for programs. What is no UTF-8 becomes U+FFFD: a file name on disk may hold
 /// any bytes, JSON may not.

@@ -1,5 +1,6 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
+#include "app/number_text.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "inspection/preview.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,15 +42,6 @@ constexpr std::array<std::pair<std::string_view, Standpoint>, 7> kViews{
      {"top", {0, 90}},
      {"bottom", {0, -90}},
      {"iso", {45, 35.26438968}}}};
-
-/// All of a text; nothing if it is no number.
-template <class Number>
-std::optional<Number> parse_number(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_whole = error == std::errc{} && end == text.data() + text.size();
-  return is_whole ? std::optional(number) : std::nullopt;
-}
 
 /// What stands before and behind the first separator.
 std::pair<std::string_view, std::string_view> halves(std::string_view text, char separator) {
@@ -166,15 +157,8 @@ void add_what(CLI::App& command, PreviewArguments& arguments) {
                       options.selection = std::filesystem::path(text);
                       return !text.empty();
                     });
-  add_parsed_option(*what, "--error",
-                    "The coarsest tiles that are no farther than this from the original", "LENGTH",
-                    "a number of 0 or more, in the units of the input",
-                    [&options](const std::string& text) {
-                      const auto error = parse_number<double>(text);
-                      if (error && *error >= 0)
-                        options.selection = inspection::LargestError{*error};
-                      return error && *error >= 0;
-                    });
+  add_error_option(
+      *what, [&options](double error) { options.selection = inspection::LargestError{error}; });
   what->require_option(0, 1);
 }
 

@@ -72,7 +72,6 @@ NumberedCut number_vertices(const storage::HierarchyReader& reader, Cut cut) {
                 fmt::format("{}: the index gives a cut {} vertices, expected fewer than 2^32",
                             reader.directory().string(), bases.back()));
   }
-  reader.will_read(cut.nodes());
   return {std::move(cut), std::move(bases)};
 }
 

@@ -36,7 +36,7 @@ struct NumberedCut {
   std::size_t position_of_vertex(std::uint32_t number) const;
 };
 
-/// Announces its tiles to the reader. Throws Error(corrupt) if there are 2^32 vertices or more.
+/// Throws Error(corrupt) if there are 2^32 vertices or more.
 NumberedCut number_vertices(const storage::HierarchyReader& reader, Cut cut);
 
 /// Where a cut shows a ghost.

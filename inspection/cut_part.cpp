@@ -134,6 +134,12 @@ CutParts::CutParts(const storage::HierarchyReader& reader, Cut cut, std::uint64_
           },
           [](const PublishedTile& tile) { return memory_bytes(tile); }) {}
 
+bool CutParts::is_at_border(std::size_t position, std::uint32_t place) const {
+  const TileRecord& record = reader_.record(numbered_.cut[position]);
+  const std::uint32_t base = numbered_.base(position);
+  return place < base || place - base >= record.own_count || place - base < record.boundary_count;
+}
+
 CutPart CutParts::load(std::size_t position) {
   PublishedTile tile = reader_.read_tile(numbered_.cut[position]);
   const std::uint32_t base = numbered_.base(position);

@@ -39,6 +39,9 @@ class CutParts {
   std::size_t size() const { return numbered_.cut.size(); }
   const Cut& cut() const { return numbered_.cut; }
 
+  /// Whether a place of a part may be in other parts, too: it is another tile's, or at the border
+  /// of the tile at `position`.
+  bool is_at_border(std::size_t position, std::uint32_t place) const;
   /// Reads a tile, and of its neighbours those that are shown coarser. Throws as
   /// HierarchyReader::read_tile and find_ghost().
   CutPart load(std::size_t position);

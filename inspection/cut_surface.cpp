@@ -57,6 +57,7 @@ CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uin
             return positions;
           },
           [](const Positions& positions) { return positions.size() * sizeof(Vec3f); }) {
+  reader_.will_read(numbered_.cut.nodes());
   facts_.reserve(numbered_.cut.size());
   execution::ordered_for(
       numbered_.cut.size(), tiles_in_flight(), cancel,

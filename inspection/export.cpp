@@ -3,11 +3,12 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "hierarchy/srgb.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/cut_vertices.h"
 #include "inspection/export_parts.h"
+#include "inspection/piece.h"
+#include "inspection/ply_vertices.h"
 #include "inspection/tile_vertices.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,52 +52,6 @@ struct ExportJob {
   const execution::CancelToken& cancel;
 };
 
-bool has_origin(const storage::HierarchyReader& reader) {
-  return reader.manifest().origin != Vec3d{};
-}
-
-mesh_io::PlyContent content_for(const storage::HierarchyReader& reader, const std::string& what) {
-  mesh_io::PlyContent content;
-  content.attributes = reader.tile_format().attributes;
-  content.attributes.space = ColourSpace::srgb;
-  content.attributes.tints = false;
-  content.double_coordinates = has_origin(reader);
-  content.comments = {"meshhier export: " + what};
-  return content;
-}
-
-/// Light as PLY has colours: those of a screen.
-std::vector<float> screen_attributes(const AttributeLayout& layout, std::span<const float> given) {
-  const auto channels = static_cast<std::size_t>(layout.channels());
-  std::vector<float> attributes(given.begin(), given.end());
-  const double full = full_number(layout.colour);
-  for (std::size_t v = 0; v < attributes.size(); v += channels) {
-    float* colour = &attributes[v + static_cast<std::size_t>(layout.colour_offset())];
-    std::transform(colour, colour + 3, colour,
-                   [&](float x) { return static_cast<float>(full * value_of(x / full)); });
-  }
-  return attributes;
-}
-
-/// `count` vertices from the first on, in doubles where the hierarchy has an origin.
-void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& reader,
-                    const VertexArray& vertices, std::size_t count) {
-  const auto positions = std::span(vertices.positions).first(count);
-  const auto given =
-      std::span(vertices.attributes).first(count * static_cast<std::size_t>(vertices.channels));
-  const AttributeLayout& layout = reader.tile_format().attributes;
-  std::vector<float> converted;
-  if (layout.space == ColourSpace::linear)
-    converted = screen_attributes(layout, given);
-  const std::span<const float> attributes = converted.empty() ? given : std::span(converted);
-  if (!has_origin(reader))
-    return writer.write_vertices(positions, attributes);
-  std::vector<Vec3d> exact(count);
-  std::transform(positions.begin(), positions.end(), exact.begin(),
-                 [&](Vec3f p) { return to_double(p) + reader.manifest().origin; });
-  writer.write_vertices(exact, attributes);
-}
-
 void copy_triangles(const TriangleSpool& from, mesh_io::PlyWriter& to) {
   std::vector<CutTriangle> block;
   for (std::uint64_t first = 0; first < from.size(); first += block.size()) {
@@ -116,6 +72,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
   TriangleSpool triangles(scratch, kScratchBlockBytes);
 
+  job.reader.will_read(numbered.cut.nodes());
   job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
     job.cancel.check();
@@ -127,7 +84,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
     triangles.append(drawn);
     job.progress.advance(1);
   }
-  mesh_io::PlyContent content = content_for(job.reader, what);
+  mesh_io::PlyContent content = ply_content(job.reader, what);
   content.vertex_count = vertices.count();
   content.triangle_count = triangles.size();
   mesh_io::PlyWriter writer(job.output.file(), content);
@@ -161,7 +118,7 @@ std::string export_tile(const ExportJob& job, NodeId node) {
   const PublishedTile tile = job.reader.read_tile(node);
   const TileMesh& mesh = tile.mesh;
   const std::string what = "tile " + to_text(tile.node);
-  mesh_io::PlyContent content = content_for(job.reader, what);
+  mesh_io::PlyContent content = ply_content(job.reader, what);
   content.vertex_count = mesh.vertices.size() + mesh.copies.size();
   content.triangle_count = mesh.interior.size() + mesh.border.size();
   mesh_io::PlyWriter writer(job.output.file(), content);
@@ -191,7 +148,7 @@ std::string export_outline(const ExportJob& job) {
       edges.push_back({v, v + 1});
     }
   }
-  mesh_io::PlyContent content = content_for(job.reader, "outline");
+  mesh_io::PlyContent content = ply_content(job.reader, "outline");
   content.attributes = {};
   content.vertex_count = outline.vertices.size();
   content.edge_count = edges.size();
@@ -245,6 +202,7 @@ std::string write_parts(const PartsJob& job, const ExportedParts& parts, ExportF
 std::string export_parts_of_cut(const PartsJob& job, Cut cut, std::uint64_t memory_budget,
                                 ExportFormat format) {
   CutParts parts(job.reader, std::move(cut), memory_budget / 4);
+  job.reader.will_read(parts.cut().nodes());
   const ExportedParts exported{parts.size(), [&](std::size_t i) { return parts.cut()[i]; },
                                [&](std::size_t i) { return parts.load(i); },
                                [&](std::size_t i) {
@@ -264,37 +222,155 @@ std::string export_parts_of_tile(const PartsJob& job, NodeId node, ExportFormat 
   return write_parts(job, exported, format);
 }
 
-/// As GLB or OBJ, published.
-std::string export_parts(const PartsJob& job, const ExportOptions& options, ExportFormat format) {
-  const Tree& tree = job.reader.tree();
-  if (const auto* level = std::get_if<Level>(&options.selection)) {
-    require_level(tree, *level);
-    return fmt::format(
-        "level {}: {}", raw(*level),
-        export_parts_of_cut(job, Cut::of_level(tree, *level), options.memory_budget, format));
-  }
-  if (const auto* node = std::get_if<NodeId>(&options.selection))
-    return fmt::format("tile {}: {}", to_text(*node), export_parts_of_tile(job, *node, format));
-  if (const auto* path = std::get_if<fs::path>(&options.selection)) {
-    return "cut: " + export_parts_of_cut(job, read_cut(job.files, tree, *path),
-                                         options.memory_budget, format);
-  }
-  throw Error(ErrorCode::usage, options.output.string() +
-                                    ": the outline is lines, which are exported as a PLY alone");
+ConvexRegion region_of(const storage::HierarchyReader& reader, const BoundsD& box) {
+  const Vec3d& origin = reader.manifest().origin;
+  return ConvexRegion::of_box({box.min - origin, box.max - origin});
 }
 
-std::string export_selection(const ExportJob& job, const ExportSelection& selection) {
-  const Tree& tree = job.reader.tree();
+[[noreturn]] void fail_empty(const storage::HierarchyReader& reader) {
+  const BoundsD& all = reader.manifest().source.bounds;
+  throw Error(ErrorCode::usage,
+              fmt::format("no triangle lies in the box; the mesh reaches from {},{},{} to {},{},{}",
+                          all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z));
+}
+
+std::string text_of(const Piece& piece) {
+  return fmt::format("{} of {}", piece.size(), counted(piece.cut_size(), "tiles"));
+}
+
+/// As export_cut, but for the order of vertices.
+std::string export_piece(const ExportJob& job, Piece& piece, const std::string& what) {
+  storage::MemoryPool pool(job.memory_budget / 4);
+  storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
+  storage::RecordSpool<Vec3f> positions(scratch, kScratchBlockBytes);
+  storage::RecordSpool<float> attributes(scratch, kScratchBlockBytes);
+  TriangleSpool triangles(scratch, kScratchBlockBytes);
+  PieceNumbers numbers(job.memory_budget / 4);
+  job.progress.stage("export", piece.size(), "tiles");
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    job.cancel.check();
+    const CutPart part = piece.load(i);
+    const PieceNumbers::Numbered numbered = numbers.add(piece, i, part);
+    for (const std::uint32_t vertex : numbered.fresh) {
+      positions.append(part.vertices.positions[vertex]);
+      attributes.append(part.vertices.attributes_of(vertex));
+    }
+    for (const auto& t : part.triangles)
+      triangles.append(
+          CutTriangle{numbered.numbers[t[0]], numbered.numbers[t[1]], numbered.numbers[t[2]]});
+    job.progress.advance(1);
+  }
+  if (triangles.size() == 0)
+    fail_empty(job.reader);
+  mesh_io::PlyContent content = ply_content(job.reader, what);
+  content.vertex_count = numbers.count();
+  content.triangle_count = triangles.size();
+  mesh_io::PlyWriter writer(job.output.file(), content);
+  VertexArray block;
+  block.channels = job.reader.tile_format().attributes.channels();
+  for (std::uint64_t first = 0; first < positions.size(); first += block.size()) {
+    block.positions.resize(std::min<std::uint64_t>(kTriangleBlock, positions.size() - first));
+    block.attributes.resize(block.size() * static_cast<std::size_t>(block.channels));
+    positions.read(first, block.positions);
+    attributes.read(first * static_cast<std::uint64_t>(block.channels), block.attributes);
+    write_vertices(writer, job.reader, block, block.size());
+  }
+  copy_triangles(triangles, writer);
+  writer.finish();
+  return fmt::format("{}: {}, {}, {}", what, text_of(piece),
+                     counted(content.vertex_count, "vertices"),
+                     counted(content.triangle_count, "triangles"));
+}
+
+/// In a file with the parts' pictures.
+std::string export_parts_of_piece(const PartsJob& job, Piece& piece, ExportFormat format) {
+  std::vector<std::uint32_t> bases{0};
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    job.cancel.check();
+    bases.push_back(bases.back() + static_cast<std::uint32_t>(piece.load(i).vertices.size()));
+  }
+  if (bases.back() == 0)
+    fail_empty(job.reader);
+  const ExportedParts exported{piece.size(), [&](std::size_t i) { return piece.node(i); },
+                               [&](std::size_t i) {
+                                 CutPart part = piece.load(i);
+                                 for (std::size_t v = 0; v < part.places.size(); ++v)
+                                   part.places[v] = bases[i] + static_cast<std::uint32_t>(v);
+                                 return part;
+                               },
+                               [&](std::size_t i) { return piece.load(i).vertices; }};
+  return fmt::format("{}, {}", text_of(piece), write_parts(job, exported, format));
+}
+
+Piece piece_of(const storage::HierarchyReader& reader, Cut cut, const ExportOptions& options) {
+  return {reader, std::move(cut), region_of(reader, *options.box),
+          options.clip ? Clipping::at_border : Clipping::whole_triangles,
+          options.memory_budget / 4};
+}
+
+/// A cut, and what it is called; nothing of what is none.
+struct NamedCut {
+  Cut cut;
+  std::string name;
+};
+std::optional<NamedCut> cut_of(storage::FileSystem& files, const storage::HierarchyReader& reader,
+                               const ExportSelection& selection) {
+  const Tree& tree = reader.tree();
   if (const auto* level = std::get_if<Level>(&selection)) {
     require_level(tree, *level);
-    return export_cut(job, Cut::of_level(tree, *level), fmt::format("level {}", raw(*level)));
+    return NamedCut{Cut::of_level(tree, *level), fmt::format("level {}", raw(*level))};
   }
-  if (const auto* node = std::get_if<NodeId>(&selection))
+  if (const auto* path = std::get_if<fs::path>(&selection))
+    return NamedCut{read_cut(files, tree, *path), "cut"};
+  if (const auto* largest = std::get_if<LargestError>(&selection))
+    return NamedCut{cut_by_error(reader, *largest), fmt::format("error {}", largest->error)};
+  return std::nullopt;
+}
+
+/// As GLB or OBJ, published.
+std::string export_parts(const PartsJob& job, const ExportOptions& options, ExportFormat format) {
+  if (const auto* node = std::get_if<NodeId>(&options.selection))
+    return fmt::format("tile {}: {}", to_text(*node), export_parts_of_tile(job, *node, format));
+  std::optional<NamedCut> cut = cut_of(job.files, job.reader, options.selection);
+  if (!cut) {
+    throw Error(ErrorCode::usage, options.output.string() +
+                                      ": the outline is lines, which are exported as a PLY alone");
+  }
+  if (options.box) {
+    Piece piece = piece_of(job.reader, std::move(cut->cut), options);
+    return fmt::format("{}, box: {}", cut->name, export_parts_of_piece(job, piece, format));
+  }
+  return fmt::format("{}: {}", cut->name,
+                     export_parts_of_cut(job, std::move(cut->cut), options.memory_budget, format));
+}
+
+std::string export_selection(const ExportJob& job, const ExportOptions& options) {
+  if (const auto* node = std::get_if<NodeId>(&options.selection))
     return export_tile(job, *node);
-  if (const auto* path = std::get_if<fs::path>(&selection)) {
-    return export_cut(job, read_cut(job.files, tree, *path), "cut");
+  std::optional<NamedCut> cut = cut_of(job.files, job.reader, options.selection);
+  if (!cut)
+    return export_outline(job);
+  if (options.box) {
+    Piece piece = piece_of(job.reader, std::move(cut->cut), options);
+    return export_piece(job, piece, cut->name + ", box");
   }
-  return export_outline(job);
+  return export_cut(job, std::move(cut->cut), cut->name);
+}
+
+void require_box(const ExportOptions& options) {
+  if (!options.box)
+    return;
+  const auto& [min, max] = *options.box;
+  const auto is_range = [](double a, double b) {
+    return std::isfinite(a) && std::isfinite(b) && a <= b;
+  };
+  if (!is_range(min.x, max.x) || !is_range(min.y, max.y) || !is_range(min.z, max.z))
+    throw Error(ErrorCode::usage,
+                "the box is none: each number of its first corner is at most that "
+                "of the second one");
+  if (std::holds_alternative<NodeId>(options.selection) ||
+      std::holds_alternative<OutlineSelection>(options.selection))
+    throw Error(ErrorCode::usage, "a box takes a piece of a level, a cut or what an error allows");
 }
 
 }  // namespace
@@ -303,6 +379,7 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel) {
   require_no_other_ending(options.output);
+  require_box(options);
   storage::OutputRequest request{options.output, options.replace, {hierarchy}};
   if (const auto* cut = std::get_if<fs::path>(&options.selection))
     request.inputs.push_back(*cut);
@@ -317,7 +394,7 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
     return fmt::format("{}: {}", options.output.string(), export_parts(job, options, format));
   }
   const ExportJob job{files, reader, output, options.memory_budget, progress, cancel};
-  const std::string summary = export_selection(job, options.selection);
+  const std::string summary = export_selection(job, options);
   output.publish();
   return fmt::format("{}: {}{}", options.output.string(), summary,
                      loses_textures(reader, options.selection)

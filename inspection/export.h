@@ -3,11 +3,14 @@
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "hierarchy/bounds.h"
 #include "hierarchy/ids.h"
+#include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -17,8 +20,10 @@ namespace meshhier::inspection {
 struct OutlineSelection {};
 
 /// A whole level (Cut::of_level); one node's tile with its border triangles and
-/// ghosts; the cut in a text file (parse_cut() in hierarchy/cut.h); the outline.
-using ExportSelection = std::variant<Level, NodeId, std::filesystem::path, OutlineSelection>;
+/// ghosts; the cut in a text file (parse_cut() in hierarchy/cut.h); tiles by their error; the
+/// outline.
+using ExportSelection =
+    std::variant<Level, NodeId, std::filesystem::path, LargestError, OutlineSelection>;
 
 struct ExportOptions {
   ExportSelection selection;
@@ -26,6 +31,10 @@ struct ExportOptions {
   std::filesystem::path output;
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
   bool replace = false;                    ///< a file that is there
+  /// In the input's coordinates: nothing else is written, and tiles elsewhere are not read. Of cuts
+  /// only.
+  std::optional<BoundsD> box{};
+  bool clip = false;  ///< triangles end where the box does; else those that touch it come whole
 };
 
 /// Assembles the selection seamlessly, tile by tile, into options.output.
@@ -34,6 +43,9 @@ struct ExportOptions {
 /// tile draws, at vertices of its own in a GLB, at common positions in an OBJ. The outline goes
 /// into a PLY alone.
 ///
+/// Of a box the tiles of an OBJ share no positions, and vertices of a PLY come as triangles first
+/// use them; those of one place with the same attributes are one.
+///
 /// A PLY has no textures. Vertices are shared
 /// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
 /// come with all their copies, of coarser ones exact duplicates (same corners, same orientation)
@@ -41,7 +53,8 @@ struct ExportOptions {
 /// file. Triangles of a level or cut start with their smallest corner and ascend, tile by tile;
 /// those of the last level ascend as a whole, and its places are in the order of ranks. The output
 /// appears complete or not at all. Returns a line for people. Deterministic. Throws Error(usage) if
-/// the selection is not in the tree or the cut file is no cut, Error(io | corrupt).
+/// the selection is not in the tree, the cut file is no cut, or nothing lies in the box;
+/// Error(budget) if the borders of tiles in the box exceed the memory; Error(io | corrupt).
 std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel);

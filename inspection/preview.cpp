@@ -68,23 +68,6 @@ Seen seen_by(const HierarchyReader& reader, std::span<const render::Facet> root,
   return {render::portrait_camera(root, view, framing), render::axes_of(view)};
 }
 
-/// The coarsest nodes with errors of at most that.
-Cut cut_by_error(const HierarchyReader& reader, double error) {
-  const Tree& tree = reader.tree();
-  std::vector<NodeId> left{NodeId{}}, nodes;
-  while (!left.empty()) {
-    const NodeId node = left.back();
-    left.pop_back();
-    if (tree.is_partition(node) || tree.is_early(node) || reader.record(node).error <= error) {
-      nodes.push_back(node);
-      continue;
-    }
-    const Tree::Children children = tree.children(node);
-    left.insert(left.end(), children.span().begin(), children.span().end());
-  }
-  return {tree, std::move(nodes)};
-}
-
 Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
             const PreviewOptions& options, double pixel) {
   const PreviewSelection selection = options.selection.value_or(LargestError{pixel / 4});
@@ -94,7 +77,7 @@ Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
   }
   if (const auto* path = std::get_if<std::filesystem::path>(&selection))
     return read_cut(files, reader.tree(), *path);
-  return cut_by_error(reader, std::get<LargestError>(selection).error);
+  return cut_by_error(reader, std::get<LargestError>(selection));
 }
 
 /// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw

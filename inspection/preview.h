@@ -7,6 +7,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
+#include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
 #include <array>
@@ -17,11 +18,6 @@
 #include <variant>
 
 namespace meshhier::inspection {
-
-/// Tiles that are no farther from the original than this, input units; the coarsest that do.
-struct LargestError {
-  double error = 0;
-};
 
 /// A level, the cut in a text file, or tiles by their error.
 using PreviewSelection = std::variant<Level, std::filesystem::path, LargestError>;

@@ -20,7 +20,9 @@ ShownTiles::ShownTiles(const storage::HierarchyReader& reader, Cut cut, std::uin
       positions_(
           cache_bytes,
           [&reader](NodeId node) { return reader.read_tile(node).mesh.vertices.positions; },
-          [](const std::vector<Vec3f>& positions) { return positions.size() * sizeof(Vec3f); }) {}
+          [](const std::vector<Vec3f>& positions) { return positions.size() * sizeof(Vec3f); }) {
+  reader_.will_read(numbered_.cut.nodes());
+}
 
 ShownTile ShownTiles::load(std::size_t position) {
   PublishedTile tile = reader_.read_tile(numbered_.cut[position]);

@@ -2,6 +2,7 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "inspection/clip_part.h"
 #include "inspection/cut_mesh.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/layout.h"
@@ -16,10 +17,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -92,9 +95,11 @@ class ExportTest : public testing::Test {
     return run_on(*files_, std::move(selection), budget);
   }
   std::string run_on(storage::FileSystem& files, ExportSelection selection, std::uint64_t budget) {
+    return run_all(files, {std::move(selection), output(), budget, true});
+  }
+  std::string run_all(storage::FileSystem& files, const ExportOptions& options) {
     execution::NoProgress progress;
-    return export_mesh(files, hierarchy(), {std::move(selection), output(), budget, true}, progress,
-                       execution::CancelToken());
+    return export_mesh(files, hierarchy(), options, progress, execution::CancelToken());
   }
   Error error_of(ExportSelection selection) {
     try {
@@ -209,6 +214,200 @@ TEST_F(ExportTest, TheOutlineIsVerticesAndEdges) {
   EXPECT_THAT(bytes, HasSubstr("element edge 5"));
   const std::array<std::int32_t, 2> last{5, 6};
   EXPECT_EQ(std::memcmp(bytes.data() + bytes.size() - 8, last.data(), 8), 0);
+}
+
+TEST_F(ExportTest, AnErrorIsTheCutOfTheCoarsestTilesThatAllowIt) {
+  const tests::Sample sample = publish(tests::sphere(900), {7, 30, false, true, {}});
+  run(LargestError{0});
+  const Loaded finest = load(*files_, output());
+  run(sample.tree.depth());
+  EXPECT_EQ(surface(finest), surface(load(*files_, output())));
+  run(LargestError{1e9});
+  const Loaded coarsest = load(*files_, output());
+  run(Level{0});
+  EXPECT_EQ(surface(coarsest), surface(load(*files_, output())));
+}
+
+/// Of the part of a triangle that lies in a box, by its own way: the polygon's corners, one side
+/// after the other.
+double area_in(std::vector<Vec3d> polygon, const BoundsD& box) {
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const double sign = side % 2 == 0 ? 1 : -1;
+    const double limit = sign * (side % 2 == 0 ? box.max : box.min)[axis];
+    std::vector<Vec3d> next;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      const double x = sign * a[axis] - limit, y = sign * b[axis] - limit;
+      if (x <= 0)
+        next.push_back(a);
+      if (x * y < 0)
+        next.push_back(a + (b - a) * (x / (x - y)));
+    }
+    polygon = next;
+  }
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    twice += length(cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]));
+  return polygon.size() < 3 ? -1 : twice / 2;
+}
+
+std::vector<Vec3d> corners_of(const Loaded& mesh, const tests::MeshTriangle& t) {
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+const BoundsD kSomeBox{{-0.4, -2, -0.9}, {0.7, 0.3, 0.45}};
+
+class ExportBoxTest : public ExportTest {
+ protected:
+  Loaded piece(const ExportSelection& selection, const BoundsD& box, bool clip,
+               std::uint64_t budget = 1 << 30) {
+    run_all(*files_, {selection, output(), budget, true, box, clip});
+    return load(*files_, output());
+  }
+  Loaded all(const ExportSelection& selection) {
+    run(selection);
+    return load(*files_, output());
+  }
+};
+
+TEST_F(ExportBoxTest, WholeTrianglesAreThoseThatTouchIt) {
+  publish(tests::sphere(900), {7, 30, false, true, {}});
+  for (const ExportSelection& selection :
+       std::vector<ExportSelection>{Level{0}, Level{2}, Level{3}, write_cut("1/0\n2/2\n2/3")}) {
+    Loaded wanted = all(selection);
+    std::erase_if(wanted.triangles, [&](const tests::MeshTriangle& t) {
+      return area_in(corners_of(wanted, t), kSomeBox) < 0;
+    });
+    const Loaded got = piece(selection, kSomeBox, false);
+    EXPECT_EQ(surface(got), surface(wanted));
+    EXPECT_FALSE(got.triangles.empty());
+    std::vector<bool> used(got.positions.size());
+    for (const auto& t : got.triangles)
+      used[t[0]] = used[t[1]] = used[t[2]] = true;
+    EXPECT_TRUE(std::ranges::all_of(used, [](bool is) { return is; }));
+  }
+}
+
+TEST_F(ExportBoxTest, TheBoxOfAllIsTheMesh) {
+  for (const auto& mesh : {tests::sphere(900), tests::duplicates(700), tests::soup(90)}) {
+    const tests::Sample sample = publish(mesh, {7, 30, false, true, {}});
+    const Loaded whole = all(sample.tree.depth());
+    const Loaded got = piece(sample.tree.depth(), {{-9, -9, -9}, {9, 9, 9}}, true);
+    EXPECT_EQ(surface(got, 3), surface(whole, 3));
+    fs::remove_all(hierarchy());
+  }
+}
+
+using Place = std::array<double, 3>;
+
+/// Of kSomeBox, as floats have it.
+bool is_on_side(const Place& a, const Place& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {kSomeBox.min[axis], kSomeBox.max[axis]}) {
+      const double there = double{static_cast<float>(side)};
+      const auto i = static_cast<std::size_t>(axis);
+      if (a[i] == there && b[i] == there)
+        return true;
+    }
+  }
+  return false;
+}
+
+TEST_F(ExportBoxTest, ClippedItEndsAtTheBoxAndNowhereElse) {
+  publish(tests::torus(3000), {13, 60, false, false, {}});
+  for (const ExportSelection& selection :
+       std::vector<ExportSelection>{Level{1}, Level{3}, write_cut("1/0\n2/2\n2/3")}) {
+    const Loaded whole = all(selection);
+    double wanted = 0;
+    for (const auto& t : whole.triangles)
+      wanted += std::max(0.0, area_in(corners_of(whole, t), kSomeBox));
+    const Loaded got = piece(selection, kSomeBox, true);
+    double area = 0;
+    std::map<std::pair<Place, Place>, int> edges;
+    const auto place_of = [&](std::uint32_t vertex) {
+      const Vec3d p = got.positions[vertex];
+      return Place{p.x, p.y, p.z};
+    };
+    for (const auto& t : got.triangles) {
+      area += std::max(0.0, area_in(corners_of(got, t), {{-9, -9, -9}, {9, 9, 9}}));
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Place from = place_of(t[i]), to = place_of(t[(i + 1) % 3]);
+        ++edges[std::minmax(from, to)];
+      }
+    }
+    EXPECT_NEAR(area, wanted, 1e-5 * wanted);
+    for (const auto& [edge, count] : edges)
+      EXPECT_TRUE(count > 1 || is_on_side(edge.first, edge.second));
+  }
+}
+
+TEST_F(ExportBoxTest, TilesElsewhereAreNotRead) {
+  const tests::Sample sample = publish(tests::sphere(900), {7, 30, false, true, {}});
+  for (const NodeId tile : sample.tree.tile_nodes()) {
+    const storage::HierarchyReader reader(*files_, hierarchy());
+    const Bounds bounds = reader.record(tile).bounds;
+    if (bounds.min.x > 0.7F || bounds.min.y > 0.3F || bounds.min.z > 0.45F ||
+        bounds.max.z < -0.9F || bounds.max.x < -0.4F)
+      fs::remove(storage::tile_path(hierarchy(), tile));
+  }
+  EXPECT_FALSE(piece(sample.tree.depth(), kSomeBox, true).triangles.empty());
+  EXPECT_EQ(error_of(sample.tree.depth()).code(), ErrorCode::io);
+}
+
+TEST_F(ExportBoxTest, ResultDoesNotDependOnTheBudget) {
+  publish(tests::sphere(2000), {9, 40, false, true, {}});
+  piece(Level{3}, kSomeBox, true);
+  const std::string large = bytes_of(output());
+  piece(Level{3}, kSomeBox, true, 1 << 20);
+  EXPECT_EQ(bytes_of(output()), large);
+}
+
+TEST_F(ExportBoxTest, CutEdgesMixWhatTheirEndsHave) {
+  CutPart part;
+  part.vertices.channels = 6;
+  part.vertices.append({0, 0, 0}, std::array{0.F, 0.F, 1.F, 0.F, 0.F, 0.F});
+  part.vertices.append({1, 0, 0}, std::array{1.F, 0.F, 0.F, 255.F, 255.F, 0.F});
+  part.vertices.append({0, 1, 0}, std::array{0.F, 0.F, 1.F, 10.F, 0.F, 0.F});
+  part.places = {5, 6, 7};
+  part.texcoords = {{0, 0}, {1, 0}, {0, 1}};
+  part.triangles = {{0, 1, 2}};
+  part.image.bytes.resize(3);
+  const AttributeLayout layout{.normals = true, .colour = ColourType::u8};
+  const auto half = ConvexRegion::of_box({{-1, -1, -1}, {0.5, 2, 2}});
+  const CutPart made = clip_part(part, layout, half, Clipping::at_border);
+  ASSERT_EQ(made.vertices.size(), 4U);
+  EXPECT_EQ(made.triangles.size(), 2U);
+  EXPECT_EQ(made.places, (std::vector<std::uint32_t>{5, 7, kNoPlace, kNoPlace}));
+  EXPECT_EQ(made.vertices.positions[2], (Vec3f{0.5F, 0, 0}));
+  EXPECT_EQ(made.texcoords[2], (Vec2f{0.5F, 0}));
+  const auto attributes = made.vertices.attributes_of(2);
+  EXPECT_FLOAT_EQ(attributes[0], std::sqrt(0.5F));
+  EXPECT_FLOAT_EQ(attributes[2], std::sqrt(0.5F));
+  EXPECT_EQ(attributes[3], 188);  // half the light of 255
+  EXPECT_EQ(made.image.bytes.size(), 3U);
+  const auto none = ConvexRegion::of_box({{3, 3, 3}, {4, 4, 4}});
+  EXPECT_TRUE(clip_part(part, layout, none, Clipping::at_border).image.bytes.empty());
+  EXPECT_EQ(clip_part(part, layout, half, Clipping::whole_triangles).triangles, part.triangles);
+}
+
+TEST_F(ExportBoxTest, WhatIsNoneIsTold) {
+  publish(tests::sphere(100), {3, 10, false, true, {}});
+  const auto said = [&](const ExportSelection& selection, const BoundsD& box) -> std::string {
+    try {
+      piece(selection, box, false);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(said(Level{0}, {{5, 5, 5}, {6, 6, 6}}), HasSubstr("no triangle lies in the box"));
+  EXPECT_THAT(said(Level{0}, {{1, 0, 0}, {0, 1, 1}}), HasSubstr("the box is none"));
+  EXPECT_THAT(said(Level{0}, {{0, 0, 0}, {0, 1, std::nan("")}}), HasSubstr("the box is none"));
+  EXPECT_THAT(said(node(0, 0), kSomeBox), HasSubstr("a box takes a piece of a level"));
+  EXPECT_THAT(said(OutlineSelection{}, kSomeBox), HasSubstr("a box takes a piece of a level"));
+  EXPECT_EQ(names(), std::vector<std::string>{"a.hier"});
 }
 
 TEST_F(ExportTest, WhatIsNotInTheTreeIsAUsageError) {

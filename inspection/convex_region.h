@@ -1,0 +1,35 @@
+// A convex part of space that a piece of a mesh is cut out with.
+#pragma once
+
+#include "hierarchy/bounds.h"
+#include "hierarchy/vec.h"
+
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// Where dot(normal, p) <= offset.
+struct HalfSpace {
+  Vec3d normal;
+  double offset = 0;
+
+  double beyond(Vec3d p) const { return dot(normal, p) - offset; }
+};
+
+/// The points that lie in all of its half-spaces.
+class ConvexRegion {
+ public:
+  explicit ConvexRegion(std::vector<HalfSpace> half_spaces)
+      : half_spaces_(std::move(half_spaces)) {}
+  /// A box, its faces included.
+  static ConvexRegion of_box(const BoundsD& box);
+
+  const std::vector<HalfSpace>& half_spaces() const { return half_spaces_; }
+  /// False: no point of the box lies in it. True says nothing.
+  bool may_meet(const BoundsD& box) const;
+
+ private:
+  std::vector<HalfSpace> half_spaces_;
+};
+
+}  // namespace meshhier::inspection
