@@ -38,6 +38,7 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation);
 void add_verify_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
 void add_preview_command(CLI::App& parser, Invocation& invocation);
+void add_page_command(CLI::App& parser, Invocation& invocation);
 void add_progressive_command(CLI::App& parser, Invocation& invocation);
 void add_reconstruct_command(CLI::App& parser, Invocation& invocation);
 void add_serve_command(CLI::App& parser, Invocation& invocation);

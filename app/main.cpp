@@ -42,6 +42,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
   meshhier progressive david.hier -o david.prog      a base and details, for weak clients
+  meshhier page david.hier -o david.html             one file to send, which opens by a double click
   meshhier serve models --open                       show all hierarchies of a folder in the browser
   meshhier plan david.ply --work w --tasks 16        cut a build into tasks for many machines
   meshhier clean                                     what builds that were stopped left here
@@ -179,6 +180,7 @@ int run(int argc, char** argv) {
   add_verify_command(parser, invocation);
   add_export_command(parser, invocation);
   add_preview_command(parser, invocation);
+  add_page_command(parser, invocation);
   add_progressive_command(parser, invocation);
   add_reconstruct_command(parser, invocation);
   add_serve_command(parser, invocation);

@@ -37,6 +37,25 @@ nlohmann::ordered_json json_of(const Model& model) {
 
 }  // namespace
 
+std::string picture_beside(const Model& model) {
+  return "models/" + model.path + ".webp";
+}
+
+std::string static_gallery_json(const std::vector<Model>& models) {
+  auto listed = nlohmann::ordered_json::array();
+  for (const Model& model : models) {
+    nlohmann::ordered_json json = json_of(model);
+    if (is_archive_name(model.path)) {
+      json["path"] = "models/" + encode_path(model.path);
+      if (model.has_preview)
+        json["preview"] = encode_path(picture_beside(model));
+    }
+    listed.push_back(std::move(json));
+  }
+  const nlohmann::ordered_json document{{"models", std::move(listed)}};
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
                          const PlaceNames& places, const std::optional<UploadOffer>& offer) {

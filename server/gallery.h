@@ -27,6 +27,11 @@ struct UploadOffer {
   bool needs_token = false;
 };
 
+/// The listing of a plain host, which hands out archives as they are, with a picture beside each.
+std::string static_gallery_json(const std::vector<Model>& models);
+/// Of an archive on a plain host, relative to the listing, as a path.
+std::string picture_beside(const Model& model);
+
 /// `jobs`: of a watched folder; none if none is watched. `offer`: none if no uploads are taken.
 /// Paths are relative to the document, as a URL has them.
 std::string gallery_json(const std::vector<Model>& models,

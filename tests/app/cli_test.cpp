@@ -1,4 +1,6 @@
 // The real program as a process: exit codes, messages, and what it leaves on disk.
+#include "tests/support/gzip.h"
+
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -1104,6 +1106,135 @@ TEST_F(CommandLine, WhatIsReplacedKeepsItsMode) {
     EXPECT_EQ(std::filesystem::status(file).permissions(),
               perms::owner_read | perms::owner_write | perms::group_read)
         << file;
+}
+
+/// A viewer's folder, as much of it as pages and sites need.
+class CommandLinePage : public CommandLine {
+ protected:
+  CommandLinePage() {
+    std::filesystem::create_directories(viewer() / "assets");
+    write_text(viewer() / "index.html", "<title>meshhier</title>");
+    write_text(viewer() / "assets/a.js", "script");
+    write_text(viewer() / "single.html",
+               "<title>meshhier</title>\n<!-- meshhier: hierarchy -->\n<script></script>");
+  }
+  Path viewer() const { return work() / "viewer"; }
+  Outcome page(Arguments arguments) const {
+    arguments.insert(arguments.begin(), "page");
+    arguments.insert(arguments.end(), {"--viewer", viewer().string()});
+    return run(arguments);
+  }
+  /// What is in a page's script element.
+  static nlohmann::json embedded(const Path& file) {
+    const std::string text = text_of(file);
+    const std::size_t begin = text.find('{'), end = text.find("\n</script>", begin);
+    return nlohmann::json::parse(text.substr(begin, end - begin));
+  }
+  static std::string decoded(const std::string& base64) {
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : base64) {
+      const std::string_view digits =
+          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+      if (c == '=')
+        break;
+      bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+      count += 6;
+      if (count >= 8) {
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 255);
+      }
+    }
+    return bytes;
+  }
+};
+
+TEST_F(CommandLinePage, OneFileHasTheHierarchyAsFarAsItFits) {
+  build();
+  const Path file = work() / "a.html";
+  ASSERT_EQ(page({hierarchy(), "-o", file.string()}).code, 0);
+  const nlohmann::json all = embedded(file);
+  EXPECT_EQ(all["name"], "a");
+  EXPECT_FALSE(all.contains("link"));
+  std::size_t tiles = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(hierarchy())) {
+    const std::string name = entry.path().lexically_relative(hierarchy()).generic_string();
+    if (!entry.is_regular_file() || name.starts_with("tileset") || name == "preview.webp")
+      continue;
+    ASSERT_TRUE(all["files"].contains(name)) << name;
+    const std::string bytes = decoded(all["files"][name]);
+    EXPECT_EQ(bytes.starts_with("\x1f\x8b") ? tests::gunzip(bytes) : bytes, text_of(entry.path()))
+        << name;
+    tiles += name.starts_with("tiles/") ? 1 : 0;
+  }
+  EXPECT_GT(tiles, 3U);
+  const auto size = std::filesystem::file_size(file);
+  EXPECT_THAT(text_of(file), HasSubstr("<title>a</title>"));
+
+  const Outcome smaller = page({hierarchy(), "-o", file.string(), "--force", "--size",
+                                std::to_string(size * 2 / 3), "--link", "https://h/<a>.3tz"});
+  ASSERT_EQ(smaller.code, 0) << smaller.messages;
+  EXPECT_LE(std::filesystem::file_size(file), size * 2 / 3);
+  EXPECT_THAT(text_of(file), Not(HasSubstr("<a>")));
+  const nlohmann::json some = embedded(file);
+  EXPECT_EQ(some["link"], "https://h/<a>.3tz");
+  EXPECT_TRUE(some["files"].contains("tiles/00/000000.glb"));
+  EXPECT_LT(some["files"].size(), all["files"].size());
+  EXPECT_THAT(smaller.out,
+              HasSubstr(std::to_string(std::filesystem::file_size(file)) + " bytes; errors up to"));
+}
+
+TEST_F(CommandLinePage, WhatIsWrongIsTold) {
+  build();
+  const std::string file = (work() / "b.html").string();
+  const auto says = [&](const Arguments& arguments, int code, const char* message) {
+    const Outcome outcome = page(arguments);
+    EXPECT_EQ(outcome.code, code) << message;
+    EXPECT_THAT(outcome.messages, HasSubstr(message));
+    EXPECT_FALSE(std::filesystem::exists(file));
+  };
+  says({hierarchy(), "-o", file, "--size", "1000"}, kUsage, "give --size ");
+  says({hierarchy(), "-o", file, "--link", "david.3tz"}, kUsage, "--link: expected the address");
+  says({(work() / "none.hier").string(), "-o", file}, kIo, "none.hier");
+  says({work().string(), "-o", file, "--link", "https://h/"}, kUsage,
+       "--link is for the page of one");
+  std::filesystem::remove(viewer() / "single.html");
+  says({hierarchy(), "-o", file}, kIo, "has no single.html");
+}
+
+TEST_F(CommandLinePage, AFolderBecomesASite) {
+  write_mesh("a.ply");
+  const Path models = work() / "models", site = work() / "site";
+  std::filesystem::create_directories(models / "sub");
+  for (const char* made : {"a.hier", "sub/b c.3tz"}) {
+    const Arguments words{"build", (work() / "a.ply").string(), "-o", (models / made).string()};
+    ASSERT_EQ(run(words).code, 0);
+  }
+  write_text(models / "notes.txt", "mine");
+  ASSERT_EQ(page({models.string(), "-o", site.string() + "/"}).code, 0);
+  EXPECT_EQ(text_of(site / "assets/a.js"), "script");
+  EXPECT_FALSE(std::filesystem::exists(site / "single.html"));
+  EXPECT_FALSE(std::filesystem::exists(site / "models/notes.txt"));
+  for (const char* file : {"sub/b c.3tz", "a.hier/hierarchy.json", "a.hier/tiles/00/000000.glb"})
+    EXPECT_EQ(text_of(site / "models" / file), text_of(models / file)) << file;
+  const auto listed = nlohmann::json::parse(text_of(site / "models.json"))["models"];
+  ASSERT_EQ(listed.size(), 2U);
+  EXPECT_EQ(listed[0]["path"], "models/a.hier");
+  EXPECT_EQ(listed[0]["preview"], "models/a.hier/preview.webp");
+  EXPECT_EQ(listed[1]["path"], "models/sub/b%20c.3tz");
+  EXPECT_EQ(listed[1]["preview"], "models/sub/b%20c.3tz.webp");
+  EXPECT_THAT(text_of(site / "models/sub/b c.3tz.webp"), HasSubstr("WEBP"));
+  EXPECT_EQ(run({"verify", (site / "models/a.hier").string()}).code, 0);
+
+  EXPECT_EQ(page({models.string(), "-o", site.string()}).code, kExists);
+  std::filesystem::remove_all(models / "a.hier");
+  ASSERT_EQ(page({models.string(), "-o", site.string(), "--force"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(site / "models/a.hier"));
+  EXPECT_EQ(page({models.string(), "-o", viewer().string(), "--force"}).code, kExists);
+  EXPECT_EQ(page({models.string(), "-o", (models / "site").string()}).code, kUsage);
+  EXPECT_EQ(page({viewer().string(), "-o", (work() / "none").string()}).code, kUsage);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.ply", "models", "site", "viewer"}));
 }
 
 TEST_F(CommandLine, ANameThatIsTooLongIsToldByTheNameThatWasGiven) {

@@ -22,4 +22,26 @@ std::string gzip(std::string_view content) {
   return packed;
 }
 
+std::string gunzip(const std::string& packed) {
+  z_stream stream{};
+  constexpr int kGzip = 16;
+  if (inflateInit2(&stream, MAX_WBITS + kGzip) != Z_OK)
+    throw std::runtime_error("zlib");
+  std::string content;
+  std::string source = packed;
+  stream.next_in = reinterpret_cast<Bytef*>(source.data());
+  stream.avail_in = static_cast<uInt>(source.size());
+  for (int status = Z_OK; status == Z_OK;) {
+    char block[65536];
+    stream.next_out = reinterpret_cast<Bytef*>(block);
+    stream.avail_out = sizeof(block);
+    status = inflate(&stream, Z_NO_FLUSH);
+    content.append(block, sizeof(block) - stream.avail_out);
+    if (status != Z_OK && status != Z_STREAM_END)
+      throw std::runtime_error("no gzip");
+  }
+  inflateEnd(&stream);
+  return content;
+}
+
 }  // namespace meshhier::tests

@@ -11,7 +11,7 @@ import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
 import { Problems } from './problems.js';
-import { readQuery, shortened } from './query.js';
+import { readQuery, shortened, type Query } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
@@ -42,14 +42,17 @@ export class App {
   readonly preferences = loadPreferences();
   readonly problems = new Problems();
   view: ModelView | null = null;
-  private readonly query = readQuery(location.search, document.baseURI);
+  private readonly query: Query;
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
   private uploads: UploadPlace | null = null;
   private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
-  constructor(private readonly root: HTMLElement) {
+  /// `embedded`: what the page shows instead of what its address says; null: nothing.
+  constructor(private readonly root: HTMLElement, embedded: Model | null) {
+    const query = readQuery(location.search, document.baseURI);
+    this.query = embedded === null ? query : { ...query, only: embedded, problem: null };
     this.watch = new ListingWatch(
       this.query.listing,
       (listing) => { this.listed(listing); },
@@ -178,7 +181,7 @@ export class App {
 
   private async load(entry: ModelEntry, spot: Spot, turn: Turn | null): Promise<void> {
     const { model } = entry;
-    const early = new EarlyStart(model.url);
+    const early = new EarlyStart(model.files === undefined ? model.url : null);
     try {
       const { ModelView } = await loadView();
       if (entry !== this.entry) return;

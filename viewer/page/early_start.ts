@@ -10,19 +10,19 @@ import { follow } from './signals.js';
 const ROOT = tilePath({ level: 0, index: 0 });
 
 export class EarlyStart {
-  private readonly url: string;
+  private readonly url: string | null;
   private readonly ending = new AbortController();
-  private first: Promise<Response> | null;
+  private first: Promise<Response> | null = null;
   private worker: Worker | null;
 
-  /// `url`: of the hierarchy.
-  constructor(url: string) {
-    const isArchive = isArchiveUrl(url);
-    this.url = isArchive ? url : `${withoutLastSlashes(url)}/${ROOT}`;
+  /// `url`: of the hierarchy; null: nothing of it need be fetched.
+  constructor(url: string | null) {
+    const isArchive = url !== null && isArchiveUrl(url);
+    this.url = url === null || isArchive ? url : `${withoutLastSlashes(url)}/${ROOT}`;
     const init: RequestInit = { priority: 'high', signal: this.ending.signal };
     if (isArchive) init.headers = rangeHeader(0, HEAD_BYTES);
-    this.first = fetch(this.url, init);
-    this.first.catch(() => undefined); // whoever asks for it is told
+    if (this.url !== null) this.first = fetch(this.url, init);
+    this.first?.catch(() => undefined); // whoever asks for it is told
     this.worker = new TileWorker();
     this.worker.addEventListener('error', () => { this.worker = null; }); // whoever has it by then is told
   }

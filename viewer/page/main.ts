@@ -1,8 +1,10 @@
 import './style/base.css';
 import './style/gallery.css';
 import { App } from './app.js';
+import { embeddedModel } from './embedded.js';
 import { installHook } from './hook.js';
 
-const app = new App(document.body);
+const embedded = embeddedModel(document);
+const app = new App(document.body, embedded);
 installHook(app);
 app.route();

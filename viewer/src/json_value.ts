@@ -39,6 +39,11 @@ export class JsonValue {
     return this.value.map((_, i) => this.at(i));
   }
 
+  entries(): [string, JsonValue][] {
+    if (typeof this.value !== 'object' || this.value === null || Array.isArray(this.value)) this.fail('an object');
+    return Object.keys(this.value).map((key) => [key, this.at(key)]);
+  }
+
   isNull(): boolean {
     return this.value === null;
   }

@@ -103,7 +103,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
     const { index } = await from.directory(await from.manifest(), await from.root(), () => undefined, (problem) => problems.push(problem));
     const hurt = { level: 1, index: 1 };
     for (let times = 0; times < 3; ++times) expect(index.record(hurt)).toBeNull();
-    expect(index.isDamaged(hurt)).toBe(true);
+    expect(index.isLost(hurt)).toBe(true);
     expect(index.record({ level: 1, index: 0 })).not.toBeNull();
     expect(problems).toHaveLength(1);
   });

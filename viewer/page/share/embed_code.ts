@@ -7,6 +7,8 @@ export interface Shared extends Spot {
   name: string;
   /// Of the hierarchy.
   url: string;
+  /// The page has the hierarchy within it: there is no code for others.
+  isWhole: boolean;
 }
 
 const ESCAPES: Readonly<Record<string, string>> = { '&': '&amp;', '"': '&quot;', '<': '&lt;', '>': '&gt;' };

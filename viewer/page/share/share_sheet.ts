@@ -43,14 +43,16 @@ export class ShareSheet {
   private readonly frame = new CopyField(words.share.frame, 4, this.status);
   private readonly element = new CopyField(words.share.element, 4, this.status);
 
+  private readonly codes = element('div', { class: 'share' }, this.frame.root, this.element.root, element('p', { class: 'hint' }, words.share.elementHint));
+
   constructor() {
-    const hint = element('p', { class: 'hint' }, words.share.elementHint);
-    this.root = element('div', { class: 'share' }, this.link.root, this.frame.root, this.element.root, hint, this.status);
+    this.root = element('div', { class: 'share' }, this.link.root, this.codes, this.status);
   }
 
   /// `link`: to what is shown in this page.
   show(link: string, shared: Shared): void {
     this.link.field.value = link;
+    this.codes.hidden = shared.isWhole;
     this.frame.field.value = frameCode(shared);
     this.element.field.value = elementCode(shared);
   }

@@ -93,7 +93,7 @@ export class ModelView {
     const { fetch, createWorker, preferences: { settings } } = around;
     this.tools.follow(around.spot);
     this.stage = new Stage();
-    this.view = new HierarchyView(model.url, { fetch, createWorker, settings });
+    this.view = new HierarchyView(model.url, { fetch, createWorker, settings, files: model.files });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
     this.presentation.apply();
     this.stage.show(this.view);
@@ -418,8 +418,8 @@ export class ModelView {
   /// The address tells of the camera as it is, even before it has come to rest.
   private shared(): Shared {
     this.rest();
-    const { name, url } = this.model;
-    return { page: location.origin + location.pathname, name, url, ...this.spot() };
+    const { name, url, files } = this.model;
+    return { page: location.origin + location.pathname, name, url, isWhole: files !== undefined, ...this.spot() };
   }
 
   private zoomMiddle(logarithm: number): void {

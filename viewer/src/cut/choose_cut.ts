@@ -105,6 +105,7 @@ class Chooser {
 
   private refine(chosen: ChosenNode): void {
     const nodes = this.sources.tree.children(chosen.node);
+    if (nodes.some((child) => this.sources.isLost(child))) return; // nothing need be known of them
     const children = nodes.map((child) => this.see(child));
     if (nodes.some((child) => this.sources.isLost(child))) return;
     if (!children.every((child) => child !== null)) {

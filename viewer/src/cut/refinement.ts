@@ -108,7 +108,7 @@ export class Refinement {
       tree: this.tree,
       record: (node) => this.index.record(node),
       bytesOf: this.mostMemory,
-      isLost: (node) => this.index.isDamaged(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
+      isLost: (node) => this.index.isLost(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
       isHidden: (key, record) => culls && this.isHidden(view, key, record, margin + (before.has(key) ? HYSTERESIS_MARGIN : 0)),
       wasRefined: (key) => before.has(key),
       mayBeFine: (key) => atRest || before.has(key),

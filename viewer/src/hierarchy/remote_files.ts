@@ -15,6 +15,8 @@ export interface Whereabouts {
 export interface RemoteFiles {
   /// The content of a file of at most `most` bytes, out of its gzip. `where`: if it is known.
   whole(name: string, most: number, init?: RequestInit, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>>;
+  /// Whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
+  lacks?(name: string): boolean;
   /// Bytes [first, end) of a file of `length`; or all of it, where a host knows no ranges.
   part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>>;
 }

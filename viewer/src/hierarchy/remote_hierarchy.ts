@@ -80,7 +80,7 @@ export class RemoteHierarchy {
   async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
     const tree = new Tree(manifest.partitions);
     const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
-    const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
+    const index = new TileIndex(tree, manifest.place, read, onPage, onProblem, (node) => this.files.lacks?.(tilePath(node)) ?? false);
     await index.open();
     this.index = index;
     const record = index.record(ROOT);

@@ -99,13 +99,14 @@ export class TileIndex {
   private readonly distances = new Map<number, Float64Array>(); // by page
 
   /// `place`: what decoded tiles' positions are relative to, itself relative to the origin. `onPage` is called when a
-  /// page has come, `onProblem` when one did not, or a record is damaged.
+  /// page has come, `onProblem` when one did not, or a record is damaged. `lacks`: tiles that will not come.
   constructor(
     private readonly tree: Tree,
     private readonly place: Triple,
     private readonly read: ReadRange,
     private readonly onPage: () => void,
     private readonly onProblem: (problem: unknown) => void,
+    private readonly lacks: (node: Node) => boolean = () => false,
   ) {}
 
   /// Fetches the header and the first page; nothing else works before.
@@ -125,9 +126,9 @@ export class TileIndex {
     return null;
   }
 
-  /// Whether there will never be a record of a tile.
-  isDamaged({ level, index }: Node): boolean {
-    return this.damaged.has(keyOf(level, index));
+  /// Whether there will be nothing of a tile: it lies elsewhere, or its record is damaged.
+  isLost(node: Node): boolean {
+    return this.damaged.has(keyOf(node.level, node.index)) || this.lacks(node);
   }
 
   /// Where the file of a tile, but for the root, lies in an archive, in which tiles are side by side; null while its page is not there.
@@ -159,7 +160,7 @@ export class TileIndex {
     const isIts = level === node.level && index === node.index;
     const record = readRecord(view, at, this.place);
     if (isIts && isSound(record)) return record;
-    if (!this.isDamaged(node)) {
+    if (!this.damaged.has(keyOf(node.level, node.index))) {
       this.damaged.add(keyOf(node.level, node.index));
       this.onProblem(new HierarchyProblem(FILE, `the record of tile ${node.level}/${node.index} is damaged`));
     }

@@ -10,7 +10,7 @@ import type { Fetch } from '../hierarchy/bytes.js';
 import { directionOf } from '../hierarchy/first_view.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
-import { remoteFiles } from '../hierarchy/remote_files.js';
+import { remoteFiles, type RemoteFiles } from '../hierarchy/remote_files.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
@@ -38,6 +38,8 @@ export interface ViewOptions {
   workers?: number;
   /// Instead of the global one.
   fetch?: Fetch;
+  /// Instead of those at the URL.
+  files?: RemoteFiles;
   /// Most tiles on their way at once.
   requests?: number;
 }
@@ -114,7 +116,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.currentStanding = changedStanding(options.standing ?? {}, DEFAULT_STANDING);
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
-    this.remote = new RemoteHierarchy(remoteFiles(url, fetch), this.decoder, this.ending.signal);
+    this.remote = new RemoteHierarchy(options.files ?? remoteFiles(url, fetch), this.decoder, this.ending.signal);
     this.rate = new FrameRate(this.settings.framesPerSecond);
     this.store = this.makeStore(options.requests ?? REQUESTS);
     this.add(this.tiles);

@@ -29,7 +29,7 @@ interface Met {
 async function recordOf({ index }: TileSource, node: Node, signal: AbortSignal): Promise<TileRecord | null> {
   for (;;) {
     const record = index.record(node);
-    if (record !== null || index.isDamaged(node)) return record;
+    if (record !== null || index.isLost(node)) return record;
     await new Promise((resolve) => setTimeout(resolve, PAGE_WAIT));
     signal.throwIfAborted();
   }

@@ -1,0 +1,143 @@
+#include "app/command.h"
+#include "app/hierarchy_place.h"
+#include "app/options.h"
+#include "app/viewer_place.h"
+#include "hierarchy/error.h"
+#include "inspection/page_file.h"
+#include "server/static_site.h"
+#include "storage/io/http_client.h"
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace meshhier::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PageArguments {
+  std::string hierarchy;
+  WebOptions web;
+  std::string output;
+  bool force = false;
+  std::uint64_t size = inspection::PageOptions().size;
+  std::string link;
+  std::string viewer;
+};
+
+constexpr std::uint64_t kMostViewerBytes = std::uint64_t{64} << 20;
+
+ViewerPlace viewer_of(Environment& environment, const PageArguments& arguments) {
+  ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
+  if (!viewer.folder)
+    throw Error(ErrorCode::io, viewer.missing);
+  return viewer;
+}
+
+/// The page that a hierarchy is put into.
+std::string single_page(Environment& environment, const PageArguments& arguments) {
+  const ViewerPlace viewer = viewer_of(environment, arguments);
+  const auto file = viewer.folder->open("single.html");
+  if (!file) {
+    throw Error(ErrorCode::io,
+                fmt::format("{} has no single.html: the viewer is of an older version; "
+                            "build it again",
+                            viewer.folder->path().string()));
+  }
+  const auto bytes = storage::read_file(*file, kMostViewerBytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// "david" of "models/david.hier/".
+std::string name_of(const fs::path& hierarchy) {
+  const fs::path named = hierarchy.has_filename() ? hierarchy : hierarchy.parent_path();
+  return named.stem().string();
+}
+
+std::string make_page(const PageArguments& arguments, const HierarchyPlace& place,
+                      execution::Progress& progress, Environment& environment) {
+  if (!arguments.link.empty() && !storage::is_web_address(arguments.link))
+    throw Error(ErrorCode::usage,
+                "--link: expected the address of the whole hierarchy, https://...");
+  const std::string viewer = single_page(environment, arguments);
+  return inspection::write_page(place.files(), place.path(), viewer,
+                                {.output = arguments.output,
+                                 .replace = arguments.force,
+                                 .size = arguments.size,
+                                 .link = arguments.link,
+                                 .name = name_of(place.path())},
+                                progress, environment.cancel);
+}
+
+std::string make_site(const PageArguments& arguments, execution::Progress& progress,
+                      Environment& environment) {
+  if (!arguments.link.empty())
+    throw Error(ErrorCode::usage,
+                "--link is for the page of one hierarchy; this is a folder of them");
+  const ViewerPlace viewer = viewer_of(environment, arguments);
+  const server::SiteJob job{storage::open_folder(arguments.hierarchy), *viewer.folder,
+                            arguments.output, arguments.force};
+  return server::write_site(
+      environment.files, job,
+      {.check = [&] { environment.cancel.check(); },
+       .tell = [&](const std::string& message) { progress.warn(message); },
+       .begin = [&](std::uint64_t files) { progress.stage("site", files, "files"); },
+       .copied = [&] { progress.advance(1); }});
+}
+
+int run_page(const PageArguments& arguments, execution::ProgressMode mode,
+             Environment& environment) {
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  require_no_terminal(environment, arguments.output);
+  std::ostream& account = account_stream(environment, arguments.output);
+  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
+  const bool is_folder = !place.is_remote() && environment.files.is_directory(place.path()) &&
+                         !environment.files.exists(place.path() / "hierarchy.json");
+  const std::string line = is_folder ? make_site(arguments, *progress, environment)
+                                     : make_page(arguments, place, *progress, environment);
+  progress->finish(arguments.output);
+  account << line << '\n' << place.account();
+  return 0;
+}
+
+constexpr const char* kPageFooter =
+    R"(Of a hierarchy: one HTML file, with the viewer and as many tiles as fit, from the root down. It opens
+by a double click, without a network. With --link it goes on from there when it is online.
+
+Of a folder: a site, with a gallery, to be copied to any host of plain files. Hierarchies that are 3tz
+archives need a host that sends parts of files (HTTP ranges).
+
+Examples:
+  meshhier page david.hier -o david.html
+  meshhier page david.3tz --size 5MB --link https://example.org/david.3tz -o david.html
+  meshhier page models -o site
+)";
+
+}  // namespace
+
+void add_page_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<PageArguments>();
+  CLI::App* command = parser.add_subcommand(
+      "page", "Make one HTML file of a hierarchy, or a site of a folder of them");
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
+  add_file_output_options(*command, "The HTML file, or the folder of the site", arguments->output,
+                          arguments->force);
+  add_size_option(*command, "--size", "Of the HTML file: bytes, at the most", arguments->size);
+  command->add_option("--link", arguments->link, "Of the HTML file: where all of the hierarchy is")
+      ->type_name("ADDRESS");
+  command->add_option("--viewer", arguments->viewer, "Where the page lies, if not as installed")
+      ->type_name("DIR");
+  add_progress_option(*command, invocation.progress);
+  command->footer(kPageFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_page(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

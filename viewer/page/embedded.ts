@@ -1,0 +1,74 @@
+// A hierarchy, or the beginning of one, within the page itself (`meshhier page`): JSON in a script element.
+import { JsonValue } from '../src/json_value.js';
+import { unpacked } from '../src/hierarchy/bytes.js';
+import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { remoteFiles, type RemoteFiles, type Whereabouts } from '../src/hierarchy/remote_files.js';
+import type { Model } from './listing.js';
+
+const ID = 'meshhier-hierarchy';
+/// A link that failed is tried again after this time, or when the browser says that it is online.
+const OFFLINE_MS = 30_000;
+
+function decoded(base64: string): Uint8Array<ArrayBuffer> {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+/// Names are as in a hierarchy; of the index there may be the beginning only.
+export class EmbeddedFiles implements RemoteFiles {
+  private offlineUntil = 0;
+
+  /// `files`: in base64, and perhaps in gzip. `link`: has what is not among them; null: nothing has.
+  constructor(
+    private readonly files: ReadonlyMap<string, string>,
+    private readonly link: RemoteFiles | null,
+  ) {
+    globalThis.addEventListener?.('online', () => { this.offlineUntil = 0; });
+  }
+
+  lacks(name: string): boolean {
+    return !this.files.has(name) && !this.reaches;
+  }
+
+  async whole(name: string, most: number, init?: RequestInit, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
+    const file = this.files.get(name);
+    if (file !== undefined) return unpacked(decoded(file), most, name);
+    return this.ask(name, (link) => link.whole(name, most, init, where));
+  }
+
+  async part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
+    const file = this.files.get(name);
+    const start = file === undefined ? null : await unpacked(decoded(file), length, name);
+    if (start !== null && start.length >= end) return start.subarray(first, end);
+    return this.ask(name, (link) => link.part(name, [first, end], length, signal));
+  }
+
+  private get reaches(): boolean {
+    return this.link !== null && performance.now() >= this.offlineUntil;
+  }
+
+  /// What could not be had by the line is lacking for a while.
+  private async ask<T>(name: string, from: (link: RemoteFiles) => Promise<T>): Promise<T> {
+    if (this.link === null) throw new HierarchyProblem(name, 'is not in this page');
+    try {
+      return await from(this.link);
+    } catch (problem) {
+      if (problem instanceof HierarchyProblem && problem.mayPass) this.offlineUntil = performance.now() + OFFLINE_MS;
+      throw problem;
+    }
+  }
+}
+
+/// Null: the page has none. Throws Error if what it has is none.
+export function embeddedModel(page: Pick<Document, 'getElementById' | 'baseURI'>): Model | null {
+  const text = page.getElementById(ID)?.textContent;
+  if (text == null) return null;
+  const root = JsonValue.parse(text, (what) => { throw new Error(`this page is damaged: ${what}`); });
+  const link = root.has('link') ? root.at('link').text() : null;
+  const files = new Map(root.at('files').entries().map(([name, content]) => [name, content.text()]));
+  const fetch = (url: string, init?: RequestInit): Promise<Response> => globalThis.fetch(url, init);
+  const model: Model = { name: root.at('name').text(), path: '', url: link ?? page.baseURI, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null };
+  return { ...model, files: new EmbeddedFiles(files, link === null ? null : remoteFiles(link, fetch)) };
+}
