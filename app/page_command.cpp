@@ -108,8 +108,8 @@ constexpr const char* kPageFooter =
     R"(Of a hierarchy: one HTML file, with the viewer and as many tiles as fit, from the root down. It opens
 by a double click, without a network. With --link it goes on from there when it is online.
 
-Of a folder: a site, with a gallery, to be copied to any host of plain files. Hierarchies that are 3tz
-archives need a host that sends parts of files (HTTP ranges).
+Of a folder: a site, with a gallery, to be copied to any host of plain files; 3tz archives among them
+need one that sends parts of files (HTTP ranges).
 
 Examples:
   meshhier page david.hier -o david.html

@@ -44,13 +44,15 @@ export function findPicture(glb: Glb, number: number, size: Size): StoredPicture
   return { ...size, file: new Blob([bytes.slice()], { type }), alpha, unlit };
 }
 
+export const NOT_DECODED = 'its picture cannot be decoded';
+
 /// Where this is called: it takes a while.
 export async function decodePicture(glb: Glb, { file, alpha, unlit, width, height }: StoredPicture): Promise<Picture> {
   let bitmap: ImageBitmap;
   try {
     bitmap = await createImageBitmap(file, { imageOrientation: 'none', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
   } catch {
-    return glb.fail('its picture cannot be decoded');
+    return glb.fail(NOT_DECODED);
   }
   if (bitmap.width === width && bitmap.height === height) return { width, height, bitmap, alpha, unlit };
   bitmap.close();

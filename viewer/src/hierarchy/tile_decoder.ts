@@ -1,4 +1,5 @@
 // Tiles out of their files, in workers if there are any, else where it is called.
+import { NOT_DECODED } from './picture.js';
 import { HierarchyProblem } from './problem.js';
 import { readTile, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';
@@ -89,6 +90,8 @@ export class TileDecoder {
     this.tasks.delete(id);
     this.milliseconds += milliseconds ?? 0;
     if (tile) task?.resolve(tile);
+    // WebKit: workers of a page that was opened from a disk cannot decode pictures, the page can.
+    else if (task && what === NOT_DECODED) this.decodeHere(task.bytes, task.name, task.expected).then(task.resolve, task.reject);
     else task?.reject(what === undefined ? new Error(defect) : new HierarchyProblem(task.name, what));
   }
 }
