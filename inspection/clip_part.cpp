@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kNewVertex = std::numeric_limits<std::size_t>::max();
 
 /// All that a vertex has. A hundred bytes: polygons are small.
-struct Corner {
+struct ClippedCorner {
   std::size_t vertex = kNewVertex;  ///< of the part
   Vec3f position;
   std::array<float, kMaxChannels> attributes{};
@@ -26,7 +26,7 @@ struct Corner {
   Vec2f texcoord;
 };
 
-auto key_of(const Corner& c) {
+auto key_of(const ClippedCorner& c) {
   return std::tie(c.position.x, c.position.y, c.position.z, c.attributes, c.normal.x, c.normal.y,
                   c.normal.z, c.texcoord.u, c.texcoord.v);
 }
@@ -73,19 +73,19 @@ class PartClipper {
         numbers_(part.vertices.size(), kNoPlace) {}
 
   CutPart run() {
-    std::vector<std::vector<Corner>> kept;
+    std::vector<std::vector<ClippedCorner>> kept;
     for (const auto& triangle : part_.triangles) {
-      std::vector<Corner> polygon = clipped(triangle);
+      std::vector<ClippedCorner> polygon = clipped(triangle);
       if (polygon.size() < 3)
         continue;
       if (clipping_ == Clipping::whole_triangles)
         polygon = corners_of(triangle);
-      for (const Corner& corner : polygon)
+      for (const ClippedCorner& corner : polygon)
         use(corner);
       kept.push_back(std::move(polygon));
     }
     begin();
-    for (const std::vector<Corner>& polygon : kept)
+    for (const std::vector<ClippedCorner>& polygon : kept)
       add(polygon);
     if (!made_.triangles.empty())
       made_.image = part_.image;
@@ -93,10 +93,10 @@ class PartClipper {
   }
 
  private:
-  std::vector<Corner> corners_of(const Triangle<std::uint32_t>& triangle) const {
-    std::vector<Corner> corners;
+  std::vector<ClippedCorner> corners_of(const Triangle<std::uint32_t>& triangle) const {
+    std::vector<ClippedCorner> corners;
     for (const std::uint32_t vertex : triangle) {
-      Corner& corner = corners.emplace_back();
+      ClippedCorner& corner = corners.emplace_back();
       corner.vertex = vertex;
       corner.position = part_.vertices.positions[vertex];
       std::ranges::copy(part_.vertices.attributes_of(vertex), corner.attributes.begin());
@@ -109,13 +109,13 @@ class PartClipper {
   }
 
   /// Sutherland & Hodgman, Reentrant Polygon Clipping (1974).
-  std::vector<Corner> clipped(const Triangle<std::uint32_t>& triangle) const {
-    std::vector<Corner> polygon = corners_of(triangle), next;
+  std::vector<ClippedCorner> clipped(const Triangle<std::uint32_t>& triangle) const {
+    std::vector<ClippedCorner> polygon = corners_of(triangle), next;
     for (const HalfSpace& half : region_.half_spaces()) {
       next.clear();
       for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Corner& from = polygon[i];
-        const Corner& to = polygon[(i + 1) % polygon.size()];
+        const ClippedCorner& from = polygon[i];
+        const ClippedCorner& to = polygon[(i + 1) % polygon.size()];
         const double a = half.beyond(to_double(from.position));
         const double b = half.beyond(to_double(to.position));
         if (a <= 0)
@@ -129,13 +129,14 @@ class PartClipper {
   }
 
   /// The same from both sides: from the lesser end.
-  Corner cut(const Corner& one, const Corner& other, const HalfSpace& half) const {
+  ClippedCorner cut(const ClippedCorner& one, const ClippedCorner& other,
+                    const HalfSpace& half) const {
     const bool in_order = key_of(one) < key_of(other);
-    const Corner& from = in_order ? one : other;
-    const Corner& to = in_order ? other : one;
+    const ClippedCorner& from = in_order ? one : other;
+    const ClippedCorner& to = in_order ? other : one;
     const double a = half.beyond(to_double(from.position)), b = half.beyond(to_double(to.position));
     const double t = a / (a - b);
-    Corner made;
+    ClippedCorner made;
     made.position = on_side(between(from.position, to.position, t), half);
     mix_attributes(from, to, t, made);
     made.normal = unit(between(from.normal, to.normal, t), from.normal);
@@ -145,7 +146,8 @@ class PartClipper {
   }
 
   /// Colours by their light.
-  void mix_attributes(const Corner& from, const Corner& to, double t, Corner& made) const {
+  void mix_attributes(const ClippedCorner& from, const ClippedCorner& to, double t,
+                      ClippedCorner& made) const {
     for (std::size_t c = 0; c < channels_; ++c) {
       const float a = from.attributes[c], b = to.attributes[c];
       made.attributes[c] = light_.has(c)
@@ -162,7 +164,7 @@ class PartClipper {
     std::ranges::transform(colour, colour.begin(), [](float x) { return std::round(x); });
   }
 
-  void use(const Corner& corner) {
+  void use(const ClippedCorner& corner) {
     if (corner.vertex != kNewVertex)
       numbers_[corner.vertex] = 0;
   }
@@ -184,9 +186,9 @@ class PartClipper {
     }
   }
 
-  void add(const std::vector<Corner>& polygon) {
+  void add(const std::vector<ClippedCorner>& polygon) {
     std::vector<std::uint32_t> numbers;
-    for (const Corner& corner : polygon)
+    for (const ClippedCorner& corner : polygon)
       numbers.push_back(corner.vertex == kNewVertex ? number_of(corner) : numbers_[corner.vertex]);
     for (std::size_t i = 1; i + 1 < numbers.size(); ++i) {
       const Triangle<std::uint32_t> t{numbers[0], numbers[i], numbers[i + 1]};
@@ -195,7 +197,7 @@ class PartClipper {
     }
   }
 
-  std::uint32_t number_of(const Corner& corner) {
+  std::uint32_t number_of(const ClippedCorner& corner) {
     std::string key(sizeof(corner.position) + sizeof(corner.attributes) + sizeof(corner.normal) +
                         sizeof(corner.texcoord),
                     '\0');

@@ -74,6 +74,10 @@ FolderScan scan_folder(const storage::Folder& folder) {
   return Scanner(folder).run();
 }
 
+std::string joined(const std::string& directory, const std::string& name) {
+  return directory.empty() ? name : name.empty() ? directory : directory + '/' + name;
+}
+
 bool is_archive_name(std::string_view path) {
   return storage::lower_extension(path) == ".3tz";
 }

@@ -20,6 +20,9 @@ struct FolderScan {
 /// the folder itself cannot be listed.
 FolderScan scan_folder(const storage::Folder& folder);
 
+/// A path in a folder, of which either part may be empty.
+std::string joined(const std::string& directory, const std::string& name);
+
 /// Whether a file of that name is taken for an archive.
 bool is_archive_name(std::string_view path);
 

@@ -25,10 +25,6 @@ constexpr std::int64_t kNanoseconds = 1'000'000'000;  // of a second
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
 
-std::string joined(const std::string& directory, const std::string& name) {
-  return directory.empty() ? name : directory + '/' + name;
-}
-
 std::string name_of(const std::filesystem::path& path) {
   const bool is_usual = path.extension() == ".hier" || is_archive_name(path.native());
   return (is_usual ? path.stem() : path.filename()).string();

@@ -27,10 +27,6 @@ constexpr const char* kPage = "index.html";
 /// Of the viewer's folder, what is not for a site: `meshhier page` puts a hierarchy into it.
 constexpr std::string_view kSingle = "single.html";
 
-std::string joined(const std::string& folder, const std::string& name) {
-  return folder.empty() ? name : name.empty() ? folder : folder + '/' + name;
-}
-
 /// Names below a folder, those that `is_wanted` of a path from it.
 std::vector<std::string> names_below(const storage::Folder& folder, const std::string& start,
                                      const std::function<bool(const std::string&)>& is_wanted) {

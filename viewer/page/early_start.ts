@@ -20,7 +20,7 @@ export class EarlyStart {
     const isArchive = url !== null && isArchiveUrl(url);
     this.url = url === null || isArchive ? url : `${withoutLastSlashes(url)}/${ROOT}`;
     const init: RequestInit = { priority: 'high', signal: this.ending.signal };
-    if (isArchive) init.headers = rangeHeader(0, HEAD_BYTES);
+    if (isArchive) Object.assign(init, { headers: rangeHeader(0, HEAD_BYTES), cache: 'no-cache' } satisfies RequestInit); // which version it is
     if (this.url !== null) this.first = fetch(this.url, init);
     this.first?.catch(() => undefined); // whoever asks for it is told
     this.worker = new TileWorker();

@@ -4,6 +4,7 @@ import { readdirSync, readFileSync, statSync } from 'node:fs';
 import path from 'node:path';
 import { afterAll, describe, expect, it } from 'vitest';
 import { archivedBytes, findInIndex, isArchiveUrl } from '../src/hierarchy/archive_format.js';
+import { RemoteArchive } from '../src/hierarchy/remote_archive.js';
 import { remoteFiles, type RemoteFiles } from '../src/hierarchy/remote_files.js';
 import { RemoteHierarchy, type Directory } from '../src/hierarchy/remote_hierarchy.js';
 import { TileDecoder } from '../src/hierarchy/tile_decoder.js';
@@ -224,6 +225,32 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
     expect((await right).index).toBe(1);
   });
 
+  it('that was opened before is not fetched again, but for its beginning', async () => {
+    const { archive } = small();
+    const store = new FakeStore();
+    const { signal } = new AbortController();
+    const visit = async (tag: string): Promise<RangedHost> => {
+      const host = new RangedHost(archive);
+      host.tag = tag;
+      const remote = new RemoteHierarchy(new RemoteArchive(URL_, host.fetch, store as unknown as CacheStorage), new TileDecoder(undefined, 0), signal);
+      const { index } = await remote.directory(await remote.manifest(), await remote.root(), none, none);
+      for (const node of [{ level: 1, index: 0 }, { level: 1, index: 1 }]) expect((await remote.tile(node, index.record(node)!, signal)).index).toBe(node.index);
+      await remote.outline();
+      return host;
+    };
+    expect((await visit('"1"')).asked.length).toBeGreaterThan(4);
+    expect((await visit('"1"')).asked).toEqual(['0-16384']);
+    expect((await visit('"2"')).asked.length).toBeGreaterThan(4); // another version
+    expect(store.stores.size).toBe(1);
+  });
+
+  it('of which a store fails is fetched', async () => {
+    const broken = { keys: () => Promise.reject(new Error('full')) } as unknown as CacheStorage;
+    const host = new RangedHost(small().archive);
+    const files = new RemoteArchive(URL_, host.fetch, broken);
+    expect((await files.whole('outline.glb', MOST)).length).toBeGreaterThan(0);
+  });
+
   it('takes what a directory takes, and two in a hundred at most', async () => {
     const { directory, archive } = small();
     const opened = open(archive);
@@ -239,6 +266,28 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
     expect(opened.host.sentBytes).toBeLessThan(1.02 * bytes + 2 ** 14);
   });
 });
+
+/// As the browser's, as far as it is used.
+class FakeStore {
+  readonly stores = new Map<string, Map<string, Uint8Array<ArrayBuffer>>>();
+
+  keys(): Promise<string[]> {
+    return Promise.resolve([...this.stores.keys()]);
+  }
+
+  delete(name: string): Promise<boolean> {
+    return Promise.resolve(this.stores.delete(name));
+  }
+
+  open(name: string): Promise<{ match(key: string): Promise<Response | undefined>; put(key: string, response: Response): Promise<void> }> {
+    const files = this.stores.get(name) ?? new Map<string, Uint8Array<ArrayBuffer>>();
+    this.stores.set(name, files);
+    return Promise.resolve({
+      match: (key) => Promise.resolve(files.has(key) ? new Response(files.get(key)) : undefined),
+      put: async (key, response) => { files.set(key, new Uint8Array(await response.arrayBuffer())); },
+    });
+  }
+}
 
 /// An archive of stored files in that order.
 function zipOf(files: readonly { name: string; bytes: Buffer }[]): Uint8Array<ArrayBuffer> {

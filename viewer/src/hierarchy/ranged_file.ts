@@ -114,6 +114,12 @@ export class RangedFile {
     return Number(length);
   }
 
+  /// What tells this version from others; null: the page may not see it.
+  get versionText(): string | null {
+    const { tag = null, modified = null, total = null } = this.version ?? {};
+    return tag === null && modified === null ? null : `${tag ?? ''} ${modified ?? ''} ${total ?? ''}`;
+  }
+
   private flush(): void {
     const queue = this.queue.filter(({ init, reject }) => {
       if (init.signal?.aborted) reject(init.signal.reason);
@@ -136,16 +142,19 @@ export class RangedFile {
   /// Ends when all who wait for it have gone.
   private async fetchTogether(group: readonly Wanted[], end: number): Promise<void> {
     const ending = new AbortController();
+    const done = new AbortController(); // nobody listens any more
     let left = group.length;
     for (const { init: { signal }, reject } of group)
       signal?.addEventListener('abort', () => {
         reject(signal.reason);
         if (--left === 0) ending.abort(signal.reason);
-      }, { once: true });
+      }, { once: true, signal: done.signal });
     try {
       await this.fetchParts(group, end, ending.signal);
     } catch (problem) {
       for (const { reject } of group) reject(problem); // of what has come already nothing happens
+    } finally {
+      done.abort();
     }
   }
 

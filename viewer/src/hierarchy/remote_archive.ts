@@ -4,6 +4,7 @@
 // what follows them side by side. All else is found by the index of names at its end.
 import { archivedBytes, beginsAsArchive, findInIndex, HEAD_BYTES, MOST_END_BYTES, MOST_LOCAL_BYTES, readEnd, readLocalHeader, type IndexPlace, type LocalHeader } from './archive_format.js';
 import { unpacked, type Fetch } from './bytes.js';
+import { browserStore, KeptFiles } from './kept_files.js';
 import { MANIFEST, MOST_MANIFEST_BYTES, readManifest, type Manifest } from './manifest.js';
 import { HierarchyProblem } from './problem.js';
 import { RangedFile } from './ranged_file.js';
@@ -46,20 +47,38 @@ export class RemoteArchive implements RemoteFiles {
   private firstTile: number | null = null;
   private readonly started = new Map<string, Promise<unknown>>();
 
-  constructor(url: string, fetch: Fetch) {
+  private kept: KeptFiles | null = null;
+
+  /// `store`: keeps files for the next visit; null: none does.
+  constructor(
+    private readonly url: string,
+    fetch: Fetch,
+    private readonly store: CacheStorage | null = browserStore(),
+  ) {
     this.name = nameOfUrl(url);
     this.file = new RangedFile(url, this.name, fetch);
   }
 
   async whole(name: string, most: number, init: RequestInit = {}, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
-    const bytes = where === undefined ? await this.contentOf(name, most, init) : await this.contentAt(name, where, most, init);
+    const bytes = await this.fromVisits(name, () => (where === undefined ? this.contentOf(name, most, init) : this.contentAt(name, where, most, init)));
     return unpacked(bytes, most, name);
   }
 
   async part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
     const place = await this.placeOf(name);
     if (place.bytes !== length) throw new HierarchyProblem(name, 'has another length than the manifest says');
-    return this.file.read(place.offset + first, place.offset + end, { signal });
+    return this.fromVisits(`${name} ${first}-${end}`, () => this.file.read(place.offset + first, place.offset + end, { signal }));
+  }
+
+  /// From an earlier visit, of the same version; else `fetch` it, and keep it for a later one.
+  private async fromVisits(name: string, fetch: () => Promise<Uint8Array<ArrayBuffer>>): Promise<Uint8Array<ArrayBuffer>> {
+    await this.head();
+    if (this.kept === null) return fetch();
+    const found = await this.kept.find(name);
+    if (found !== null) return found;
+    const bytes = await fetch();
+    if (name !== MANIFEST) this.kept.keep(name, bytes); // that comes with the version
+    return bytes;
   }
 
   /// Once; what failed may be tried again.
@@ -75,13 +94,15 @@ export class RemoteArchive implements RemoteFiles {
   /// The beginning: with the manifest and the header behind it.
   private head(): Promise<Piece> {
     return this.once('head', async () => {
-      let bytes = await this.file.readUpTo(0, HEAD_BYTES, { priority: 'high' });
+      let bytes = await this.file.readUpTo(0, HEAD_BYTES, { priority: 'high', cache: 'no-cache' });
       const first = beginsAsArchive(bytes) ? readLocalHeader(bytes, this.name) : null;
       if (first?.name !== MANIFEST || first.bytes > MOST_MANIFEST_BYTES)
         throw new HierarchyProblem(this.name, 'is no archive of a hierarchy: the host sent something else, or it is damaged');
       const end = first.headerBytes + first.bytes;
       if (bytes.length < end) bytes = await this.file.read(0, end + MOST_LOCAL_BYTES);
       this.note(first, 0);
+      const version = this.file.versionText;
+      if (version !== null && this.store !== null) this.kept = new KeptFiles(this.url, version, this.store);
       this.place(readManifest(new TextDecoder().decode(bytes.subarray(first.headerBytes, end))), bytes.subarray(end), end);
       return { first: 0, bytes };
     });
