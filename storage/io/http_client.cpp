@@ -185,9 +185,6 @@ std::string refusal(long status) {
           "the host does not let everybody read it ({}); give credentials in "
           "~/.netrc or with --header",
           status);
-    case 404:
-    case 410:
-      return fmt::format("there is no such file ({})", status);
     default:
       return fmt::format("the host answered {}", status);
   }
@@ -233,36 +230,22 @@ class HttpClient::Connection {
   Connection& operator=(const Connection&) = delete;
   ~Connection() { curl_easy_cleanup(handle_); }
 
-  /// Adds to `answer` what is missing of the part, or fills it with the whole.
-  void get(const HttpAddress& address, std::uint64_t first, std::uint64_t count,
+  /// Adds to `answer` what is missing of the part, or fills it with the whole. False: there is no
+  /// such file.
+  bool get(const HttpAddress& address, std::uint64_t first, std::uint64_t count,
            HttpAnswer& answer) {
+    bool is_there = true;
     persist(address, [&] {
       const std::uint64_t got = answer.bytes.size();
       set(CURLOPT_HTTPGET, 1L);
       set(CURLOPT_RANGE, fmt::format("{}-{}", first + got, first + count - 1).c_str());
       Transfer transfer{handle_, check_, first + got, count, answer, got, {}, false, nullptr};
       const CURLcode code = perform(address, transfer);
-      return settle(address, transfer, code);
+      const long status = status_of(handle_);
+      is_there = code != CURLE_OK || (status != 404 && status != 410);
+      return is_there ? settle(address, transfer, code) : std::string();
     });
-  }
-
-  bool has(const HttpAddress& address) {
-    HttpAnswer none;
-    long status = 0;
-    persist(address, [&] {
-      set(CURLOPT_RANGE, nullptr);
-      set(CURLOPT_NOBODY, 1L);
-      Transfer transfer{handle_, check_, 0, 0, none, 0, {}, false, nullptr};
-      const CURLcode code = perform(address, transfer);
-      set(CURLOPT_NOBODY, 0L);
-      status = status_of(handle_);
-      if (code != CURLE_OK)
-        return failed(address, code);
-      if (status == kWhole || status == 404 || status == 410)
-        return std::string();
-      return refused(address, status);
-    });
-    return status == kWhole;
+    return is_there;
   }
 
   std::uint64_t bytes = 0;     ///< that have come since this was set to 0
@@ -428,21 +411,31 @@ class HttpClient::Lease {
 };
 
 HttpClient::HttpClient(HttpOptions options, std::function<void()> check)
-    : options_(std::move(options)), check_(std::move(check)), idle_(std::make_unique<Idle>()) {
+    : options_(std::move(options)),
+      check_([this, check = std::move(check)] {
+        if (is_over_)
+          throw Error(ErrorCode::interrupted, "nobody waits for it any more");
+        check();
+      }),
+      idle_(std::make_unique<Idle>()) {
   set_up();
 }
 HttpClient::~HttpClient() = default;
 
 HttpAnswer HttpClient::get(const HttpAddress& address, std::uint64_t first, std::uint64_t count) {
-  HttpAnswer answer;
-  Lease lease(*this);
-  lease.connection().get(address, first, count, answer);
-  return answer;
+  std::optional<HttpAnswer> answer = find(address, first, count);
+  if (!answer)
+    fail(address, "there is no such file on the host");
+  return std::move(*answer);
 }
 
-bool HttpClient::has(const HttpAddress& address) {
+std::optional<HttpAnswer> HttpClient::find(const HttpAddress& address, std::uint64_t first,
+                                           std::uint64_t count) {
+  HttpAnswer answer;
   Lease lease(*this);
-  return lease.connection().has(address);
+  if (!lease.connection().get(address, first, count, answer))
+    return std::nullopt;
+  return answer;
 }
 
 bool is_web_address(std::string_view text) {

@@ -55,8 +55,11 @@ class HttpClient {
   /// Bytes [first, first + count) of a file, fewer only at its end, or all of it. Requires count >
   /// 0.
   HttpAnswer get(const HttpAddress& address, std::uint64_t first, std::uint64_t count);
-  /// Whether there is such a file: all but 404 and 410 that is no success is a failure.
-  bool has(const HttpAddress& address);
+  /// The same; nothing if there is no such file (404, 410).
+  std::optional<HttpAnswer> find(const HttpAddress& address, std::uint64_t first,
+                                 std::uint64_t count);
+  /// All that is under way fails, and all that is asked for from now on.
+  void stop() { is_over_ = true; }
 
   const HttpCounters& counters() const { return counters_; }
 
@@ -67,6 +70,7 @@ class HttpClient {
   HttpOptions options_;
   std::function<void()> check_;
   HttpCounters counters_;
+  std::atomic<bool> is_over_ = false;
   struct Idle;
   std::unique_ptr<Idle> idle_;
 };

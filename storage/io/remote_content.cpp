@@ -39,22 +39,21 @@ std::uint64_t FetchedParts::append(std::span<const std::byte> bytes) {
 }
 
 RemoteContent::RemoteContent(HttpClient& client, HttpAddress address, FetchedParts& parts,
-                             std::uint64_t start)
+                             const HttpAnswer& start, std::uint64_t asked)
     : client_(client),
       address_(std::move(address)),
       parts_(parts),
       ahead_(
           kFetchedAtOnce, kFetchedAhead, [this](const File::Range& range) { return fetch(range); },
           [](std::uint64_t bytes) { return bytes; }) {
-  const HttpAnswer answer = client_.get(address_, 0, start);
-  const std::uint64_t known = answer.bytes.size();
-  if (!answer.is_whole && !answer.total && known == start)
+  const std::uint64_t known = start.bytes.size();
+  if (!start.is_whole && !start.total && known == asked)
     fail("the host does not tell how long it is (Content-Range)");
-  size_ = answer.is_whole ? known : answer.total.value_or(known);
-  if (size_ < known || (known < start && known < size_))
+  size_ = start.is_whole ? known : start.total.value_or(known);
+  if (size_ < known || (known < asked && known < size_))
     fail("the host sent another length than the file is said to have");
-  version_ = answer.version;
-  keep(0, answer.bytes);
+  version_ = start.version;
+  keep(0, start.bytes);
 }
 
 void RemoteContent::fail(const char* what) const {

@@ -41,8 +41,9 @@ class FetchedParts {
 /// A file on the web. Thread-safe. Failures throw Error(io).
 class RemoteContent {
  public:
-  /// Asks for the first `start` bytes. All must outlive this.
-  RemoteContent(HttpClient& client, HttpAddress address, FetchedParts& parts, std::uint64_t start);
+  /// `start`: the first `asked` bytes, or fewer if there are fewer. All must outlive this.
+  RemoteContent(HttpClient& client, HttpAddress address, FetchedParts& parts,
+                const HttpAnswer& start, std::uint64_t asked);
 
   std::uint64_t size() const { return size_; }
   const std::string& version() const { return version_; }

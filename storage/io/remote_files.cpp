@@ -88,9 +88,11 @@ RemoteFiles::RemoteFiles(FileSystem& others, const std::string& address, const f
   root_ = host_ + place.substr(has_user ? user + 1 : host);
   ahead_ = std::make_unique<ReadAhead<fs::path, Content>>(
       kFetchedAtOnce, kFetchedAhead, [this](const fs::path& file) { return load(file); },
-      [](const Content& content) { return std::min(content->size(), kStart); });
+      [](const Content& content) { return content ? std::min(content->size(), kStart) : 0; });
 }
-RemoteFiles::~RemoteFiles() = default;
+RemoteFiles::~RemoteFiles() {
+  client_->stop();  // what was fetched ahead and not asked for
+}
 
 bool RemoteFiles::is_remote(const fs::path& path) const {
   return path.native().starts_with(root_.native());
@@ -102,16 +104,29 @@ HttpAddress RemoteFiles::address_of(const fs::path& path) const {
 }
 
 RemoteFiles::Content RemoteFiles::load(const fs::path& path) {
-  auto content = std::make_shared<RemoteContent>(*client_, address_of(path), *parts_,
-                                                 is_archive(path) ? kArchiveStart : kStart);
+  const std::uint64_t asked = is_archive(path) ? kArchiveStart : kStart;
+  const auto start = client_->find(address_of(path), 0, asked);
+  if (!start)
+    return nullptr;
+  auto content =
+      std::make_shared<RemoteContent>(*client_, address_of(path), *parts_, *start, asked);
   const std::lock_guard lock(mutex_);
   return contents_.try_emplace(path, std::move(content)).first->second;
 }
 
 RemoteFiles::Content RemoteFiles::find(const fs::path& path) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = contents_.find(path); found != contents_.end())
+      return found->second;
+  }
+  const auto ready = ahead_->take([&](const fs::path& one) { return one == path; });
+  return ready ? *ready : load(path);
+}
+
+bool RemoteFiles::is_there(const fs::path& path) {
   const std::lock_guard lock(mutex_);
-  const auto found = contents_.find(path);
-  return found == contents_.end() ? nullptr : found->second;
+  return contents_.contains(path);
 }
 
 std::unique_ptr<File> RemoteFiles::open(const fs::path& path) {
@@ -119,9 +134,7 @@ std::unique_ptr<File> RemoteFiles::open(const fs::path& path) {
     return others().open(path);
   Content content = find(path);
   if (!content)
-    content = ahead_->take([&](const fs::path& one) { return one == path; }).value_or(nullptr);
-  if (!content)
-    content = load(path);
+    throw Error(ErrorCode::io, fmt::format("{}: there is no such file on the host", path.string()));
   return std::make_unique<RemoteFile>(path, std::move(content), counters_);
 }
 
@@ -134,7 +147,7 @@ FileIdentity RemoteFiles::identity(const fs::path& path) {
 bool RemoteFiles::exists(const fs::path& path) {
   if (!is_remote(path))
     return others().exists(path);
-  return !is_name_of_file(path) || find(path) != nullptr || client_->has(address_of(path));
+  return !is_name_of_file(path) || find(path) != nullptr;
 }
 
 FileKind RemoteFiles::kind(const fs::path& path) {
@@ -171,7 +184,7 @@ std::vector<fs::path> RemoteFiles::children(const fs::path& directory) {
 void RemoteFiles::will_read(std::span<const fs::path> files) {
   std::vector<fs::path> far;
   std::ranges::copy_if(files, std::back_inserter(far),
-                       [&](const fs::path& file) { return is_remote(file) && !find(file); });
+                       [&](const fs::path& file) { return is_remote(file) && !is_there(file); });
   ahead_->announce(std::move(far));
 }
 

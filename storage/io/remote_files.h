@@ -54,8 +54,10 @@ class RemoteFiles final : public ForwardingFiles {
 
   bool is_remote(const std::filesystem::path& path) const;
   HttpAddress address_of(const std::filesystem::path& path) const;
+  /// These two: null if there is no such file.
   Content load(const std::filesystem::path& path);
   Content find(const std::filesystem::path& path);
+  bool is_there(const std::filesystem::path& path);
 
   std::filesystem::path root_;
   std::string before_;  ///< scheme, and the user if there is one

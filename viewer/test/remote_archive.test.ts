@@ -34,7 +34,7 @@ function indexOf(names: readonly string[]): Uint8Array {
 }
 
 describe('the index of an archive', () => {
-  it.each([1, 2, 3, 100, 2730, 2731, 100_000])('finds each of %d names, most in one look', async (count) => {
+  it.each([1, 2, 3, 100, 2730, 2731, 20_000])('finds each of %d names, most in one look', async (count) => {
     const names = Array.from({ length: count }, (_, i) => `tiles/07/${String(i).padStart(6, '0')}.glb`);
     const index = indexOf(names);
     let looks = 0;
@@ -50,12 +50,12 @@ describe('the index of an archive', () => {
   });
 
   it('that is in no order ends with an answer', async () => {
-    const index = indexOf(Array.from({ length: 50_000 }, (_, i) => String(i)));
-    const places = Array.from({ length: 50_000 }, (_, i) => index.subarray(24 * i, 24 * i + 24));
+    const index = indexOf(Array.from({ length: 20_000 }, (_, i) => String(i)));
+    const places = Array.from({ length: 20_000 }, (_, i) => index.subarray(24 * i, 24 * i + 24));
     places.sort((a, b) => a[5] - b[5]);
     const shuffled = new Uint8Array(Buffer.concat(places));
     const read = (first: number, end: number): Promise<Uint8Array> => Promise.resolve(shuffled.subarray(first, end));
-    for (let i = 0; i < 200; ++i) await findInIndex(md5(String(i)), { offset: 0, count: 50_000 }, read, 'a.3tz').catch((problem: unknown) => { expect(String(problem)).toContain('a.3tz'); });
+    for (let i = 0; i < 200; ++i) await findInIndex(md5(String(i)), { offset: 0, count: 20_000 }, read, 'a.3tz').catch((problem: unknown) => { expect(String(problem)).toContain('a.3tz'); });
   });
 });
 
@@ -130,7 +130,7 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
       next.push(...children);
     }
     expect(all.length).toBeGreaterThan(1200);
-    const chosen = all.filter((_, i) => i % 17 === 0);
+    const chosen = all.filter((_, i) => i % 60 === 0);
     for (const node of chosen) {
       while (index.record(node) === null) await new Promise((resolve) => setTimeout(resolve, 1));
       const tile = await opened.remote.tile(node, index.record(node)!, signal);

@@ -184,7 +184,7 @@ TEST_F(RemoteFilesTest, WhatDoesNotPassIsToldAfterFiveTimes) {
 
 TEST_F(RemoteFilesTest, WhatIsNotThereIsToldAtOnce) {
   RemoteFiles& remote = open([](const HostRequest&) { return answer_status(404); });
-  EXPECT_THAT(problem(remote), HasSubstr("a.3tz: there is no such file (404)"));
+  EXPECT_THAT(problem(remote), HasSubstr("a.3tz: there is no such file on the host"));
   EXPECT_EQ(host_->requests(), 1U);
   EXPECT_FALSE(remote.exists(remote.root() / "tileset.json"));
 }
@@ -273,6 +273,20 @@ TEST_F(RemoteFilesTest, WaitsEndWhenTheyAreNotWanted) {
   };
   const auto began = std::chrono::steady_clock::now();
   EXPECT_THROW(remote.open(remote.root()), Error);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
+}
+
+TEST_F(RemoteFilesTest, WhatIsFetchedAheadAndNotAskedForHoldsNobodyUp) {
+  RemoteFiles& remote = open([&](const HostRequest& request) -> HostReply {
+    HostReply reply = answer_with(request, content_);
+    if (request.range->first > 0)
+      reply.bytes.resize(reply.bytes.size() - 1000);  // and then nothing
+    return reply;
+  });
+  const auto file = remote.open(remote.root());
+  file->will_read(std::vector<File::Range>{{100'000, 100'000}, {300'000, 100'000}});
+  const auto began = std::chrono::steady_clock::now();
+  remote_.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
 }
 
