@@ -136,7 +136,7 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
       const tile = await opened.remote.tile(node, index.record(node)!, signal);
       expect([tile.level, tile.index]).toEqual([node.level, node.index]);
     }
-  });
+  }, 30_000);
 
   it('is read in the order of older archives, too', async () => {
     const { archive, directory } = small();
