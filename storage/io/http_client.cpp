@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -190,6 +191,16 @@ std::string refusal(long status) {
   }
 }
 
+/// A file of certificates instead of the system's, as curl takes it; null: there is none.
+const char* other_authorities() {
+  for (const char* name : {"CURL_CA_BUNDLE", "SSL_CERT_FILE"}) {
+    const char* const file = std::getenv(name);
+    if (file != nullptr && *file != '\0')
+      return file;
+  }
+  return nullptr;
+}
+
 /// Once a process, before there are threads that use it.
 void set_up() {
   static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
@@ -224,6 +235,8 @@ class HttpClient::Connection {
     set(CURLOPT_XFERINFOFUNCTION, look_up);
     set(CURLOPT_HEADERFUNCTION, take_header);
     set(CURLOPT_WRITEFUNCTION, take_body);
+    if (const char* const authorities = other_authorities())
+      set(CURLOPT_CAINFO, authorities);
     set(CURLOPT_MAX_RECV_SPEED_LARGE, static_cast<curl_off_t>(options.bytes_per_second));
   }
   Connection(const Connection&) = delete;

@@ -283,8 +283,8 @@ TEST_F(RemoteFilesTest, WhatIsFetchedAheadAndNotAskedForHoldsNobodyUp) {
       reply.bytes.resize(reply.bytes.size() - 1000);  // and then nothing
     return reply;
   });
-  const auto file = remote.open(remote.root());
-  file->will_read(std::vector<File::Range>{{100'000, 100'000}, {300'000, 100'000}});
+  remote.open(remote.root())
+      ->will_read(std::vector<File::Range>{{100'000, 100'000}, {300'000, 100'000}});
   const auto began = std::chrono::steady_clock::now();
   remote_.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
