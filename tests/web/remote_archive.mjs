@@ -10,15 +10,15 @@ import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
 const FIRST_PICTURE = 'meshhier: first picture';
-const PATIENCE = 600_000; // milliseconds
+const PATIENCE = 60_000; // milliseconds
 
-/// The page over a model, behind the slow line; what it asks of the model's host.
-async function openSlowly(browser, url, model) {
+/// The page over a model, behind a line; what it asks of the model's host.
+async function open(browser, url, model, line = SLOW_LINE) {
   const page = await browser.newPage({ viewport: { width: 800, height: 600 }, reducedMotion: 'reduce' });
   await page.addInitScript(withoutRestDetail);
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
-  await session.send('Network.emulateNetworkConditions', SLOW_LINE);
+  if (line !== null) await session.send('Network.emulateNetworkConditions', line);
   const asked = [];
   let bytes = 0;
   const ours = new Set();
@@ -43,7 +43,7 @@ async function firstPictures(browser, one, other, rounds) {
   const times = [[], []];
   for (let round = 0; round < rounds; ++round)
     for (const [i, [url, model]] of [one, other].entries()) {
-      const { page, first } = await openSlowly(browser, url, model);
+      const { page, first } = await open(browser, url, model);
       times[i].push(first.picture);
       await page.close();
     }
@@ -51,7 +51,7 @@ async function firstPictures(browser, one, other, rounds) {
 }
 
 async function checkShown(browser, report, [page, directory, archive, pictures]) {
-  const [there, here] = await Promise.all([openSlowly(browser, page, archive), openSlowly(browser, page, directory)]);
+  const [there, here] = await Promise.all([open(browser, page, archive), open(browser, page, directory)]);
   await there.page.screenshot({ path: path.join(pictures, 'remote-archive.png') });
   const same = ['tiles', 'triangles', 'vertices', 'worstError'].every((key) => there.stats[key] === here.stats[key]);
   report.line('an archive elsewhere', same && there.complaints.length === 0,
@@ -72,7 +72,7 @@ async function checkRefused(browser, report, page, model) {
 }
 
 async function checkWhole(browser, report, page, model) {
-  const { page: shown, stats, asked } = await openSlowly(browser, page, model);
+  const { page: shown, stats, asked } = await open(browser, page, model, null);
   report.line('a host without ranges', stats.tiles > 0 && asked.length === 1, `sends a small archive whole: ${stats.tiles} tiles after ${asked.length} request`);
   await shown.close();
 }
