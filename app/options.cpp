@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -22,12 +21,8 @@ namespace meshhier::app {
 namespace {
 
 std::optional<std::uint64_t> parse_integer(std::string_view text, std::uint64_t maximum) {
-  std::uint64_t value = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, failure] = std::from_chars(text.data(), last, value);
-  if (failure != std::errc{} || end != last || value > maximum)
-    return std::nullopt;
-  return value;
+  const auto value = parse_number<std::uint64_t>(text);
+  return value && *value <= maximum ? value : std::nullopt;
 }
 
 [[noreturn]] void refuse(const std::string& option, std::string_view expected,

@@ -6,6 +6,7 @@
 #include "inspection/page_file.h"
 #include "server/static_site.h"
 #include "storage/io/http_client.h"
+#include "storage/io/paths.h"
 
 #include <memory>
 #include <ostream>
@@ -54,8 +55,7 @@ std::string single_page(Environment& environment, const PageArguments& arguments
 
 /// "david" of "models/david.hier/".
 std::string name_of(const fs::path& hierarchy) {
-  const fs::path named = hierarchy.has_filename() ? hierarchy : hierarchy.parent_path();
-  return named.stem().string();
+  return storage::without_last_slash(hierarchy).stem().string();
 }
 
 std::string make_page(const PageArguments& arguments, const HierarchyPlace& place,

@@ -1,12 +1,12 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
+#include "app/number_text.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/verify.h"
 #include "inspection/verify_error.h"
 
-#include <charconv>
 #include <limits>
 #include <memory>
 #include <ostream>
@@ -131,15 +131,13 @@ void store_level(const std::string& text, inspection::ErrorOptions& error) {
     error.selection = inspection::AllLevels{};
     return;
   }
-  std::uint8_t level = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, failure] = std::from_chars(text.data(), last, level);
-  if (failure != std::errc{} || end != last || level > kDeepestLevel) {
+  const auto level = parse_number<std::uint8_t>(text);
+  if (!level || *level > kDeepestLevel) {
     throw CLI::ValidationError(
         "--level", fmt::format("expected an integer from 0 to {} or \"all\", found \"{}\"",
                                kDeepestLevel, text));
   }
-  error.selection = static_cast<Level>(level);
+  error.selection = static_cast<Level>(*level);
 }
 
 /// A thousand times what figures are compared with: hours, but no defect.

@@ -345,7 +345,7 @@ std::filesystem::path resolved_path(const Draft& draft, const std::string& key,
                                     const std::filesystem::path& directory) {
   const std::filesystem::path whole = draft.is_overridden(key) ? path : directory / path;
   const std::filesystem::path normal = whole.lexically_normal();
-  return normal.has_filename() ? normal : normal.parent_path();
+  return storage::without_last_slash(normal);
 }
 
 /// Replacing the output would destroy an input that is, or lies in, that directory.

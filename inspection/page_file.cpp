@@ -32,7 +32,6 @@ constexpr std::string_view kMark = "<!-- meshhier: hierarchy -->";
 constexpr std::string_view kTitle = "<title>meshhier</title>";
 /// Records of the index that the viewer fetches at once (viewer/src/hierarchy/tile_index.ts).
 constexpr std::uint64_t kPageRecords = 545;
-constexpr std::uint64_t kIndexHeader = 32;
 
 /// RFC 4648, section 4.
 std::string base64(std::span<const std::byte> bytes) {
@@ -171,9 +170,8 @@ std::uint64_t number_of(const storage::HierarchyReader& reader, NodeId tile) {
 
 /// Of the index up to the page that has a record.
 std::uint64_t index_bytes_with(const storage::HierarchyReader& reader, std::uint64_t record) {
-  constexpr std::uint64_t kRecordBytes = 120;
   const std::uint64_t records = (record / kPageRecords + 1) * kPageRecords;
-  return std::min(kIndexHeader + records * kRecordBytes, reader.manifest().index_bytes);
+  return std::min(storage::index_bytes(records), reader.manifest().index_bytes);
 }
 
 struct Chosen {

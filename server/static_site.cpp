@@ -7,6 +7,7 @@
 #include "server/hierarchies.h"
 #include "storage/format/layout.h"
 #include "storage/io/output_file.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
@@ -158,16 +159,12 @@ void require_place(storage::FileSystem& files, const SiteJob& job) {
     throw Error(ErrorCode::exists, job.output.string() + " is there already; --force replaces it");
 }
 
-/// "site/" and "site" are one place.
-fs::path named(const fs::path& output) {
-  return output.has_filename() ? output : output.parent_path();
-}
-
 }  // namespace
 
 std::string write_site(storage::FileSystem& files, const SiteJob& given,
                        const SiteProgress& progress) {
-  const SiteJob job{given.models, given.viewer, named(given.output), given.replace};
+  const SiteJob job{given.models, given.viewer, storage::without_last_slash(given.output),
+                    given.replace};
   require_place(files, job);
   const fs::path part = storage::unfinished_path(job.output);
   files.remove_all(part);

@@ -242,7 +242,11 @@ TileRecord decode_record(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t index_bytes(const Tree& tree) {
-  return kIndexHeaderBytes + tree.tile_count() * kRecordBytes;
+  return index_bytes(tree.tile_count());
+}
+
+std::uint64_t index_bytes(std::uint64_t records) {
+  return kIndexHeaderBytes + records * kRecordBytes;
 }
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {

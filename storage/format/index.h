@@ -23,8 +23,9 @@ std::vector<std::byte> encode_record(const TileRecord& record);
 /// The inverse. Throws Error(corrupt) if `bytes` has another size or names no level.
 TileRecord decode_record(std::span<const std::byte> bytes);
 
-/// Bytes of its index.
+/// Bytes of its index, or of the beginning of one with so many records.
 std::uint64_t index_bytes(const Tree& tree);
+std::uint64_t index_bytes(std::uint64_t records);
 
 /// The record of `node`, which has a tile, among all of a tree's, ascending by node. O(log n).
 const TileRecord& record_of(std::span<const TileRecord> records, NodeId node);

@@ -1,6 +1,7 @@
 #include "storage/io/http_client.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/small_letters.h"
 
 #include <algorithm>
 #include <charconv>
@@ -66,13 +67,6 @@ std::optional<std::uint64_t> number(std::string_view text) {
   return value;
 }
 
-bool equals_ignoring_case(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](char x, char y) {
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : int{c}; };
-    return lower(x) == lower(y);
-  });
-}
-
 /// What one answer says of itself, of the last of several that redirects make.
 struct Head {
   std::string etag;
@@ -89,14 +83,15 @@ struct Head {
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos)
       return;
-    const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
-    if (equals_ignoring_case(name, "etag"))
+    const std::string name = small_letters(line.substr(0, colon));
+    const std::string_view value = trimmed(line.substr(colon + 1));
+    if (name == "etag")
       etag = value.starts_with("W/") ? value.substr(2) : value;
-    else if (equals_ignoring_case(name, "last-modified"))
+    else if (name == "last-modified")
       modified = value;
-    else if (equals_ignoring_case(name, "content-length"))
+    else if (name == "content-length")
       length = number(value);
-    else if (equals_ignoring_case(name, "content-range"))
+    else if (name == "content-range")
       add_range(value);
   }
 
@@ -452,10 +447,8 @@ std::optional<HttpAnswer> HttpClient::find(const HttpAddress& address, std::uint
 }
 
 bool is_web_address(std::string_view text) {
-  const auto begins_with = [&](std::string_view scheme) {
-    return equals_ignoring_case(text.substr(0, scheme.size()), scheme);
-  };
-  return begins_with("http://") || begins_with("https://");
+  const std::string scheme = small_letters(text.substr(0, text.find('/')));
+  return (scheme == "http:" || scheme == "https:") && text.substr(scheme.size()).starts_with("//");
 }
 
 }  // namespace meshhier::storage

@@ -1,6 +1,7 @@
 #include "storage/io/link_free_paths.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/paths.h"
 #include "storage/io/system_failure.h"
 
 #include <cerrno>
@@ -32,7 +33,7 @@ bool is_link(const Descriptor& file) {
 /// Without a slash at its end, which would be a part of its own.
 fs::path tidy(const fs::path& path) {
   const fs::path normal = fs::absolute(path).lexically_normal();
-  return normal.has_filename() ? normal : normal.parent_path();
+  return without_last_slash(normal);
 }
 
 /// The first part of the path that is one now; empty if none is any more.

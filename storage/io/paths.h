@@ -19,4 +19,9 @@ inline std::string lower_extension(const std::filesystem::path& path) {
   return small_letters(path.extension().string());
 }
 
+/// "a/b" of "a/b/": both name one place.
+inline std::filesystem::path without_last_slash(const std::filesystem::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
 }  // namespace meshhier::storage

@@ -1,6 +1,7 @@
 #include "storage/io/remote_files.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
@@ -19,8 +20,6 @@ namespace fs = std::filesystem;
 /// Asked for when a file is opened: all of most tiles; of an archive, which is read in parts, less.
 constexpr std::uint64_t kStart = std::uint64_t{1} << 20;
 constexpr std::uint64_t kArchiveStart = std::uint64_t{1} << 16;
-
-constexpr std::string_view kArchiveEnding = ".3tz";
 
 class RemoteFile final : public File {
  public:
@@ -61,11 +60,7 @@ bool is_name_of_file(const fs::path& path) {
 }
 
 bool is_archive(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return ending == kArchiveEnding;
+  return lower_extension(path) == ".3tz";
 }
 
 }  // namespace

@@ -82,8 +82,7 @@ export class RangedFile {
     private readonly fetch: Fetch,
   ) {}
 
-  /// Bytes [first, end): fewer only if the file ends before. What is asked for at one time and lies side by side comes in one
-  /// answer. Throws HierarchyProblem, and what ends `init.signal`.
+  /// Bytes [first, end): fewer only if the file ends before. Throws HierarchyProblem, and what ends `init.signal`.
   async readUpTo(first: number, end: number, init: RequestInit = {}): Promise<Uint8Array<ArrayBuffer>> {
     if (this.whole !== null) return this.whole.slice(first, end);
     const response = await respond(this.fetch, this.url, this.name, { ...init, headers: rangeHeader(first, end) });

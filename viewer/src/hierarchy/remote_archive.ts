@@ -46,7 +46,6 @@ export class RemoteArchive implements RemoteFiles {
   /// Where the header of the tile behind the root is; null: not known yet, or an older archive.
   private firstTile: number | null = null;
   private readonly started = new Map<string, Promise<unknown>>();
-
   private kept: KeptFiles | null = null;
 
   /// `store`: keeps files for the next visit; null: none does.
@@ -73,11 +72,11 @@ export class RemoteArchive implements RemoteFiles {
   /// From an earlier visit, of the same version; else `fetch` it, and keep it for a later one.
   private async fromVisits(name: string, fetch: () => Promise<Uint8Array<ArrayBuffer>>): Promise<Uint8Array<ArrayBuffer>> {
     await this.head();
-    if (this.kept === null) return fetch();
+    if (this.kept === null || name === MANIFEST) return fetch(); // that comes with the version
     const found = await this.kept.find(name);
     if (found !== null) return found;
     const bytes = await fetch();
-    if (name !== MANIFEST) this.kept.keep(name, bytes); // that comes with the version
+    this.kept.keep(name, bytes);
     return bytes;
   }
 
