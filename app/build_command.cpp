@@ -196,7 +196,7 @@ const std::map<std::string, std::string (*)()>& references() {
 }
 
 std::string footer() {
-  return R"(FILE is a mesh: a PLY, OBJ, glTF, STL or OFF, perhaps in gzip. The hierarchy of scan.ply is made beside
+  return R"(FILE is a mesh: a PLY, OBJ, glTF, STL or OFF, perhaps in gzip, or a tileset.json. The hierarchy of scan.ply is made beside
 it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
 config; `meshhier build --help-config` says what they mean.
 

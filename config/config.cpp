@@ -1,6 +1,7 @@
 #include "config/config.h"
 
 #include "config/config_schema.h"
+#include "config/input_frame.h"
 #include "config/placement.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
@@ -472,8 +473,9 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words) {
+  const ConfigOrigin origin{file.string(), file.parent_path()};
   return with_map(files,
-                  parse_config(read_text(files, file), {file.string(), file.parent_path()}, words));
+                  with_input_frame(files, parse_config(read_text(files, file), origin, words)));
 }
 
 std::vector<std::filesystem::path> read_by(const Config& config) {
@@ -485,6 +487,7 @@ std::vector<std::filesystem::path> read_by(const Config& config) {
 
 Json resolved_json(const Config& config) {
   Config resolved = config;
+  resolved.up = config.up_axis();
   if (!resolved.simplify.vertices && !resolved.partition.count) {
     resolved.simplify.vertices = resolved.partition.vertices;
   }

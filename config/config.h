@@ -188,10 +188,12 @@ struct Config {
   StorageConfig storage;
   TextureConfig texture;
   MissingImages missing_images = MissingImages::warn;
-  UpAxis up = UpAxis::y;
+  /// Which axis of the input points up; none: z of a tileset, else y (with_input_frame()).
+  std::optional<UpAxis> up;
   std::optional<Unit> units;  ///< of the input's coordinates; none: as the format says, or unknown
   PlacementConfig placement;
   std::string licence;  ///< of the model; for the tileset; may be empty
+  UpAxis up_axis() const { return up.value_or(UpAxis::y); }
   friend bool operator==(const Config&, const Config&) = default;
 };
 

@@ -243,9 +243,9 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}),
       required_paths(
           {.path = "input",
-           .meaning =
-               "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip; the files of a "
-               "list are joined in its order",
+           .meaning = "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip, or a tileset "
+                      "of 3D Tiles; the files of a "
+                      "list are joined in its order",
            .decides_result = true},
           kMostInputs, [](auto& c) -> auto& { return c.input; }),
       path(
@@ -398,7 +398,8 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(choice(
           {.path = "up",
            .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
-                      "medical images"},
+                      "medical images",
+           .unset = "`z` of a tileset of 3D Tiles, else `y`"},
           kUpAxes, [](auto& c) -> auto& { return c.up; })),
       deciding(choice(
           {.path = "units",

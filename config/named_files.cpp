@@ -1,5 +1,6 @@
 #include "config/named_files.h"
 
+#include "config/input_frame.h"
 #include "config/placement.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
@@ -48,11 +49,14 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
   if (files.is_directory(path))
     return is_json;
   const auto file = files.open(path);
+  const auto format = mesh_io::find_format(*file);
   if (is_json) {
+    if (format && format->kind == mesh_io::MeshKind::tileset)
+      return false;
     refuse_foreign(path, first_bytes(*file));
     return true;
   }
-  if (mesh_io::find_format(*file))
+  if (format)
     return false;
   const std::string start = first_bytes(*file);
   refuse_foreign(path, start);
@@ -86,7 +90,7 @@ Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {
     words.meshes.assign(named.begin(), named.end());
-    return with_map(files, parse_config("{}", {"--set", {}}, words));
+    return with_map(files, with_input_frame(files, parse_config("{}", {"--set", {}}, words)));
   }
   if (named.size() == 1)
     return load_config(files, *config, words);

@@ -78,7 +78,7 @@ geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
   const Vec3d anchor =
       place.anchor ? to_vec(*place.anchor) : bounds.min + (bounds.max - bounds.min) * 0.5;
   const double scale = config.units ? metres(config) / projection.unit_metres() : 1;
-  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up),
+  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up_axis()),
           scale};
 }
 
@@ -118,7 +118,7 @@ std::string exactness_text(const geodesy::MapProjection& projection, double larg
 /// Of a model that the config puts on the globe itself.
 std::string globe_text(const Config& config, const BoundsD& bounds) {
   const PlacementConfig& place = config.placement;
-  const BoundsD box = z_up_box(bounds, config.up);
+  const BoundsD box = z_up_box(bounds, config.up_axis());
   const Vec3d size = (box.max - box.min) * metres(config);
   return fmt::format(
       "placed at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {:.4g} m from west to east, "
@@ -147,7 +147,7 @@ std::optional<Transform> tileset_transform(const Config& config, const BoundsD& 
     return place.transform ? std::optional(scaled(*place.transform, scale)) : std::nullopt;
   const Vec3d anchor = to_vec(place.anchor.value_or(std::array<double, 3>{})) * scale;
   return scaled(storage::globe_transform(*place.longitude, *place.latitude,
-                                         place.height.value_or(0), anchor, config.up),
+                                         place.height.value_or(0), anchor, config.up_axis()),
                 scale);
 }
 
@@ -155,7 +155,7 @@ bool fits_map(const Config& config, const BoundsD& bounds, const Transform& tran
   constexpr double kVersionsApart = 10;
   const auto [projection, model] = Mapped(config, bounds);
   const auto error_of = [&, &projection = projection, &model = model](const Transform& one) {
-    return geodesy::largest_error(projection, model, one, z_up_box(bounds, config.up));
+    return geodesy::largest_error(projection, model, one, z_up_box(bounds, config.up_axis()));
   };
   return error_of(transform) <=
          error_of(geodesy::map_transform(projection, model)) + kVersionsApart;
@@ -173,7 +173,7 @@ std::string placement_text(const Config& config, const BoundsD& bounds,
   const geodesy::Geodetic place =
       projection.to_geodetic(projection.to_geocentric(model.to_map(model.anchor)));
   const double off =
-      geodesy::largest_error(projection, model, transform, z_up_box(bounds, config.up));
+      geodesy::largest_error(projection, model, transform, z_up_box(bounds, config.up_axis()));
   std::string text = fmt::format(
       "placed by {} at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {}\n", projection.name(),
       place.longitude, place.latitude, place.height, exactness_text(projection, off));

@@ -123,12 +123,13 @@ std::array<double, 2> transformed(const mesh_io::GltfTextureTransform& t, double
 
 class GltfImporter {
  public:
-  GltfImporter(GltfFile& file, RawMesh& mesh, Textures textures, const ImportRoom& room)
+  GltfImporter(GltfFile& file, const GltfTransform& placement, RawMesh& mesh, Textures textures,
+               const ImportRoom& room)
       : file_(file),
         mesh_(mesh),
         textures_(textures),
         room_(room),
-        scene_(gltf_scene(file.document(), file.path())),
+        scene_(gltf_scene(file.document(), file.path(), placement)),
         materials_(file) {}
 
   GltfImport run() {
@@ -531,9 +532,9 @@ class GltfImporter {
 
 }  // namespace
 
-GltfImport import_gltf(mesh_io::GltfFile& file, RawMesh& mesh, Textures textures,
-                       const ImportRoom& room) {
-  return GltfImporter(file, mesh, textures, room).run();
+GltfImport import_gltf(mesh_io::GltfFile& file, const GltfTransform& placement, RawMesh& mesh,
+                       Textures textures, const ImportRoom& room) {
+  return GltfImporter(file, placement, mesh, textures, room).run();
 }
 
 }  // namespace meshhier::importing

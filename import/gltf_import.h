@@ -22,13 +22,14 @@ struct GltfImport {
   mesh_io::ZeroedCounts zeroed;
 };
 
-/// Appends the mesh of a file to `mesh`, but for its layout: primitive by primitive in the order of
-/// the scene, of each the vertices that its triangles use, in their order. The mesh is textured if
-/// `textures` are used and a primitive's base colour has a picture that is there and coordinates.
-/// If it is not, and no primitive has vertex colours, the vertices have the base colours, if they
-/// are to be seen (PlainColours). Attributes that a primitive does not have, but another has, are
-/// filled in and counted. Throws Error(input) naming the accessor, node or view; as GltfFile.
-GltfImport import_gltf(mesh_io::GltfFile& file, RawMesh& mesh, Textures textures,
-                       const ImportRoom& room);
+/// Appends the mesh of a file to `mesh`, but for its layout, with its scene at `placement`:
+/// primitive by primitive in the order of the scene, of each the vertices that its triangles use,
+/// in their order. The mesh is textured if `textures` are used and a primitive's base colour has a
+/// picture that is there and coordinates. If it is not, and no primitive has vertex colours, the
+/// vertices have the base colours, if they are to be seen (PlainColours). Attributes that a
+/// primitive does not have, but another has, are filled in and counted. Throws Error(input) naming
+/// the accessor, node or view; as GltfFile.
+GltfImport import_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement,
+                       RawMesh& mesh, Textures textures, const ImportRoom& room);
 
 }  // namespace meshhier::importing

@@ -12,6 +12,7 @@
 #include "import/text_blocks.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/part_of_file.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
@@ -55,6 +56,8 @@ class Import {
       RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
       write(input_.weld() ? weld(placed) : placed, ply);
     }
+    for (const SourceCount& one : input_.tileset_counts())
+      count(one.name, one.count);
     note_files();
     note_textures();
     std::ranges::sort(facts_.counts, {}, &SourceCount::name);
@@ -130,7 +133,8 @@ class Import {
     all.await(mesh_.materials.companions().awaited());
     input_.set_companions(std::move(all));
     facts_.record = input_.record(checksums_, env_.cancel, [this](const CompanionFile& file) {
-      if (file.part == InputPart::buffer)  // the others were not known when the stage began
+      if (file.part == InputPart::buffer ||
+          file.part == InputPart::tileset)  // the others were not known when the stage began
         env_.progress.advance(file.identity.bytes);
     });
     facts_.files = input_.describe(facts_.record);
@@ -189,8 +193,11 @@ class Import {
       case MeshKind::off:
         read_stream(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
         break;
+      case MeshKind::tileset:  // its tiles are the files
+        throw Error(ErrorCode::internal, facts.path.string() + " is a tileset");
       case MeshKind::gltf:
       case MeshKind::glb:
+      case MeshKind::b3dm:
         added = add_gltf(facts, ply.path());
         break;
     }
@@ -293,12 +300,15 @@ class Import {
   Added add_plain_gltf(const InputFileFacts& facts, std::shared_ptr<const storage::File> content) {
     // While the reader decodes no sort runs.
     constexpr std::uint64_t kLeast = 4 * kImportMiB;
+    const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
+    if (facts.tile)
+      content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
     mesh_io::GltfFile file(
         std::move(content), facts.path.parent_path(),
         {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
          facts.format.is_gzip ? mesh_io::GltfContent::temporary : mesh_io::GltfContent::lasting,
-         [this] { env_.cancel.check(); }});
-    const GltfImport import = import_gltf(file, mesh_, input_.textures(), room_);
+         [this] { env_.cancel.check(); }, tile.offset});
+    const GltfImport import = import_gltf(file, tile.placement, mesh_, input_.textures(), room_);
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
     count(import.zeroed);

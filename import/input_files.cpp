@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "mesh_io/gltf_buffer_files.h"
+#include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/ply_header.h"
 #include "mesh_io/ply_source.h"
@@ -44,21 +45,67 @@ bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures) {
 
 InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
                        Textures textures)
-    : files_(files.input()), weld_(weld), textures_(textures) {
-  for (const std::filesystem::path& path : paths) {
-    if (files_.is_directory(path)) {
-      throw Error(ErrorCode::io, path.string() +
-                                     " is a folder; name the mesh in it (PLY, OBJ, glTF, STL "
-                                     "or OFF)");
-    }
-    const auto file = files_.open(path);
-    const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
-    InputFileFacts facts{path, format, files_.identity(path)};
-    if (format.kind == mesh_io::MeshKind::ply)
-      look_into_ply(*file, facts);
-    all_.push_back(std::move(facts));
-    find_buffers(all_.back(), *file);
+    : files_(files.input()), named_(paths), weld_(weld), textures_(textures) {
+  for (const std::filesystem::path& path : paths)
+    add_mesh(path);
+  std::ranges::sort(tileset_counts_, {}, &SourceCount::name);
+}
+
+void InputFiles::add_mesh(const std::filesystem::path& path) {
+  if (files_.is_directory(path)) {
+    throw Error(ErrorCode::io, path.string() +
+                                   " is a folder; name the mesh in it (PLY, OBJ, glTF, STL "
+                                   "or OFF, or a tileset.json)");
   }
+  const auto file = files_.open(path);
+  const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
+  if (format.kind == mesh_io::MeshKind::tileset)
+    return add_tileset(path);
+  add_file({path, format, files_.identity(path)}, *file);
+}
+
+void InputFiles::add_file(InputFileFacts facts, const storage::File& file) {
+  if (facts.format.kind == mesh_io::MeshKind::ply)
+    look_into_ply(file, facts);
+  all_.push_back(std::move(facts));
+  find_buffers(all_.back(), file);
+}
+
+void InputFiles::add_tileset(const std::filesystem::path& path) {
+  if (!std::exchange(has_tileset_, true))
+    frame_ = mesh_io::globe_frame(files_, path, mesh_io::kTilesetBytes);
+  const mesh_io::Tileset tileset =
+      mesh_io::read_tileset(files_, path, frame_, mesh_io::kTilesetBytes);
+  if (tileset.meshes.empty())
+    mesh_io::fail_file(path, "is a tileset without a mesh in its finest tiles");
+  companions_.add({path, InputPart::tileset, files_.identity(path)});
+  for (const std::filesystem::path& document : tileset.documents)
+    companions_.add({document, InputPart::tileset, files_.identity(document)});
+  for (const mesh_io::TilesetMesh& mesh : tileset.meshes)
+    add_file({mesh.file, mesh.format, files_.identity(mesh.file), false, mesh},
+             *files_.open(mesh.file));
+  if (tileset.is_hierarchy) {
+    warnings_.push_back(
+        plain_text(path.string(), kLongestPath) +
+        " belongs to a hierarchy, of which triangles at the borders of tiles come several times: "
+        "`meshhier export` gives its mesh as it was");
+  }
+  const auto note = [&](const char* name, std::uint64_t count, const char* what) {
+    if (count == 0)
+      return;
+    const auto found = std::ranges::find(tileset_counts_, name, &SourceCount::name);
+    if (found == tileset_counts_.end())
+      tileset_counts_.push_back({name, count});
+    else
+      found->count += count;
+    if (what != nullptr)
+      warnings_.push_back(fmt::format("{}: {} left out: only tiles of meshes are read",
+                                      plain_text(path.string(), kLongestPath),
+                                      counted(count, what)));
+  };
+  note("coarser_tiles", tileset.coarser, nullptr);
+  note("ignored_instanced_tiles", tileset.instanced, "i3dm tiles");
+  note("ignored_point_tiles", tileset.points, "point tiles");
 }
 
 void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts) {
@@ -100,10 +147,8 @@ void InputFiles::look_for_picture(const InputFileFacts& facts) {
 }
 
 std::optional<Unit> InputFiles::units() const {
-  const bool is_gltf = std::ranges::all_of(all_, [](const InputFileFacts& file) {
-    return file.format.kind == mesh_io::MeshKind::gltf ||
-           file.format.kind == mesh_io::MeshKind::glb;
-  });
+  const bool is_gltf = std::ranges::all_of(
+      all_, [](const InputFileFacts& file) { return mesh_io::is_gltf(file.format.kind); });
   return is_gltf ? std::optional(Unit::m) : std::nullopt;
 }
 
@@ -118,7 +163,7 @@ std::vector<std::string> InputFiles::unused() const {
 
 void InputFiles::find_buffers(const InputFileFacts& file, const storage::File& content) {
   if (file.format.kind != mesh_io::MeshKind::gltf && file.format.kind != mesh_io::MeshKind::glb)
-    return;
+    return;  // a b3dm has its buffer within
   for (const std::filesystem::path& path : mesh_io::gltf_buffer_files(content)) {
     if (files_.kind(path) == storage::FileKind::regular)
       companions_.add({path, InputPart::buffer, files_.identity(path)});
@@ -146,23 +191,35 @@ bool InputFiles::recall(const InputRecord& earlier) {
 
 std::string InputFiles::name() const {
   std::string name;
-  const std::size_t listed = all_.size() <= kMostListedMeshes ? all_.size() : kMostListedMeshes - 1;
-  for (const InputFileFacts& file : std::span(all_).first(listed)) {
+  const std::size_t count = named_.size();
+  const std::size_t listed = count <= kMostListedMeshes ? count : kMostListedMeshes - 1;
+  for (std::size_t i = 0; i < listed; ++i) {
     name += name.empty() ? "" : ", ";
-    name += file.path.filename().string();
+    name += named_[i].filename().string();
   }
-  if (listed < all_.size())
-    name += fmt::format(" and {} more", all_.size() - listed);
+  if (listed < count)
+    name += fmt::format(" and {} more", count - listed);
   return name;
 }
 
+std::string InputFiles::formats() const {
+  std::vector<std::pair<std::string, std::size_t>> runs;
+  for (const InputFileFacts& file : all_) {
+    std::string name = name_of(file.format);
+    if (runs.empty() || runs.back().first != name)
+      runs.emplace_back(std::move(name), 0);
+    ++runs.back().second;
+  }
+  std::string text;
+  for (const auto& [name, count] : runs) {
+    text += text.empty() ? "" : ", ";
+    text += count > 1 ? fmt::format("{} x {}", name, count) : name;
+  }
+  return text;
+}
+
 std::string InputFiles::imported_name() const {
-  if (is_unpacked_only())
-    return all_[0].unpacked_name();
-  mesh_io::InputPaths paths;
-  for (const InputFileFacts& file : all_)
-    paths.push_back(file.path);
-  return paths.string() + " (imported)";
+  return is_unpacked_only() ? all_[0].unpacked_name() : named_.string() + " (imported)";
 }
 
 std::uint64_t InputFiles::bytes() const {

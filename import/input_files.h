@@ -8,6 +8,7 @@
 #include "mesh_io/mesh_format.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_plan.h"
+#include "mesh_io/tileset.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -34,7 +35,8 @@ struct InputFileFacts {
   std::filesystem::path path;
   mesh_io::MeshFormat format;
   storage::FileIdentity identity;
-  bool has_corner_attributes = false;  ///< as importing::has_corner_attributes()
+  bool has_corner_attributes = false;          ///< as importing::has_corner_attributes()
+  std::optional<mesh_io::TilesetMesh> tile{};  ///< of a tileset: where in the file it is
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// What its content is called in messages when it is no longer packed.
@@ -46,7 +48,8 @@ inline constexpr std::size_t kMostUnused = 100;
 
 class InputFiles {
  public:
-  /// Looks at what each file is. All is read by files.input(). Throws as mesh_io::detect_format.
+  /// Looks at what each file is; of a tileset at all its files. All is read by files.input().
+  /// Throws as mesh_io::detect_format and mesh_io::read_tileset.
   InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
              Textures textures = Textures::use);
 
@@ -65,7 +68,9 @@ class InputFiles {
   std::optional<Unit> units() const;
   /// As SourceSummary's, each once: the first kMostUnused and how many more.
   std::vector<std::string> unused() const;
-  /// What all should know of pictures that are not used, a line each.
+  /// Of tilesets: what was not read of them.
+  const std::vector<SourceCount>& tileset_counts() const { return tileset_counts_; }
+  /// What all should know of pictures and tiles that are not used, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return weld_; }
   /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
@@ -78,6 +83,8 @@ class InputFiles {
            all_[0].has_corner_attributes;
   }
 
+  /// The format of each mesh for people, equal ones together: "b3dm x 120".
+  std::string formats() const;
   /// One packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
     return !weld_ && !has_unplaced_ && all_.size() == 1 &&
@@ -106,6 +113,9 @@ class InputFiles {
   std::vector<SourceFile> describe(const InputRecord& record) const;
 
  private:
+  void add_mesh(const std::filesystem::path& path);
+  void add_tileset(const std::filesystem::path& path);
+  void add_file(InputFileFacts facts, const storage::File& file);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);
   void find_buffers(const InputFileFacts& file, const storage::File& content);
@@ -121,7 +131,11 @@ class InputFiles {
   }
 
   storage::FileSystem& files_;  ///< that may refuse what it is asked for
+  mesh_io::InputPaths named_;   ///< meshes and tilesets
   std::vector<InputFileFacts> all_;
+  std::optional<mesh_io::GlobeFrame> frame_;  ///< of the first tileset, for all
+  bool has_tileset_ = false;
+  std::vector<SourceCount> tileset_counts_;
   Companions companions_;
   std::vector<std::string> unused_, warnings_;
   std::set<std::string> known_unused_;

@@ -12,7 +12,8 @@
 namespace meshhier::importing {
 namespace {
 
-constexpr std::array<const char*, 4> kPartNames{"mesh", "buffer", "material library", "picture"};
+constexpr std::array<const char*, 5> kPartNames{"mesh", "buffer", "material library", "picture",
+                                                "tileset"};
 
 /// Of at least one file of a part.
 SourceFile joined(std::span<const ReadFile> files) {

@@ -16,7 +16,7 @@
 namespace meshhier::importing {
 
 /// What a file is to the input, in the order in which checksums are joined.
-enum class InputPart : std::uint8_t { mesh, buffer, library, picture };
+enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset };
 
 /// A file that meshes are not whole without.
 struct CompanionFile {

@@ -114,7 +114,7 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
       !config.first_view.standpoint() || manifest.first_view == config.first_view.standpoint(),
       "\"first_view\" is not that of \"config\"");
   if (says("/up"))
-    problems.compare("up", name_of(manifest.up), name_of(config.up));
+    problems.compare("up", name_of(manifest.up), name_of(config.up_axis()));
   problems.require(manifest.units == (config.units ? config.units : manifest.source.units),
                    "\"units\" are not those of \"config\" or the source");
   if (config.placement.crs) {

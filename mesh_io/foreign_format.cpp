@@ -18,7 +18,7 @@ constexpr std::string_view kUnpack = "unpack it, and build the mesh in it";
 constexpr std::string_view kExport = "export it as glTF, OBJ or PLY from the program that made it";
 constexpr std::string_view kTriangulate =
     "make a mesh of its points first, as by Poisson reconstruction";
-constexpr std::string_view kTileset = "build the mesh that it was made of";
+constexpr std::string_view kTileset = "build the tileset.json that lists it";
 constexpr std::string_view kHierarchy =
     "it is part of what a build makes: `meshhier inspect` and `serve` take its directory";
 constexpr std::string_view kHeights = "if its values are heights, make a mesh of them first";
@@ -114,7 +114,6 @@ constexpr auto kWords = std::to_array<Word>({
     {"<", "<!DOCTYPE html", {"a web page", "the download of the mesh may have failed"}},
     {"<", "<?xml", {"an XML file", kExport}},
     {"{", "\"format\": \"meshhier", {"the manifest of a hierarchy", kHierarchy}},
-    {"{", "\"geometricError\"", {"a tileset of 3D Tiles", kTileset}},
     {"{", "\"CityJSON\"", {"a CityJSON file", kExport}},
     {"{", "\"FeatureCollection\"", {"a GeoJSON file", kExport}},
     {"0", "SECTION", {"a DXF drawing", kExport}},

@@ -250,7 +250,7 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
       fail(name + " lies in a packed GLB; unpack the file by gunzip first");
     if (!buffer.file.empty()) {
       picture.file = buffer.file;
-      picture.offset = buffer.offset + range.offset;
+      picture.offset = buffer.offset + range.offset + (buffer.file == path() ? room_.begin : 0);
       picture.bytes = range.size;
     } else {
       require_memory(range.size, name);

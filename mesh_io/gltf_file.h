@@ -28,6 +28,7 @@ struct GltfRoom {
   std::uint64_t memory_bytes = 0;  ///< for the JSON, and for what a codec decodes at once
   GltfContent content = GltfContent::lasting;
   std::function<void()> check;  ///< called often; may throw
+  std::uint64_t begin = 0;      ///< of the glTF in the file of its path
 };
 
 /// Where a picture lies.

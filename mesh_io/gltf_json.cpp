@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A document nests 8 levels; what others add to it some more.
-constexpr int kMostDepth = 64;
 /// What the parser holds of each: a node of a map with its key, or an item of a list that has just
 /// grown; beside it the characters of texts.
 constexpr std::uint64_t kKeyBytes = 128;
@@ -46,13 +44,14 @@ std::uint64_t count_of(const Json& value) {
 /// Counts what the parser takes, as it goes.
 class ParseGuard {
  public:
-  ParseGuard(const std::filesystem::path& path, std::uint64_t text_bytes, std::uint64_t most_bytes)
-      : path_(path), taken_(2 * text_bytes), most_(most_bytes) {
+  ParseGuard(const std::filesystem::path& path, std::uint64_t text_bytes, std::uint64_t most_bytes,
+             int most_depth)
+      : path_(path), taken_(2 * text_bytes), most_(most_bytes), most_depth_(most_depth) {
     check();
   }
   bool operator()(int depth, Json::parse_event_t event, const Json&) {
-    if (depth > kMostDepth)
-      fail_file(path_, fmt::format("its JSON is nested deeper than {} levels", kMostDepth));
+    if (depth > most_depth_)
+      fail_file(path_, fmt::format("its JSON is nested deeper than {} levels", most_depth_));
     taken_ += event == Json::parse_event_t::key ? kKeyBytes : kValueBytes;
     check();
     return true;
@@ -71,13 +70,14 @@ class ParseGuard {
   const std::filesystem::path& path_;
   std::uint64_t taken_;
   std::uint64_t most_;
+  int most_depth_;
 };
 
 }  // namespace
 
-Json parse_gltf_json(std::string text, const std::filesystem::path& path,
-                     std::uint64_t most_bytes) {
-  ParseGuard guard(path, text.size(), most_bytes);
+Json parse_gltf_json(std::string text, const std::filesystem::path& path, std::uint64_t most_bytes,
+                     int most_depth) {
+  ParseGuard guard(path, text.size(), most_bytes, most_depth);
   try {
     return Json::parse(text.begin(), text.end(), std::ref(guard));
   } catch (const Json::exception& error) {
@@ -98,6 +98,11 @@ void GltfObject::fail(const std::string& message) const {
 const Json* GltfObject::find(const char* key) const {
   const auto found = object_->find(key);
   return found == object_->end() ? nullptr : &*found;
+}
+
+bool GltfObject::has_object(const char* key) const {
+  const Json* value = find(key);
+  return value != nullptr && value->is_object();
 }
 
 const Json* GltfObject::find_list(const char* key) const {

@@ -14,10 +14,14 @@
 
 namespace meshhier::mesh_io {
 
+/// A glTF nests 8 levels; what others add to it some more.
+inline constexpr int kDeepestGltfJson = 64;
+
 /// Parses `text`, which is freed. Throws Error(input) naming `path` if it is no JSON or nested
-/// deeper than 64 levels, and Error(budget) if it would take more than `most_bytes` of memory.
+/// deeper than `most_depth` levels, and Error(budget) if it would take more than `most_bytes` of
+/// memory.
 nlohmann::json parse_gltf_json(std::string text, const std::filesystem::path& path,
-                               std::uint64_t most_bytes);
+                               std::uint64_t most_bytes, int most_depth = kDeepestGltfJson);
 
 /// An object of the JSON with its place in it ("accessors[3]"), for messages. Getters throw
 /// Error(input) naming file and place if a value is not of the expected kind. The JSON and the path
@@ -28,6 +32,7 @@ class GltfObject {
              std::string place = {});
 
   bool has(const char* key) const { return find(key) != nullptr; }
+  bool has_object(const char* key) const;
   /// An integer from 0 to `most`; 2.0 is one.
   std::optional<std::uint64_t> count(const char* key, std::uint64_t most) const;
   std::uint64_t require_count(const char* key, std::uint64_t most) const;

@@ -37,11 +37,12 @@ GltfTransform moved_by(Vec3d offset) {
 
 }  // namespace
 
-GltfScene gltf_scene(const GltfDocument& document, const std::filesystem::path& path) {
+GltfScene gltf_scene(const GltfDocument& document, const std::filesystem::path& path,
+                     const GltfTransform& placement) {
   GltfScene scene;
   std::vector<bool> seen(document.nodes.size());
   std::vector<Visit> visits;
-  add_reversed(visits, document.roots, moved_by(document.centre), true);
+  add_reversed(visits, document.roots, placement * moved_by(document.centre), true);
   while (!visits.empty()) {
     const Visit visit = visits.back();
     visits.pop_back();

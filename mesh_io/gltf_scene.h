@@ -26,6 +26,8 @@ struct GltfScene {
 
 /// Throws Error(input) naming a node that is reached twice: a child of two nodes, or in a circle.
 /// So its time is linear, however deep the tree is.
-GltfScene gltf_scene(const GltfDocument& document, const std::filesystem::path& path);
+/// `placement`: of all.
+GltfScene gltf_scene(const GltfDocument& document, const std::filesystem::path& path,
+                     const GltfTransform& placement = {});
 
 }  // namespace meshhier::mesh_io

@@ -93,8 +93,16 @@ bool is_ply(std::string_view start) {
   return start.starts_with("ply") && start.size() > 3 && kBlanks.find(start[3]) != kBlanks.npos;
 }
 
+/// An object of JSON that has what tiles have.
+bool is_tileset(std::string_view start) {
+  if (start.starts_with("\xef\xbb\xbf"))
+    start.remove_prefix(3);
+  start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
+  return start.starts_with('{') && start.find("\"geometricError\"") != std::string_view::npos;
+}
+
 /// An object of JSON that begins as a glTF's.
-bool is_gltf(std::string_view start) {
+bool begins_as_gltf(std::string_view start) {
   static constexpr std::array<std::string_view, 19> kKeys{
       "accessors",      "animations", "asset",      "bufferViews", "buffers",
       "cameras",        "extras",     "extensions", "images",      "extensionsRequired",
@@ -125,7 +133,9 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
   const std::string_view word = first_word(start);
   if (start.starts_with("glTF"))
     return MeshKind::glb;
-  if (is_gltf(start))
+  if (is_tileset(start))
+    return MeshKind::tileset;
+  if (begins_as_gltf(start))
     return MeshKind::gltf;
   if (is_text(start)) {
     if (is_stl_keyword(word, "solid"))
@@ -165,8 +175,8 @@ std::optional<MeshFormat> format_of(std::uint64_t file_bytes, bool is_gzip,
 }  // namespace
 
 std::string name_of(const MeshFormat& format) {
-  static constexpr const char* kNames[] = {"PLY", "OBJ",  "binary STL", "ASCII STL",
-                                           "OFF", "glTF", "GLB"};
+  static constexpr const char* kNames[] = {"PLY",  "OBJ", "binary STL", "ASCII STL", "OFF",
+                                           "glTF", "GLB", "3D Tiles",   "b3dm"};
   return std::string(kNames[static_cast<std::size_t>(format.kind)]) +
          (format.is_gzip ? " (gzip)" : "");
 }
@@ -182,7 +192,8 @@ MeshFormat detect_format(const storage::File& file) {
   if (const auto format = format_of(bytes, packed, start))
     return *format;
   if (const std::string foreign = foreign_format(start); !foreign.empty()) {
-    fail_file(file.path(), "expected a mesh (PLY, OBJ, glTF, STL or OFF), found " + foreign);
+    fail_file(file.path(),
+              "expected a mesh (PLY, OBJ, glTF, STL, OFF or a tileset.json), found " + foreign);
   }
   std::string hint;
   if (const auto size = stl_size(start); size && !packed && !is_text(start)) {

@@ -9,7 +9,23 @@
 
 namespace meshhier::mesh_io {
 
-enum class MeshKind : std::uint8_t { ply, obj, stl_binary, stl_text, off, gltf, glb };
+/// A tileset is the JSON of 3D Tiles, whose tiles are meshes; a b3dm is such a tile.
+enum class MeshKind : std::uint8_t {
+  ply,
+  obj,
+  stl_binary,
+  stl_text,
+  off,
+  gltf,
+  glb,
+  tileset,
+  b3dm
+};
+
+/// What the reader of glTF reads.
+constexpr bool is_gltf(MeshKind kind) {
+  return kind == MeshKind::gltf || kind == MeshKind::glb || kind == MeshKind::b3dm;
+}
 
 struct MeshFormat {
   MeshKind kind{};
@@ -22,8 +38,8 @@ std::string name_of(const MeshFormat& format);
 /// Looks at the first 64 KiB of the content, and of a binary STL at the file's size: one that
 /// begins with "solid", as texts do, is binary if its size says so or (where it is packed, or where
 /// its first facets have numbers as meshes have) if the first bytes are no text. A glTF is an
-/// object of JSON whose first key is one of glTF's. Throws Error(input) if it is none of these,
-/// Error(io).
+/// object of JSON whose first key is one of glTF's; a tileset one that has geometric errors. Throws
+/// Error(input) if it is none of these, Error(io).
 MeshFormat detect_format(const storage::File& file);
 
 /// The same; nothing if it is none of these.

@@ -87,10 +87,7 @@ void count_by_reading(const config::Config& config, importing::MeshInput& input,
 
 void describe_import(const importing::InputFiles& input, const importing::ImportMemory& memory,
                      BuildEstimate& estimate) {
-  estimate.mesh.format.clear();
-  for (const importing::InputFileFacts& file : input.all())
-    estimate.mesh.format += (estimate.mesh.format.empty() ? "" : ", ") + name_of(file.format);
-  estimate.mesh.format += " (imported to count it)";
+  estimate.mesh.format = input.formats() + " (imported to count it)";
   estimate.mesh.file_bytes = input.bytes();
   std::uint64_t& temporary = estimate.plan.disk.temporary_bytes;
   temporary = std::max(temporary, importing::predict_import(input, memory));

@@ -55,7 +55,7 @@ std::optional<Lattice> lattice_of(const DistributedSource& source, const StageCo
 storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
                               const StageContext& context) {
   storage::TileFormat format = {source.summary.attributes,
-                                {source.origin, context.config.up},
+                                {source.origin, context.config.up_axis()},
                                 context.config.storage.compression,
                                 {}};
   format.computed_normals = computed_normals;

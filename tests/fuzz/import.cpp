@@ -10,10 +10,18 @@
 #include "import/import_input.h"
 #include "mesh_io/ply_source.h"
 
+#include <algorithm>
 #include <string>
 
 namespace meshhier::tests::fuzz {
 namespace {
+
+/// A triangle whose buffer is in its JSON.
+constexpr const char* kTile =
+    R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":
+[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":
+"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 
 constexpr const char* kLibrary =
     "newmtl m\nmap_Kd a.png\nnewmtl n\nKd 1 0 0\nnewmtl t\nmap_Kd -o 0.5 t.<UDIM>.png\n";
@@ -52,9 +60,11 @@ void check(MemoryFiles& files, const importing::ImportFacts& facts) {
             "pictures of materials are in the list");
 }
 
-void import_twice(MemoryFiles& files, bool weld, importing::Textures textures) {
+/// `named`: what a refusal tells.
+void import_twice(MemoryFiles& files, bool weld, importing::Textures textures,
+                  const std::string& named = "mesh") {
   std::string first;
-  const std::string message = refusal({ErrorCode::input, ErrorCode::budget}, "mesh",
+  const std::string message = refusal({ErrorCode::input, ErrorCode::budget}, named,
                                       [&] { first = imported(files, weld, textures); });
   require(!files.exists("imported.ply") && !files.exists("scratch"), "nothing is left behind");
   if (message.empty())
@@ -77,7 +87,9 @@ std::string imported(MemoryFiles& files, bool weld, importing::Textures textures
   importing::InputFiles input(files, std::filesystem::path("mesh"), weld, textures);
   const importing::ImportFacts facts =
       importing::import_input(input, ply, {files, scratch, 1, progress, cancel});
-  require(!facts.files.empty() && facts.files[0].bytes == files.bytes("mesh").size(),
+  require(std::ranges::any_of(
+              facts.files,
+              [&](const SourceFile& file) { return file.bytes >= files.bytes("mesh").size(); }),
           "the file is noted");
   if (facts.faces)  // else unpacked, and read by nobody yet
     check(files, facts);
@@ -106,6 +118,20 @@ void gltf(Bytes input) {
   files.put("a.bin", buffer);
   import_twice(files, (flags & 1) != 0,
                (flags & 2) != 0 ? importing::Textures::ignore : importing::Textures::use);
+}
+
+void tileset(Bytes input) {
+  Take take(input);
+  const bool is_tile = take.upto<std::uint8_t>(1) != 0;
+  MemoryFiles files;
+  const std::string content(text_of(take.rest()));
+  files.put("mesh", is_tile ? R"({"asset":{"version":"1.0"},"geometricError":1,"root":
+{"boundingVolume":{"sphere":[0,0,0,1]},"geometricError":0,"content":{"uri":"a.b3dm"}}})"
+                            : content);
+  files.put("a.b3dm", is_tile ? content : std::string(kTile));
+  files.put("b.json", R"({"asset":{"version":"1.0"},"geometricError":1,"root":
+{"boundingVolume":{"region":[0,0,0.1,0.1,0,1]},"geometricError":0,"refine":"ADD","content":{"uri":"a.b3dm"}}})");
+  import_twice(files, false, importing::Textures::use, "");
 }
 
 }  // namespace meshhier::tests::fuzz

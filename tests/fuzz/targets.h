@@ -23,6 +23,8 @@ void mesh(std::span<const std::byte> input);
 void mtl(std::span<const std::byte> input);
 /// The same for glTF, JSON or GLB: two bits, then the file.
 void gltf(std::span<const std::byte> input);
+/// A tileset of 3D Tiles, or a tile of one: a bit, then the file.
+void tileset(std::span<const std::byte> input);
 /// Lines that begin with "--set " are overrides, the others the config.
 void config(std::span<const std::byte> input);
 /// A file for placement.metadata.
@@ -62,12 +64,13 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 22> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 23> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
                                                   {"mtl", mtl},
                                                   {"gltf", gltf},
+                                                  {"tileset", tileset},
                                                   {"config", config},
                                                   {"map_file", map_file},
                                                   {"cut", cut},

@@ -1,0 +1,40 @@
+#include "config/input_frame.h"
+
+#include "mesh_io/mesh_format.h"
+#include "mesh_io/tileset.h"
+#include "storage/io/paths.h"
+
+#include <algorithm>
+
+namespace meshhier::config {
+namespace {
+
+/// What is not there is told when it is read.
+bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
+  if (storage::lower_extension(path) != ".json" || files.kind(path) != storage::FileKind::regular)
+    return false;
+  const auto format = mesh_io::find_format(*files.open(path));
+  return format && format->kind == mesh_io::MeshKind::tileset;
+}
+
+bool is_placed(const PlacementConfig& place) {
+  return place.longitude || place.crs || !place.metadata.empty() || place.transform;
+}
+
+}  // namespace
+
+Config with_input_frame(storage::FileSystem& files, Config config) {
+  storage::FileSystem& input = files.input();
+  const auto tileset = std::ranges::find_if(
+      config.input, [&](const std::filesystem::path& path) { return is_tileset(input, path); });
+  const bool has_tileset = tileset != config.input.end();
+  if (!config.up)
+    config.up = has_tileset ? UpAxis::z : UpAxis::y;
+  if (has_tileset && !is_placed(config.placement)) {
+    if (const auto frame = mesh_io::globe_frame(input, *tileset, mesh_io::kTilesetBytes))
+      config.placement.transform = frame->matrix();
+  }
+  return config;
+}
+
+}  // namespace meshhier::config

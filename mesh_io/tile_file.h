@@ -1,0 +1,32 @@
+// What a file of a tileset holds (OGC, 3D Tiles 1.0 and 1.1): a glTF, one within a b3dm, or several
+// tiles within a cmpt.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "mesh_io/mesh_format.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// A glTF within a file.
+struct TileGltf {
+  MeshKind kind{};                      ///< gltf, glb or b3dm
+  std::uint64_t offset = 0, bytes = 0;  ///< of the glTF in the file
+  Vec3d centre;                         ///< RTC_CENTER: added to positions, z-up
+};
+
+struct TileFile {
+  std::vector<TileGltf> meshes;
+  std::uint64_t instanced = 0, points = 0;  ///< tiles of these kinds, which are no meshes
+  bool is_tileset = false;                  ///< the JSON of another one
+};
+
+/// Reads headers and feature tables. Throws Error(input) if the file is none of these, if it is
+/// packed by gzip, truncated, or if a cmpt holds itself deeper than 8 levels; Error(budget) if a
+/// feature table takes more than `most_bytes` of memory.
+TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes);
+
+}  // namespace meshhier::mesh_io

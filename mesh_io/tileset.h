@@ -1,0 +1,61 @@
+// A tileset of 3D Tiles (OGC, 1.0 and 1.1) as meshes: the finest tile of each place, and where it
+// stands.
+//
+// Coordinates are z-up, in metres. Those of a tileset on the globe, where tiles have six digits
+// before the point and no axis is up, are turned into a local frame: east, north, up.
+#pragma once
+
+#include "hierarchy/frame.h"
+#include "mesh_io/gltf_transform.h"
+#include "mesh_io/mesh_format.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Memory that the JSON of a tileset may take: 30 MB of text, a hundred thousand tiles.
+inline constexpr std::uint64_t kTilesetBytes = std::uint64_t{256} << 20;
+
+/// A local frame on the globe, rigid: from its coordinates to geocentric ones (WGS 84, EPSG:4978).
+struct GlobeFrame {
+  GltfTransform to_globe;
+
+  Transform matrix() const;
+  friend bool operator==(const GlobeFrame&, const GlobeFrame&) = default;
+};
+
+/// The transform of the root, if it is such a frame; else that of the middle of the root's bounding
+/// volume, rounded to metres. Nothing if that does not lie on the globe. Throws as read_tileset().
+std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::filesystem::path& path,
+                                      std::uint64_t most_bytes);
+
+/// A glTF of a tile.
+struct TilesetMesh {
+  std::filesystem::path file;
+  MeshFormat format;
+  std::uint64_t offset = 0, bytes = 0;  ///< of the glTF in the file
+  GltfTransform placement;              ///< from the coordinates of its scene to the frame's
+};
+
+struct Tileset {
+  std::vector<TilesetMesh> meshes;               ///< in the order of the document
+  std::vector<std::filesystem::path> documents;  ///< of external tilesets, each once
+  bool is_hierarchy = false;                     ///< one that a build made
+  std::uint64_t coarser = 0;                     ///< contents that finer ones replace
+  std::uint64_t instanced = 0, points = 0;       ///< tiles that are no meshes
+};
+
+/// Reads the tileset and all external ones, and the headers of tiles. Of tiles that refine by
+/// replacement those without children are taken, of others all. Contents are files below the folder
+/// of `path`. `frame`: none: coordinates are those of the tileset. `most_bytes`: memory for a JSON.
+/// Throws Error(input) naming file and place if a document is no tileset, if tiles are implicit, if
+/// a content is on the web, not there or no tile, or if tilesets hold each other; Error(budget),
+/// Error(io).
+Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
+                     const std::optional<GlobeFrame>& frame, std::uint64_t most_bytes);
+
+}  // namespace meshhier::mesh_io

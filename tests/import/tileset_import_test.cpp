@@ -1,0 +1,376 @@
+// Tilesets of 3D Tiles: what their finest tiles become.
+#include "config/input_frame.h"
+#include "hierarchy/error.h"
+#include "import/imported.h"
+#include "mesh_io/tileset.h"
+#include "support/gltf_builder.h"
+#include "tests/support/gzip.h"
+#include "tests/support/memory_files.h"
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using tests::GltfBuilder;
+using tests::GltfJson;
+using tests::Imported;
+using tests::little;
+
+/// A triangle from (x, 0, 0) on, in glTF's axes.
+GltfBuilder triangle(float x = 0) {
+  GltfBuilder gltf;
+  const std::vector<float> corners{x, 0, 0, x + 1, 0, 0, x, 2, 0};
+  gltf.show({{"attributes", {{"POSITION", gltf.accessor(corners, "VEC3")}}}});
+  return gltf;
+}
+
+std::string word(std::size_t number) {
+  return little(static_cast<std::uint32_t>(number));
+}
+
+std::string b3dm(const std::string& glb, std::string table = "", const std::string& binary = "",
+                 const std::string& batches = "") {
+  table.resize((table.size() + 7) / 8 * 8, ' ');
+  return "b3dm" + word(1) + word(28 + table.size() + binary.size() + batches.size() + glb.size()) +
+         word(table.size()) + word(binary.size()) + word(batches.size()) + word(0) + table +
+         binary + batches + glb;
+}
+
+std::string cmpt(const std::vector<std::string>& tiles) {
+  std::string all;
+  for (const std::string& tile : tiles)
+    all += tile;
+  return "cmpt" + word(1) + word(16 + all.size()) + word(tiles.size()) + all;
+}
+
+GltfJson tile_of(const std::string& uri) {
+  return {{"boundingVolume", {{"sphere", {0, 0, 0, 10}}}},
+          {"geometricError", 0},
+          {"content", {{"uri", uri}}}};
+}
+
+GltfJson moved(GltfJson tile, double x, double y, double z) {
+  tile["transform"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
+  return tile;
+}
+
+std::string tileset_of(const GltfJson& root, const std::string& version = "1.0") {
+  return GltfJson{{"asset", {{"version", version}}}, {"geometricError", 100}, {"root", root}}
+      .dump();
+}
+
+class TilesetImportTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(fs::path("w") / name, content);
+  }
+  Imported import(const GltfJson& root) {
+    put("tileset.json", tileset_of(root));
+    return tests::import_files(files_, fs::path("w/tileset.json"));
+  }
+  std::string failure(const GltfJson& root) {
+    put("tileset.json", tileset_of(root));
+    return failure();
+  }
+  std::string failure() {
+    try {
+      tests::import_files(files_, fs::path("w/tileset.json"));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
+      return error.what();
+    }
+    return {};
+  }
+  config::Config framed(const std::string& more = "") {
+    return config::with_input_frame(
+        files_, config::parse_config(R"({"input": "w/tileset.json", "output": "h")" + more + "}",
+                                     {"config", {}}, std::vector<std::string>{}));
+  }
+
+  tests::MemoryFiles files_;
+};
+
+TEST_F(TilesetImportTest, TheFinestTilesAreTheMeshAndZIsUp) {
+  put("coarse.glb", triangle(50).glb());
+  put("a.glb", triangle().glb());
+  put("b.glb", triangle(5).glb());
+  GltfJson root = tile_of("coarse.glb");
+  root["refine"] = "REPLACE";
+  root["children"] = {tile_of("a.glb"), moved(tile_of("b.glb"), 0, 0, 7)};
+  const Imported mesh = import(root);
+  EXPECT_THAT(mesh.positions, ElementsAre(Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 0, 2},
+                                          Vec3d{5, 0, 7}, Vec3d{6, 0, 7}, Vec3d{5, 0, 9}));
+  EXPECT_EQ(mesh.triangles.size(), 2);
+  EXPECT_EQ(mesh.count("coarser_tiles"), 1);
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/tileset.json"));
+  EXPECT_EQ(mesh.summary.files[0].format, "GLB");
+  EXPECT_EQ(mesh.summary.files.back().format, "tileset");
+  EXPECT_EQ(framed().up, UpAxis::z);
+  EXPECT_FALSE(framed().placement.transform) << "it is nowhere in particular";
+  EXPECT_EQ(framed(R"(, "up": "y")").up, UpAxis::y) << "as it is asked for";
+}
+
+TEST_F(TilesetImportTest, TilesThatAddAreAllOfIt) {
+  put("coarse.glb", triangle(50).glb());
+  put("a.glb", triangle().glb());
+  put("b.glb", triangle(5).glb());
+  GltfJson middle = tile_of("a.glb");  // adds as its parent does
+  middle["children"] = {tile_of("b.glb")};
+  GltfJson root = tile_of("coarse.glb");
+  root["refine"] = "add";
+  root["children"] = {middle};
+  const Imported mesh = import(root);
+  EXPECT_EQ(mesh.triangles.size(), 3);
+  EXPECT_EQ(mesh.count("coarser_tiles"), 0);
+}
+
+TEST_F(TilesetImportTest, CentresAndTablesOfB3dm) {
+  put("a.b3dm", b3dm(triangle().glb(), R"({"BATCH_LENGTH":0,"RTC_CENTER":[10,20,30]})"));
+  GltfJson root = moved(tile_of("a.b3dm"), 1, 1, 1);
+  const std::vector<Vec3d> expected{{11, 21, 31}, {12, 21, 31}, {11, 21, 33}};
+  EXPECT_EQ(import(root).positions, expected);
+  EXPECT_EQ(import(root).summary.files[0].format, "b3dm");
+
+  const std::string numbers = GltfBuilder::bytes_of(std::vector<float>{-1, 10, 20, 30});
+  put("a.b3dm", b3dm(triangle().glb(), R"({"BATCH_LENGTH":1,"RTC_CENTER":{"byteOffset":4}})",
+                     numbers, R"({"id":[7]}      )"));
+  EXPECT_EQ(import(root).positions, expected);
+
+  put("a.b3dm", b3dm(triangle().glb(), R"({"RTC_CENTER":{"byteOffset":5}})", numbers));
+  EXPECT_THAT(failure(root), HasSubstr("byteOffset is 5, expected an integer from 0 to 4"));
+  put("a.b3dm", b3dm(triangle().glb(), R"({"RTC_CENTER":[1,2]})"));
+  EXPECT_THAT(failure(root), HasSubstr("RTC_CENTER is a list, expected 3 numbers"));
+}
+
+TEST_F(TilesetImportTest, OlderHeadersOfB3dm) {
+  const std::string glb = triangle().glb();
+  const std::string batches = R"({"id":[1,2,3]} )";
+  put("a.b3dm", "b3dm" + word(1) + word(20 + batches.size() + glb.size()) + word(3) +
+                    word(batches.size()) + batches + glb);
+  put("b.b3dm", "b3dm" + word(1) + word(24 + batches.size() + glb.size()) + word(batches.size()) +
+                    word(0) + word(3) + batches + glb);
+  put("c.b3dm", "b3dm" + word(1) + word(20 + glb.size()) + word(0) + word(0) + glb);
+  GltfJson root = tile_of("a.b3dm");
+  root["refine"] = "ADD";
+  root["children"] = {tile_of("b.b3dm"), tile_of("c.b3dm")};
+  EXPECT_EQ(import(root).triangles.size(), 3);
+}
+
+TEST_F(TilesetImportTest, TilesWithinTiles) {
+  put("a.cmpt",
+      cmpt({b3dm(triangle().glb()), cmpt({triangle(3).glb(), "i3dm" + word(1) + word(12)}),
+            "pnts" + word(1) + word(12)}));
+  const Imported mesh = import(tile_of("a.cmpt"));
+  EXPECT_EQ(mesh.triangles.size(), 2);
+  EXPECT_EQ(mesh.positions[3], (Vec3d{3, 0, 0}));
+  EXPECT_EQ(mesh.count("ignored_instanced_tiles"), 1);
+  EXPECT_EQ(mesh.count("ignored_point_tiles"), 1);
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre("w/tileset.json: 1 i3dm tile left out: only tiles of meshes are read",
+                          "w/tileset.json: 1 point tile left out: only tiles of meshes are read"));
+
+  std::string deep = cmpt({triangle().glb()});
+  for (int i = 0; i < 8; ++i)
+    deep = cmpt({deep});
+  put("a.cmpt", deep);
+  EXPECT_THAT(failure(tile_of("a.cmpt")), HasSubstr("deeper than 8 levels"));
+}
+
+TEST_F(TilesetImportTest, TilesetsWithinTilesetsAndNamesAsServersTakeThem) {
+  put("parts/one/tileset.json",
+      tileset_of(moved(tile_of("../shared%20tile.glb?v=1.2"), 100, 0, 0)));
+  put("parts/shared tile.glb", triangle().glb());
+  GltfJson old = tile_of("");
+  old["content"] = {{"url", "parts/one/tileset.json"}};  // before 1.0
+  GltfJson several = tile_of("");
+  several.erase("content");
+  several["contents"] = {{{"uri", "parts/shared tile.glb"}}, {{"uri", "parts/shared tile.glb"}}};
+  GltfJson extension = tile_of("");
+  extension.erase("content");
+  extension["extensions"]["3DTILES_multiple_contents"]["content"] = {
+      {{"uri", "./parts/shared%20tile.glb#x"}}};
+  GltfJson root = moved(tile_of(""), 0, 5, 0);
+  root.erase("content");
+  root["children"] = {old, several, extension};
+  const Imported mesh = import(root);
+  ASSERT_EQ(mesh.triangles.size(), 4);
+  EXPECT_EQ(mesh.positions[0], (Vec3d{100, 5, 0}));
+  EXPECT_EQ(mesh.positions[3], (Vec3d{0, 5, 0}));
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/tileset.json", "w/parts/one/tileset.json"));
+}
+
+TEST_F(TilesetImportTest, PicturesLieWithinTheTile) {
+  GltfBuilder gltf = triangle();
+  const std::vector<float> uv{0, 1, 1, 1, 0, 0};
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = gltf.accessor(uv, "VEC2");
+  gltf.json["meshes"][0]["primitives"][0]["material"] =
+      gltf.textured_material({{"bufferView", gltf.view("a picture")}, {"mimeType", "image/png"}});
+  put("a.b3dm", b3dm(gltf.glb(), R"({"BATCH_LENGTH":0})"));
+  const Imported mesh = import(tile_of("a.b3dm"));
+  ASSERT_EQ(mesh.materials.images.size(), 1);
+  const images::ImageSource& image = mesh.materials.images[0];
+  EXPECT_EQ(image.file, "w/a.b3dm");
+  EXPECT_EQ(files_.content("w/a.b3dm").substr(image.offset, image.bytes), "a picture");
+}
+
+TEST_F(TilesetImportTest, OtherAxesOfTheGltf) {
+  put("a.glb", triangle().glb());
+  const auto with_up = [&](const char* up) {
+    GltfJson whole = GltfJson::parse(tileset_of(tile_of("a.glb")));
+    whole["asset"]["gltfUpAxis"] = up;
+    put("tileset.json", whole.dump());
+    return tests::import_files(files_, fs::path("w/tileset.json")).positions;
+  };
+  EXPECT_THAT(with_up("Z"), ElementsAre(Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 2, 0}));
+  EXPECT_THAT(with_up("X"), ElementsAre(Vec3d{0, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, 2, 0}));
+}
+
+// A place on the equator: east is +y there, north +z.
+constexpr double kRadius = 6378137;
+
+TEST_F(TilesetImportTest, ARootThatPlacesItOnTheGlobeIsItsPlace) {
+  put("a.glb", triangle().glb());
+  GltfJson root = tile_of("a.glb");
+  const Transform place{0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, kRadius + 0.25, 0, 0, 1};
+  root["transform"] = place;
+  EXPECT_EQ(import(root).positions[1], (Vec3d{1, 0, 0}));
+  EXPECT_EQ(framed().placement.transform, place);
+  EXPECT_EQ(framed(R"(, "placement": {"longitude": 1, "latitude": 2})").placement.transform,
+            std::nullopt)
+      << "the config places it";
+}
+
+/// The largest distance of any point from where it should be.
+double off(const std::vector<Vec3d>& found, const std::vector<Vec3d>& expected) {
+  double most = found.size() == expected.size() ? 0 : 1e9;
+  for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i)
+    most = std::max(most, length(found[i] - expected[i]));
+  return most;
+}
+
+TEST_F(TilesetImportTest, GeocentricTilesGetALocalFrame) {
+  GltfBuilder gltf;  // a triangle in geocentric axes: z is glTF's y, y its -z
+  const std::vector<float> corners{0, 0, 0, 0, 0, -1, 3, 2, 0};
+  gltf.show({{"attributes", {{"POSITION", gltf.accessor(corners, "VEC3")}}}});
+  put("a.b3dm", b3dm(gltf.glb(), R"({"RTC_CENTER":[6378137.25,0,0]})"));
+  const std::vector<Vec3d> expected{{0, 0, 0.25}, {1, 0, 0.25}, {0, 2, 3.25}};
+  for (const GltfJson& volume :
+       {GltfJson{{"sphere", {kRadius + 0.3, 0, 0, 10}}},
+        GltfJson{{"box", {kRadius - 0.3, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}},
+        GltfJson{{"region", {-1e-7, -1e-7, 1e-7, 1e-7, -1, 1}}}}) {
+    GltfJson root = tile_of("a.b3dm");
+    root["boundingVolume"] = volume;
+    EXPECT_LT(off(import(root).positions, expected), 1e-8) << volume;
+    const Transform place{0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, kRadius, 0, 0, 1};
+    const Transform found = framed().placement.transform.value();
+    for (std::size_t i = 0; i < place.size(); ++i)
+      EXPECT_NEAR(found[i], place[i], 1e-12) << volume << i;
+  }
+}
+
+TEST_F(TilesetImportTest, RegionsAcrossTheDateLineAndAtThePole) {
+  put("a.glb", triangle().glb());
+  const auto frame_of = [&](const GltfJson& region) {
+    GltfJson root = tile_of("a.glb");
+    root["boundingVolume"] = {{"region", region}};
+    put("tileset.json", tileset_of(root));
+    return mesh_io::globe_frame(files_, "w/tileset.json", 1 << 20).value().to_globe;
+  };
+  constexpr double kPi = 3.14159265358979;
+  EXPECT_EQ(frame_of({kPi - 1e-6, -1e-7, -kPi + 1e-6, 1e-7, 0, 0}).offset, (Vec3d{-kRadius, 0, 0}));
+  const auto pole = frame_of({-kPi, kPi / 2 - 1e-9, kPi, kPi / 2, 0, 0});
+  EXPECT_EQ(pole.offset, (Vec3d{0, 0, 6356752}));
+  EXPECT_FALSE(mesh_io::is_mirrored(pole));
+  EXPECT_THAT(failure(GltfJson{{"boundingVolume", {{"region", {200, 0, 210, 1, 0, 0}}}},
+                               {"content", {{"uri", "a.glb"}}}}),
+              HasSubstr("has a region beyond half a turn"));
+}
+
+TEST_F(TilesetImportTest, TwoTilesetsShareTheFrameOfTheFirst) {
+  put("a.glb", triangle().glb());
+  const auto placed = [&](double up) {
+    GltfJson root = tile_of("a.glb");
+    root["transform"] = {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, kRadius + up, 0, 0, 1};
+    return tileset_of(root);
+  };
+  put("one.json", placed(0));
+  put("two.json", placed(8));
+  mesh_io::InputPaths both;
+  both.assign({"w/one.json", "w/two.json"});
+  EXPECT_LT(off(tests::import_files(files_, both).positions,
+                {{0, 0, 0}, {1, 0, 0}, {0, 0, 2}, {0, 0, 8}, {1, 0, 8}, {0, 0, 10}}),
+            1e-8);
+}
+
+TEST_F(TilesetImportTest, WhatCannotBeReadIsRefusedWithItsPlace) {
+  put("a.glb", triangle().glb());
+  put("../outside.glb", triangle().glb());
+  GltfJson implicit = tile_of("a.glb");
+  implicit["implicitTiling"] = {{"subdivisionScheme", "QUADTREE"}};
+  EXPECT_THAT(failure(implicit), HasSubstr("root has implicit tiles, which are not read"));
+  EXPECT_THAT(failure(tile_of("https://host/a.b3dm")), HasSubstr("fetch the whole tileset first"));
+  EXPECT_THAT(failure(tile_of("b.glb")),
+              HasSubstr("root.content is b.glb, which is no file below the folder"));
+  EXPECT_THAT(failure(tile_of("../outside.glb")), HasSubstr("no file below the folder"));
+  EXPECT_THAT(failure(tile_of("/w/a.glb")), HasSubstr("no file below the folder"));
+  EXPECT_THAT(failure(tile_of("tileset.json")), HasSubstr("is a tileset that holds itself"));
+  GltfJson nothing = tile_of("");
+  nothing["content"] = GltfJson::object();
+  EXPECT_THAT(failure(nothing), HasSubstr("root.content has no \"uri\""));
+  nothing.erase("content");
+  EXPECT_THAT(failure(nothing), HasSubstr("is a tileset without a mesh in its finest tiles"));
+  GltfJson bent = tile_of("a.glb");
+  bent["transform"] = {1, 2};
+  EXPECT_THAT(failure(bent), HasSubstr("root.transform is a list, expected 16 numbers"));
+  put("tileset.json", R"({"asset": {"version": "1.0"}, "geometricError": 1})");
+  EXPECT_THAT(failure(), HasSubstr("its JSON has no \"root\""));
+}
+
+TEST_F(TilesetImportTest, BrokenTilesAreRefused) {
+  const std::string whole = b3dm(triangle().glb(), R"({"BATCH_LENGTH":0})");
+  const auto refused = [&](const std::string& content) {
+    put("a.b3dm", content);
+    return failure(tile_of("a.b3dm"));
+  };
+  for (std::size_t bytes = 0; bytes < whole.size(); ++bytes)
+    EXPECT_THAT(refused(whole.substr(0, bytes)), HasSubstr("w/a.b3dm")) << bytes;
+  EXPECT_THAT(refused("b3dm" + word(2) + word(28) + std::string(16, '\0')),
+              HasSubstr("of version 2, expected 1"));
+  EXPECT_THAT(refused("b3dm" + word(1) + word(28) + word(1000) + std::string(12, '\0')),
+              HasSubstr("reach beyond its end"));
+  EXPECT_THAT(refused("cmpt" + word(1) + word(16) + word(4000000000)),
+              HasSubstr("ends behind 0 of 4000000000 tiles"));
+  EXPECT_THAT(refused("cmpt" + word(1) + word(28) + word(1) + "b3dm" + word(1) + word(13)),
+              HasSubstr("a tile of 13 bytes begins, but the composite has 12 more"));
+  EXPECT_THAT(refused(tests::gzip(whole)), HasSubstr("unpack the tiles by gunzip first"));
+  EXPECT_THAT(refused("i3dm" + word(1) + word(12)), HasSubstr("without a mesh"));
+  EXPECT_THAT(refused("plainly nothing"), HasSubstr("found 'plainly nothing'"));
+}
+
+TEST_F(TilesetImportTest, DeepTilesetsAreReadAndDeeperOnesRefused) {
+  put("a.glb", triangle().glb());
+  const auto nested = [&](int levels) {
+    GltfJson tile = tile_of("a.glb");
+    for (int i = 0; i < levels; ++i) {
+      GltfJson parent = tile_of("a.glb");
+      parent["children"] = GltfJson::array({tile});
+      tile = parent;
+    }
+    return tile;
+  };
+  EXPECT_EQ(import(nested(200)).count("coarser_tiles"), 200);
+  EXPECT_THAT(failure(nested(300)), HasSubstr("nested deeper than 512 levels"));
+}
+
+}  // namespace
+}  // namespace meshhier::importing
