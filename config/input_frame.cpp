@@ -11,7 +11,9 @@ namespace {
 
 /// What is not there is told when it is read.
 bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
-  if (storage::lower_extension(path) != ".json" || files.kind(path) != storage::FileKind::regular)
+  const bool is_packed = storage::lower_extension(path) == ".gz";
+  if (storage::lower_extension(is_packed ? path.stem() : path) != ".json" ||
+      files.kind(path) != storage::FileKind::regular)
     return false;
   const auto format = mesh_io::find_format(*files.open(path));
   return format && format->kind == mesh_io::MeshKind::tileset;

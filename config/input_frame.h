@@ -6,9 +6,9 @@
 
 namespace meshhier::config {
 
-/// The config with `up` set: if it does not say so, z if an input named *.json is a tileset of 3D
-/// Tiles, else y. A tileset on the globe is placed where it stands, unless the config places it.
-/// Throws as mesh_io::globe_frame().
+/// The config with `up` set: if it does not say so, z if an input named *.json or *.json.gz is a
+/// tileset of 3D Tiles, else y. A tileset on the globe is placed where it stands, unless the config
+/// places it. Throws as mesh_io::globe_frame().
 Config with_input_frame(storage::FileSystem& files, Config config);
 
 }  // namespace meshhier::config
