@@ -22,7 +22,7 @@ struct ExportArguments {
   std::string cut;
   std::optional<double> error;
   bool outline = false;
-  std::optional<BoundsD> box;
+  inspection::RegionRequest region;
   bool clip = false;
   std::string output;
   bool force = false;
@@ -47,7 +47,11 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const inspection::ExportOptions options{selection(arguments),    arguments.output,
                                           arguments.memory_budget, arguments.force,
-                                          arguments.box,           arguments.clip};
+                                          arguments.region,        arguments.clip};
+  if (arguments.clip)
+    require_region(arguments.region, "--clip");
+  if (!arguments.region.crs.empty())
+    require_region(arguments.region, "--crs");
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
@@ -70,6 +74,7 @@ Examples:
   meshhier export church.hier --level 3 -o church.glb
   meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
   meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
+  meshhier export town.hier --level 6 --polygon parcel.geojson --crs EPSG:4326 --clip -o parcel.ply
   meshhier export https://example.org/town.3tz --level 4 -o town.ply
 )";
 
@@ -91,8 +96,8 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
   add_error_option(*what, [arguments](double error) { arguments->error = error; });
   what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
   what->require_option(1);
-  CLI::Option* box = add_box_option(*command, arguments->box);
-  command->add_flag("--clip", arguments->clip, "Cut triangles where the box ends")->needs(box);
+  add_region_options(*command, arguments->region);
+  command->add_flag("--clip", arguments->clip, "Cut triangles where box or polygon end");
 
   add_file_output_options(*command, "What to write: .glb or .obj, with textures, or else a PLY",
                           arguments->output, arguments->force);

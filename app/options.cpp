@@ -60,15 +60,29 @@ CLI::Option* add_error_option(CLI::App& command, const std::function<void(double
       ->type_name("LENGTH");
 }
 
-CLI::Option* add_box_option(CLI::App& command, std::optional<BoundsD>& box) {
-  const auto take = [&box](const std::vector<std::string>& corners) {
-    box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
+CLI::App* add_region_options(CLI::App& command, inspection::RegionRequest& region) {
+  const auto take = [&region](const std::vector<std::string>& corners) {
+    region.box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
   };
-  return command
-      .add_option_function<std::vector<std::string>>(
-          "--box", take, "Only what lies between these two corners, in the input's coordinates")
-      ->type_name("X,Y,Z")
-      ->expected(2);
+  CLI::App* group = command.add_option_group("Where", "A piece; else all");
+  CLI::Option* box = group->add_option_function<std::vector<std::string>>(
+      "--box", take, "What lies between these two corners, in the input's coordinates");
+  box->type_name("X,Y,Z")->expected(2);
+  CLI::Option* polygon = group->add_option_function<std::string>(
+      "--polygon", [&region](const std::string& file) { region.polygon = file; },
+      "What lies in these polygons (GeoJSON), seen from above");
+  polygon->type_name("FILE")->check(name_fault);
+  group
+      ->add_option("--crs", region.crs,
+                   "The map that x and y of these are of (\"EPSG:4326\": degrees); heights stay "
+                   "the input's")
+      ->type_name("CRS");
+  return group;
+}
+
+void require_region(const inspection::RegionRequest& region, const char* option) {
+  if (!region.is_any())
+    throw Error(ErrorCode::usage, std::string(option) + " needs --box or --polygon");
 }
 
 std::string pretty_json(const nlohmann::ordered_json& object) {

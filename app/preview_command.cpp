@@ -120,6 +120,8 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
   options.format = format_of(arguments);
   if (arguments.level)
     options.selection = *arguments.level;
+  if (!options.region.crs.empty())
+    require_region(options.region, "--crs");
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
@@ -206,6 +208,7 @@ Examples:
   meshhier preview david.hier -o david.png
   meshhier preview david.hier --view front --size 800x1200 --background white -o david.webp
   meshhier preview town.3tz --up z --view top --error 0.5 -o map.png
+  meshhier preview town.3tz --polygon parcel.geojson --view top -o parcel.png
   meshhier preview david.hier --level 0 --size 640x480 --format png -o - | display
 )";
 
@@ -217,6 +220,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
       parser.add_subcommand("preview", "Draw a picture of a hierarchy, a level or a cut of it");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   add_what(*command, *arguments);
+  add_region_options(*command, arguments->options.region);
   add_look(*command, *arguments);
   add_file_output_options(*command, "The picture: .png or .webp", arguments->output,
                           arguments->options.replace);

@@ -100,6 +100,8 @@ int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environm
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.measures_error)
     return run_error(arguments, place, *progress, environment);
+  if (!arguments.options.region.crs.empty())
+    require_region(arguments.options.region, "--crs");
   if (place.is_remote())
     arguments.options.scratch_folder = std::filesystem::temp_directory_path();
   const inspection::VerifyReport report = inspection::verify_hierarchy(
@@ -114,12 +116,15 @@ constexpr const char* kVerifyFooter =
     R"(Checks every file's checksum, the structure, and the seams of random cuts; with --input also that
 the partitions are that mesh, vertex by vertex and triangle by triangle. With --error none of that
 is done; the distance between what is shown and the original partitions is measured instead, both
-ways, and held against the tiles' bounds. Exit code 7 if there is a problem.
+ways, and held against the tiles' bounds. With --box or --polygon only tiles that may reach there are
+looked at, of all levels: of a hierarchy on the web little else is fetched. Exit code 7 if there is a
+problem.
 
 Examples:
   meshhier verify david.hier
   meshhier verify david.hier --input david.ply --cuts 200 --seed 7
   meshhier verify david.3tz
+  meshhier verify https://example.org/town.3tz --box 0,0,-10 200,100,90
   meshhier verify both.hier --input a.obj.gz --input b.stl
   meshhier verify david.hier --error --level 3
   meshhier verify david.hier --error --level all --samples 1000000 --json
@@ -186,7 +191,13 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
       *command,
       {"--seed", "Which random cuts are taken [1]", 0, std::numeric_limits<std::uint64_t>::max()},
       [&options](std::uint64_t seed) { options.seed = seed; });
-  add_error_options(*command, *arguments, {input_option, cuts_option, seed_option});
+  CLI::App* region = add_region_options(*command, options.region);
+  std::vector<CLI::Option*> others{input_option, cuts_option, seed_option};
+  for (CLI::Option* option : region->get_options()) {
+    option->excludes(input_option);
+    others.push_back(option);
+  }
+  add_error_options(*command, *arguments, others);
   add_memory_budget_option(*command, options.memory_budget);
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_progress_option(*command, invocation.progress);

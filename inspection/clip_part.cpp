@@ -1,13 +1,13 @@
 #include "inspection/clip_part.h"
 
+#include "inspection/clipped_corner.h"
+#include "inspection/triangle_clipper.h"
+
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <span>
 #include <string>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -15,77 +15,35 @@
 namespace meshhier::inspection {
 namespace {
 
-constexpr std::size_t kNewVertex = std::numeric_limits<std::size_t>::max();
-
-/// All that a vertex has. A hundred bytes: polygons are small.
-struct ClippedCorner {
-  std::size_t vertex = kNewVertex;  ///< of the part
-  Vec3f position;
-  std::array<float, kMaxChannels> attributes{};
-  Vec3f normal;
-  Vec2f texcoord;
-};
-
-auto key_of(const ClippedCorner& c) {
-  return std::tie(c.position.x, c.position.y, c.position.z, c.attributes, c.normal.x, c.normal.y,
-                  c.normal.z, c.texcoord.u, c.texcoord.v);
-}
-
-float between(float a, float b, double t) {
-  return static_cast<float>(a + (double{b} - a) * t);
-}
-
-Vec3f between(Vec3f a, Vec3f b, double t) {
-  return {between(a.x, b.x, t), between(a.y, b.y, t), between(a.z, b.z, t)};
-}
-
-Vec3f unit(Vec3f v, Vec3f otherwise) {
-  const Vec3d wide = to_double(v);
-  const double size = length(wide);
-  return size > 0 ? to_float(wide * (1 / size)) : otherwise;
-}
-
-/// On the side of a box exactly.
-Vec3f on_side(Vec3f p, const HalfSpace& half) {
-  const Vec3d& n = half.normal;
-  const auto is_axis = [](double a, double b, double c) {
-    return std::abs(a) == 1 && b == 0 && c == 0;
-  };
-  if (is_axis(n.x, n.y, n.z))
-    p.x = static_cast<float>(n.x * half.offset);
-  else if (is_axis(n.y, n.x, n.z))
-    p.y = static_cast<float>(n.y * half.offset);
-  else if (is_axis(n.z, n.x, n.y))
-    p.z = static_cast<float>(n.z * half.offset);
-  return p;
-}
-
 class PartClipper {
  public:
-  PartClipper(const CutPart& part, const AttributeLayout& layout, const ConvexRegion& region,
+  PartClipper(const CutPart& part, const AttributeLayout& layout, const Region& region,
               Clipping clipping)
       : part_(part),
-        layout_(layout),
-        region_(region),
         clipping_(clipping),
-        light_(layout),
         channels_(static_cast<std::size_t>(part.vertices.channels)),
+        mixer_(layout, channels_),
+        clipper_(region, mixer_),
         numbers_(part.vertices.size(), kNoPlace) {}
 
   CutPart run() {
-    std::vector<std::vector<ClippedCorner>> kept;
+    std::vector<ClippedPolygon> kept;
     for (const auto& triangle : part_.triangles) {
-      std::vector<ClippedCorner> polygon = clipped(triangle);
-      if (polygon.size() < 3)
+      std::vector<ClippedPolygon> pieces = clipper_.pieces(corners_of(triangle));
+      if (pieces.empty())
         continue;
-      if (clipping_ == Clipping::whole_triangles)
-        polygon = corners_of(triangle);
-      for (const ClippedCorner& corner : polygon)
-        use(corner);
-      kept.push_back(std::move(polygon));
+      if (clipping_ == Clipping::whole_triangles) {
+        pieces.clear();
+        pieces.push_back(corners_of(triangle));
+      }
+      for (ClippedPolygon& piece : pieces) {
+        for (const ClippedCorner& corner : piece)
+          use(corner);
+        kept.push_back(std::move(piece));
+      }
     }
     begin();
-    for (const std::vector<ClippedCorner>& polygon : kept)
+    for (const ClippedPolygon& polygon : kept)
       add(polygon);
     if (!made_.triangles.empty())
       made_.image = part_.image;
@@ -93,8 +51,8 @@ class PartClipper {
   }
 
  private:
-  std::vector<ClippedCorner> corners_of(const Triangle<std::uint32_t>& triangle) const {
-    std::vector<ClippedCorner> corners;
+  ClippedPolygon corners_of(const Triangle<std::uint32_t>& triangle) const {
+    ClippedPolygon corners;
     for (const std::uint32_t vertex : triangle) {
       ClippedCorner& corner = corners.emplace_back();
       corner.vertex = vertex;
@@ -106,62 +64,6 @@ class PartClipper {
         corner.texcoord = part_.texcoords[vertex];
     }
     return corners;
-  }
-
-  /// Sutherland & Hodgman, Reentrant Polygon Clipping (1974).
-  std::vector<ClippedCorner> clipped(const Triangle<std::uint32_t>& triangle) const {
-    std::vector<ClippedCorner> polygon = corners_of(triangle), next;
-    for (const HalfSpace& half : region_.half_spaces()) {
-      next.clear();
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const ClippedCorner& from = polygon[i];
-        const ClippedCorner& to = polygon[(i + 1) % polygon.size()];
-        const double a = half.beyond(to_double(from.position));
-        const double b = half.beyond(to_double(to.position));
-        if (a <= 0)
-          next.push_back(from);
-        if ((a < 0 && b > 0) || (a > 0 && b < 0))
-          next.push_back(cut(from, to, half));
-      }
-      std::swap(polygon, next);
-    }
-    return polygon;
-  }
-
-  /// The same from both sides: from the lesser end.
-  ClippedCorner cut(const ClippedCorner& one, const ClippedCorner& other,
-                    const HalfSpace& half) const {
-    const bool in_order = key_of(one) < key_of(other);
-    const ClippedCorner& from = in_order ? one : other;
-    const ClippedCorner& to = in_order ? other : one;
-    const double a = half.beyond(to_double(from.position)), b = half.beyond(to_double(to.position));
-    const double t = a / (a - b);
-    ClippedCorner made;
-    made.position = on_side(between(from.position, to.position, t), half);
-    mix_attributes(from, to, t, made);
-    made.normal = unit(between(from.normal, to.normal, t), from.normal);
-    made.texcoord = {between(from.texcoord.u, to.texcoord.u, t),
-                     between(from.texcoord.v, to.texcoord.v, t)};
-    return made;
-  }
-
-  /// Colours by their light.
-  void mix_attributes(const ClippedCorner& from, const ClippedCorner& to, double t,
-                      ClippedCorner& made) const {
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const float a = from.attributes[c], b = to.attributes[c];
-      made.attributes[c] = light_.has(c)
-                               ? static_cast<float>(light_.number(
-                                     light_.light(a) + (light_.light(b) - light_.light(a)) * t))
-                               : between(a, b, t);
-    }
-    normalize_average(layout_, std::span(made.attributes).first(channels_));
-    if (layout_.colour == ColourType::none || layout_.colour == ColourType::f32)
-      return;
-    const auto colour = std::span(made.attributes)
-                            .subspan(static_cast<std::size_t>(layout_.colour_offset()),
-                                     static_cast<std::size_t>(layout_.colour_channels()));
-    std::ranges::transform(colour, colour.begin(), [](float x) { return std::round(x); });
   }
 
   void use(const ClippedCorner& corner) {
@@ -186,7 +88,7 @@ class PartClipper {
     }
   }
 
-  void add(const std::vector<ClippedCorner>& polygon) {
+  void add(const ClippedPolygon& polygon) {
     std::vector<std::uint32_t> numbers;
     for (const ClippedCorner& corner : polygon)
       numbers.push_back(corner.vertex == kNewVertex ? number_of(corner) : numbers_[corner.vertex]);
@@ -224,11 +126,10 @@ class PartClipper {
   }
 
   const CutPart& part_;
-  const AttributeLayout& layout_;
-  const ConvexRegion& region_;
   Clipping clipping_;
-  ColourLight light_;
   std::size_t channels_;
+  CornerMixer mixer_;
+  TriangleClipper clipper_;
   std::vector<std::uint32_t> numbers_;  ///< of the part's vertices; kNoPlace: not used
   std::unordered_map<std::string, std::uint32_t> cuts_;
   CutPart made_;
@@ -236,7 +137,7 @@ class PartClipper {
 
 }  // namespace
 
-CutPart clip_part(const CutPart& part, const AttributeLayout& layout, const ConvexRegion& region,
+CutPart clip_part(const CutPart& part, const AttributeLayout& layout, const Region& region,
                   Clipping clipping) {
   return PartClipper(part, layout, region, clipping).run();
 }

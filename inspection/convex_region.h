@@ -27,6 +27,7 @@ class ConvexRegion {
   const std::vector<HalfSpace>& half_spaces() const { return half_spaces_; }
   /// False: no point of the box lies in it. True says nothing.
   bool may_meet(const BoundsD& box) const;
+  bool contains(Vec3d p) const { return may_meet({p, p}); }
 
  private:
   std::vector<HalfSpace> half_spaces_;

@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -222,24 +221,13 @@ std::string export_parts_of_tile(const PartsJob& job, NodeId node, ExportFormat 
   return write_parts(job, exported, format);
 }
 
-ConvexRegion region_of(const storage::HierarchyReader& reader, const BoundsD& box) {
-  const Vec3d& origin = reader.manifest().origin;
-  return ConvexRegion::of_box({box.min - origin, box.max - origin});
-}
-
-[[noreturn]] void fail_empty(const storage::HierarchyReader& reader) {
-  const BoundsD& all = reader.manifest().source.bounds;
-  throw Error(ErrorCode::usage,
-              fmt::format("no triangle lies in the box; the mesh reaches from {},{},{} to {},{},{}",
-                          all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z));
-}
-
 std::string text_of(const Piece& piece) {
   return fmt::format("{} of {}", piece.size(), counted(piece.cut_size(), "tiles"));
 }
 
 /// As export_cut, but for the order of vertices.
-std::string export_piece(const ExportJob& job, Piece& piece, const std::string& what) {
+std::string export_piece(const ExportJob& job, Piece& piece, const RegionRequest& region,
+                         const std::string& what) {
   storage::MemoryPool pool(job.memory_budget / 4);
   storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
   storage::RecordSpool<Vec3f> positions(scratch, kScratchBlockBytes);
@@ -261,7 +249,7 @@ std::string export_piece(const ExportJob& job, Piece& piece, const std::string& 
     job.progress.advance(1);
   }
   if (triangles.size() == 0)
-    fail_empty(job.reader);
+    fail_empty(job.reader, region);
   mesh_io::PlyContent content = ply_content(job.reader, what);
   content.vertex_count = numbers.count();
   content.triangle_count = triangles.size();
@@ -283,14 +271,15 @@ std::string export_piece(const ExportJob& job, Piece& piece, const std::string& 
 }
 
 /// In a file with the parts' pictures.
-std::string export_parts_of_piece(const PartsJob& job, Piece& piece, ExportFormat format) {
+std::string export_parts_of_piece(const PartsJob& job, Piece& piece, const RegionRequest& region,
+                                  ExportFormat format) {
   std::vector<std::uint32_t> bases{0};
   for (std::size_t i = 0; i < piece.size(); ++i) {
     job.cancel.check();
     bases.push_back(bases.back() + static_cast<std::uint32_t>(piece.load(i).vertices.size()));
   }
   if (bases.back() == 0)
-    fail_empty(job.reader);
+    fail_empty(job.reader, region);
   const ExportedParts exported{piece.size(), [&](std::size_t i) { return piece.node(i); },
                                [&](std::size_t i) {
                                  CutPart part = piece.load(i);
@@ -302,8 +291,9 @@ std::string export_parts_of_piece(const PartsJob& job, Piece& piece, ExportForma
   return fmt::format("{}, {}", text_of(piece), write_parts(job, exported, format));
 }
 
-Piece piece_of(const storage::HierarchyReader& reader, Cut cut, const ExportOptions& options) {
-  return {reader, std::move(cut), region_of(reader, *options.box),
+Piece piece_of(storage::FileSystem& files, const storage::HierarchyReader& reader, Cut cut,
+               const ExportOptions& options) {
+  return {reader, std::move(cut), region_of(files, reader, options.region),
           options.clip ? Clipping::at_border : Clipping::whole_triangles,
           options.memory_budget / 4};
 }
@@ -336,9 +326,10 @@ std::string export_parts(const PartsJob& job, const ExportOptions& options, Expo
     throw Error(ErrorCode::usage, options.output.string() +
                                       ": the outline is lines, which are exported as a PLY alone");
   }
-  if (options.box) {
-    Piece piece = piece_of(job.reader, std::move(cut->cut), options);
-    return fmt::format("{}, box: {}", cut->name, export_parts_of_piece(job, piece, format));
+  if (options.region.is_any()) {
+    Piece piece = piece_of(job.files, job.reader, std::move(cut->cut), options);
+    return fmt::format("{}, {}: {}", cut->name, options.region.name(),
+                       export_parts_of_piece(job, piece, options.region, format));
   }
   return fmt::format("{}: {}", cut->name,
                      export_parts_of_cut(job, std::move(cut->cut), options.memory_budget, format));
@@ -350,27 +341,21 @@ std::string export_selection(const ExportJob& job, const ExportOptions& options)
   std::optional<NamedCut> cut = cut_of(job.files, job.reader, options.selection);
   if (!cut)
     return export_outline(job);
-  if (options.box) {
-    Piece piece = piece_of(job.reader, std::move(cut->cut), options);
-    return export_piece(job, piece, cut->name + ", box");
+  if (options.region.is_any()) {
+    Piece piece = piece_of(job.files, job.reader, std::move(cut->cut), options);
+    return export_piece(job, piece, options.region, cut->name + ", " + options.region.name());
   }
   return export_cut(job, std::move(cut->cut), cut->name);
 }
 
-void require_box(const ExportOptions& options) {
-  if (!options.box)
-    return;
-  const auto& [min, max] = *options.box;
-  const auto is_range = [](double a, double b) {
-    return std::isfinite(a) && std::isfinite(b) && a <= b;
-  };
-  if (!is_range(min.x, max.x) || !is_range(min.y, max.y) || !is_range(min.z, max.z))
-    throw Error(ErrorCode::usage,
-                "the box is none: each number of its first corner is at most that "
-                "of the second one");
-  if (std::holds_alternative<NodeId>(options.selection) ||
-      std::holds_alternative<OutlineSelection>(options.selection))
-    throw Error(ErrorCode::usage, "a box takes a piece of a level, a cut or what an error allows");
+void require_cut(const ExportOptions& options) {
+  const bool is_other = std::holds_alternative<NodeId>(options.selection) ||
+                        std::holds_alternative<OutlineSelection>(options.selection);
+  if (options.region.is_any() && is_other) {
+    throw Error(ErrorCode::usage, fmt::format("a {} takes a piece of a level, a cut or what an "
+                                              "error allows",
+                                              options.region.name()));
+  }
 }
 
 }  // namespace
@@ -379,10 +364,12 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel) {
   require_no_other_ending(options.output);
-  require_box(options);
+  require_cut(options);
   storage::OutputRequest request{options.output, options.replace, {hierarchy}};
   if (const auto* cut = std::get_if<fs::path>(&options.selection))
     request.inputs.push_back(*cut);
+  if (!options.region.polygon.empty())
+    request.inputs.push_back(options.region.polygon);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   if (!storage::is_standard_output(files, options.output))

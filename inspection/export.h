@@ -3,14 +3,13 @@
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/ids.h"
+#include "inspection/asked_region.h"
 #include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <variant>
 
@@ -31,10 +30,9 @@ struct ExportOptions {
   std::filesystem::path output;
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
   bool replace = false;                    ///< a file that is there
-  /// In the input's coordinates: nothing else is written, and tiles elsewhere are not read. Of cuts
-  /// only.
-  std::optional<BoundsD> box{};
-  bool clip = false;  ///< triangles end where the box does; else those that touch it come whole
+  /// Nothing else is written, and tiles elsewhere are not read. Of cuts only.
+  RegionRequest region{};
+  bool clip = false;  ///< triangles end where the region does; else those that touch it come whole
 };
 
 /// Assembles the selection seamlessly, tile by tile, into options.output.
@@ -43,8 +41,8 @@ struct ExportOptions {
 /// tile draws, at vertices of its own in a GLB, at common positions in an OBJ. The outline goes
 /// into a PLY alone.
 ///
-/// Of a box the tiles of an OBJ share no positions, and vertices of a PLY come as triangles first
-/// use them; those of one place with the same attributes are one.
+/// Of a region the tiles of an OBJ share no positions, and vertices of a PLY come as triangles
+/// first use them; those of one place with the same attributes are one.
 ///
 /// A PLY has no textures. Vertices are shared
 /// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
@@ -53,8 +51,9 @@ struct ExportOptions {
 /// file. Triangles of a level or cut start with their smallest corner and ascend, tile by tile;
 /// those of the last level ascend as a whole, and its places are in the order of ranks. The output
 /// appears complete or not at all. Returns a line for people. Deterministic. Throws Error(usage) if
-/// the selection is not in the tree, the cut file is no cut, or nothing lies in the box;
-/// Error(budget) if the borders of tiles in the box exceed the memory; Error(io | corrupt).
+/// the selection is not in the tree, the cut file is no cut, or nothing lies in the
+/// region; Error(budget) if the borders of tiles in it exceed the memory; Error(input) for a
+/// polygon that is none; Error(io | corrupt).
 std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel);

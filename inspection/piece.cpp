@@ -24,11 +24,10 @@ bool overlap(const BoundsD& a, const BoundsD& b) {
          a.min.z <= b.max.z && b.min.z <= a.max.z;
 }
 
-/// Positions in the cut of the tiles that may draw something in the region: those whose vertices
-/// do, and, as a ghost moves to where a coarser neighbour has it, finer neighbours of coarser ones
-/// of these.
+}  // namespace
+
 std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const Cut& cut,
-                                  const ConvexRegion& region) {
+                                  const Region& region) {
   std::vector<std::size_t> inside;
   std::vector<const TileRecord*> coarse;
   Level finest{};
@@ -59,10 +58,8 @@ std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const 
   return all;
 }
 
-}  // namespace
-
-Piece::Piece(const storage::HierarchyReader& reader, Cut cut, ConvexRegion region,
-             Clipping clipping, std::uint64_t cache_bytes)
+Piece::Piece(const storage::HierarchyReader& reader, Cut cut, Region region, Clipping clipping,
+             std::uint64_t cache_bytes)
     : reader_(reader),
       parts_(reader, std::move(cut), cache_bytes),
       region_(std::move(region)),
@@ -105,10 +102,9 @@ PieceNumbers::Numbered PieceNumbers::add(const Piece& piece, std::size_t i, cons
       throw Error(ErrorCode::usage, "the piece has 2^32 vertices or more: export a smaller one");
   }
   if (bytes_ > most_bytes_) {
-    throw Error(
-        ErrorCode::budget,
-        "the vertices at the borders of the tiles in the box exceed the memory budget: give "
-        "more, export a smaller box or a coarser level");
+    throw Error(ErrorCode::budget,
+                "the vertices at the borders of the tiles there exceed the memory budget: give "
+                "more, export a smaller piece or a coarser level");
   }
   return made;
 }

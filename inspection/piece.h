@@ -3,8 +3,8 @@
 
 #include "hierarchy/cut.h"
 #include "inspection/clip_part.h"
-#include "inspection/convex_region.h"
 #include "inspection/cut_part.h"
+#include "inspection/region.h"
 #include "storage/format/hierarchy_reader.h"
 
 #include <cstddef>
@@ -15,11 +15,17 @@
 
 namespace meshhier::inspection {
 
+/// Positions in the cut of the tiles that may draw something in the region: those whose vertices
+/// do, and, as a ghost moves to where a coarser neighbour has it, finer neighbours of coarser ones
+/// of these.
+std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const Cut& cut,
+                                  const Region& region);
+
 /// Reads only tiles that may reach into the region, and coarser neighbours of these.
 class Piece {
  public:
   /// `region`: relative to the hierarchy's origin. As CutParts.
-  Piece(const storage::HierarchyReader& reader, Cut cut, ConvexRegion region, Clipping clipping,
+  Piece(const storage::HierarchyReader& reader, Cut cut, Region region, Clipping clipping,
         std::uint64_t cache_bytes);
 
   /// Tiles that may have something in the region, and those of the whole cut.
@@ -37,7 +43,7 @@ class Piece {
  private:
   const storage::HierarchyReader& reader_;
   CutParts parts_;
-  ConvexRegion region_;
+  Region region_;
   Clipping clipping_;
   std::vector<std::size_t> positions_;  ///< in the cut
 };

@@ -6,7 +6,9 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "images/image_codec.h"
+#include "inspection/clip_scene.h"
 #include "inspection/cut_file.h"
+#include "inspection/piece.h"
 #include "inspection/shown_tiles.h"
 #include "render/painting.h"
 #include "render/points.h"
@@ -20,6 +22,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,17 +59,49 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
   return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
 }
 
+/// Of the piece, from tiles as coarse as show its form.
+std::vector<render::Facet> piece_facets(const HierarchyReader& reader, const Region& region,
+                                        std::uint64_t cache_bytes,
+                                        const execution::CancelToken& cancel) {
+  constexpr std::size_t kEnough = 500;
+  constexpr double kFiner = 4;
+  constexpr int kTries = 20;
+  std::vector<render::Facet> facets;
+  double error = reader.record(NodeId{}).error;
+  for (int i = 0; i <= kTries; ++i, error /= kFiner) {
+    ShownTiles tiles(reader, cut_by_error(reader, {i < kTries ? error : 0}), cache_bytes);
+    facets.clear();
+    for (const std::size_t position : tiles_in(reader, tiles.cut(), region)) {
+      cancel.check();
+      ShownTile shown = tiles.load(position);
+      shown.tile.image = {};
+      shown.tile.shading.texcoords.clear();
+      const AttributeLayout& layout = reader.tile_format().attributes;
+      const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
+      const render::SceneTile piece =
+          clip_scene(is_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
+                               : render::scene_tile(shown.tile, layout, shown.border),
+                     region);
+      facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
+    }
+    if (facets.size() >= kEnough || tiles.size() == reader.tree().partition_count())
+      break;
+  }
+  return facets;
+}
+
 struct Seen {
   render::Camera camera;
   render::ViewAxes axes;
 };
 
+/// `root`: of the whole; `framed`: of what the picture shows.
 Seen seen_by(const HierarchyReader& reader, std::span<const render::Facet> root,
-             const PreviewOptions& options) {
+             std::span<const render::Facet> framed, const PreviewOptions& options) {
   const Standpoint from = options.view ? *options.view : first_view(reader, root, options);
   const render::View view = render::view_from(from, up_of(reader, options));
   const render::Framing framing{.width = options.width, .height = options.height, .samples = 2};
-  return {render::portrait_camera(root, view, framing), render::axes_of(view)};
+  return {render::portrait_camera(framed, view, framing), render::axes_of(view)};
 }
 
 Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
@@ -80,16 +116,34 @@ Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
   return cut_by_error(reader, std::get<LargestError>(selection));
 }
 
+/// The tiles that a picture is of.
+struct Pictured {
+  ShownTiles tiles;
+  std::vector<std::size_t> positions;  ///< in their cut
+
+  NodeId node(std::size_t i) const { return tiles.cut()[positions[i]]; }
+};
+
+Pictured pictured(const HierarchyReader& reader, Cut cut, const std::optional<Region>& region,
+                  std::uint64_t cache_bytes) {
+  std::vector<std::size_t> positions(cut.size());
+  std::iota(positions.begin(), positions.end(), std::size_t{0});
+  if (region)
+    positions = tiles_in(reader, cut, *region);
+  return {ShownTiles(reader, std::move(cut), cache_bytes), std::move(positions)};
+}
+
 /// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw
 /// anywhere.
-std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Cut& cut, double point_side) {
-  const auto level_of = [&](NodeId node) { return reader.record(node).node.level; };
-  const auto same = [&](NodeId node) { return level_of(node) == level_of(cut[0]); };
-  const bool is_even = std::ranges::all_of(cut.nodes(), same);
+std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Pictured& shown,
+                             double point_side) {
+  bool is_even = true;
   std::vector<Bounds> boxes;
   Bounds all;
-  for (const NodeId node : cut.nodes()) {
-    boxes.push_back(render::box_of_squares(reader.record(node).bounds, point_side));
+  for (std::size_t i = 0; i < shown.positions.size(); ++i) {
+    const TileRecord& record = reader.record(shown.node(i));
+    is_even = is_even && record.node.level == reader.record(shown.node(0)).node.level;
+    boxes.push_back(render::box_of_squares(record.bounds, point_side));
     all.add(boxes.back());
   }
   if (!is_even)
@@ -98,12 +152,13 @@ std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Cut& cut, doub
 }
 
 /// 0: triangles are drawn.
-double point_side_of(const HierarchyReader& reader, const Cut& cut, const render::Camera& camera) {
+double point_side_of(const HierarchyReader& reader, const Pictured& shown,
+                     const render::Camera& camera) {
   if (reader.record(NodeId{}).interior_count > 0)
     return 0;
   std::uint64_t points = 0;
-  for (const NodeId node : cut.nodes())
-    points += reader.record(node).own_count;
+  for (std::size_t i = 0; i < shown.positions.size(); ++i)
+    points += reader.record(shown.node(i)).own_count;
   return render::point_side(camera, points);
 }
 
@@ -134,6 +189,19 @@ void lay_on(const std::array<std::uint8_t, 3>& ground, images::Image& picture) {
   }
 }
 
+/// For people: of what it is.
+std::string text_of(const HierarchyReader& reader, const Pictured& shown) {
+  if (shown.positions.size() < shown.tiles.size())
+    return fmt::format("{} of {}", shown.positions.size(), counted(shown.tiles.size(), "tiles"));
+  std::uint64_t triangles = 0;
+  for (const NodeId node : shown.tiles.cut().nodes()) {
+    const TileRecord& record = reader.record(node);
+    triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
+  }
+  return fmt::format("{}, {}", counted(shown.tiles.size(), "tiles"),
+                     counted(triangles, "triangles"));
+}
+
 }  // namespace
 
 std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
@@ -144,6 +212,8 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     if (const auto* cut = std::get_if<std::filesystem::path>(&*options.selection))
       request.inputs.push_back(*cut);
   }
+  if (!options.region.polygon.empty())
+    request.inputs.push_back(options.region.polygon);
   require_room(options);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
@@ -151,27 +221,36 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
+  std::optional<Region> region;
+  if (options.region.is_any())
+    region = region_of(files, reader, options.region);
+  const std::uint64_t cache_bytes = options.memory_budget / 8;
   AttributeLayout layout = reader.tile_format().attributes;
   const auto [camera, axes] = [&] {
     const std::vector<render::Facet> root = root_facets(reader);
     layout = render::drawn_layout(root, layout);
-    return seen_by(reader, root, options);
+    if (!region)
+      return seen_by(reader, root, root, options);
+    const auto piece = piece_facets(reader, *region, cache_bytes, cancel);
+    if (piece.empty())
+      fail_empty(reader, options.region);
+    return seen_by(reader, root, piece, options);
   }();
-  ShownTiles tiles(reader, cut_for(files, reader, options, camera.pixel()),
-                   options.memory_budget / 8);
-  std::uint64_t triangles = 0;
-  for (const NodeId node : tiles.cut().nodes())
-    triangles +=
-        std::uint64_t{reader.record(node).interior_count} + reader.record(node).drawn_border_count;
-  const double point_side = point_side_of(reader, tiles.cut(), camera);
+  Pictured shown =
+      pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
+  const double point_side = point_side_of(reader, shown, camera);
   const auto load = [&, &axes = axes](std::size_t i) {
-    const ShownTile shown = tiles.load(i);
-    if (point_side == 0)
-      return render::scene_tile(shown.tile, layout, shown.border);
-    return render::SceneTile{
-        render::squares_of(render::points_of(shown.tile, layout), axes, point_side), {}, {}};
+    const ShownTile tile = shown.tiles.load(shown.positions[i]);
+    render::SceneTile drawn = point_side == 0
+                                  ? render::scene_tile(tile.tile, layout, tile.border)
+                                  : render::SceneTile{render::points_of(tile.tile, layout), {}, {}};
+    if (region)
+      drawn = clip_scene(std::move(drawn), *region);
+    if (point_side > 0)
+      drawn.facets = render::squares_of(drawn.facets, axes, point_side);
+    return drawn;
   };
-  render::Scene scene{boxes_of(reader, tiles.cut(), point_side), load,
+  render::Scene scene{boxes_of(reader, shown, point_side), load,
                       reader.manifest().textures && reader.manifest().textures->unlit
                           ? render::Light::none
                           : render::Light::lamps};
@@ -185,9 +264,8 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   if (options.background)
     lay_on(*options.background, picture);
   output.publish(images::encode_image(picture, options.format, kQuality));
-  return fmt::format("{}: {} x {} pixels, {}, {}", options.output.string(), options.width,
-                     options.height, counted(tiles.size(), "tiles"),
-                     counted(triangles, "triangles"));
+  return fmt::format("{}: {} x {} pixels, {}", options.output.string(), options.width,
+                     options.height, text_of(reader, shown));
 }
 
 }  // namespace meshhier::inspection

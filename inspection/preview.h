@@ -7,6 +7,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
+#include "inspection/asked_region.h"
 #include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
@@ -34,11 +35,12 @@ struct PreviewOptions {
   std::optional<Standpoint> view;                         ///< none: the first view
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
+  RegionRequest region{};  ///< all else is left out, and the picture shows this piece
   std::uint64_t memory_budget = std::uint64_t{1} << 30;
 };
 
-/// Writes the picture and says what it shows. Throws Error(usage | exists | io | corrupt), and
-/// Error(budget) if the picture does not fit the memory.
+/// Writes the picture and says what it shows. Throws Error(usage | exists | input | io | corrupt),
+/// and Error(budget) if the picture does not fit the memory.
 std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                          const PreviewOptions& options, execution::Progress& progress,
                          const execution::CancelToken& cancel);

@@ -89,6 +89,8 @@ std::vector<execution::ExpectedStage> expected_times(const VerifyJob& job) {
 void verify_all(const VerifyJob& job) {
   job.progress.expect(expected_times(job));
   verify_manifest(job);
+  if (job.options.region.is_any())
+    return verify_piece(job);
   verify_files(job);
   verify_tiles(job);
   if (job.tiles.unreadable_count() > 0) {
@@ -147,7 +149,7 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
   VerifyReport report;
   ProblemList problems;
   if (const auto place = open_place(files, directory, problems)) {
-    if (place->archive() != nullptr)
+    if (place->archive() != nullptr && !options.region.is_any())
       verify_archive(*place->archive(), problems, report.checks, cancel);
     if (problems.count() == 0)
       require_manifest(*place, directory);

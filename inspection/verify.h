@@ -3,6 +3,7 @@
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "inspection/asked_region.h"
 #include "mesh_io/input_paths.h"
 #include "storage/io/file.h"
 
@@ -18,6 +19,8 @@ struct VerifyOptions {
   mesh_io::InputPaths input;  ///< the mesh it was made from, in the same order: proves it lossless
   std::uint32_t cuts = 20;    ///< random cuts whose seams are looked at
   std::uint64_t seed = 1;     ///< of the random cuts
+  /// Only the tiles that may have something there are looked at, and the manifest. Not with input.
+  RegionRequest region{};
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
   /// Where temporary files lie; if not given, beside the hierarchy.
   std::optional<std::filesystem::path> scratch_folder{};

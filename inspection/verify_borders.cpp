@@ -161,15 +161,19 @@ void check_side(const VerifyJob& job, NodeId node, const PublishedTile& tile, No
 
 }  // namespace
 
+bool compare_neighbours(const VerifyJob& job, NodeId a, NodeId b) {
+  const auto tile = job.tiles.find(a), neighbour = job.tiles.find(b);
+  if (!tile || !neighbour)
+    return false;  // told already
+  check_side(job, a, *tile, b, *neighbour);
+  check_side(job, b, *neighbour, a, *tile);
+  return true;
+}
+
 void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
   const std::uint64_t told = job.problems.count();
-  if (told < ProblemList::kLimit) {
-    const auto tile = job.tiles.find(a), neighbour = job.tiles.find(b);
-    if (!tile || !neighbour)
-      return;  // told already
-    check_side(job, a, *tile, b, *neighbour);
-    check_side(job, b, *neighbour, a, *tile);
-  }
+  if (told < ProblemList::kLimit && !compare_neighbours(job, a, b))
+    return;
   if (job.problems.count() == told) {
     job.problems.add(fmt::format("tiles {} and {}: say different things of the border between them",
                                  to_text(a), to_text(b)));

@@ -4,6 +4,7 @@
 #include "config/placement.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/error.h"
+#include "inspection/manifest_config.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
@@ -132,10 +133,8 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
 /// The config is one that builds, and its values are written as a build writes them.
 void check_config(const VerifyJob& job, const ManifestProblems& problems) {
   const storage::Manifest& manifest = job.reader.manifest();
-  Json text = {{"input", "input.ply"}, {"output", "output.hier"}};
-  text.update(manifest.config);
   try {
-    const config::Config config = config::parse_config(text.dump(), {"\"config\"", {}}, {});
+    const config::Config config = config_of(manifest);
     const std::string wrong = first_difference(manifest.config, config::resolved_json(config), "");
     problems.require(wrong.empty(), fmt::format("\"config.{}\" is not what a build writes", wrong));
     check_config_against_rest(manifest, config, problems);

@@ -104,6 +104,14 @@ void verify_texture(const VerifyJob& job, const PublishedTile& tile);
 /// `job` must outlive it.
 ParentMaps make_parent_maps(const VerifyJob& job);
 
+/// The tiles that may have something in options.region, by themselves, with their children and with
+/// each other.
+void verify_piece(const VerifyJob& job);
+
+/// Tells what two neighbouring nodes of a level say differently of each other: ghosts, chains,
+/// border lists. False if a tile cannot be read.
+bool compare_neighbours(const VerifyJob& job, NodeId a, NodeId b);
+
 /// Tells what two neighbouring nodes of a level, early ones too, say differently of each other:
 /// ghosts, chains, border lists.
 void explain_difference(const VerifyJob& job, NodeId a, NodeId b);

@@ -252,9 +252,10 @@ FaceCounts PlyFileSource::read_faces(const PlyFaceVisitor& visit) {
 
 void PlyFileSource::read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) {
   const std::size_t index = element_of(PlyElementPlan::Role::texture_vertices);
-  const auto [u, v] = plan_.elements[index].texcoord;
+  const auto texcoord = plan_.elements[index].texcoord;
   body_at(index)->read_rows(plan_.elements[index], [&](const PlyRow& row) {
-    visit({static_cast<float>(row.values[u][0]), static_cast<float>(row.values[v][0])});
+    visit({static_cast<float>(row.values[texcoord[0]][0]),
+           static_cast<float>(row.values[texcoord[1]][0])});
     return std::string();
   });
 }

@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "inspection/clip_part.h"
 #include "inspection/cut_mesh.h"
+#include "inspection/geojson.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
@@ -256,13 +257,46 @@ std::vector<Vec3d> corners_of(const Loaded& mesh, const tests::MeshTriangle& t) 
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
+double area(const Loaded& mesh) {
+  double area = 0;
+  for (const tests::MeshTriangle& t : mesh.triangles) {
+    const auto c = corners_of(mesh, t);
+    area += length(cross(c[1] - c[0], c[2] - c[0])) / 2;
+  }
+  return area;
+}
+
+/// Edges of one triangle alone whose middle is well within the region, seen from above: gaps.
+std::size_t open_edges_within(const Loaded& mesh, const RegionRequest& request) {
+  const auto files = storage::make_posix_file_system();
+  const PlanRegion region(read_polygons(*files, request.polygon), UpAxis::y);
+  std::map<std::array<std::uint32_t, 2>, int> edges;
+  for (const tests::MeshTriangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k)
+      ++edges[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, count] : edges) {
+    if (count != 1)
+      continue;
+    const Vec3d middle = (mesh.positions[edge[0]] + mesh.positions[edge[1]]) * 0.5;
+    constexpr double kWell = 1e-5;
+    bool is_within = true;
+    for (const Vec3d step :
+         {Vec3d{kWell, 0, 0}, Vec3d{-kWell, 0, 0}, Vec3d{0, 0, kWell}, Vec3d{0, 0, -kWell}})
+      is_within = is_within && region.contains(middle + step);
+    open += is_within ? 1 : 0;
+  }
+  return open;
+}
+
 const BoundsD kSomeBox{{-0.4, -2, -0.9}, {0.7, 0.3, 0.45}};
 
 class ExportBoxTest : public ExportTest {
  protected:
   Loaded piece(const ExportSelection& selection, const BoundsD& box, bool clip,
                std::uint64_t budget = 1 << 30) {
-    run_all(*files_, {selection, output(), budget, true, box, clip});
+    run_all(*files_, {selection, output(), budget, true, {.box = box}, clip});
     return load(*files_, output());
   }
   Loaded all(const ExportSelection& selection) {
@@ -374,7 +408,7 @@ TEST_F(ExportBoxTest, CutEdgesMixWhatTheirEndsHave) {
   part.triangles = {{0, 1, 2}};
   part.image.bytes.resize(3);
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8};
-  const auto half = ConvexRegion::of_box({{-1, -1, -1}, {0.5, 2, 2}});
+  const Region half{ConvexRegion::of_box({{-1, -1, -1}, {0.5, 2, 2}}), nullptr};
   const CutPart made = clip_part(part, layout, half, Clipping::at_border);
   ASSERT_EQ(made.vertices.size(), 4U);
   EXPECT_EQ(made.triangles.size(), 2U);
@@ -386,9 +420,58 @@ TEST_F(ExportBoxTest, CutEdgesMixWhatTheirEndsHave) {
   EXPECT_FLOAT_EQ(attributes[2], std::sqrt(0.5F));
   EXPECT_EQ(attributes[3], 188);  // half the light of 255
   EXPECT_EQ(made.image.bytes.size(), 3U);
-  const auto none = ConvexRegion::of_box({{3, 3, 3}, {4, 4, 4}});
+  const Region none{ConvexRegion::of_box({{3, 3, 3}, {4, 4, 4}}), nullptr};
   EXPECT_TRUE(clip_part(part, layout, none, Clipping::at_border).image.bytes.empty());
   EXPECT_EQ(clip_part(part, layout, half, Clipping::whole_triangles).triangles, part.triangles);
+}
+
+/// A triangle with a notch, and a hole in it, in the x-z plane: y points up, so z is to the south.
+constexpr const char* kNotched = R"({"type": "Feature", "geometry": {"type": "Polygon",
+    "coordinates": [[[-0.9, -0.9], [0.8, -0.7], [0.1, 0.1], [0.2, 0.95], [-0.9, -0.9]],
+                    [[-0.1, -0.5], [0.2, -0.5], [0.1, -0.2], [-0.1, -0.5]]]}})";
+
+TEST_F(ExportBoxTest, APolygonIsCutOutSeenFromAbove) {
+  std::ofstream(directory_.path() / "notched.geojson") << kNotched;
+  const RegionRequest region{.polygon = directory_.path() / "notched.geojson"};
+  publish(tests::open_grid(40, 40), {7, 30, false, true, {}});
+  const auto cut_out = [&](const ExportSelection& selection, bool clip) {
+    run_all(*files_, {selection, output(), 1 << 30, true, region, clip});
+    return load(*files_, output());
+  };
+  // The grid lies in the x-y plane: from above it is a line, and strips of it stay.
+  const Loaded grid = cut_out(Level{3}, true);
+  EXPECT_FALSE(grid.triangles.empty());
+  fs::remove_all(hierarchy());
+
+  publish(tests::sphere(900), {7, 30, false, true, {}});
+  for (const ExportSelection& selection :
+       std::vector<ExportSelection>{Level{0}, Level{2}, write_cut("1/0\n2/2\n2/3")}) {
+    const Loaded whole = cut_out(selection, false), cut = cut_out(selection, true);
+    EXPECT_GT(whole.triangles.size(), 10U);
+    EXPECT_GT(area(whole), area(cut));
+    EXPECT_EQ(open_edges_within(cut, region), 0U);
+  }
+  const Loaded finest = cut_out(Level{3}, true);
+  double signed_area = 0;
+  for (const auto& t : finest.triangles) {
+    const auto c = corners_of(finest, t);
+    signed_area += cross(c[1] - c[0], c[2] - c[0]).y / 2;
+  }
+  EXPECT_NEAR(signed_area, 0, 1e-6) << "as the sphere is closed, upper and lower side are equal";
+}
+
+TEST_F(ExportBoxTest, BoxAndPolygonTogether) {
+  std::ofstream(directory_.path() / "notched.geojson") << kNotched;
+  publish(tests::sphere(900), {7, 30, false, true, {}});
+  const auto cut_out = [&](const RegionRequest& region) {
+    run_all(*files_, {Level{2}, output(), 1 << 30, true, region, true});
+    return area(load(*files_, output()));
+  };
+  const fs::path polygon = directory_.path() / "notched.geojson";
+  const BoundsD upper{{-9, 0.01, -9}, {9, 9, 9}}, lower{{-9, -9, -9}, {9, 0.01, 9}};
+  EXPECT_NEAR(
+      cut_out({.box = upper, .polygon = polygon}) + cut_out({.box = lower, .polygon = polygon}),
+      cut_out({.polygon = polygon}), 1e-5);
 }
 
 TEST_F(ExportBoxTest, WhatIsNoneIsTold) {
@@ -407,6 +490,22 @@ TEST_F(ExportBoxTest, WhatIsNoneIsTold) {
   EXPECT_THAT(said(Level{0}, {{0, 0, 0}, {0, 1, std::nan("")}}), HasSubstr("the box is none"));
   EXPECT_THAT(said(node(0, 0), kSomeBox), HasSubstr("a box takes a piece of a level"));
   EXPECT_THAT(said(OutlineSelection{}, kSomeBox), HasSubstr("a box takes a piece of a level"));
+  const auto refused = [&](const RegionRequest& region) {
+    try {
+      run_all(*files_, {Level{0}, output(), 1 << 30, true, region, false});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const tests::TemporaryDirectory beside;
+  const fs::path polygon = beside.path() / "far.geojson";
+  std::ofstream(polygon)
+      << R"({"type": "Polygon", "coordinates": [[[13, 52], [14, 52], [14, 53]]]})";
+  EXPECT_THAT(refused({.polygon = polygon}),
+              HasSubstr("give its --crs (of degrees \"EPSG:4326\")"));
+  EXPECT_THAT(refused({.polygon = polygon, .crs = "EPSG:4326"}),
+              HasSubstr("stands on no map, so that a CRS says nothing"));
   EXPECT_EQ(names(), std::vector<std::string>{"a.hier"});
 }
 

@@ -137,6 +137,26 @@ TEST_F(PictureTest, TheFirstViewIsShownUnlessAnotherIsAskedFor) {
   EXPECT_NE(picture(same), usual);
 }
 
+TEST_F(PictureTest, APieceFillsThePicture) {
+  build(sheet());
+  PreviewOptions front = options();
+  front.view = Standpoint{0, 0};
+  front.region.box = BoundsD{{0.3, 0.1, -1}, {1.1, 0.5, 1}};  // twice as wide as high
+  const Covered box = covered(picture(front));
+  EXPECT_NEAR(static_cast<double>(box.columns), 2.0 * static_cast<double>(box.rows), 3);
+  EXPECT_NEAR(static_cast<double>(box.columns), 120 - 2 * 0.04 * 120, 2);
+  // From above the sheet is a line, which a polygon shortens: y points up.
+  std::ofstream(directory_.path() / "a.geojson")
+      << R"({"type": "Polygon", "coordinates": [[[1, -1], [3, -1], [3, 1], [1, 1]]]})";
+  front.region = {.polygon = directory_.path() / "a.geojson"};
+  const Covered polygon = covered(picture(front));
+  EXPECT_NEAR(static_cast<double>(polygon.columns), 2.0 * static_cast<double>(polygon.rows), 3);
+  std::string message;
+  front.region = {.box = BoundsD{{7, 7, 7}, {8, 8, 8}}};
+  EXPECT_EQ(failure(front, message), ErrorCode::usage);
+  EXPECT_THAT(message, HasSubstr("no triangle lies in the box"));
+}
+
 TEST_F(PictureTest, PointsAreShown) {
   build(tests::points(500));
   const Covered shown = covered(picture(options()));

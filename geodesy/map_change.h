@@ -1,0 +1,32 @@
+// Places of one map in the coordinates of another, by PROJ.
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <memory>
+#include <string>
+
+namespace meshhier::geodesy {
+
+/// Takes the horizontal parts of two CRSs. Coordinates are easting, northing or, in degrees,
+/// longitude, latitude; heights stay as they are, but for those of three-dimensional CRSs
+/// ("EPSG:4979", "EPSG:4978").
+///
+/// An object is for one thread at a time.
+class MapChange {
+ public:
+  /// As for MapProjection; also in degrees. Throws as its constructor.
+  MapChange(const std::string& from, const std::string& to);
+  ~MapChange();
+  MapChange(MapChange&&) noexcept;
+  MapChange& operator=(MapChange&&) noexcept;
+
+  /// Throws Error(usage) if the place is none of the other map.
+  Vec3d operator()(Vec3d place) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace meshhier::geodesy

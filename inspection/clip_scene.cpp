@@ -1,0 +1,56 @@
+#include "inspection/clip_scene.h"
+
+#include "inspection/triangle_clipper.h"
+
+#include <utility>
+#include <vector>
+
+namespace meshhier::inspection {
+namespace {
+
+/// Colours are light already.
+constexpr std::size_t kColourChannels = 3;
+
+ClippedCorner corner_of(const render::FacetCorner& from, Vec2f texcoord) {
+  ClippedCorner corner;
+  corner.position = from.position;
+  corner.normal = from.normal;
+  corner.attributes = {from.colour.x, from.colour.y, from.colour.z};
+  corner.texcoord = texcoord;
+  return corner;
+}
+
+render::FacetCorner facet_corner(const ClippedCorner& from) {
+  return {from.position, from.normal, {from.attributes[0], from.attributes[1], from.attributes[2]}};
+}
+
+}  // namespace
+
+render::SceneTile clip_scene(render::SceneTile tile, const Region& region) {
+  const CornerMixer mixer({}, kColourChannels);
+  const TriangleClipper clipper(region, mixer);
+  std::vector<render::Facet> facets;
+  std::vector<render::Skin> skins;
+  for (std::size_t i = 0; i < tile.facets.size(); ++i) {
+    const render::Facet& facet = tile.facets[i];
+    const render::Skin skin = tile.skins.empty() ? render::Skin{} : tile.skins[i];
+    ClippedPolygon triangle;
+    for (std::size_t k = 0; k < 3; ++k)
+      triangle.push_back(corner_of(facet[k], skin.texcoords[k]));
+    for (const ClippedPolygon& piece : clipper.pieces(std::move(triangle))) {
+      for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
+        facets.push_back(
+            {facet_corner(piece[0]), facet_corner(piece[k]), facet_corner(piece[k + 1])});
+        if (tile.skins.empty())
+          continue;
+        render::Skin& made = skins.emplace_back(skin);
+        made.texcoords = {piece[0].texcoord, piece[k].texcoord, piece[k + 1].texcoord};
+      }
+    }
+  }
+  tile.facets = std::move(facets);
+  tile.skins = std::move(skins);
+  return tile;
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,35 @@
+// Triangles cut where a region ends.
+#pragma once
+
+#include "inspection/clipped_corner.h"
+#include "inspection/region.h"
+
+#include <vector>
+
+namespace meshhier::inspection {
+
+class TriangleClipper {
+ public:
+  /// Both must outlive it.
+  TriangleClipper(const Region& region, const CornerMixer& mixer)
+      : region_(region), mixer_(mixer) {}
+
+  /// What of a triangle lies in the region, turned as it is: itself if all of it does. Triangles
+  /// that share an edge, with the same values at its ends, get the same corners on it, bit for bit.
+  /// On a side of a box a corner has the side's coordinate, rounded to float.
+  std::vector<ClippedPolygon> pieces(ClippedPolygon triangle) const;
+
+ private:
+  ClippedPolygon within_box(ClippedPolygon polygon) const;
+  ClippedCorner cut(const ClippedCorner& one, const ClippedCorner& other,
+                    const HalfSpace& half) const;
+  void add_within_plan(const std::array<const ClippedCorner*, 3>& triangle,
+                       std::vector<ClippedPolygon>& pieces) const;
+  ClippedCorner corner_of(const std::array<const ClippedCorner*, 3>& triangle,
+                          const TriangleCut::Vertex& vertex) const;
+
+  const Region& region_;
+  const CornerMixer& mixer_;
+};
+
+}  // namespace meshhier::inspection
