@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
 #include "app/options.h"
+#include "app/piece_hierarchy.h"
 #include "inspection/export.h"
 
 #include <memory>
@@ -56,7 +57,10 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   const std::string line =
-      inspection::export_mesh(place.files(), place.path(), options, *progress, environment.cancel);
+      is_hierarchy_name(arguments.output)
+          ? make_piece_hierarchy(place.files(), place.path(), options, *progress, environment)
+          : inspection::export_mesh(place.files(), place.path(), options, *progress,
+                                    environment.cancel);
   progress->finish(arguments.output);
   account << line << '\n' << place.account();
   return 0;
@@ -64,7 +68,8 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
 
 constexpr const char* kExportFooter =
     R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together
-they must cover every partition once. The pieces are joined without seams.
+they must cover every partition once. The pieces are joined without seams. A NAME.hier or NAME.3tz is
+a hierarchy of its own, built as the whole was: its simplified levels are made anew.
 
 Examples:
   meshhier export david.hier --level 0 -o whole.ply
@@ -75,6 +80,7 @@ Examples:
   meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
   meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
   meshhier export town.hier --level 6 --polygon parcel.geojson --crs EPSG:4326 --clip -o parcel.ply
+  meshhier export town.3tz --error 0 --box 0,0,-10 200,100,90 -o quarter.3tz
   meshhier export https://example.org/town.3tz --level 4 -o town.ply
 )";
 
@@ -99,8 +105,9 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
   add_region_options(*command, arguments->region);
   command->add_flag("--clip", arguments->clip, "Cut triangles where box or polygon end");
 
-  add_file_output_options(*command, "What to write: .glb or .obj, with textures, or else a PLY",
-                          arguments->output, arguments->force);
+  add_file_output_options(
+      *command, "What to write: .glb or .obj, with textures, .hier or .3tz, or else a PLY",
+      arguments->output, arguments->force);
   add_memory_budget_option(*command, arguments->memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kExportFooter);

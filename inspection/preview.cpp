@@ -59,32 +59,41 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
   return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
 }
 
-/// Of the piece, from tiles as coarse as show its form.
+/// Of the piece, as a tile of the picture draws it.
+void add_piece(ShownTile shown, const AttributeLayout& layout, const Region& region,
+               std::vector<render::Facet>& facets) {
+  shown.tile.image = {};
+  shown.tile.shading.texcoords.clear();
+  const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
+  const render::SceneTile piece =
+      clip_scene(is_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
+                           : render::scene_tile(shown.tile, layout, shown.border),
+                 region);
+  facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
+}
+
+/// Of the piece, from the coarsest level that shows its form: some tiles, of which it has some
+/// facets.
 std::vector<render::Facet> piece_facets(const HierarchyReader& reader, const Region& region,
                                         std::uint64_t cache_bytes,
                                         const execution::CancelToken& cancel) {
-  constexpr std::size_t kEnough = 500;
-  constexpr double kFiner = 4;
-  constexpr int kTries = 20;
+  constexpr std::size_t kSomeTiles = 4, kSomeFacets = 100;
+  const Tree& tree = reader.tree();
   std::vector<render::Facet> facets;
-  double error = reader.record(NodeId{}).error;
-  for (int i = 0; i <= kTries; ++i, error /= kFiner) {
-    ShownTiles tiles(reader, cut_by_error(reader, {i < kTries ? error : 0}), cache_bytes);
+  for (int level = 0; level <= raw(tree.depth()); ++level) {
+    Cut cut = Cut::of_level(tree, static_cast<Level>(level));
+    const std::vector<std::size_t> positions = tiles_in(reader, cut, region);
+    const bool is_finest = level == raw(tree.depth());
+    if (positions.size() < kSomeTiles && !is_finest)
+      continue;
+    ShownTiles tiles(reader, std::move(cut), cache_bytes);
+    tiles.will_load(positions);
     facets.clear();
-    for (const std::size_t position : tiles_in(reader, tiles.cut(), region)) {
+    for (const std::size_t position : positions) {
       cancel.check();
-      ShownTile shown = tiles.load(position);
-      shown.tile.image = {};
-      shown.tile.shading.texcoords.clear();
-      const AttributeLayout& layout = reader.tile_format().attributes;
-      const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
-      const render::SceneTile piece =
-          clip_scene(is_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
-                               : render::scene_tile(shown.tile, layout, shown.border),
-                     region);
-      facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
+      add_piece(tiles.load(position), reader.tile_format().attributes, region, facets);
     }
-    if (facets.size() >= kEnough || tiles.size() == reader.tree().partition_count())
+    if (facets.size() >= kSomeFacets)
       break;
   }
   return facets;
@@ -130,7 +139,9 @@ Pictured pictured(const HierarchyReader& reader, Cut cut, const std::optional<Re
   std::iota(positions.begin(), positions.end(), std::size_t{0});
   if (region)
     positions = tiles_in(reader, cut, *region);
-  return {ShownTiles(reader, std::move(cut), cache_bytes), std::move(positions)};
+  Pictured shown{ShownTiles(reader, std::move(cut), cache_bytes), std::move(positions)};
+  shown.tiles.will_load(shown.positions);
+  return shown;
 }
 
 /// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw

@@ -20,8 +20,13 @@ ShownTiles::ShownTiles(const storage::HierarchyReader& reader, Cut cut, std::uin
       positions_(
           cache_bytes,
           [&reader](NodeId node) { return reader.read_tile(node).mesh.vertices.positions; },
-          [](const std::vector<Vec3f>& positions) { return positions.size() * sizeof(Vec3f); }) {
-  reader_.will_read(numbered_.cut.nodes());
+          [](const std::vector<Vec3f>& positions) { return positions.size() * sizeof(Vec3f); }) {}
+
+void ShownTiles::will_load(std::span<const std::size_t> positions) const {
+  std::vector<NodeId> nodes;
+  for (const std::size_t position : positions)
+    nodes.push_back(numbered_.cut[position]);
+  reader_.will_read(nodes);
 }
 
 ShownTile ShownTiles::load(std::size_t position) {

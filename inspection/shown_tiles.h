@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace meshhier::inspection {
@@ -29,6 +30,8 @@ class ShownTiles {
   /// How many tiles there are.
   std::size_t size() const { return numbered_.cut.size(); }
   const Cut& cut() const { return numbered_.cut; }
+  /// Which will be loaded soon, in that order: a hint.
+  void will_load(std::span<const std::size_t> positions) const;
   /// Throws Error(io | corrupt).
   ShownTile load(std::size_t position);
 

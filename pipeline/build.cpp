@@ -83,7 +83,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   try {
     return run_stages(input, work, pool, meter, {config, *plan, files, meter, environment.cancel});
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::input)
+    if (error.code() == ErrorCode::input || !options.leaves_work)
       work.keep(false);  // nothing to go on with
     if (!work.is_kept() || error.code() == ErrorCode::exists)
       throw;

@@ -14,6 +14,7 @@ struct BuildOptions {
   bool force = false;    ///< replace an existing output
   bool restart = false;  ///< throw away what an earlier build of the output left
   std::vector<std::filesystem::path> others{};  ///< files that its caller writes, besides
+  bool leaves_work = true;  ///< a stopped build leaves what the next one goes on with
 };
 
 /// Builds config.output from config.input. An existing output is Error(exists), unless it is to be

@@ -1032,6 +1032,34 @@ TEST_F(CommandLine, ExportWritesPlyFiles) {
   }
 }
 
+TEST_F(CommandLine, ExportMakesHierarchiesOfPieces) {
+  build();
+  const std::string ply = (work() / "x.ply").string(), whole = (work() / "whole.ply").string();
+  const Arguments box{"--level", "3", "--box", "-9,-9,-9", "9,9,0.2"};
+  const auto exported = [&](const std::string& from, Arguments what, const std::string& to) {
+    what.insert(what.begin(), {"export", from, "-o", to, "--force"});
+    return run(what);
+  };
+  ASSERT_EQ(exported(hierarchy(), box, ply).code, 0);
+  for (const char* name : {"piece.hier", "piece.3tz"}) {
+    const std::string piece = (work() / name).string();
+    const Outcome outcome = exported(hierarchy(), box, piece);
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_THAT(outcome.out, HasSubstr("its simplified levels are new"));
+    EXPECT_EQ(run({"verify", piece, "--input", ply}).code, 0) << "it is the piece, bit for bit";
+  }
+  EXPECT_EQ(exported(hierarchy(), {"--outline"}, (work() / "o.hier").string()).code, kUsage);
+  const Outcome of_itself = exported(hierarchy(), box, hierarchy());
+  EXPECT_EQ(of_itself.code, kUsage);
+  EXPECT_THAT(of_itself.messages, HasSubstr("it would replace"));
+  EXPECT_EQ(exported(hierarchy(), {"--level", "3", "--box", "700,700,700", "800,800,800"},
+                     (work() / "none.hier").string())
+                .code,
+            kUsage);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "piece.3tz", "piece.hier",
+                                            "x.ply"}));
+}
+
 TEST_F(CommandLine, PreviewDrawsPictures) {
   build();
   const std::string png = (work() / "x.png").string(), webp = (work() / "x.WEBP").string();
