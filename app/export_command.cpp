@@ -1,8 +1,9 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
 #include "app/options.h"
-#include "app/piece_hierarchy.h"
 #include "inspection/export.h"
+#include "inspection/piece_mesh.h"
+#include "pipeline/build.h"
 
 #include <memory>
 #include <optional>
@@ -43,6 +44,18 @@ inspection::ExportSelection selection(const ExportArguments& arguments) {
   return inspection::OutlineSelection{};
 }
 
+/// Of the piece; what was made, for people.
+std::string make_hierarchy(const HierarchyPlace& place, const inspection::ExportOptions& options,
+                           execution::Progress& progress, Environment& environment) {
+  const inspection::PieceMesh piece(place.files(), place.path(), options, environment.files,
+                                    progress, environment.cancel);
+  pipeline::BuildOptions build{.force = options.replace, .restart = true};
+  build.leaves_work = false;  // nobody could go on with it
+  const pipeline::BuildReport report = pipeline::build_hierarchy(
+      piece.config(), build, {environment.files, progress, environment.cancel});
+  return report.text + "its simplified levels are new: a piece has another tree than the whole";
+}
+
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
@@ -56,11 +69,10 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line =
-      is_hierarchy_name(arguments.output)
-          ? make_piece_hierarchy(place.files(), place.path(), options, *progress, environment)
-          : inspection::export_mesh(place.files(), place.path(), options, *progress,
-                                    environment.cancel);
+  const std::string line = inspection::is_hierarchy_name(arguments.output)
+                               ? make_hierarchy(place, options, *progress, environment)
+                               : inspection::export_mesh(place.files(), place.path(), options,
+                                                         *progress, environment.cancel);
   progress->finish(arguments.output);
   account << line << '\n' << place.account();
   return 0;
