@@ -147,7 +147,7 @@ TexturedMesh load_textured_mesh(storage::FileSystem& files, const mesh_io::Input
   storage::MemoryPool pool(kImportBytes);
   execution::NoProgress progress;
   const execution::CancelToken cancel;
-  importing::MeshInput input(paths, false, files);
+  importing::MeshInput input(paths, files);
   if (input.needs_import()) {
     input.import({scratch / "import.ply", scratch / "import.scratch", pool, kImportBytes / 8,
                   progress, cancel});

@@ -386,6 +386,14 @@ void check_placement(const Config& config, const Draft& draft) {
   }
 }
 
+void check_crop(const Config& config, const Draft& draft) {
+  const auto box = config.crop_box();
+  if (box && (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)) {
+    refuse(draft.origin_of("crop"),
+           "expected two corners, the first three numbers at most the last three");
+  }
+}
+
 /// One angle alone says no side.
 void check_first_view(const Config& config, const Draft& draft) {
   if (config.first_view.azimuth.has_value() != config.first_view.elevation.has_value())
@@ -467,6 +475,7 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
     file = resolved_path(draft, "placement.metadata", file, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);
+  check_crop(config, draft);
   check_first_view(config, draft);
   return config;
 }

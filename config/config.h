@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
+#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/target_vertex_counts.h"
@@ -173,7 +174,9 @@ inline constexpr std::array kTopologies{NamedValue{"place", Topology::place},
                                         NamedValue{"index", Topology::index}};
 
 struct Config {
-  mesh_io::InputPaths input;            ///< not empty
+  mesh_io::InputPaths input;  ///< not empty
+  /// Two corners: only triangles that touch the box between them are built.
+  std::optional<std::array<double, 6>> crop;
   bool weld = false;                    ///< vertices of equal position and attributes become one
   Topology topology = Topology::place;  ///< which vertices are one point of the surface
   std::filesystem::path output;         ///< a directory or file, without a slash at its end
@@ -193,6 +196,12 @@ struct Config {
   std::optional<Unit> units;  ///< of the input's coordinates; none: as the format says, or unknown
   PlacementConfig placement;
   std::string licence;  ///< of the model; for the tileset; may be empty
+  std::optional<BoundsD> crop_box() const {
+    if (!crop)
+      return std::nullopt;
+    const std::array<double, 6>& c = *crop;
+    return BoundsD{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+  }
   UpAxis up_axis() const { return up.value_or(UpAxis::y); }
   friend bool operator==(const Config&, const Config&) = default;
 };

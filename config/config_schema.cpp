@@ -243,9 +243,9 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}),
       required_paths(
           {.path = "input",
-           .meaning = "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip, or a tileset "
-                      "of 3D Tiles; the files of a "
-                      "list are joined in its order",
+           .meaning =
+               "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip, or a tileset of 3D "
+               "Tiles; the files of a list are joined in its order",
            .decides_result = true},
           kMostInputs, [](auto& c) -> auto& { return c.input; }),
       path(
@@ -262,6 +262,12 @@ std::vector<ConfigKey> make_config_keys() {
       number(
           {.path = "threads", .meaning = "threads at work; 0: as many as the machine has"},
           {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
+      deciding(numbers(
+          {.path = "crop",
+           .meaning = "two corners of a box, in the input's coordinates: only triangles that touch "
+                      "it are built, whole",
+           .unset = "all"},
+          [](auto& c) -> auto& { return c.crop; })),
       deciding(boolean(
           {.path = "weld",
            .meaning = "vertices of equal position and equal attributes become one; those of an STL "

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "import/crop_mesh.h"
 #include "import/gltf_import.h"
 #include "import/join_layouts.h"
 #include "import/obj_import.h"
@@ -54,7 +55,8 @@ class Import {
       facts_.faces = faces_;
       join();
       RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
-      write(input_.weld() ? weld(placed) : placed, ply);
+      RawMesh& piece = input_.crop() ? crop(placed) : placed;
+      write(input_.weld() ? weld(piece) : piece, ply);
     }
     for (const SourceCount& one : input_.tileset_counts())
       count(one.name, one.count);
@@ -264,6 +266,8 @@ class Import {
     const std::uint32_t base = checked_base(path, description.vertex_count);
     if (has_corner_attributes(source.plan(), input_.textures()))
       return add_cornered_ply(source, path);
+    if (input_.crop() && description.vertices_in_place && description.face_count > 0)
+      return add_near(source, path);
     Added added{.layout = description.attributes};
     source.read_vertices([&](const mesh_io::VertexBlock& block) {
       env_.cancel.check();
@@ -277,6 +281,25 @@ class Import {
     });
     const mesh_io::FaceCounts counts = source.read_triangles(
         [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
+    added.faces = counts.faces;
+    added.degenerate_triangles = counts.degenerate_triangles;
+    count(counts.polygons);
+    return added;
+  }
+
+  /// Of a PLY that is read in place: a piece of a large file leaves no copy of it.
+  Added add_near(mesh_io::PlySource& source, const std::filesystem::path& path) {
+    Added added{.layout = source.description().attributes};
+    const std::uint64_t before = mesh_.triangles.size();
+    const mesh_io::FaceCounts counts = append_near(
+        source, *input_.crop(), mesh_,
+        [&](const mesh_io::VertexBlock& block) {
+          added.fits_float = added.fits_float && block.fits_float();
+          count_unplaced(block, path, added.unplaced);
+          count(block.zeroed);
+        },
+        room_);
+    near_apart_ += counts.triangles - (mesh_.triangles.size() - before);
     added.faces = counts.faces;
     added.degenerate_triangles = counts.degenerate_triangles;
     count(counts.polygons);
@@ -393,6 +416,17 @@ class Import {
             .unplaced = counts.unplaced};
   }
 
+  RawMesh& crop(RawMesh& whole) {
+    cropped_.emplace(env_.scratch);
+    count("cropped_triangles", near_apart_ + crop_mesh(whole, *cropped_, *input_.crop(), room_));
+    if (cropped_->vertex_count() == 0) {
+      throw Error(ErrorCode::usage, "nothing of " + input_.name() +
+                                        " lies in the box of \"crop\"; compare it with where the "
+                                        "mesh is");
+    }
+    return *cropped_;
+  }
+
   RawMesh& place() {
     placed_.emplace(env_.scratch);
     count(kDroppedUnplaced, drop_unplaced(mesh_, *placed_, unplaced_.first, room_));
@@ -444,7 +478,8 @@ class Import {
   ImportRoom room_;
   mesh_io::NamedFiles named_;
   RawMesh mesh_;
-  std::optional<RawMesh> placed_, welded_;
+  std::optional<RawMesh> placed_, cropped_, welded_;
+  std::uint64_t near_apart_ = 0;  ///< triangles that were not read, as they are not near the crop
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   std::vector<JoinedFile> joined_;
@@ -514,9 +549,15 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   constexpr std::uint64_t kSpools = 3;
   constexpr std::uint64_t kCorneredSpools = 5;
   constexpr std::uint64_t kPacked = 4;
+  constexpr std::uint64_t kLeastVertexBytes = 12;
   std::uint64_t content = input.geometry_bytes();
   std::uint64_t cornered = 0;
   for (const InputFileFacts& file : input.all()) {
+    if (input.crop() && file.is_plain_ply() && !file.has_corner_attributes) {
+      // A byte a vertex, of 12 bytes at least; how large the piece is shows when it is read.
+      content -= file.identity.bytes - file.identity.bytes / kLeastVertexBytes;
+      continue;
+    }
     const std::uint64_t bytes = file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
     content += bytes - file.identity.bytes;
     cornered += file.has_corner_attributes ? bytes : 0;

@@ -43,9 +43,9 @@ bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures) {
          (textures == Textures::use && plan.texcoords != mesh_io::PlyTexcoords::none);
 }
 
-InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
-                       Textures textures)
-    : files_(files.input()), named_(paths), weld_(weld), textures_(textures) {
+InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths,
+                       const InputUse& use)
+    : files_(files.input()), named_(paths), use_(use) {
   for (const std::filesystem::path& path : paths)
     add_mesh(path);
   std::ranges::sort(tileset_counts_, {}, &SourceCount::name);
@@ -112,12 +112,12 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
   const std::optional<mesh_io::PlyPlan> plan = plan_of(file);
   if (!plan)
     return;
-  facts.has_corner_attributes = importing::has_corner_attributes(*plan, textures_);
+  facts.has_corner_attributes = importing::has_corner_attributes(*plan, use_.textures);
   for (const std::string& name : plan->unused) {
     if (known_unused_.insert(name).second)
       unused_.push_back(name);
   }
-  if (textures_ == Textures::ignore)
+  if (use_.textures == Textures::ignore)
     return;
   for (const std::string& picture : plan->unused_pictures) {
     warnings_.push_back(fmt::format(

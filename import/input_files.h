@@ -2,6 +2,7 @@
 #pragma once
 
 #include "execution/cancel.h"
+#include "hierarchy/bounds.h"
 #include "hierarchy/published.h"
 #include "import/input_record.h"
 #include "mesh_io/input_paths.h"
@@ -24,6 +25,13 @@ namespace meshhier::importing {
 
 /// Whether textures that a mesh names are used, or passed over as if there were none.
 enum class Textures : std::uint8_t { use, ignore };
+
+/// How the files become a mesh, besides what is in them.
+struct InputUse {
+  bool weld = false;  ///< vertices of equal position and attributes become one
+  Textures textures = Textures::use;
+  std::optional<BoundsD> crop{};  ///< only triangles that touch it, input coordinates
+};
 
 /// What a file is called unpacked: "a.ply" of "a.ply.gz".
 std::filesystem::path without_gz(std::filesystem::path path);
@@ -50,8 +58,7 @@ class InputFiles {
  public:
   /// Looks at what each file is; of a tileset at all its files. All is read by files.input().
   /// Throws as mesh_io::detect_format and mesh_io::read_tileset.
-  InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
-             Textures textures = Textures::use);
+  InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, const InputUse& use);
 
   /// Where all of them lie.
   storage::FileSystem& system() const { return files_; }
@@ -72,14 +79,15 @@ class InputFiles {
   const std::vector<SourceCount>& tileset_counts() const { return tileset_counts_; }
   /// What all should know of pictures and tiles that are not used, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  bool weld() const { return weld_; }
+  bool weld() const { return use_.weld; }
+  const std::optional<BoundsD>& crop() const { return use_.crop; }
   /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
   void note_unplaced() { has_unplaced_ = true; }
   bool has_unplaced() const { return has_unplaced_; }
-  Textures textures() const { return textures_; }
+  Textures textures() const { return use_.textures; }
   /// Not one PLY that is read in place as it is.
   bool needs_import() const {
-    return weld_ || has_unplaced_ || all_.size() != 1 || !all_[0].is_plain_ply() ||
+    return is_changed() || all_.size() != 1 || !all_[0].is_plain_ply() ||
            all_[0].has_corner_attributes;
   }
 
@@ -87,8 +95,8 @@ class InputFiles {
   std::string formats() const;
   /// One packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
-    return !weld_ && !has_unplaced_ && all_.size() == 1 &&
-           all_[0].format.kind == mesh_io::MeshKind::ply && !all_[0].has_corner_attributes;
+    return !is_changed() && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply &&
+           !all_[0].has_corner_attributes;
   }
 
   /// File names, with ", " between them.
@@ -113,6 +121,8 @@ class InputFiles {
   std::vector<SourceFile> describe(const InputRecord& record) const;
 
  private:
+  /// The mesh is another one than that of the files.
+  bool is_changed() const { return use_.weld || use_.crop || has_unplaced_; }
   void add_mesh(const std::filesystem::path& path);
   void add_tileset(const std::filesystem::path& path);
   void add_file(InputFileFacts facts, const storage::File& file);
@@ -139,9 +149,8 @@ class InputFiles {
   Companions companions_;
   std::vector<std::string> unused_, warnings_;
   std::set<std::string> known_unused_;
-  bool weld_;
+  InputUse use_;
   bool has_unplaced_ = false;
-  Textures textures_;
 };
 
 }  // namespace meshhier::importing

@@ -9,9 +9,9 @@
 
 namespace meshhier::importing {
 
-MeshInput::MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files,
-                     Textures textures)
-    : system_(files), input_(files, paths, weld, textures) {
+MeshInput::MeshInput(const mesh_io::InputPaths& paths, storage::FileSystem& files,
+                     const InputUse& use)
+    : system_(files), input_(files, paths, use) {
   if (needs_import())
     return;
   in_place_ = mesh_io::open_mesh(files.input(), paths[0]);

@@ -29,8 +29,7 @@ class MeshInput {
 
   /// Opens the files and finds out what they are; reads the header if they are read in place.
   /// Throws as mesh_io::open_mesh and mesh_io::detect_format.
-  MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files,
-            Textures textures = Textures::use);
+  MeshInput(const mesh_io::InputPaths& paths, storage::FileSystem& files, const InputUse& use = {});
 
   const InputFiles& files() const { return input_; }
   bool needs_import() const { return input_.needs_import(); }

@@ -270,7 +270,7 @@ TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
     if (triangle.turn == CGAL::RIGHT_TURN)
       std::swap(t[1], t[2]);
     const auto least = std::ranges::min_element(t);
-    std::ranges::rotate(t, least);
+    std::rotate(t.begin(), least, t.end());
     cut.triangles.push_back(t);
   }
   cut.vertices = vertices.take();
@@ -298,8 +298,7 @@ TriangleCut PlanRegion::Parts::cut_into_strips(const PlanTriangle& triangle,
       stops.insert(stops.end(), {segment->source(), segment->target()});
   }
   std::ranges::sort(stops);
-  const auto repeated = std::ranges::unique(stops);
-  stops.erase(repeated.begin(), repeated.end());
+  stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
   CutVertices vertices(triangle);
   TriangleCut cut;
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {

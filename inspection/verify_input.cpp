@@ -17,6 +17,7 @@
 #include "hierarchy/plain_text.h"
 #include "import/input_record.h"
 #include "import/mesh_input.h"
+#include "inspection/manifest_config.h"
 #include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
 #include "inspection/verify_texels.h"
@@ -345,17 +346,18 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
     compare_each(expected.files, found.files, problems);
 }
 
-/// Whether vertices were welded, as the manifest's config says.
-bool was_welded(const VerifyJob& job) {
-  const nlohmann::ordered_json& config = job.reader.manifest().config;
-  const auto weld = config.find("weld");
-  return weld != config.end() && weld->is_boolean() && weld->get<bool>();
-}
-
-/// As the build did.
-importing::Textures textures_of(const SourceSummary& source) {
-  return importing::shows_materials(source) ? importing::Textures::use
-                                            : importing::Textures::ignore;
+/// As the build did. A config that is none is told elsewhere.
+importing::InputUse use_of(const storage::Manifest& manifest) {
+  importing::InputUse use;
+  use.textures = importing::shows_materials(manifest.source) ? importing::Textures::use
+                                                             : importing::Textures::ignore;
+  try {
+    const config::Config config = config_of(manifest);
+    use.weld = config.weld;
+    use.crop = config.crop_box();
+  } catch (const Error&) {
+  }
+  return use;
 }
 
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
@@ -378,7 +380,7 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
-  importing::MeshInput files(job.options.input, was_welded(job), job.files, textures_of(expected));
+  importing::MeshInput files(job.options.input, job.files, use_of(job.reader.manifest()));
   if (expected.count_of(importing::kDroppedUnplaced) > 0)
     files.note_unplaced();
   if (files.needs_import()) {

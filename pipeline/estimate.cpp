@@ -114,7 +114,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   check_apart(config, files);
   storage::check_place(files, config.output);
   storage::MemoryPool pool(0);
-  importing::MeshInput input(config.input, config.weld, files);
+  importing::MeshInput input = open_input(config, files);
   if (is_read_before_plan(input, config)) {
     storage::check_output(files, {config.output, config.storage.container}, force);
     count_by_reading(config, input, files, pool, cancel);

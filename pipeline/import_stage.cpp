@@ -70,8 +70,11 @@ void read_once(importing::MeshInput& input, const config::Config& config,
 }
 
 importing::MeshInput open_input(const config::Config& config, storage::FileSystem& files) {
-  return {config.input, config.weld, files,
-          config.texture.use ? importing::Textures::use : importing::Textures::ignore};
+  return {config.input,
+          files,
+          {.weld = config.weld,
+           .textures = config.texture.use ? importing::Textures::use : importing::Textures::ignore,
+           .crop = config.crop_box()}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {

@@ -84,7 +84,7 @@ std::string imported(MemoryFiles& files, bool weld, importing::Textures textures
   importing::TemporaryFile ply(files, "imported.ply", pool.scratch_use());
   execution::NoProgress progress;
   const execution::CancelToken cancel;
-  importing::InputFiles input(files, std::filesystem::path("mesh"), weld, textures);
+  importing::InputFiles input(files, std::filesystem::path("mesh"), {weld, textures});
   const importing::ImportFacts facts =
       importing::import_input(input, ply, {files, scratch, 1, progress, cancel});
   require(std::ranges::any_of(

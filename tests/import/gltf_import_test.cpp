@@ -137,7 +137,7 @@ TEST_F(GltfImportTest, AChangedBufferIsAnotherInput) {
   gltf.show(square(gltf));
   put("a.bin", gltf.bin);
   put("a.gltf", gltf.text("a.bin"));
-  const InputFiles input(files_, fs::path("w/a.gltf"), false);
+  const InputFiles input(files_, fs::path("w/a.gltf"), {});
   EXPECT_EQ(input.bytes(), gltf.bin.size() + files_.bytes("w/a.gltf").size());
   const std::uint64_t before = input.checksum(execution::CancelToken());
   EXPECT_EQ(import("a.gltf").summary.checksum, before);

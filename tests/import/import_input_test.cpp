@@ -211,7 +211,7 @@ class ImportTest : public testing::Test {
     TemporaryFile ply(files_, "w/imported.ply", pool.scratch_use());
     execution::NoProgress progress;
     const execution::CancelToken cancel;
-    InputFiles input(files_, inputs(names), weld);
+    InputFiles input(files_, inputs(names), {.weld = weld});
     import_input(input, ply, {files_, scratch, memory.sort_bytes, progress, cancel});
     return files_.content("w/imported.ply");
   }

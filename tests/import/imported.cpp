@@ -93,7 +93,7 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   storage::MemoryPool pool(how.memory.pool_bytes);
   Warnings warnings;
   const execution::CancelToken cancel;
-  importing::MeshInput input(inputs, how.weld, files, how.textures);
+  importing::MeshInput input(inputs, files, {how.weld, how.textures, how.crop});
   if (input.needs_import()) {
     input.import({how.folder / "imported.ply", how.folder / "import", pool, how.memory.sort_bytes,
                   warnings, cancel});

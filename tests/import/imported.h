@@ -46,6 +46,7 @@ struct ImportHow {
   importing::Textures textures = importing::Textures::use;
   importing::ImportMemory memory = kRoomy;
   std::filesystem::path folder = "w";  ///< for temporary files
+  std::optional<BoundsD> crop{};
 };
 
 /// Throws as importing::MeshInput.

@@ -1,0 +1,240 @@
+#include "import/crop_mesh.h"
+
+#include "execution/spool_cursor.h"
+#include "import/used_vertices.h"
+#include "partition/renumber.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshhier::importing {
+namespace {
+
+using Triangles = storage::RecordSpool<Triangle<std::uint32_t>>;
+
+/// A bit for each side of the box that a point is beyond (Cohen & Sutherland). One that is not
+/// finite is beyond none.
+std::uint8_t sides_beyond(const BoundsD& box, Vec3d p) {
+  std::uint8_t sides = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    sides |= static_cast<std::uint8_t>((p[axis] < box.min[axis] ? 1 : 0) << (2 * axis));
+    sides |= static_cast<std::uint8_t>((p[axis] > box.max[axis] ? 2 : 0) << (2 * axis));
+  }
+  return sides;
+}
+
+/// Whether a part of the triangle lies in the box: it is clipped at each side (Sutherland &
+/// Hodgman 1974).
+bool touches(const BoundsD& box, const std::array<Vec3d, 3>& corners) {
+  std::vector<Vec3d> polygon(corners.begin(), corners.end()), next;
+  for (int side = 0; side < 6 && !polygon.empty(); ++side) {
+    const int axis = side / 2;
+    const bool is_upper = side % 2 == 1;
+    const auto beyond = [&](Vec3d p) {
+      return is_upper ? p[axis] - box.max[axis] : box.min[axis] - p[axis];
+    };
+    next.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d from = polygon[i], to = polygon[(i + 1) % polygon.size()];
+      const double a = beyond(from), b = beyond(to);
+      if (!(a > 0))
+        next.push_back(from);
+      if ((a < 0 && b > 0) || (a > 0 && b < 0))
+        next.push_back(from + (to - from) * (a / (a - b)));
+    }
+    std::swap(polygon, next);
+  }
+  return polygon.size() >= 3;
+}
+
+/// A corner of a triangle with what decides.
+struct SidedCorner {
+  std::uint32_t vertex;
+  std::uint32_t sides;
+};
+struct PlacedCorner {
+  Vec3d position;
+  std::uint64_t vertex;
+};
+
+/// Calls translate(block) for blocks of triangles, then all that waited: `take` gets each.
+template <class Value, class Take>
+class CornerTable {
+ public:
+  CornerTable(std::uint64_t vertices, std::function<void(std::uint64_t, std::span<Value>)> read,
+              const ImportRoom& room, Take take)
+      : renumberer_({0, vertices, std::move(read), false},
+                    partition::plan_renumbering(vertices, sizeof(Value), room.sort_bytes),
+                    room.scratch),
+        room_(room),
+        take_(std::move(take)) {}
+
+  template <class Id>
+  void add(std::span<const Triangle<Id>> triangles) {
+    renumberer_.translate(triangles, found_);
+    hand_on();
+  }
+  void finish() {
+    while (renumberer_.next_round()) {
+      for (std::uint64_t batch = 0; batch < renumberer_.batches(); ++batch) {
+        renumberer_.translate_batch(batch, found_);
+        hand_on();
+      }
+    }
+  }
+
+ private:
+  void hand_on() {
+    room_.cancel.check();
+    std::ranges::for_each(found_.finished, take_);
+    renumberer_.keep(found_);
+  }
+
+  partition::Renumberer<Value> renumberer_;
+  partition::Renumbered<Value> found_;
+  const ImportRoom& room_;
+  Take take_;
+};
+
+template <class Value>
+Triangle<std::uint32_t> vertices_of(const Triangle<Value>& corners) {
+  return {static_cast<std::uint32_t>(corners[0].vertex),
+          static_cast<std::uint32_t>(corners[1].vertex),
+          static_cast<std::uint32_t>(corners[2].vertex)};
+}
+
+/// Positions and attributes of vertices whose numbers ascend.
+void copy_vertices(const RawMesh& from, const storage::RecordSpool<std::uint32_t>& used,
+                   RawMesh& to, const ImportRoom& room) {
+  execution::SpoolCursor vertices(used, room.cancel);
+  execution::SpoolCursor positions(from.positions, room.cancel);
+  execution::SpoolCursor attributes(from.attributes, room.cancel);
+  const std::size_t channels = from.channels();
+  for (std::uint64_t i = 0; i < used.size(); ++i) {
+    const std::uint64_t vertex = vertices.at(i);
+    to.positions.append(positions.at(vertex));
+    for (std::size_t c = 0; c < channels; ++c)
+      to.attributes.append(attributes.at(vertex * channels + c));
+  }
+}
+
+void keep_points(const RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
+                 const ImportRoom& room) {
+  storage::RecordSpool<std::uint32_t> inside(room.scratch, kImportSpoolBytes);
+  execution::SpoolCursor positions(mesh.positions, room.cancel);
+  for (std::uint64_t i = 0; i < mesh.vertex_count(); ++i) {
+    if (sides_beyond(box, positions.at(i)) == 0)
+      inside.append(static_cast<std::uint32_t>(i));
+  }
+  copy_vertices(mesh, inside, cropped, room);
+}
+
+/// Of the source, those that are used, which ascend.
+class UsedVertices {
+ public:
+  UsedVertices(const storage::RecordSpool<std::uint32_t>& used, std::size_t channels, RawMesh& mesh,
+               const ImportRoom& room)
+      : used_(used), vertices_(used, room.cancel), channels_(channels), mesh_(mesh) {}
+
+  void take(const mesh_io::VertexBlock& block) {
+    const std::uint64_t end = block.first + block.positions.size() + block.exact.size();
+    for (; next_ < used_.size() && vertices_.at(next_) < end; ++next_) {
+      const std::size_t i = vertices_.at(next_) - block.first;
+      mesh_.positions.append(block.exact.empty() ? to_double(block.positions[i]) : block.exact[i]);
+      mesh_.attributes.append(block.attributes.subspan(i * channels_, channels_));
+    }
+  }
+
+ private:
+  const storage::RecordSpool<std::uint32_t>& used_;
+  execution::SpoolCursor<std::uint32_t> vertices_;
+  std::size_t channels_;
+  RawMesh& mesh_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace
+
+mesh_io::FaceCounts append_near(mesh_io::MeshSource& source, const BoundsD& box, RawMesh& mesh,
+                                const mesh_io::VertexVisitor& visit, const ImportRoom& room) {
+  const mesh_io::MeshDescription& description = source.description();
+  storage::RecordSpool<std::uint8_t> sides(room.scratch, kImportSpoolBytes);
+  source.read_vertices([&](const mesh_io::VertexBlock& block) {
+    room.cancel.check();
+    visit(block);
+    for (const Vec3f& p : block.positions)
+      sides.append(sides_beyond(box, to_double(p)));
+    for (const Vec3d& p : block.exact)
+      sides.append(sides_beyond(box, p));
+  });
+  auto near = std::make_unique<Triangles>(room.scratch, kImportSpoolBytes);
+  const auto read = [&](std::uint64_t first, std::span<SidedCorner> corners) {
+    std::vector<std::uint8_t> block(corners.size());
+    sides.read(first, block);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      corners[i] = {static_cast<std::uint32_t>(first + i), block[i]};
+  };
+  CornerTable table(description.vertex_count,
+                    std::function<void(std::uint64_t, std::span<SidedCorner>)>(read), room,
+                    [&](const Triangle<SidedCorner>& t) {
+                      if ((t[0].sides & t[1].sides & t[2].sides) == 0)
+                        near->append(vertices_of(t));
+                    });
+  const mesh_io::FaceCounts counts = source.read_triangles(
+      [&](std::span<const Triangle<VertexId>> triangles) { table.add(triangles); });
+  table.finish();
+  storage::RecordSpool<std::uint32_t> used(room.scratch, kImportSpoolBytes);
+  append_used(std::move(near), description.vertex_count, false, mesh, used, room);
+  UsedVertices vertices(used, static_cast<std::size_t>(description.attributes.channels()), mesh,
+                        room);
+  source.read_vertices([&](const mesh_io::VertexBlock& block) {
+    room.cancel.check();
+    vertices.take(block);
+  });
+  return counts;
+}
+
+std::uint64_t crop_mesh(RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
+                        const ImportRoom& room) {
+  cropped.layout = mesh.layout;
+  cropped.fits_float = mesh.fits_float;
+  const std::uint64_t triangles = mesh.triangles.size();
+  if (triangles == 0) {
+    keep_points(mesh, cropped, box, room);
+  } else {
+    const auto read = [&](std::uint64_t first, std::span<PlacedCorner> corners) {
+      std::vector<Vec3d> block(corners.size());
+      mesh.positions.read(first, block);
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        corners[i] = {block[i], first + i};
+    };
+    auto kept = std::make_unique<Triangles>(room.scratch, kImportSpoolBytes);
+    CornerTable table(mesh.vertex_count(),
+                      std::function<void(std::uint64_t, std::span<PlacedCorner>)>(read), room,
+                      [&](const Triangle<PlacedCorner>& t) {
+                        if (touches(box, {t[0].position, t[1].position, t[2].position}))
+                          kept->append(vertices_of(t));
+                      });
+    constexpr std::uint64_t kBlock = 16384;
+    std::vector<Triangle<std::uint32_t>> block;
+    for (std::uint64_t i = 0; i < triangles; i += block.size()) {
+      block.resize(std::min(kBlock, triangles - i));
+      mesh.triangles.read(i, block);
+      table.add(std::span<const Triangle<std::uint32_t>>(block));
+    }
+    table.finish();
+    storage::RecordSpool<std::uint32_t> used(room.scratch, kImportSpoolBytes);
+    append_used(std::move(kept), mesh.vertex_count(), false, cropped, used, room);
+    copy_vertices(mesh, used, cropped, room);
+  }
+  mesh.positions.clear();
+  mesh.attributes.clear();
+  mesh.triangles.clear();
+  return triangles - cropped.triangles.size();
+}
+
+}  // namespace meshhier::importing

@@ -1,0 +1,27 @@
+// A piece of a mesh: the triangles that touch a box, whole, with the vertices that they use.
+#pragma once
+
+#include "hierarchy/bounds.h"
+#include "import/raw_mesh.h"
+#include "mesh_io/mesh_source.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace meshhier::importing {
+
+/// Appends what may touch the box: triangles whose corners are not all beyond one of its sides, and
+/// their vertices, in the order of the file. Reads vertices and triangles in place: on disk lie one
+/// byte a vertex, the table of their sides, and what is kept. Returns what reading the triangles
+/// found; `visit` is told of each block of vertices once.
+mesh_io::FaceCounts append_near(mesh_io::MeshSource& source, const BoundsD& box, RawMesh& mesh,
+                                const mesh_io::VertexVisitor& visit, const ImportRoom& room);
+
+/// Fills `cropped` with the piece of `mesh`, whose spools are cleared. Vertices stay in their
+/// order, and triangles, but for those that wait for a part of a large table. Of a mesh without
+/// triangles the vertices in the box stay. Returns how many triangles went. O(n), with sorts where
+/// the positions exceed room.sort_bytes.
+std::uint64_t crop_mesh(RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
+                        const ImportRoom& room);
+
+}  // namespace meshhier::importing
