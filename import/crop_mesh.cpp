@@ -157,43 +157,87 @@ class UsedVertices {
   std::uint64_t next_ = 0;
 };
 
+/// Of each vertex the sides that it is beyond, in memory.
+class SideTable {
+ public:
+  explicit SideTable(std::uint64_t vertices) : sides_(vertices) {}
+  void set(std::uint64_t vertex, std::uint8_t sides) { sides_[vertex] = sides; }
+  mesh_io::FaceCounts near(mesh_io::MeshSource& source, Triangles& found,
+                           const ImportRoom& room) const {
+    return source.read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
+      room.cancel.check();
+      for (const Triangle<VertexId>& t : triangles) {
+        if ((sides_[raw(t[0])] & sides_[raw(t[1])] & sides_[raw(t[2])]) == 0)
+          found.append(Triangle<std::uint32_t>{raw(t[0]), raw(t[1]), raw(t[2])});
+      }
+    });
+  }
+
+ private:
+  std::vector<std::uint8_t> sides_;
+};
+
+/// The same on disk, where triangles wait for their part of it.
+class SideSpool {
+ public:
+  explicit SideSpool(const ImportRoom& room) : sides_(room.scratch, kImportSpoolBytes) {}
+  void set(std::uint64_t /*vertex*/, std::uint8_t sides) { sides_.append(sides); }
+  mesh_io::FaceCounts near(mesh_io::MeshSource& source, Triangles& found,
+                           const ImportRoom& room) const {
+    const auto read = [&](std::uint64_t first, std::span<SidedCorner> corners) {
+      std::vector<std::uint8_t> block(corners.size());
+      sides_.read(first, block);
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        corners[i] = {static_cast<std::uint32_t>(first + i), block[i]};
+    };
+    CornerTable table(sides_.size(),
+                      std::function<void(std::uint64_t, std::span<SidedCorner>)>(read), room,
+                      [&](const Triangle<SidedCorner>& t) {
+                        if ((t[0].sides & t[1].sides & t[2].sides) == 0)
+                          found.append(vertices_of(t));
+                      });
+    const mesh_io::FaceCounts counts = source.read_triangles(
+        [&](std::span<const Triangle<VertexId>> triangles) { table.add(triangles); });
+    table.finish();
+    return counts;
+  }
+
+ private:
+  storage::RecordSpool<std::uint8_t> sides_;
+};
+
+template <class Sides>
+mesh_io::FaceCounts find_near(mesh_io::MeshSource& source, const BoundsD& box, Sides sides,
+                              const mesh_io::VertexVisitor& visit, Triangles& found,
+                              const ImportRoom& room) {
+  source.read_vertices([&](const mesh_io::VertexBlock& block) {
+    room.cancel.check();
+    visit(block);
+    std::uint64_t vertex = block.first;
+    for (const Vec3f& p : block.positions)
+      sides.set(vertex++, sides_beyond(box, to_double(p)));
+    for (const Vec3d& p : block.exact)
+      sides.set(vertex++, sides_beyond(box, p));
+  });
+  return sides.near(source, found, room);
+}
+
 }  // namespace
 
 mesh_io::FaceCounts append_near(mesh_io::MeshSource& source, const BoundsD& box, RawMesh& mesh,
                                 const mesh_io::VertexVisitor& visit, const ImportRoom& room) {
   const mesh_io::MeshDescription& description = source.description();
-  storage::RecordSpool<std::uint8_t> sides(room.scratch, kImportSpoolBytes);
-  source.read_vertices([&](const mesh_io::VertexBlock& block) {
-    room.cancel.check();
-    visit(block);
-    for (const Vec3f& p : block.positions)
-      sides.append(sides_beyond(box, to_double(p)));
-    for (const Vec3d& p : block.exact)
-      sides.append(sides_beyond(box, p));
-  });
+  const std::uint64_t vertices = description.vertex_count;
   auto near = std::make_unique<Triangles>(room.scratch, kImportSpoolBytes);
-  const auto read = [&](std::uint64_t first, std::span<SidedCorner> corners) {
-    std::vector<std::uint8_t> block(corners.size());
-    sides.read(first, block);
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      corners[i] = {static_cast<std::uint32_t>(first + i), block[i]};
-  };
-  CornerTable table(description.vertex_count,
-                    std::function<void(std::uint64_t, std::span<SidedCorner>)>(read), room,
-                    [&](const Triangle<SidedCorner>& t) {
-                      if ((t[0].sides & t[1].sides & t[2].sides) == 0)
-                        near->append(vertices_of(t));
-                    });
-  const mesh_io::FaceCounts counts = source.read_triangles(
-      [&](std::span<const Triangle<VertexId>> triangles) { table.add(triangles); });
-  table.finish();
+  const mesh_io::FaceCounts counts =
+      vertices <= room.sort_bytes ? find_near(source, box, SideTable(vertices), visit, *near, room)
+                                  : find_near(source, box, SideSpool(room), visit, *near, room);
   storage::RecordSpool<std::uint32_t> used(room.scratch, kImportSpoolBytes);
-  append_used(std::move(near), description.vertex_count, false, mesh, used, room);
-  UsedVertices vertices(used, static_cast<std::size_t>(description.attributes.channels()), mesh,
-                        room);
+  append_used(std::move(near), vertices, false, mesh, used, room);
+  UsedVertices kept(used, static_cast<std::size_t>(description.attributes.channels()), mesh, room);
   source.read_vertices([&](const mesh_io::VertexBlock& block) {
     room.cancel.check();
-    vertices.take(block);
+    kept.take(block);
   });
   return counts;
 }

@@ -11,9 +11,10 @@
 namespace meshhier::importing {
 
 /// Appends what may touch the box: triangles whose corners are not all beyond one of its sides, and
-/// their vertices, in the order of the file. Reads vertices and triangles in place: on disk lie one
-/// byte a vertex, the table of their sides, and what is kept. Returns what reading the triangles
-/// found; `visit` is told of each block of vertices once.
+/// their vertices, in the order of the file. Reads vertices twice and triangles once: memory
+/// holds a byte a vertex, and the disk what is kept; where room.sort_bytes are fewer, the disk also
+/// holds triangles that wait. Returns what reading the triangles found; `visit` is told of each
+/// block of vertices once.
 mesh_io::FaceCounts append_near(mesh_io::MeshSource& source, const BoundsD& box, RawMesh& mesh,
                                 const mesh_io::VertexVisitor& visit, const ImportRoom& room);
 
