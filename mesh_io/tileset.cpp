@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 /// A tile takes two levels of JSON below its parent.
 constexpr int kDeepestJson = 512;
 constexpr std::size_t kMostDocuments = 64;  ///< of which each is within the one before
-constexpr std::size_t kLongestUri = 255;
+constexpr std::size_t kLongestContent = 255;
 
 // WGS 84.
 constexpr double kEquator = 6378137.0;
@@ -267,7 +267,7 @@ class TilesetReader {
       uri = content.text("url");
     if (!uri)
       content.fail("has no \"uri\"");
-    const std::string shown = plain_text(*uri, kLongestUri);
+    const std::string shown = plain_text(*uri, kLongestContent);
     if (uri->find("://") != std::string::npos || uri->starts_with("//"))
       content.fail("is on the web (" + shown + "); fetch the whole tileset first");
     const fs::path folder = open_.back().parent_path();

@@ -21,7 +21,7 @@ async function loadPlaywright() {
   }
 }
 
-class Report {
+export class Report {
   problems = 0;
   line(what, good, text) {
     if (!good) ++this.problems;
