@@ -57,11 +57,6 @@ TEST(ForeignFormat, SaysWhatAFileIs) {
   }
 }
 
-TEST(ForeignFormat, KnowsATilesetThoughItBeginsAsAGltf) {
-  EXPECT_THAT(foreign_format(R"({"asset": {"version": "1.1"}, "geometricError": 1, "root": {}})"),
-              StartsWith("a tileset of 3D Tiles; "));
-}
-
 TEST(ForeignFormat, KnowsNothingOfOthers) {
   for (const std::string_view start :
        {""sv, "hello"sv, "{}"sv, "{\"input\": \"a.ply\", \"output\": \"meshhier\"}"sv,

@@ -45,6 +45,14 @@ TEST(MeshFormat, IsKnownByTheContent) {
   EXPECT_EQ(format_of(binary_stl("", 0, 0)), "binary STL");
 }
 
+TEST(MeshFormat, ATilesetBeginsAsAGltf) {
+  const std::string text = R"({"asset": {"version": "1.1"}, "geometricError": 1, "root": {}})";
+  EXPECT_EQ(format_of(text), "3D Tiles");
+  EXPECT_EQ(format_of("\xef\xbb\xbf \n" + text), "3D Tiles");
+  EXPECT_EQ(format_of(gzip(text)), "3D Tiles (gzip)");
+  EXPECT_EQ(format_of(R"({"asset": {"version": "2.0"}, "scenes": []})"), "glTF");
+}
+
 TEST(MeshFormat, ABinaryStlMayBeginAsATextDoes) {
   EXPECT_EQ(format_of(binary_stl("solid part", 2, 100)), "binary STL");
   EXPECT_EQ(format_of(gzip(binary_stl("solid part", 2, 100))), "binary STL (gzip)");
