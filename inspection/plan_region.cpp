@@ -83,6 +83,44 @@ struct PlanTriangle {
   }
 };
 
+/// The sides of a triangle, split where parts of borders end on them, and these parts. Nothing that
+/// is inserted crosses another, unless polygons cross themselves or each other: points are made of
+/// the input's alone, and their numbers stay short.
+void insert_outline(const PlanTriangle& triangle, const std::vector<Exact::Segment_2>& parts,
+                    Triangulation& plan) {
+  for (std::size_t side = 0; side < 3; ++side) {
+    const ExactPoint& a = triangle.corners[side];
+    const ExactPoint& b = triangle.corners[(side + 1) % 3];
+    std::vector<ExactPoint> stops{a, b};
+    for (const Exact::Segment_2& part : parts) {
+      for (const ExactPoint& end : {part.source(), part.target()}) {
+        if (CGAL::orientation(a, b, end) == CGAL::COLLINEAR)
+          stops.push_back(end);
+      }
+    }
+    std::ranges::sort(stops);
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i)
+      plan.insert_constraint(stops[i], stops[i + 1]);
+  }
+  for (const Exact::Segment_2& part : parts) {
+    if (!part.is_degenerate())
+      plan.insert_constraint(part.source(), part.target());
+  }
+}
+
+/// A point of doubles within a triangle that turns left, by its middle: numbers that are quick to
+/// compare. Nothing if the triangle is too small for one.
+std::optional<PlanPoint> rounded_within(const std::array<ExactPoint, 3>& corners,
+                                        const ExactPoint& middle) {
+  const PlanPoint near{CGAL::to_double(middle.x()), CGAL::to_double(middle.y())};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (CGAL::orientation(corners[i], corners[(i + 1) % 3], point<Exact>(near)) != CGAL::LEFT_TURN)
+      return std::nullopt;
+  }
+  return near;
+}
+
 /// Numbers the vertices of a cut triangle, each once.
 class CutVertices {
  public:
@@ -188,6 +226,8 @@ struct PlanRegion::Parts {
 
   TriangleCut cut_into_strips(const PlanTriangle& triangle,
                               const std::vector<std::uint32_t>& borders) const;
+  std::vector<Exact::Segment_2> parts_within(const PlanTriangle& triangle,
+                                             const std::vector<std::uint32_t>& borders) const;
   TriangleCut cut_by(const PlanTriangle& triangle, const std::vector<std::uint32_t>& borders) const;
 };
 
@@ -245,14 +285,29 @@ TriangleCut PlanRegion::cut(const std::array<Vec3d, 3>& corners) const {
                                           : parts_->cut_by(triangle, borders);
 }
 
+/// What of the borders lies in the triangle.
+std::vector<Exact::Segment_2> PlanRegion::Parts::parts_within(
+    const PlanTriangle& triangle, const std::vector<std::uint32_t>& borders) const {
+  const Exact::Triangle_2 shape(triangle.corners[0], triangle.corners[1], triangle.corners[2]);
+  std::vector<Exact::Segment_2> parts;
+  for (const std::uint32_t number : borders) {
+    const auto common = CGAL::intersection(
+        shape, Exact::Segment_2(point<Exact>(edges[number].from), point<Exact>(edges[number].to)));
+    if (!common)
+      continue;
+    if (const auto* p = boost::get<ExactPoint>(&*common))
+      parts.emplace_back(*p, *p);
+    else if (const auto* segment = boost::get<Exact::Segment_2>(&*common))
+      parts.push_back(*segment);
+  }
+  return parts;
+}
+
 /// Triangulates the triangle together with the borders over it: each part is within or without.
 TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
                                       const std::vector<std::uint32_t>& borders) const {
   Triangulation plan;
-  for (std::size_t i = 0; i < 3; ++i)
-    plan.insert_constraint(triangle.corners[i], triangle.corners[(i + 1) % 3]);
-  for (const std::uint32_t number : borders)
-    plan.insert_constraint(point<Exact>(edges[number].from), point<Exact>(edges[number].to));
+  insert_outline(triangle, parts_within(triangle, borders), plan);
   CutVertices vertices(triangle);
   TriangleCut cut;
   std::size_t within = 0;
@@ -263,7 +318,8 @@ TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
     if (!triangle.contains(middle))
       continue;
     ++within;
-    if (!contains(middle))
+    const std::optional<PlanPoint> near = rounded_within(corners, middle);
+    if (!(near ? contains(*near) : contains(middle)))
       continue;
     std::array<std::uint32_t, 3> t{vertices.at(corners[0]), vertices.at(corners[1]),
                                    vertices.at(corners[2])};
