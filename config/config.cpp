@@ -2,7 +2,6 @@
 
 #include "config/config_schema.h"
 #include "config/input_frame.h"
-#include "config/placement.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
@@ -483,8 +482,7 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words) {
   const ConfigOrigin origin{file.string(), file.parent_path()};
-  return with_map(files,
-                  with_input_frame(files, parse_config(read_text(files, file), origin, words)));
+  return with_files(files, parse_config(read_text(files, file), origin, words));
 }
 
 std::vector<std::filesystem::path> read_by(const Config& config) {

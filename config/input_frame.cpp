@@ -1,10 +1,12 @@
 #include "config/input_frame.h"
 
+#include "config/placement.h"
 #include "mesh_io/mesh_format.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace meshhier::config {
 namespace {
@@ -37,6 +39,10 @@ Config with_input_frame(storage::FileSystem& files, Config config) {
       config.placement.transform = frame->matrix();
   }
   return config;
+}
+
+Config with_files(storage::FileSystem& files, Config config) {
+  return with_map(files, with_input_frame(files, std::move(config)));
 }
 
 }  // namespace meshhier::config

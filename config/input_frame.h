@@ -11,4 +11,7 @@ namespace meshhier::config {
 /// places it. Throws as mesh_io::globe_frame().
 Config with_input_frame(storage::FileSystem& files, Config config);
 
+/// With all that its files say: with_input_frame(), then with_map().
+Config with_files(storage::FileSystem& files, Config config);
+
 }  // namespace meshhier::config

@@ -1,6 +1,6 @@
 #include "config/map_places.h"
 
-#include "geodesy/map_projection.h"
+#include "config/placement.h"
 #include "hierarchy/error.h"
 
 namespace meshhier::config {
@@ -34,10 +34,7 @@ MapPlaces::MapPlaces(const Config& config, const BoundsD& bounds,
     : change_(crs, config.placement.crs.value_or(kDegrees)) {
   const PlacementConfig& place = config.placement;
   if (place.crs) {
-    if (place.offset)
-      offset_ = {(*place.offset)[0], (*place.offset)[1], (*place.offset)[2]};
-    if (config.units)
-      scale_ = metres_of(*config.units) / geodesy::MapProjection(*place.crs).unit_metres();
+    model_ = mapped_model(config, bounds, geodesy::MapProjection(*place.crs));
     return;
   }
   if (!transform || dot(column_of(*transform, 0),
@@ -55,7 +52,7 @@ MapPlaces::MapPlaces(const Config& config, const BoundsD& bounds,
 Vec3d MapPlaces::to_input(double x, double y) const {
   const Vec3d place = change_({x, y, 0});
   if (!globe_)
-    return (place - offset_) * (1 / scale_);
+    return model_.from_map(place);
   return from_globe(globe_->transform, globe_->to_geocentric({place.x, place.y, globe_->height}));
 }
 

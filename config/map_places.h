@@ -3,6 +3,7 @@
 
 #include "config/config.h"
 #include "geodesy/map_change.h"
+#include "geodesy/map_transform.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 
@@ -26,8 +27,7 @@ class MapPlaces {
 
  private:
   geodesy::MapChange change_;
-  Vec3d offset_;
-  double scale_ = 1;
+  geodesy::MappedModel model_;  ///< of what has a crs
   /// Of what is placed by a transform.
   struct OnGlobe {
     geodesy::MapChange to_geocentric;

@@ -1,7 +1,6 @@
 #include "config/named_files.h"
 
 #include "config/input_frame.h"
-#include "config/placement.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
 #include "mesh_io/foreign_format.h"
@@ -90,7 +89,7 @@ Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {
     words.meshes.assign(named.begin(), named.end());
-    return with_map(files, with_input_frame(files, parse_config("{}", {"--set", {}}, words)));
+    return with_files(files, parse_config("{}", {"--set", {}}, words));
   }
   if (named.size() == 1)
     return load_config(files, *config, words);

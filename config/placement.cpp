@@ -1,8 +1,6 @@
 #include "config/placement.h"
 
 #include "config/map_file.h"
-#include "geodesy/map_projection.h"
-#include "geodesy/map_transform.h"
 #include "hierarchy/error.h"
 #include "storage/format/tileset.h"
 
@@ -72,16 +70,6 @@ double metres(const Config& config) {
   return config.units ? metres_of(*config.units) : 1;
 }
 
-geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
-                                  const geodesy::MapProjection& projection) {
-  const PlacementConfig& place = config.placement;
-  const Vec3d anchor =
-      place.anchor ? to_vec(*place.anchor) : bounds.min + (bounds.max - bounds.min) * 0.5;
-  const double scale = config.units ? metres(config) / projection.unit_metres() : 1;
-  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up_axis()),
-          scale};
-}
-
 /// A model on its map, and the projection as it is where the model lies.
 struct Mapped {
   Mapped(const Config& config, const BoundsD& bounds)
@@ -128,6 +116,16 @@ std::string globe_text(const Config& config, const BoundsD& bounds) {
 }
 
 }  // namespace
+
+geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
+                                  const geodesy::MapProjection& projection) {
+  const PlacementConfig& place = config.placement;
+  const Vec3d anchor =
+      place.anchor ? to_vec(*place.anchor) : bounds.min + (bounds.max - bounds.min) * 0.5;
+  const double scale = config.units ? metres(config) / projection.unit_metres() : 1;
+  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up_axis()),
+          scale};
+}
 
 Config with_map(storage::FileSystem& files, Config config) {
   PlacementConfig& place = config.placement;

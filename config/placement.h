@@ -2,6 +2,8 @@
 #pragma once
 
 #include "config/config.h"
+#include "geodesy/map_projection.h"
+#include "geodesy/map_transform.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "storage/io/file.h"
@@ -20,6 +22,10 @@ inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 /// what the config says itself wins. Looks whether PROJ knows the crs. Throws Error(usage), and
 /// Error(io) if a file or PROJ's database cannot be read.
 Config with_map(storage::FileSystem& files, Config config);
+
+/// Of a model with a crs, whose projection it is. `bounds`: of the input.
+geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
+                                  const geodesy::MapProjection& projection);
 
 /// Of the tileset's root, or none. `bounds`: of the input. Throws Error(usage) if the model has no
 /// place on the globe.

@@ -14,6 +14,7 @@ struct MappedModel {
   double scale = 1;  ///< units of the map that one of the model's is, before the offset
 
   Vec3d to_map(Vec3d p) const { return p * scale + offset; }
+  Vec3d from_map(Vec3d p) const { return (p - offset) * (1 / scale); }
 };
 
 /// From the model's coordinates to geocentric ones: right at the anchor, with the derivatives that

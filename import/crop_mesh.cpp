@@ -1,8 +1,9 @@
 #include "import/crop_mesh.h"
 
 #include "execution/spool_cursor.h"
+#include "hierarchy/clip_polygon.h"
+#include "import/renumber_triangles.h"
 #include "import/used_vertices.h"
-#include "partition/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -27,8 +28,7 @@ std::uint8_t sides_beyond(const BoundsD& box, Vec3d p) {
   return sides;
 }
 
-/// Whether a part of the triangle lies in the box: it is clipped at each side (Sutherland &
-/// Hodgman 1974).
+/// Whether a part of the triangle lies in the box.
 bool touches(const BoundsD& box, const std::array<Vec3d, 3>& corners) {
   std::vector<Vec3d> polygon(corners.begin(), corners.end()), next;
   for (int side = 0; side < 6 && !polygon.empty(); ++side) {
@@ -37,15 +37,10 @@ bool touches(const BoundsD& box, const std::array<Vec3d, 3>& corners) {
     const auto beyond = [&](Vec3d p) {
       return is_upper ? p[axis] - box.max[axis] : box.min[axis] - p[axis];
     };
-    next.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Vec3d from = polygon[i], to = polygon[(i + 1) % polygon.size()];
-      const double a = beyond(from), b = beyond(to);
-      if (!(a > 0))
-        next.push_back(from);
-      if ((a < 0 && b > 0) || (a > 0 && b < 0))
-        next.push_back(from + (to - from) * (a / (a - b)));
-    }
+    clip_at(
+        polygon, beyond,
+        [](Vec3d from, Vec3d to, double a, double b) { return from + (to - from) * (a / (a - b)); },
+        next);
     std::swap(polygon, next);
   }
   return polygon.size() >= 3;
@@ -59,45 +54,6 @@ struct SidedCorner {
 struct PlacedCorner {
   Vec3d position;
   std::uint64_t vertex;
-};
-
-/// Calls translate(block) for blocks of triangles, then all that waited: `take` gets each.
-template <class Value, class Take>
-class CornerTable {
- public:
-  CornerTable(std::uint64_t vertices, std::function<void(std::uint64_t, std::span<Value>)> read,
-              const ImportRoom& room, Take take)
-      : renumberer_({0, vertices, std::move(read), false},
-                    partition::plan_renumbering(vertices, sizeof(Value), room.sort_bytes),
-                    room.scratch),
-        room_(room),
-        take_(std::move(take)) {}
-
-  template <class Id>
-  void add(std::span<const Triangle<Id>> triangles) {
-    renumberer_.translate(triangles, found_);
-    hand_on();
-  }
-  void finish() {
-    while (renumberer_.next_round()) {
-      for (std::uint64_t batch = 0; batch < renumberer_.batches(); ++batch) {
-        renumberer_.translate_batch(batch, found_);
-        hand_on();
-      }
-    }
-  }
-
- private:
-  void hand_on() {
-    room_.cancel.check();
-    std::ranges::for_each(found_.finished, take_);
-    renumberer_.keep(found_);
-  }
-
-  partition::Renumberer<Value> renumberer_;
-  partition::Renumbered<Value> found_;
-  const ImportRoom& room_;
-  Take take_;
 };
 
 template <class Value>
@@ -190,12 +146,12 @@ class SideSpool {
       for (std::size_t i = 0; i < corners.size(); ++i)
         corners[i] = {static_cast<std::uint32_t>(first + i), block[i]};
     };
-    CornerTable table(sides_.size(),
-                      std::function<void(std::uint64_t, std::span<SidedCorner>)>(read), room,
-                      [&](const Triangle<SidedCorner>& t) {
-                        if ((t[0].sides & t[1].sides & t[2].sides) == 0)
-                          found.append(vertices_of(t));
-                      });
+    const auto take = [&](const Triangle<SidedCorner>& t) {
+      if ((t[0].sides & t[1].sides & t[2].sides) == 0)
+        found.append(vertices_of(t));
+    };
+    TriangleTranslator<SidedCorner, decltype(take)> table({0, sides_.size(), read, false}, take,
+                                                          room);
     const mesh_io::FaceCounts counts = source.read_triangles(
         [&](std::span<const Triangle<VertexId>> triangles) { table.add(triangles); });
     table.finish();
@@ -257,19 +213,13 @@ std::uint64_t crop_mesh(RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
         corners[i] = {block[i], first + i};
     };
     auto kept = std::make_unique<Triangles>(room.scratch, kImportSpoolBytes);
-    CornerTable table(mesh.vertex_count(),
-                      std::function<void(std::uint64_t, std::span<PlacedCorner>)>(read), room,
-                      [&](const Triangle<PlacedCorner>& t) {
-                        if (touches(box, {t[0].position, t[1].position, t[2].position}))
-                          kept->append(vertices_of(t));
-                      });
-    constexpr std::uint64_t kBlock = 16384;
-    std::vector<Triangle<std::uint32_t>> block;
-    for (std::uint64_t i = 0; i < triangles; i += block.size()) {
-      block.resize(std::min(kBlock, triangles - i));
-      mesh.triangles.read(i, block);
-      table.add(std::span<const Triangle<std::uint32_t>>(block));
-    }
+    const auto take = [&](const Triangle<PlacedCorner>& t) {
+      if (touches(box, {t[0].position, t[1].position, t[2].position}))
+        kept->append(vertices_of(t));
+    };
+    TriangleTranslator<PlacedCorner, decltype(take)> table({0, mesh.vertex_count(), read, false},
+                                                           take, room);
+    table.add(mesh.triangles);
     table.finish();
     storage::RecordSpool<std::uint32_t> used(room.scratch, kImportSpoolBytes);
     append_used(std::move(kept), mesh.vertex_count(), false, cropped, used, room);

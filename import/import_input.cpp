@@ -88,15 +88,7 @@ class Import {
     mesh_io::UnplacedVertices unplaced{};
   };
 
-  void count(std::string_view name, std::uint64_t count) {
-    if (count == 0)
-      return;
-    const auto found = std::ranges::find(facts_.counts, name, &SourceCount::name);
-    if (found == facts_.counts.end())
-      facts_.counts.push_back({std::string(name), count});
-    else
-      found->count += count;
-  }
+  void count(std::string_view name, std::uint64_t count) { add_count(facts_.counts, name, count); }
 
   void count(const mesh_io::ZeroedCounts& zeroed) {
     for (const SourceCount& one : source_counts(zeroed))

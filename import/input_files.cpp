@@ -72,10 +72,9 @@ void InputFiles::add_file(InputFileFacts facts, const storage::File& file) {
 }
 
 void InputFiles::add_tileset(const std::filesystem::path& path) {
-  if (!std::exchange(has_tileset_, true))
-    frame_ = mesh_io::globe_frame(files_, path, mesh_io::kTilesetBytes);
   const mesh_io::Tileset tileset =
-      mesh_io::read_tileset(files_, path, frame_, mesh_io::kTilesetBytes);
+      mesh_io::read_tileset(files_, path, frame_ ? &*frame_ : nullptr, mesh_io::kTilesetBytes);
+  frame_ = tileset.frame;
   if (tileset.meshes.empty())
     mesh_io::fail_file(path, "is a tileset without a mesh in its finest tiles");
   companions_.add({path, InputPart::tileset, files_.identity(path)});
@@ -91,14 +90,8 @@ void InputFiles::add_tileset(const std::filesystem::path& path) {
         "`meshhier export` gives its mesh as it was");
   }
   const auto note = [&](const char* name, std::uint64_t count, const char* what) {
-    if (count == 0)
-      return;
-    const auto found = std::ranges::find(tileset_counts_, name, &SourceCount::name);
-    if (found == tileset_counts_.end())
-      tileset_counts_.push_back({name, count});
-    else
-      found->count += count;
-    if (what != nullptr)
+    add_count(tileset_counts_, name, count);
+    if (count > 0 && what != nullptr)
       warnings_.push_back(fmt::format("{}: {} left out: only tiles of meshes are read",
                                       plain_text(path.string(), kLongestPath),
                                       counted(count, what)));

@@ -143,8 +143,8 @@ class InputFiles {
   storage::FileSystem& files_;  ///< that may refuse what it is asked for
   mesh_io::InputPaths named_;   ///< meshes and tilesets
   std::vector<InputFileFacts> all_;
-  std::optional<mesh_io::GlobeFrame> frame_;  ///< of the first tileset, for all
-  bool has_tileset_ = false;
+  /// Of the first tileset, if there is one, for all.
+  std::optional<std::optional<mesh_io::GlobeFrame>> frame_;
   std::vector<SourceCount> tileset_counts_;
   Companions companions_;
   std::vector<std::string> unused_, warnings_;

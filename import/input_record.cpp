@@ -65,6 +65,16 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
   return all;
 }
 
+void add_count(std::vector<SourceCount>& counts, std::string_view name, std::uint64_t count) {
+  if (count == 0)
+    return;
+  const auto found = std::ranges::find(counts, name, &SourceCount::name);
+  if (found == counts.end())
+    counts.push_back({std::string(name), count});
+  else
+    found->count += count;
+}
+
 std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons) {
   std::vector<SourceCount> counts{{"concave_polygons", polygons.concave},
                                   {"crossed_polygons", polygons.crossed},

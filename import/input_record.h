@@ -79,6 +79,9 @@ inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices"
 inline constexpr std::string_view kZeroedNormals = "normals_made_zero";
 inline constexpr std::string_view kZeroedTexcoords = "texcoords_made_zero";
 
+/// Adds to the count of that name, which is made if there is none; nothing if `count` is 0.
+void add_count(std::vector<SourceCount>& counts, std::string_view name, std::uint64_t count);
+
 /// Those that are not 0, by name.
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed);
 /// The same of polygons.

@@ -113,8 +113,6 @@ std::vector<PlanPolygon> read_polygons(storage::FileSystem& files,
         path, fmt::format("has {} bytes, expected a GeoJSON of at most {}", bytes, kMostBytes));
   std::string text(bytes, '\0');
   file->read_exact(0, std::as_writable_bytes(std::span(text)));
-  if (text.starts_with("\xef\xbb\xbf"))
-    text.erase(0, 3);
   const GeoJson document = mesh_io::parse_gltf_json(std::move(text), path, kMostMemory);
   return PolygonReader(path).read(document);
 }

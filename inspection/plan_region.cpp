@@ -73,14 +73,6 @@ struct PlanTriangle {
 
   std::array<ExactPoint, 3> corners;
   CGAL::Orientation turn;  ///< COLLINEAR: it is vertical
-
-  bool contains(const ExactPoint& p) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (CGAL::orientation(corners[i], corners[(i + 1) % 3], p) == -turn)
-        return false;
-    }
-    return true;
-  }
 };
 
 /// The sides of a triangle, split where parts of borders end on them, and these parts. Nothing that
@@ -131,23 +123,23 @@ class CutVertices {
       if (p == triangle_.corners[i])
         return i;
     }
-    const auto [found, is_new] =
-        numbers_.try_emplace({p, -1}, static_cast<std::uint32_t>(3 + made_.size()));
-    if (is_new)
-      made_.push_back(vertex_at(p));
-    return found->second;
+    return number(p, -1, [&] { return vertex_at(p); });
   }
   /// Of a vertical triangle, whose edges lie above each other. Between its ends.
   std::uint32_t on_edge(int edge, const ExactPoint& p) {
-    const auto [found, is_new] =
-        numbers_.try_emplace({p, edge}, static_cast<std::uint32_t>(3 + made_.size()));
-    if (is_new)
-      made_.push_back(on_way(edge, p));
-    return found->second;
+    return number(p, edge, [&] { return on_way(edge, p); });
   }
   std::vector<TriangleCut::Vertex> take() { return std::move(made_); }
 
  private:
+  template <class Make>
+  std::uint32_t number(const ExactPoint& p, int edge, const Make& make) {
+    const auto [found, is_new] =
+        numbers_.try_emplace({p, edge}, static_cast<std::uint32_t>(3 + made_.size()));
+    if (is_new)
+      made_.push_back(make());
+    return found->second;
+  }
   TriangleCut::Vertex on_way(int edge, const ExactPoint& p) const {
     const auto first = static_cast<std::size_t>(edge);
     const Exact::FT to =
@@ -310,14 +302,10 @@ TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
   insert_outline(triangle, parts_within(triangle, borders), plan);
   CutVertices vertices(triangle);
   TriangleCut cut;
-  std::size_t within = 0;
   for (const auto face : plan.finite_face_handles()) {
     const std::array<ExactPoint, 3> corners{face->vertex(0)->point(), face->vertex(1)->point(),
                                             face->vertex(2)->point()};
     const ExactPoint middle = CGAL::centroid(corners[0], corners[1], corners[2]);
-    if (!triangle.contains(middle))
-      continue;
-    ++within;
     const std::optional<PlanPoint> near = rounded_within(corners, middle);
     if (!(near ? contains(*near) : contains(middle)))
       continue;
@@ -330,7 +318,7 @@ TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
     cut.triangles.push_back(t);
   }
   cut.vertices = vertices.take();
-  if (within == 1 && cut.triangles.size() == 1)
+  if (plan.number_of_faces() == 1 && cut.triangles.size() == 1)
     return {true, {}, {}};
   return cut;
 }

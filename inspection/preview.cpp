@@ -59,16 +59,19 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
   return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
 }
 
-/// Of the piece, as a tile of the picture draws it.
+/// What a tile draws: triangles, or points as facets without area.
+render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout, bool as_points) {
+  return as_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
+                   : render::scene_tile(shown.tile, layout, shown.border);
+}
+
+/// Of the piece, without pictures.
 void add_piece(ShownTile shown, const AttributeLayout& layout, const Region& region,
                std::vector<render::Facet>& facets) {
   shown.tile.image = {};
   shown.tile.shading.texcoords.clear();
   const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
-  const render::SceneTile piece =
-      clip_scene(is_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
-                           : render::scene_tile(shown.tile, layout, shown.border),
-                 region);
+  const render::SceneTile piece = clip_scene(scene_of(shown, layout, is_points), region);
   facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
 }
 
@@ -251,10 +254,8 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
   const double point_side = point_side_of(reader, shown, camera);
   const auto load = [&, &axes = axes](std::size_t i) {
-    const ShownTile tile = shown.tiles.load(shown.positions[i]);
-    render::SceneTile drawn = point_side == 0
-                                  ? render::scene_tile(tile.tile, layout, tile.border)
-                                  : render::SceneTile{render::points_of(tile.tile, layout), {}, {}};
+    render::SceneTile drawn =
+        scene_of(shown.tiles.load(shown.positions[i]), layout, point_side > 0);
     if (region)
       drawn = clip_scene(std::move(drawn), *region);
     if (point_side > 0)

@@ -1,5 +1,7 @@
 #include "inspection/triangle_clipper.h"
 
+#include "hierarchy/clip_polygon.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,26 +42,20 @@ std::vector<ClippedPolygon> TriangleClipper::pieces(ClippedPolygon triangle) con
   return pieces;
 }
 
-/// Sutherland & Hodgman, Reentrant Polygon Clipping (1974).
 ClippedPolygon TriangleClipper::within_box(ClippedPolygon polygon) const {
   ClippedPolygon next;
   for (const HalfSpace& half : region_.box->half_spaces()) {
-    const auto is_within = [&](const ClippedCorner& corner) {
-      return half.beyond(to_double(corner.position)) <= 0;
+    const auto beyond = [&](const ClippedCorner& corner) {
+      return half.beyond(to_double(corner.position));
     };
-    if (std::ranges::all_of(polygon, is_within))
+    if (std::ranges::all_of(polygon, [&](const ClippedCorner& c) { return beyond(c) <= 0; }))
       continue;
-    next.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const ClippedCorner& from = polygon[i];
-      const ClippedCorner& to = polygon[(i + 1) % polygon.size()];
-      const double a = half.beyond(to_double(from.position));
-      const double b = half.beyond(to_double(to.position));
-      if (a <= 0)
-        next.push_back(from);
-      if ((a < 0 && b > 0) || (a > 0 && b < 0))
-        next.push_back(cut(from, to, half));
-    }
+    clip_at(
+        polygon, beyond,
+        [&](const ClippedCorner& from, const ClippedCorner& to, double, double) {
+          return cut(from, to, half);
+        },
+        next);
     std::swap(polygon, next);
   }
   return polygon;

@@ -95,6 +95,9 @@ void verify_vertex_counts(const VerifyJob& job, const PartitionTotals& found);
 /// Every tile by itself, with its children, and with its neighbours.
 void verify_tiles(const VerifyJob& job);
 
+/// All that a tile says without its neighbours: verify_tile(), verify_texture(), verify_image().
+void verify_alone(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
+
 /// Counts, bounds, errors, order, boundary, copies of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 

@@ -20,11 +20,7 @@ std::set<NodeId> neighbours_of(const PublishedTile& tile) {
 /// Of one tile; returns with how many neighbours it was compared.
 std::size_t verify_with_neighbours(const VerifyJob& job, const TileRecord& record,
                                    const PublishedTile& tile, const std::set<NodeId>& inside) {
-  verify_tile(job, record, tile);
-  if (!tile.image.empty())
-    verify_texture(job, tile);
-  if (!job.tree().is_partition(tile.node))
-    verify_image(job, tile);
+  verify_alone(job, record, tile);
   std::size_t compared = 0;
   for (const NodeId other : neighbours_of(tile)) {
     const NodeId stands_for = job.tree().tile_node(other);

@@ -240,6 +240,14 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
     check_compactness(mesh, record, problems);
 }
 
+void verify_alone(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile) {
+  verify_tile(job, record, tile);
+  if (!tile.image.empty())
+    verify_texture(job, tile);
+  if (!job.tree().is_partition(record.node))
+    verify_image(job, tile);
+}
+
 void verify_tiles(const VerifyJob& job) {
   const auto& records = job.reader.records();
   std::uint64_t ghosts = 0, border = 0;
@@ -256,14 +264,10 @@ void verify_tiles(const VerifyJob& job) {
   for (const TileRecord& record : records) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
-      verify_tile(job, record, *tile);
-      if (!tile->image.empty())
-        verify_texture(job, *tile);
+      verify_alone(job, record, *tile);
       pairs.add(*tile);
       claims.add(*tile);
-      if (!job.tree().is_partition(record.node)) {
-        verify_image(job, *tile);
-      } else {
+      if (job.tree().is_partition(record.node)) {
         totals.copies += own_copy_count(tile->mesh);
         totals.unreferenced += unreferenced_count(tile->mesh);
       }

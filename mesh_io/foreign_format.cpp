@@ -1,5 +1,7 @@
 #include "mesh_io/foreign_format.h"
 
+#include "mesh_io/text_chars.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -123,8 +125,7 @@ constexpr auto kWords = std::to_array<Word>({
 constexpr std::size_t kWordsWithin = 4096;
 
 std::string_view without_blanks(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF"))
-    text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   return text;
 }

@@ -6,6 +6,7 @@
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
 #include "mesh_io/stl_reader.h"
+#include "mesh_io/text_chars.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -31,8 +32,7 @@ constexpr std::string_view kBlanks = " \t\v\f\r\n";
 
 /// The first word that is in no comment.
 std::string_view first_word(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF"))  // the byte order mark of UTF-8
-    text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   for (;;) {
     const std::size_t begin = text.find_first_not_of(kBlanks);
     if (begin == std::string_view::npos)
@@ -95,8 +95,7 @@ bool is_ply(std::string_view start) {
 
 /// An object of JSON that has what tiles have.
 bool is_tileset(std::string_view start) {
-  if (start.starts_with("\xef\xbb\xbf"))
-    start.remove_prefix(3);
+  start = without_byte_order_mark(start);
   start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
   return start.starts_with('{') && start.find("\"geometricError\"") != std::string_view::npos;
 }

@@ -2,6 +2,7 @@
 
 #include "hierarchy/angle.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/wgs84.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/gltf_uri.h"
 #include "mesh_io/input_error.h"
@@ -32,9 +33,8 @@ constexpr int kDeepestJson = 512;
 constexpr std::size_t kMostDocuments = 64;  ///< of which each is within the one before
 constexpr std::size_t kLongestContent = 255;
 
-// WGS 84.
-constexpr double kEquator = 6378137.0;
-constexpr double kPole = 6356752.3142451793;
+using wgs84::kEquator;
+using wgs84::kPole;
 
 struct Document {
   fs::path path;
@@ -119,13 +119,7 @@ Vec3d middle_of_region(const GltfObject& volume, const std::vector<double>& regi
   const double east = region[2] + (region[2] < region[0] ? kTurn : 0);
   const UnitTurn longitude = turn_by((region[0] + east) / 2);
   const UnitTurn latitude = turn_by((region[1] + region[3]) / 2);
-  const double flat = kPole * kPole / (kEquator * kEquator);
-  const double normal = kEquator / std::sqrt(latitude.cosine * latitude.cosine +
-                                             flat * latitude.sine * latitude.sine);
-  const double height = (region[4] + region[5]) / 2;
-  return {(normal + height) * latitude.cosine * longitude.cosine,
-          (normal + height) * latitude.cosine * longitude.sine,
-          (flat * normal + height) * latitude.sine};
+  return wgs84::geocentric(longitude, latitude, (region[4] + region[5]) / 2);
 }
 
 /// In geocentric coordinates, if the tileset is on the globe.
@@ -169,28 +163,36 @@ bool adds(const GltfObject& tile, bool otherwise) {
   return refine.empty() ? otherwise : refine == "ADD";
 }
 
+std::optional<GlobeFrame> frame_of(const GltfObject& root) {
+  const GltfTransform transform = transform_of(root);
+  if (is_local_frame(transform))
+    return GlobeFrame{transform};
+  const auto middle = middle_of(root);
+  return middle && is_on_globe(*middle) ? std::optional(frame_at(*middle)) : std::nullopt;
+}
+
+/// From the root's coordinates to the frame's.
+GltfTransform placement_in(const std::optional<GlobeFrame>& frame, const GltfTransform& root) {
+  if (!frame)
+    return root;
+  if (root == frame->to_globe)
+    return {};  // exactly, without a way to the globe and back
+  return inverse_of(*frame) * root;
+}
+
 class TilesetReader {
  public:
-  TilesetReader(storage::FileSystem& files, const fs::path& path,
-                const std::optional<GlobeFrame>& frame, std::uint64_t most_bytes)
-      : files_(files),
-        place_(path.parent_path().lexically_normal()),
-        frame_(frame),
-        most_bytes_(most_bytes) {}
+  TilesetReader(storage::FileSystem& files, const fs::path& path, std::uint64_t most_bytes)
+      : files_(files), place_(path.parent_path().lexically_normal()), most_bytes_(most_bytes) {}
 
-  Tileset read(const fs::path& path) {
+  Tileset read(const fs::path& path, const std::optional<GlobeFrame>* frame) {
     const Document document = read_document(files_, path, most_bytes_);
     const GltfObject tileset(document.json, document.path);
     const GltfObject root = tileset.require_object("root");
-    if (frame_ && transform_of(root) == frame_->to_globe)
-      begin_ = {};  // exactly, without a way to the globe and back
-    else if (frame_)
-      begin_ = inverse_of(*frame_) * transform_of(root);
-    else
-      begin_ = transform_of(root);
+    found_.frame = frame != nullptr ? *frame : frame_of(root);
     const auto more = tileset.require_object("asset").object("extras");
     found_.is_hierarchy = more && more->has_text("generator", "meshhier");
-    read_tiles(document, begin_);
+    read_tiles(document, placement_in(found_.frame, transform_of(root)));
     return std::move(found_);
   }
 
@@ -289,9 +291,7 @@ class TilesetReader {
 
   storage::FileSystem& files_;
   fs::path place_;
-  const std::optional<GlobeFrame>& frame_;
   std::uint64_t most_bytes_;
-  GltfTransform begin_;
   std::vector<fs::path> open_;  ///< documents that are being read, each within the one before
   Tileset found_;
 };
@@ -314,16 +314,12 @@ std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const fs::path
                                       std::uint64_t most_bytes) {
   const Document document = read_document(files, path, most_bytes);
   const GltfObject root = GltfObject(document.json, document.path).require_object("root");
-  const GltfTransform transform = transform_of(root);
-  if (is_local_frame(transform))
-    return GlobeFrame{transform};
-  const auto middle = middle_of(root);
-  return middle && is_on_globe(*middle) ? std::optional(frame_at(*middle)) : std::nullopt;
+  return frame_of(root);
 }
 
 Tileset read_tileset(storage::FileSystem& files, const fs::path& path,
-                     const std::optional<GlobeFrame>& frame, std::uint64_t most_bytes) {
-  return TilesetReader(files, path, frame, most_bytes).read(path);
+                     const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes) {
+  return TilesetReader(files, path, most_bytes).read(path, frame);
 }
 
 }  // namespace meshhier::mesh_io

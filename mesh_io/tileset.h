@@ -44,18 +44,19 @@ struct TilesetMesh {
 struct Tileset {
   std::vector<TilesetMesh> meshes;               ///< in the order of the document
   std::vector<std::filesystem::path> documents;  ///< of external tilesets, each once
+  std::optional<GlobeFrame> frame;               ///< none: coordinates are those of the tileset
   bool is_hierarchy = false;                     ///< one that a build made
   std::uint64_t coarser = 0;                     ///< contents that finer ones replace
   std::uint64_t instanced = 0, points = 0;       ///< tiles that are no meshes
 };
 
-/// Reads the tileset and all external ones, and the headers of tiles. Of tiles that refine by
-/// replacement those without children are taken, of others all. Contents are files below the folder
-/// of `path`. `frame`: none: coordinates are those of the tileset. `most_bytes`: memory for a JSON.
-/// Throws Error(input) naming file and place if a document is no tileset, if tiles are implicit, if
-/// a content is on the web, not there or no tile, or if tilesets hold each other; Error(budget),
-/// Error(io).
+/// Reads the tileset and all external ones, and the headers of tiles, each document once. Of tiles
+/// that refine by replacement those without children are taken, of others all. Contents are files
+/// below the folder of `path`. `frame`: of another tileset, for both; null: its own, as
+/// globe_frame() has it. `most_bytes`: memory for a JSON. Throws Error(input) naming file and place
+/// if a document is no tileset, if tiles are implicit, if a content is on the web, not there or no
+/// tile, or if tilesets hold each other; Error(budget), Error(io).
 Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
-                     const std::optional<GlobeFrame>& frame, std::uint64_t most_bytes);
+                     const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes);
 
 }  // namespace meshhier::mesh_io

@@ -1,6 +1,7 @@
 #include "storage/format/tileset.h"
 
 #include "hierarchy/angle.h"
+#include "hierarchy/wgs84.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
@@ -187,18 +188,12 @@ void write_tilesets(FileSystem& files, const std::filesystem::path& directory, c
 
 Transform globe_transform(double longitude, double latitude, double height, Vec3d anchor,
                           UpAxis up) {
-  // WGS 84.
-  constexpr double kSemiMajor = 6378137;
-  constexpr double kFlattening = 1 / 298.257223563;
-  constexpr double kEccentricity2 = kFlattening * (2 - kFlattening);
   const UnitTurn lambda = turn_by(longitude * std::numbers::pi / 180);
   const UnitTurn phi = turn_by(latitude * std::numbers::pi / 180);
-  const double normal = kSemiMajor / std::sqrt(1 - kEccentricity2 * phi.sine * phi.sine);
   const Vec3d east{-lambda.sine, lambda.cosine, 0};
   const Vec3d north{-phi.sine * lambda.cosine, -phi.sine * lambda.sine, phi.cosine};
-  const Vec3d away{phi.cosine * lambda.cosine, phi.cosine * lambda.sine, phi.sine};
-  const Vec3d place{(normal + height) * away.x, (normal + height) * away.y,
-                    (normal * (1 - kEccentricity2) + height) * away.z};
+  const Vec3d away = wgs84::up_at(lambda, phi);
+  const Vec3d place = wgs84::geocentric(lambda, phi, height);
   const Vec3d a = to_z_up(anchor, up);
   const Vec3d shift = place - (east * a.x + north * a.y + away * a.z);
   return {east.x, east.y, east.z, 0, north.x, north.y, north.z, 0,
