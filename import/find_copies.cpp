@@ -2,6 +2,7 @@
 
 #include "execution/parallel.h"
 #include "execution/spool_cursor.h"
+#include "import/text_blocks.h"
 #include "partition/external_sort.h"
 
 #include <algorithm>
@@ -292,10 +293,12 @@ CopyList look_at(mesh_io::MeshSource& source, storage::ScratchFile& list, const 
         [](const Slot&) { return true; });
   } else {
     Slot slot;
-    source.read_vertices([&](const mesh_io::VertexBlock& block) {
-      room.cancel.check();
-      spread(block, slot);
-    });
+    source.read_vertices(
+        [&](const mesh_io::VertexBlock& block) {
+          room.cancel.check();
+          spread(block, slot);
+        },
+        parallel_blocks(room.blocks_in_flight, room.cancel));
   }
   return buckets.settle(list);
 }

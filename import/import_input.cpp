@@ -14,6 +14,7 @@
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/part_of_file.h"
+#include "mesh_io/ply_lines.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
@@ -261,18 +262,21 @@ class Import {
     if (input_.crop() && description.vertices_in_place && description.face_count > 0)
       return add_near(source, path);
     Added added{.layout = description.attributes};
-    source.read_vertices([&](const mesh_io::VertexBlock& block) {
-      env_.cancel.check();
-      for (const Vec3f& p : block.positions)
-        mesh_.positions.append(to_double(p));
-      mesh_.positions.append(block.exact);
-      added.fits_float = added.fits_float && block.fits_float();
-      count_unplaced(block, path, added.unplaced);
-      mesh_.attributes.append(block.attributes);
-      count(block.zeroed);
-    });
+    const mesh_io::BlockRunner runner = parallel_blocks(mesh_io::kPlyLinesBytes, room_);
+    source.read_vertices(
+        [&](const mesh_io::VertexBlock& block) {
+          env_.cancel.check();
+          for (const Vec3f& p : block.positions)
+            mesh_.positions.append(to_double(p));
+          mesh_.positions.append(block.exact);
+          added.fits_float = added.fits_float && block.fits_float();
+          count_unplaced(block, path, added.unplaced);
+          mesh_.attributes.append(block.attributes);
+          count(block.zeroed);
+        },
+        runner);
     const mesh_io::FaceCounts counts = source.read_triangles(
-        [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
+        [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); }, runner);
     added.faces = counts.faces;
     added.degenerate_triangles = counts.degenerate_triangles;
     count(counts.polygons);

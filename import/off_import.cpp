@@ -4,6 +4,7 @@
 #include "import/face_colours.h"
 #include "import/place_lookup.h"
 #include "import/split_corners.h"
+#include "import/text_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +153,8 @@ OffImport import_off(mesh_io::InputStream& stream, const std::filesystem::path& 
         parts.triangles.append(triangles);
       },
       [&](std::uint64_t triangles, const auto& colour) { colours.add(triangles, colour); },
-      [&](std::uint32_t vertex) { return places.at(vertex); });
+      [&](std::uint32_t vertex) { return places.at(vertex); },
+      parallel_blocks(mesh_io::kOffLinesBytes, room));
   const AttributeLayout& given = made.counts.attributes;
   made.layout = given;
   made.ignored_colours = made.counts.unknown_colours;

@@ -6,6 +6,8 @@
 #include "import/ply_pictures.h"
 #include "import/ply_texture_faces.h"
 #include "import/split_corners.h"
+#include "import/text_blocks.h"
+#include "mesh_io/ply_lines.h"
 #include "mesh_io/polygon_cut.h"
 
 #include <algorithm>
@@ -240,17 +242,20 @@ class PlyImporter {
   template <class Take>
   void read_vertices(const Take& take) {
     const auto channels = static_cast<std::size_t>(given_.channels());
-    source_.read_vertices([&](const mesh_io::VertexBlock& block) {
-      room_.cancel.check();
-      import_.zeroed += block.zeroed;
-      import_.fits_float = import_.fits_float && block.fits_float();
-      count_unplaced(block, path_, import_.unplaced);
-      const std::size_t count = block.positions.size() + block.exact.size();
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vec3d position = block.exact.empty() ? to_double(block.positions[i]) : block.exact[i];
-        take(block.first + i, position, block.attributes.subspan(i * channels, channels));
-      }
-    });
+    source_.read_vertices(
+        [&](const mesh_io::VertexBlock& block) {
+          room_.cancel.check();
+          import_.zeroed += block.zeroed;
+          import_.fits_float = import_.fits_float && block.fits_float();
+          count_unplaced(block, path_, import_.unplaced);
+          const std::size_t count = block.positions.size() + block.exact.size();
+          for (std::size_t i = 0; i < count; ++i) {
+            const Vec3d position =
+                block.exact.empty() ? to_double(block.positions[i]) : block.exact[i];
+            take(block.first + i, position, block.attributes.subspan(i * channels, channels));
+          }
+        },
+        parallel_blocks(mesh_io::kPlyLinesBytes, room_));
   }
 
   void append_plain() {

@@ -75,6 +75,15 @@ VertexRows::Column VertexRows::column(std::size_t row, int slot) {
   return {first + axis * sizeof(float), sizeof(Vec3f), false};
 }
 
+void VertexRows::put(const Column& to, double value) {
+  if (to.wide) {
+    std::memcpy(to.data, &value, sizeof(value));
+    return;
+  }
+  const auto narrow = static_cast<float>(value);
+  std::memcpy(to.data, &narrow, sizeof(narrow));
+}
+
 double VertexRows::value_of(std::size_t row, int slot) const {
   if (slot >= kFirstAttributeSlot) {
     const auto channel = static_cast<std::size_t>(slot - kFirstAttributeSlot);
@@ -134,18 +143,15 @@ VertexBlock VertexRows::block(std::uint64_t first_id, std::size_t rows,
   return block;
 }
 
-VertexBlocks::VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit)
+VertexBlocks::VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit,
+                           std::uint64_t first)
     : visit_(visit),
-      rows_(mesh, std::min<std::uint64_t>(mesh.vertex_count, MeshSource::kBlockSize), memory_) {}
+      rows_(mesh, std::min<std::uint64_t>(mesh.vertex_count - first, MeshSource::kBlockSize),
+            memory_),
+      first_(first) {}
 
 void VertexBlocks::set(int slot, double value) {
-  const VertexRows::Column target = rows_.column(filled_, slot);
-  if (target.wide) {
-    std::memcpy(target.data, &value, sizeof(value));
-    return;
-  }
-  const auto narrow = static_cast<float>(value);
-  std::memcpy(target.data, &narrow, sizeof(narrow));
+  VertexRows::put(rows_.column(filled_, slot), value);
 }
 
 std::optional<VertexRows::Defect> VertexBlocks::commit(const RowChecks& checks) {

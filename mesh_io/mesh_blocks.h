@@ -29,6 +29,8 @@ class VertexRows {
     bool wide = false;
   };
   Column column(std::size_t row, int slot);
+  /// Writes the value at `to.data`, as its type has it.
+  static void put(const Column& to, double value);
 
   /// Of rows [first, first + count), as zero_what_is_not_finite().
   ZeroedCounts zero_what_is_not_finite(std::size_t first, std::size_t count);
@@ -59,8 +61,8 @@ class VertexRows {
 /// Vertices one by one: a reader sets the slots of the next row, then commits it.
 class VertexBlocks {
  public:
-  /// `mesh`: its vertex count is how many rows will come at most.
-  VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit);
+  /// `mesh`: its vertex count is how many rows will come at most; `first`: VertexId of the first.
+  VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit, std::uint64_t first = 0);
 
   void set(int slot, double value);
   /// Ends the row, unless it has a defect. What is not finite may become 0 before.
@@ -77,7 +79,7 @@ class VertexBlocks {
   VertexRows rows_;
   std::size_t filled_ = 0;
   ZeroedCounts zeroed_;  ///< of the rows that are filled
-  std::uint64_t first_ = 0;
+  std::uint64_t first_;
 };
 
 /// Where a vertex lies.

@@ -6,6 +6,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
+#include "mesh_io/block_runner.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
@@ -100,13 +101,16 @@ class MeshSource {
   virtual const MeshDescription& description() const = 0;
 
   /// Visits all vertices in file order, in blocks of at most kBlockSize. Coordinates are checked
-  /// finite.
-  virtual void read_vertices(const VertexVisitor& visit) = 0;
+  /// finite. `runner`: for the blocks of a text, from which visits come.
+  virtual void read_vertices(const VertexVisitor& visit, const BlockRunner& runner) = 0;
+  void read_vertices(const VertexVisitor& visit) { read_vertices(visit, BlockRunner()); }
 
   /// Visits all triangles in file order, in blocks of at most kBlockSize: polygons cut into fans
   /// (0, i, i + 1), or as their shape asks for (polygon_cut.h), strips unrolled with alternating
   /// orientation; every index is < N; degenerate triangles dropped and counted.
-  virtual FaceCounts read_triangles(const TriangleVisitor& visit) = 0;
+  FaceCounts read_triangles(const TriangleVisitor& visit, const BlockRunner& runner = {}) {
+    return read_triangles_from(0, visit, runner);
+  }
 
   /// Blocks of vertices that can be read one by one: 0 unless vertices_in_place.
   virtual std::uint64_t vertex_blocks() const = 0;
@@ -124,7 +128,8 @@ class MeshSource {
   virtual TriangleBlock read_triangle_block(std::uint64_t index, BlockMemory& memory) const = 0;
   /// As read_triangles() without the first `face` faces, all of which blocks have shown to be
   /// triangles; counts only what comes from there on.
-  virtual FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) = 0;
+  virtual FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit,
+                                         const BlockRunner& runner) = 0;
 
   /// The file's storage::FileChecksum: reads what of the file was not read so far. `check` is
   /// called before each read and may throw.

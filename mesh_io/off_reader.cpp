@@ -1,14 +1,19 @@
 #include "mesh_io/off_reader.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/line_blocks.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/word_stream.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -50,21 +55,63 @@ bool is_byte_integer(std::string_view word) {
   return value && *value >= 0 && *value <= 255;
 }
 
+/// Some texts, then the rest of the lines.
+class TextsThenRest final : public InputStream {
+ public:
+  explicit TextsThenRest(LineBlocks& lines) : lines_(lines) {}
+
+  void add(std::span<const char> text) { text_.insert(text_.end(), text.begin(), text.end()); }
+  /// What is left of the texts, and the last of those that were read.
+  std::vector<char> text_behind(std::size_t last) const {
+    return {text_.begin() + static_cast<std::ptrdiff_t>(read_ - last), text_.end()};
+  }
+  bool has_read_beyond() const { return has_read_beyond_; }
+
+  std::size_t read(std::span<std::byte> to) override {
+    const std::size_t count = std::min(to.size(), text_.size() - read_);
+    if (count > 0)
+      std::memcpy(to.data(), text_.data() + read_, count);
+    read_ += count;
+    if (count == to.size())
+      return count;
+    const std::size_t more = lines_.rest().read(to.subspan(count));
+    has_read_beyond_ = has_read_beyond_ || more > 0;
+    return count + more;
+  }
+
+ private:
+  LineBlocks& lines_;
+  std::vector<char> text_;
+  std::size_t read_ = 0;
+  bool has_read_beyond_ = false;
+};
+
+/// The header and the first vertex are read by words: they say what is in the lines that follow.
+/// These are parsed in blocks, up to one that is not as programs write them; from there on all is
+/// read by words.
 class OffReader {
  public:
   OffReader(InputStream& stream, const std::filesystem::path& path)
-      : words_(stream, path, {.cuts_words = true}) {}
+      : lines_(stream),
+        start_(lines_),
+        behind_(lines_),
+        words_(begin(), path, {.cuts_words = true}) {}
 
   OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                 const OffFaceVisitor& visit_face, const PlaceOf& place_of) {
+                 const OffFaceVisitor& visit_face, const PlaceOf& place_of,
+                 const BlockRunner& runner) {
     read_header();
-    for (std::uint64_t i = 0; i < counts_.vertices; ++i)
-      read_vertex(i, visit_vertex);
+    TriangleBlocks blocks(visit_triangles, &place_of);
+    if (counts_.vertices > 0)
+      read_vertex(vertex_++, visit_vertex);
+    if (!is_wrapped_ && !start_.has_read_beyond())
+      read_blocks(visit_vertex, blocks, visit_face, runner);
+    while (vertex_ < counts_.vertices)
+      read_vertex(vertex_++, visit_vertex);
     if (counts_.attributes.colour != ColourType::none)
       counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
-    TriangleBlocks blocks(visit_triangles, &place_of);
-    for (std::uint64_t i = 0; i < face_count_; ++i)
-      read_face(i, blocks, visit_face);
+    while (face_ < face_count_)
+      read_face(face_++, blocks, visit_face);
     // Where lines say nothing, a number too many may be one that was taken for another.
     if (is_wrapped_ && words_.to_row())
       words_.fail("expected the end of the file behind the faces, found " +
@@ -76,6 +123,126 @@ class OffReader {
   }
 
  private:
+  /// Two blocks: words look ahead of what they take.
+  InputStream& begin() {
+    std::vector<char> block;
+    for (int i = 0; i < 2 && lines_.next(block); ++i)
+      start_.add(block);
+    return start_;
+  }
+
+  void read_blocks(const OffVertexVisitor& visit_vertex, TriangleBlocks& blocks,
+                   const OffFaceVisitor& visit_face, const BlockRunner& runner) {
+    std::vector<OffLines> slots(runner.in_flight);
+    const auto slot = [&](std::size_t i) -> OffLines& { return slots[i % slots.size()]; };
+    std::size_t read = 0, taken = 0;
+    std::size_t taken_bytes = 0;  // of the first block that was not taken as a whole
+    std::uint64_t line = words_.line();
+    const auto read_block = [&](std::size_t i) {
+      std::vector<char>& text = slot(i).text;
+      if (i > 0 && !lines_.next(text))
+        return false;
+      if (i == 0)
+        text = start_.text_behind(words_.bytes_ahead());
+      read = i + 1;
+      return true;
+    };
+    const auto take_block = [&](std::size_t i) {
+      const OffLines& block = slot(i);
+      taken_bytes = take_lines(block, visit_vertex, blocks, visit_face);
+      const bool is_whole = taken_bytes == block.text.size();
+      line += is_whole ? block.lines : count_lines(std::span(block.text).first(taken_bytes));
+      taken += is_whole ? 1 : 0;
+      return is_whole;
+    };
+    runner.run({read_block, [&](std::size_t i) { parse_off_lines(slot(i)); }, take_block});
+    for (std::size_t i = taken; i < read; ++i)
+      behind_.add(std::span(slot(i).text).subspan(i == taken ? taken_bytes : 0));
+    words_.go_on(behind_, line);
+  }
+
+  /// Returns of how many bytes all was taken.
+  std::size_t take_lines(const OffLines& block, const OffVertexVisitor& visit_vertex,
+                         TriangleBlocks& blocks, const OffFaceVisitor& visit_face) {
+    std::size_t first = 0;
+    for (const OffLines::Row& row : block.rows) {
+      const auto numbers = std::span(block.numbers).subspan(first, row.count);
+      first += row.count;
+      const bool is_taken = vertex_ < counts_.vertices ? take_vertex(numbers, visit_vertex)
+                                                       : take_face(numbers, blocks, visit_face);
+      if (!is_taken)
+        return row.offset;
+    }
+    return block.plain_bytes;
+  }
+
+  /// A line as it should be, else false.
+  bool take_vertex(std::span<const OffNumber> numbers, const OffVertexVisitor& visit) {
+    const AttributeLayout& layout = counts_.attributes;
+    const auto attributes = static_cast<std::size_t>(layout.channels());
+    if (numbers.size() != 3 + attributes)
+      return false;
+    for (std::size_t i = 0; i < attributes; ++i) {
+      channels_[i] = static_cast<float>(numbers[3 + i].value);
+      if (!std::isfinite(channels_[i]))
+        return false;
+    }
+    const auto position = numbers.first(3);
+    if (!std::ranges::all_of(position, [](const OffNumber& n) { return is_coordinate(n.value); }))
+      return false;
+    for (const OffNumber& number : position)
+      counts_.fits_float = counts_.fits_float && number.fits_float;
+    const auto colour = numbers.subspan(3 + static_cast<std::size_t>(layout.colour_offset()),
+                                        static_cast<std::size_t>(layout.colour_channels()));
+    byte_colours_ = byte_colours_ && std::ranges::all_of(colour, is_byte);
+    visit({position[0].value, position[1].value, position[2].value},
+          std::span(channels_).first(attributes));
+    ++vertex_;
+    return true;
+  }
+  static bool is_byte(const OffNumber& number) {
+    return number.is_integer && number.value >= 0 && number.value <= 255;
+  }
+
+  /// Likewise.
+  bool take_face(std::span<const OffNumber> numbers, TriangleBlocks& blocks,
+                 const OffFaceVisitor& visit) {
+    const OffNumber& length = numbers[0];
+    const bool is_face = face_ < face_count_ && length.is_integer && length.value >= 3 &&
+                         length.value < static_cast<double>(numbers.size());
+    if (!is_face)
+      return false;
+    const auto corners = numbers.subspan(1, static_cast<std::size_t>(length.value));
+    const auto rest = numbers.subspan(1 + corners.size());
+    const auto is_corner = [&](const OffNumber& n) {
+      return n.is_integer && n.value >= 0 && n.value < static_cast<double>(counts_.vertices);
+    };
+    if (rest.size() > kColourNumbers || !std::ranges::all_of(corners, is_corner))
+      return false;
+    blocks.begin_polygon();
+    for (const OffNumber& corner : corners)
+      blocks.add_polygon_corner(static_cast<std::uint32_t>(corner.value));
+    blocks.end_polygon();
+    visit(blocks.triangles(), colour_of(rest));
+    ++face_;
+    return true;
+  }
+
+  std::optional<OffColour> colour_of(std::span<const OffNumber> numbers) {
+    if (numbers.empty())
+      return std::nullopt;
+    OffColour colour;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      colour.numbers[i] = static_cast<float>(numbers[i].value);
+    colour.are_bytes = std::ranges::all_of(numbers, is_byte);
+    colour.has_alpha = numbers.size() == kColourNumbers;
+    const bool is_sound = numbers.size() >= 3 && std::ranges::all_of(colour.numbers, [](float n) {
+                            return std::isfinite(n);
+                          });
+    counts_.unknown_colours += is_sound ? 0 : 1;
+    return is_sound ? std::optional(colour) : std::nullopt;
+  }
+
   void read_header() {
     const std::string word(words_.to_row() ? words_.take_word() : std::string_view());
     const Keyword keyword = parse_keyword(word);
@@ -218,9 +385,8 @@ class OffReader {
   /// A colour has one number, three or four.
   void look_at_first_face(std::uint64_t corners) {
     constexpr std::uint64_t kMostCorners = 50;
-    constexpr std::size_t kColour = 4;
     const std::size_t words = words_.words_ahead(64);
-    if (corners <= kMostCorners && words > corners + kColour)
+    if (corners <= kMostCorners && words > corners + kColourNumbers)
       join_lines();
   }
 
@@ -237,7 +403,13 @@ class OffReader {
     return static_cast<std::uint32_t>(*corner);
   }
 
+  static constexpr std::size_t kColourNumbers = 4;
+
+  LineBlocks lines_;
+  TextsThenRest start_;   ///< the first blocks
+  TextsThenRest behind_;  ///< of the blocks that were not taken
   WordStream words_;
+  std::uint64_t vertex_ = 0, face_ = 0;  ///< the next ones
   std::array<float, kMaxChannels> channels_{};
   std::size_t channel_count_ = 0;
   std::uint64_t face_count_ = 0;
@@ -255,8 +427,9 @@ bool is_off_keyword(std::string_view word) {
 
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                   const OffFaceVisitor& visit_face, const PlaceOf& place_of) {
-  return OffReader(stream, path).read(visit_vertex, visit_triangles, visit_face, place_of);
+                   const OffFaceVisitor& visit_face, const PlaceOf& place_of,
+                   const BlockRunner& runner) {
+  return OffReader(stream, path).read(visit_vertex, visit_triangles, visit_face, place_of, runner);
 }
 
 }  // namespace meshhier::mesh_io

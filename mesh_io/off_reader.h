@@ -3,9 +3,11 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/vec.h"
+#include "mesh_io/block_runner.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/off_lines.h"
 #include "mesh_io/unplaced.h"
 
 #include <array>
@@ -61,9 +63,11 @@ using OffFaceVisitor =
 /// Files of four dimensions or in binary are refused. Throws Error(input) naming the line,
 /// Error(io).
 ///
-/// `place_of`: a vertex that was visited.
+/// `place_of`: a vertex that was visited. `runner`: for the blocks of the text, of kOffLinesBytes
+/// each, from which visits come.
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                   const OffFaceVisitor& visit_face, const PlaceOf& place_of);
+                   const OffFaceVisitor& visit_face, const PlaceOf& place_of,
+                   const BlockRunner& runner = {});
 
 }  // namespace meshhier::mesh_io

@@ -25,7 +25,8 @@ class BinaryBody final : public PlyBody {
 
   PlyPosition position() const override { return {window_.offset(), 0}; }
   void skip(const PlyElementPlan& plan) override;
-  void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
+  void read_vertices(const PlyElementPlan& plan, std::uint64_t first,
+                     VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
@@ -118,8 +119,9 @@ void BinaryBody<Swap>::skip(const PlyElementPlan& plan) {
 }
 
 template <bool Swap>
-void BinaryBody<Swap>::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
-  for (std::uint64_t i = 0; i < plan.element.count; ++i)
+void BinaryBody<Swap>::read_vertices(const PlyElementPlan& plan, std::uint64_t first,
+                                     VertexBlocks& blocks) {
+  for (std::uint64_t i = first; i < plan.element.count; ++i)
     read_vertex_row({plan, i}, blocks);
 }
 

@@ -28,9 +28,10 @@ class PlyBody {
 
   virtual PlyPosition position() const = 0;
   virtual void skip(const PlyElementPlan& plan) = 0;
-  /// Rows without a fixed size; ply_fixed_rows.h reads the others.
-  virtual void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) = 0;
+  /// Rows without a fixed size; ply_fixed_rows.h reads the others. Of this and the next one
   /// position() is that of row `first`.
+  virtual void read_vertices(const PlyElementPlan& plan, std::uint64_t first,
+                             VertexBlocks& blocks) = 0;
   virtual void read_faces(const PlyElementPlan& plan, std::uint64_t first,
                           TriangleBlocks& blocks) = 0;
   /// Whole rows of any element, of the properties that plan.takes() says; lists of at most

@@ -83,7 +83,7 @@ std::vector<Vec3d> PlyPlaces::indexed_places(std::uint64_t first, std::size_t co
     places.insert(places.end(), more.begin(), more.end());
   };
   VertexBlocks blocks(mesh, take);
-  body->read_vertices(part, blocks);
+  body->read_vertices(part, 0, blocks);
   blocks.finish();
   return places;
 }

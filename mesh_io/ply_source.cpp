@@ -4,6 +4,7 @@
 #include "mesh_io/ply_body.h"
 #include "mesh_io/ply_fixed_rows.h"
 #include "mesh_io/ply_header.h"
+#include "mesh_io/ply_lines.h"
 #include "mesh_io/ply_places.h"
 #include "mesh_io/ply_plan.h"
 
@@ -33,10 +34,7 @@ class PlyFileSource final : public PlySource {
   }
 
   const MeshDescription& description() const override { return description_; }
-  void read_vertices(const VertexVisitor& visit) override;
-  FaceCounts read_triangles(const TriangleVisitor& visit) override {
-    return read_triangles_from(0, visit);
-  }
+  void read_vertices(const VertexVisitor& visit, const BlockRunner& runner) override;
 
   std::uint64_t vertex_blocks() const override {
     return vertex_blocks_ ? vertex_blocks_->count() : 0;
@@ -50,7 +48,8 @@ class PlyFileSource final : public PlySource {
   TriangleBlock read_triangle_block(std::uint64_t index, BlockMemory& memory) const override {
     return triangle_blocks_->read(input(), index, memory);
   }
-  FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) override;
+  FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit,
+                                 const BlockRunner& runner) override;
   const PlyPlan& plan() const override { return plan_; }
   FaceCounts read_faces(const PlyFaceVisitor& visit) override;
   void read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) override;
@@ -69,6 +68,7 @@ class PlyFileSource final : public PlySource {
   void describe();
   void plan_blocks();
   std::unique_ptr<PlyBody> body_at(std::size_t element);
+  std::unique_ptr<PlyBody> body_from(PlyPosition start);
   std::size_t first_face_element() const;
   std::size_t element_of(PlyElementPlan::Role role) const;
   std::size_t texture_count() const;
@@ -128,15 +128,18 @@ void PlyFileSource::plan_blocks() {
     triangle_blocks_.emplace(plan_, plan_.elements[first], *rows, starts_[first]->offset);
 }
 
+std::unique_ptr<PlyBody> PlyFileSource::body_from(PlyPosition start) {
+  return plan_.encoding == PlyEncoding::ascii ? make_text_body(input(), plan_, start)
+                                              : make_binary_body(input(), plan_, start);
+}
+
 /// A body at the start of an element, or at the end of the data: from the last known start before
 /// it.
 std::unique_ptr<PlyBody> PlyFileSource::body_at(std::size_t element) {
   std::size_t known = element;
   while (!starts_[known])
     --known;
-  auto body = plan_.encoding == PlyEncoding::ascii
-                  ? make_text_body(input(), plan_, *starts_[known])
-                  : make_binary_body(input(), plan_, *starts_[known]);
+  auto body = body_from(*starts_[known]);
   for (; known < element; ++known) {
     body->skip(plan_.elements[known]);
     starts_[known + 1] = body->position();
@@ -169,9 +172,9 @@ PlyPlaces& PlyFileSource::places() {
   return *places_;
 }
 
-void PlyFileSource::read_vertices(const VertexVisitor& visit) {
+void PlyFileSource::read_vertices(const VertexVisitor& visit, const BlockRunner& runner) {
   const std::size_t element = plan_.vertex_element;
-  const auto body = body_at(element);
+  auto body = body_at(element);
   if (const auto stride = plan_.elements[element].stride) {
     const std::uint64_t offset = body->position().offset;
     const PlyVertexBlocks blocks(plan_, description_, offset);
@@ -182,24 +185,38 @@ void PlyFileSource::read_vertices(const VertexVisitor& visit) {
     starts_[element + 1] = PlyPosition{offset + *stride * description_.vertex_count, 0};
     return;
   }
-  VertexBlocks blocks(description_, visit);
-  body->read_vertices(plan_.elements[element], blocks);
+  std::uint64_t first = 0;
+  if (plan_.encoding == PlyEncoding::ascii) {
+    const PlyLinesRead lines =
+        read_vertex_lines(input(), plan_, description_, body->position(), visit, runner);
+    first = lines.row;
+    body = body_from(lines.position);
+  }
+  VertexBlocks blocks(description_, visit, first);
+  body->read_vertices(plan_.elements[element], first, blocks);
   starts_[element + 1] = body->position();
   blocks.finish();
 }
 
-FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) {
+FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const TriangleVisitor& visit,
+                                              const BlockRunner& runner) {
   const std::size_t first = first_face_element();
   auto body = body_at(first);
   if (face > 0)
-    body = make_binary_body(input(), plan_, PlyPosition{triangle_blocks_->offset_of(face), 0});
+    body = body_from({triangle_blocks_->offset_of(face), 0});
   const PlaceOf place = [this](std::uint32_t vertex) { return place_of(vertex); };
   TriangleBlocks blocks(visit, &place);
   for (std::size_t i = first; i < plan_.elements.size(); ++i) {
-    if (plan_.elements[i].has_faces()) {
-      body->read_faces(plan_.elements[i], i == first ? face : 0, blocks);
+    const PlyElementPlan& element = plan_.elements[i];
+    if (!element.has_faces()) {
+      body->skip(element);
+    } else if (plan_.encoding == PlyEncoding::ascii) {
+      const PlyLinesRead lines = read_polygon_lines(input(), element, description_.vertex_count,
+                                                    body->position(), blocks, runner);
+      body = body_from(lines.position);
+      body->read_faces(element, lines.row, blocks);
     } else {
-      body->skip(plan_.elements[i]);
+      body->read_faces(element, i == first ? face : 0, blocks);
     }
     starts_[i + 1] = body->position();
   }

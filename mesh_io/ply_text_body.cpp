@@ -1,6 +1,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/ply_body.h"
+#include "mesh_io/ply_words.h"
 #include "mesh_io/text_cursor.h"
 
 #include <algorithm>
@@ -16,19 +17,6 @@ namespace {
 
 using Role = PlyElementPlan::Role;
 
-struct IntegerRange {
-  std::int64_t low;
-  std::int64_t high;
-};
-
-/// Of an integer type.
-IntegerRange range_of(PlyType type) {
-  const auto bits = static_cast<int>(8 * size_of(type));
-  if (is_unsigned(type))
-    return {0, (std::int64_t{1} << bits) - 1};
-  return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
-}
-
 class TextBody final : public PlyBody {
  public:
   TextBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
@@ -38,7 +26,8 @@ class TextBody final : public PlyBody {
 
   PlyPosition position() const override { return {cursor_.offset(), cursor_.line()}; }
   void skip(const PlyElementPlan& plan) override;
-  void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
+  void read_vertices(const PlyElementPlan& plan, std::uint64_t first,
+                     VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
@@ -118,22 +107,17 @@ void TextBody::fail_number(const Row& row, const PlyProperty& property, PlyType 
 
 std::int64_t TextBody::take_integer(const Row& row, const PlyProperty& property, PlyType type) {
   const std::string_view word = take_word(row, property);
-  const auto value = parse_integer(word);
-  const IntegerRange range = range_of(type);
-  if (!value || *value < range.low || *value > range.high)
+  const auto value = integer_of(type, word);
+  if (!value)
     fail_number(row, property, type, word);
   return *value;
 }
 
 double TextBody::take_number(const Row& row, const PlyProperty& property) {
-  const PlyType type = property.type;
-  if (is_integer(type))
-    return static_cast<double>(take_integer(row, property, type));
   const std::string_view word = take_word(row, property);
-  const auto value = type == PlyType::f32 ? std::optional<double>(parse_real<float>(word))
-                                          : parse_real<double>(word);
+  const auto value = number_of(property.type, word);
   if (!value)
-    fail_number(row, property, type, word);
+    fail_number(row, property, property.type, word);
   return *value;
 }
 
@@ -166,8 +150,9 @@ void TextBody::skip(const PlyElementPlan& plan) {
   }
 }
 
-void TextBody::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
-  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+void TextBody::read_vertices(const PlyElementPlan& plan, std::uint64_t first,
+                             VertexBlocks& blocks) {
+  for (std::uint64_t i = first; i < plan.element.count; ++i) {
     const Row row{plan, i};
     begin_row(row);
     for (std::size_t k = 0; k < plan.slots.size(); ++k) {

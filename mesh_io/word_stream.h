@@ -36,6 +36,8 @@ class WordStream {
   void go_on(InputStream& stream, std::uint64_t line);
 
   std::uint64_t line() const { return line_; }
+  /// Of what was read from the stream, the bytes that were not taken.
+  std::size_t bytes_ahead() const { return end_ - begin_; }
   /// Goes on to the next word, over line ends; false at the end.
   bool to_row();
   /// Goes on to the next word of this line; false if there is none.

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "import/input_record.h"
+#include "import/text_blocks.h"
 #include "partition/top_tree.h"
 #include "pipeline/origin.h"
 #include "pipeline/used_bounds.h"
@@ -127,14 +128,17 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
     return zeroed;
   }
   BlockScan scan;
-  source_->read_vertices([&](const mesh_io::VertexBlock& block) {
-    context.cancel.check();
-    scan.look_at(block, layout, ids);
-    take(scan);
-    const bool wide = !block.exact.empty();
-    spooled_positions_.append(wide ? std::as_bytes(block.exact) : std::as_bytes(block.positions));
-    spooled_attributes_.append(std::as_bytes(block.attributes));
-  });
+  source_->read_vertices(
+      [&](const mesh_io::VertexBlock& block) {
+        context.cancel.check();
+        scan.look_at(block, layout, ids);
+        take(scan);
+        const bool wide = !block.exact.empty();
+        spooled_positions_.append(wide ? std::as_bytes(block.exact)
+                                       : std::as_bytes(block.positions));
+        spooled_attributes_.append(std::as_bytes(block.attributes));
+      },
+      importing::parallel_blocks(context.memory().blocks_in_flight, context.cancel));
   return zeroed;
 }
 

@@ -7,6 +7,7 @@
 #include "execution/progress.h"
 #include "hierarchy/published.h"
 #include "import/copy_list.h"
+#include "import/text_blocks.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
 #include "pipeline/colour_range.h"
@@ -221,11 +222,13 @@ mesh_io::FaceCounts SourceMesh::read_triangles_from(std::uint64_t face, std::siz
         if (after)
           after(copied.slot);
       });
-  const mesh_io::FaceCounts counts =
-      source_->read_triangles_from(face, [&](std::span<const Triangle<VertexId>> triangles) {
+  const mesh_io::FaceCounts counts = source_->read_triangles_from(
+      face,
+      [&](std::span<const Triangle<VertexId>> triangles) {
         cancel.check();
         rest.next().triangles.assign(triangles.begin(), triangles.end());
-      });
+      },
+      importing::parallel_blocks(std::max<std::size_t>(in_flight / 2, 1), cancel));
   rest.finish();
   return counts;
 }

@@ -94,7 +94,7 @@ void read_triangle_blocks(MeshSource& source, bool backwards, ReadMesh& mesh) {
   }
   mesh.counts = {faces, mesh.triangles.size(), faces - mesh.triangles.size()};
   const FaceCounts rest = source.read_triangles_from(
-      faces, [&](std::span<const Triangle<VertexId>> block) { append(block, mesh); });
+      faces, [&](std::span<const Triangle<VertexId>> block) { append(block, mesh); }, {});
   mesh.counts.faces += rest.faces;
   mesh.counts.triangles += rest.triangles;
   mesh.counts.degenerate_triangles += rest.degenerate_triangles;
