@@ -36,6 +36,7 @@ struct Invocation {
 void add_build_command(CLI::App& parser, Invocation& invocation);
 void add_inspect_command(CLI::App& parser, Invocation& invocation);
 void add_verify_command(CLI::App& parser, Invocation& invocation);
+void add_compare_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
 void add_preview_command(CLI::App& parser, Invocation& invocation);
 void add_page_command(CLI::App& parser, Invocation& invocation);

@@ -68,11 +68,7 @@ std::filesystem::path temporary_path() {
 
 }  // namespace
 
-void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web) {
-  command
-      .add_option("HIERARCHY", hierarchy,
-                  "A directory, a 3tz archive, or the address of one of them")
-      ->required();
+void add_web_options(CLI::App& command, WebOptions& web) {
   command
       .add_option("--header", web.headers,
                   "Of an address: a line of the requests (\"Authorization: Bearer ...\"), or @FILE "
@@ -81,6 +77,14 @@ void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions
       ->allow_extra_args(false);
   add_size_option(command, "--limit-rate", "Of an address: fetch no more bytes a second",
                   web.bytes_per_second);
+}
+
+void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web) {
+  command
+      .add_option("HIERARCHY", hierarchy,
+                  "A directory, a 3tz archive, or the address of one of them")
+      ->required();
+  add_web_options(command, web);
 }
 
 HierarchyPlace::HierarchyPlace(Environment& environment, const std::string& hierarchy,

@@ -19,7 +19,9 @@ struct WebOptions {
   std::uint64_t bytes_per_second = 0;
 };
 
-/// HIERARCHY, --header and --limit-rate
+/// --header and --limit-rate
+void add_web_options(CLI::App& command, WebOptions& web);
+/// HIERARCHY, and these
 void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web);
 
 /// Throws Error(usage) for a header that is none, Error(io) for a file of some that cannot be read.

@@ -40,6 +40,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier build david.ply                           make the hierarchy david.hier beside the mesh
   meshhier inspect david.hier                        what is in it
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
+  meshhier compare new.hier old.hier --tolerance 0.5 how far two scans are from each other
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
   meshhier progressive david.hier -o david.prog      a base and details, for weak clients
   meshhier page david.hier -o david.html             one file to send, which opens by a double click
@@ -51,6 +52,7 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes:
   0    done
+  1    compare: a vertex is farther than the tolerance
   2    the command line or the config is wrong
   3    the input mesh is broken or not supported
   4    a file could not be read or written
@@ -178,6 +180,7 @@ int run(int argc, char** argv) {
   add_build_command(parser, invocation);
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
+  add_compare_command(parser, invocation);
   add_export_command(parser, invocation);
   add_preview_command(parser, invocation);
   add_page_command(parser, invocation);

@@ -10,15 +10,6 @@
 namespace meshhier::inspection {
 namespace {
 
-/// Where a border triangle's corner is shown.
-struct ShownCorner {
-  std::uint32_t number = 0;
-  std::uint32_t tile = 0;  ///< position in the cut
-  Vec3f place;
-
-  friend bool operator<(const ShownCorner& a, const ShownCorner& b) { return a.number < b.number; }
-};
-
 TileSurfaceFacts facts_of(const TileSurface& tile) {
   TileSurfaceFacts facts;
   facts.triangles = tile.triangles.size();
@@ -29,6 +20,14 @@ TileSurfaceFacts facts_of(const TileSurface& tile) {
     for (Vec3f corner : triangle)
       facts.bounds.add(corner);
   }
+  return facts;
+}
+
+TileSurfaceFacts facts_of(const TileRecord& record) {
+  TileSurfaceFacts facts;
+  facts.triangles = std::uint64_t{record.interior_count} + record.drawn_border_count;
+  if (std::uint64_t{record.interior_count} + record.border_count > 0)
+    facts.bounds = record.bounds;
   return facts;
 }
 
@@ -45,8 +44,7 @@ std::size_t tiles_in_flight() {
   return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
 }
 
-CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
-                       execution::Progress& progress, const execution::CancelToken& cancel)
+CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes)
     : reader_(reader),
       numbered_(number_vertices(reader, std::move(cut))),
       neighbours_(
@@ -57,13 +55,23 @@ CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uin
             return positions;
           },
           [](const Positions& positions) { return positions.size() * sizeof(Vec3f); }) {
-  reader_.will_read(numbered_.cut.nodes());
   facts_.reserve(numbered_.cut.size());
+  for (const NodeId node : numbered_.cut.nodes()) {
+    facts_.push_back(facts_of(reader_.record(node)));
+    add(total_, facts_.back());
+  }
+}
+
+CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
+                       execution::Progress& progress, const execution::CancelToken& cancel)
+    : CutSurface(reader, std::move(cut), cache_bytes) {
+  reader_.will_read(numbered_.cut.nodes());
+  total_ = {};
   execution::ordered_for(
       numbered_.cut.size(), tiles_in_flight(), cancel,
       [this](std::size_t position) { return facts_of(load(position)); },
-      [&](std::size_t, const TileSurfaceFacts& facts) {
-        facts_.push_back(facts);
+      [&](std::size_t position, const TileSurfaceFacts& facts) {
+        facts_[position] = facts;
         add(total_, facts);
         progress.advance(1);
       });
@@ -75,13 +83,20 @@ Vec3f CutSurface::shown_position(const ShownGhost& ghost) const {
   return (*positions)[ghost.number - numbered_.base(ghost.position)];
 }
 
-TileSurface CutSurface::load(std::size_t position) const {
+PlacedTile CutSurface::load_placed(std::size_t position) const {
   const PublishedTile tile = reader_.read_tile(numbered_.cut[position]);
   const TileMesh& mesh = tile.mesh;
-  const DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
-  const std::uint32_t base = numbered_.base(position);
+  DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
+  PlacedTile placed;
+  placed.base = numbered_.base(position);
+  placed.own_count = mesh.own_count;
+  placed.interior_count = mesh.interior.size();
 
-  std::vector<ShownCorner> foreign;
+  struct Ghost {
+    PlacedTile::Foreign foreign;
+    Vec3f place;
+  };
+  std::vector<Ghost> ghosts;
   for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
     const auto ghost = find_ghost(reader_.tree(), numbered_, tile, i);
     if (!ghost)
@@ -89,26 +104,48 @@ TileSurface CutSurface::load(std::size_t position) const {
     const Vec3f place = ghost->level == tile.node.level
                             ? mesh.vertices.positions[mesh.own_count + i]
                             : shown_position(*ghost);
-    foreign.push_back({ghost->number, static_cast<std::uint32_t>(ghost->position), place});
+    ghosts.push_back({{ghost->number, static_cast<std::uint32_t>(ghost->position)}, place});
   }
-  std::sort(foreign.begin(), foreign.end());
+  const auto number_of = [](const Ghost& ghost) { return ghost.foreign.number; };
+  std::ranges::sort(ghosts, {}, number_of);
+  // Several ghosts may be shown at one place.
+  const auto repeats = std::ranges::unique(ghosts, {}, number_of);
+  ghosts.erase(repeats.begin(), repeats.end());
 
-  const auto corner_at = [&](std::uint32_t number) {
-    if (number >= base && number - base < mesh.own_count)
-      return ShownCorner{number, static_cast<std::uint32_t>(position),
-                         mesh.vertices.positions[number - base]};
-    return *std::lower_bound(foreign.begin(), foreign.end(), ShownCorner{number, 0, {}});
+  placed.places.assign(mesh.vertices.positions.begin(),
+                       mesh.vertices.positions.begin() + mesh.own_count);
+  for (const Ghost& ghost : ghosts) {
+    placed.places.push_back(ghost.place);
+    placed.foreign.push_back(ghost.foreign);
+  }
+  const auto place_of = [&](std::uint32_t number) {
+    if (number >= placed.base && number - placed.base < placed.own_count)
+      return number - placed.base;
+    const auto found = std::ranges::lower_bound(ghosts, number, {}, number_of);
+    return placed.own_count + static_cast<std::uint32_t>(found - ghosts.begin());
   };
+  placed.triangles = std::move(drawn.triangles);
+  for (CutTriangle& triangle : placed.triangles) {
+    for (std::uint32_t& corner : triangle)
+      corner = place_of(corner);
+  }
+  return placed;
+}
 
+TileSurface CutSurface::load(std::size_t position) const {
+  const PlacedTile placed = load_placed(position);
+  const auto tile_of = [&](std::uint32_t place) {
+    return place < placed.own_count ? static_cast<std::uint32_t>(position)
+                                    : placed.foreign[place - placed.own_count].tile;
+  };
   TileSurface surface;
-  surface.interior_count = mesh.interior.size();
-  surface.triangles.reserve(drawn.triangles.size());
-  surface.touched.reserve(drawn.triangles.size() - mesh.interior.size());
-  for (const CutTriangle& t : drawn.triangles) {
-    const std::array<ShownCorner, 3> corners{corner_at(t[0]), corner_at(t[1]), corner_at(t[2])};
-    surface.triangles.push_back({corners[0].place, corners[1].place, corners[2].place});
+  surface.interior_count = placed.interior_count;
+  surface.triangles.reserve(placed.triangles.size());
+  surface.touched.reserve(placed.triangles.size() - placed.interior_count);
+  for (const Triangle<std::uint32_t>& t : placed.triangles) {
+    surface.triangles.push_back({placed.places[t[0]], placed.places[t[1]], placed.places[t[2]]});
     if (surface.triangles.size() > surface.interior_count)
-      surface.touched.push_back({corners[0].tile, corners[1].tile, corners[2].tile});
+      surface.touched.push_back({tile_of(t[0]), tile_of(t[1]), tile_of(t[2])});
   }
   return surface;
 }

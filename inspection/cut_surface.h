@@ -26,6 +26,26 @@ struct TileSurface {
   std::vector<Triangle<std::uint32_t>> touched;
 };
 
+/// The same by places: the tile's own ones in their order, then those of other tiles.
+struct PlacedTile {
+  /// A place of another tile.
+  struct Foreign {
+    std::uint32_t number = 0;  ///< in the cut
+    std::uint32_t tile = 0;    ///< position in the cut
+  };
+
+  std::uint32_t base = 0;  ///< number in the cut of the first place
+  std::uint32_t own_count = 0;
+  std::vector<Vec3f> places;
+  std::vector<Foreign> foreign;                    ///< of places from own_count on, ascending
+  std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
+  std::size_t interior_count = 0;
+
+  std::uint32_t number(std::uint32_t place) const {
+    return place < own_count ? base + place : foreign[place - own_count].number;
+  }
+};
+
 /// What is kept of every tile.
 struct TileSurfaceFacts {
   std::uint64_t triangles = 0;
@@ -43,7 +63,12 @@ class CutSurface {
   CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
              execution::Progress& progress, const execution::CancelToken& cancel);
 
+  /// Reads no tile: facts are what the index says. Of a cut of several levels boxes may be too
+  /// small where a ghost is shown coarser; areas and flat triangles are not known.
+  CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes);
+
   const Cut& cut() const { return numbered_.cut; }
+  std::uint64_t place_count() const { return numbered_.vertex_count(); }
   std::size_t size() const { return facts_.size(); }
   const TileSurfaceFacts& facts(std::size_t position) const { return facts_[position]; }
   /// All tiles together.
@@ -51,6 +76,7 @@ class CutSurface {
 
   /// Reads a tile, and of its neighbours those that are shown coarser.
   TileSurface load(std::size_t position) const;
+  PlacedTile load_placed(std::size_t position) const;
 
  private:
   using Positions = std::vector<Vec3f>;

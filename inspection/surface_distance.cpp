@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace meshhier::inspection {
 namespace {
-
-/// Points that share a list of candidate tiles, and a chain of hints. Results must not depend on
-/// threads or budget, so neither may this.
-constexpr std::size_t kBlockPoints = 256;
-/// Tiles searched at the same time: their trees are held beside the cache's. With 32,768 vertices a
-/// tile, 60 MiB. Fixed, as what is found in one batch prunes the next.
-constexpr std::size_t kBatchTiles = 8;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -43,13 +37,13 @@ double squared_distance_to_middle(Vec3d point, const Bounds& bounds) {
 }
 
 std::size_t block_count(std::size_t points) {
-  return (points + kBlockPoints - 1) / kBlockPoints;
+  return (points + kSearchedPoints - 1) / kSearchedPoints;
 }
 
 template <class Element>
 std::span<Element> block_of(std::span<Element> all, std::size_t block) {
-  const std::size_t first = block * kBlockPoints;
-  return all.subspan(first, std::min(kBlockPoints, all.size() - first));
+  const std::size_t first = block * kSearchedPoints;
+  return all.subspan(first, std::min(kSearchedPoints, all.size() - first));
 }
 
 }  // namespace
@@ -58,6 +52,17 @@ double squared_distance(Vec3d p, const Bounds& b) {
   return square(std::max({b.min.x - p.x, 0.0, p.x - b.max.x})) +
          square(std::max({b.min.y - p.y, 0.0, p.y - b.max.y})) +
          square(std::max({b.min.z - p.z, 0.0, p.z - b.max.z}));
+}
+
+std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles) {
+  std::vector<std::size_t> ends(tiles + 1);
+  for (const TileQuery& query : queries)
+    ++ends[query.tile + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<TileQuery> sorted(queries.size());
+  for (const TileQuery& query : queries)
+    sorted[ends[query.tile]++] = query;
+  return sorted;
 }
 
 std::vector<std::shared_ptr<const TriangleSearch>> TreeCache::get(
@@ -83,6 +88,7 @@ std::vector<std::shared_ptr<const TriangleSearch>> TreeCache::get(
 }
 
 void TreeCache::insert(std::uint32_t position, std::shared_ptr<const TriangleSearch> tree) {
+  was_read_[position] = true;
   used_bytes_ += tree->memory_bytes();
   entries_.push_front({position, std::move(tree)});
   places_[position] = entries_.begin();
@@ -117,38 +123,38 @@ std::vector<SurfaceDistance::Candidate> SurfaceDistance::candidates(
   return found;
 }
 
-/// Takes the queries of the next kBatchTiles tiles away from the front of `queries`. Returns those
-/// that are still open: distances found since they were asked may answer them without a tree.
+/// Takes the queries of the next kSearchedTiles tiles away from the front of `queries`. Returns
+/// those that are still open: distances found since they were asked may answer them without a tree.
 std::vector<SurfaceDistance::Query> SurfaceDistance::take_batch(
-    std::span<const Vec3d> points, std::span<const double> squared,
+    std::span<const Vec3d> points, std::span<const NearestTriangle> found,
     std::span<const Query>& queries) const {
   std::vector<Query> batch;
   std::size_t tiles = 0, taken = 0;
   for (; taken < queries.size(); ++taken) {
     const Query& query = queries[taken];
     if (taken == 0 || query.tile != queries[taken - 1].tile) {
-      if (++tiles > kBatchTiles)
+      if (++tiles > kSearchedTiles)
         break;
     }
     if (squared_distance(points[query.point], surface_.facts(query.tile).bounds) <
-        squared[query.point])
+        found[query.point].squared)
       batch.push_back(query);
   }
   queries = queries.subspan(taken);
   return batch;
 }
 
-/// The squared distances that the queries of a batch find. None influences another.
-std::vector<double> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
-                                                  std::span<const double> squared,
-                                                  std::span<const Query> batch) {
+/// What the queries of a batch find. None influences another.
+std::vector<NearestTriangle> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
+                                                           std::span<const NearestTriangle> found,
+                                                           std::span<const Query> batch) {
   std::vector<std::uint32_t> tiles;
   for (const Query& query : batch) {
     if (tiles.empty() || tiles.back() != query.tile)
       tiles.push_back(query.tile);
   }
   const auto trees = trees_.get(tiles);
-  std::vector<double> answers(batch.size());
+  std::vector<NearestTriangle> answers(batch.size());
   execution::parallel_for(block_count(batch.size()), [&](std::size_t block) {
     const auto queries = block_of(batch, block);
     const auto results = block_of(std::span(answers), block);
@@ -161,22 +167,27 @@ std::vector<double> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
                                         tiles.begin());
         hint = 0;
       }
-      results[i] = trees[tree]->nearest(points[point], squared[point], hint);
+      const double squared = trees[tree]->nearest(points[point], found[point].squared, hint);
+      results[i] = {squared, tile, hint};
     }
   });
   return answers;
 }
 
-/// Lowers squared[query.point] to what query.tile has.
-void SurfaceDistance::answer(std::span<const Vec3d> points, std::vector<Query> queries,
-                             std::vector<double>& squared, const execution::CancelToken& cancel) {
-  std::sort(queries.begin(), queries.end());
-  for (std::span<const Query> waiting(queries); !waiting.empty();) {
+/// Lowers found[query.point] to what query.tile has.
+void SurfaceDistance::answer(std::span<const Vec3d> points, std::span<const Query> queries,
+                             std::vector<NearestTriangle>& found,
+                             const execution::CancelToken& cancel) {
+  const std::vector<Query> sorted = by_tile(queries, surface_.size());
+  for (std::span<const Query> waiting(sorted); !waiting.empty();) {
     cancel.check();
-    const std::vector<Query> batch = take_batch(points, squared, waiting);
-    const std::vector<double> answers = answer_batch(points, squared, batch);
-    for (std::size_t i = 0; i < batch.size(); ++i)
-      squared[batch[i].point] = std::min(squared[batch[i].point], answers[i]);
+    const std::vector<Query> batch = take_batch(points, found, waiting);
+    const std::vector<NearestTriangle> answers = answer_batch(points, found, batch);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      NearestTriangle& nearest = found[batch[i].point];
+      if (answers[i].squared < nearest.squared)
+        nearest = answers[i];
+    }
   }
 }
 
@@ -202,36 +213,43 @@ std::uint32_t SurfaceDistance::likely_tile(Vec3d point,
 
 /// First each point is looked up in the tile that is nearly always the right one, then in all whose
 /// boxes are nearer than what was found there.
-std::vector<double> SurfaceDistance::distances(std::span<const Vec3d> points,
-                                               const execution::CancelToken& cancel) {
-  std::vector<double> squared(points.size(), kFar);
+std::vector<NearestTriangle> SurfaceDistance::nearest(std::span<const Vec3d> points,
+                                                      const execution::CancelToken& cancel) {
+  std::vector<NearestTriangle> found(points.size());
   if (surface_.total().triangles == 0)
-    return squared;
+    return found;
   std::vector<std::vector<Candidate>> near(block_count(points.size()));
   std::vector<Query> first(points.size());
   execution::parallel_for(near.size(), [&](std::size_t block) {
     near[block] = candidates(block_of(points, block));
-    const std::size_t begin = block * kBlockPoints;
-    const std::size_t end = std::min(begin + kBlockPoints, points.size());
+    const std::size_t begin = block * kSearchedPoints;
+    const std::size_t end = std::min(begin + kSearchedPoints, points.size());
     for (std::size_t i = begin; i < end; ++i)
       first[i] = {likely_tile(points[i], near[block]), static_cast<std::uint32_t>(i)};
   });
-  answer(points, first, squared, cancel);
+  answer(points, first, found, cancel);
 
   std::vector<Query> more;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const Candidate& candidate : near[i / kBlockPoints]) {
-      if (candidate.squared >= squared[i])
+    for (const Candidate& candidate : near[i / kSearchedPoints]) {
+      if (candidate.squared >= found[i].squared)
         break;
       if (candidate.tile != first[i].tile &&
-          squared_distance(points[i], surface_.facts(candidate.tile).bounds) < squared[i])
+          squared_distance(points[i], surface_.facts(candidate.tile).bounds) < found[i].squared)
         more.push_back({candidate.tile, static_cast<std::uint32_t>(i)});
     }
   }
-  answer(points, std::move(more), squared, cancel);
-  std::transform(squared.begin(), squared.end(), squared.begin(),
-                 [](double value) { return std::sqrt(value); });
-  return squared;
+  answer(points, more, found, cancel);
+  return found;
+}
+
+std::vector<double> SurfaceDistance::distances(std::span<const Vec3d> points,
+                                               const execution::CancelToken& cancel) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const NearestTriangle& found : nearest(points, cancel))
+    distances.push_back(std::sqrt(found.squared));
+  return distances;
 }
 
 }  // namespace meshhier::inspection

@@ -7,7 +7,9 @@
 #include "inspection/cut_surface.h"
 #include "inspection/triangle_search.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
@@ -16,6 +18,13 @@
 
 namespace meshhier::inspection {
 
+/// Points that share a list of candidate tiles, and a chain of hints. Results must not depend on
+/// threads or budget, so neither may this.
+inline constexpr std::size_t kSearchedPoints = 256;
+/// Tiles searched at the same time: their trees are held beside the cache's. With 32,768 vertices a
+/// tile, 60 MiB. Fixed, as what is found in one batch prunes the next.
+inline constexpr std::size_t kSearchedTiles = 8;
+
 /// Square of the distance of a point to a box; 0 inside. `bounds` must not be empty.
 double squared_distance(Vec3d point, const Bounds& bounds);
 
@@ -23,11 +32,15 @@ double squared_distance(Vec3d point, const Bounds& bounds);
 class TreeCache {
  public:
   TreeCache(const CutSurface& surface, std::uint64_t limit_bytes)
-      : surface_(surface), limit_bytes_(limit_bytes) {}
+      : surface_(surface), limit_bytes_(limit_bytes), was_read_(surface.size()) {}
 
   /// The trees of some tiles, built in parallel as far as they are not there. Positions without
   /// repeats.
   std::vector<std::shared_ptr<const TriangleSearch>> get(std::span<const std::uint32_t> positions);
+  /// How many different ones were asked for.
+  std::uint64_t tiles_read() const {
+    return static_cast<std::uint64_t>(std::ranges::count(was_read_, true));
+  }
 
  private:
   struct Entry {
@@ -40,9 +53,26 @@ class TreeCache {
   const CutSurface& surface_;
   std::uint64_t limit_bytes_;
   std::uint64_t used_bytes_ = 0;
+  std::vector<bool> was_read_;
   std::list<Entry> entries_;  ///< most recently used first
   std::map<std::uint32_t, std::list<Entry>::iterator> places_;
 };
+
+/// Where a surface is nearest to a point.
+struct NearestTriangle {
+  double squared = std::numeric_limits<double>::infinity();  ///< distance; if there is no triangle
+  std::uint32_t tile = 0;                                    ///< position in the cut
+  std::uint32_t triangle = 0;                                ///< of TileSurface::triangles
+};
+
+/// A point to be looked up in a tile.
+struct TileQuery {
+  std::uint32_t tile = 0;
+  std::uint32_t point = 0;
+};
+
+/// Queries in the order of their tiles; those of a tile as they come. O(n + tiles).
+std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles);
 
 class SurfaceDistance {
  public:
@@ -57,14 +87,14 @@ class SurfaceDistance {
   /// alone, to the bit. Throws Error(io | corrupt) if a tile cannot be read, Error(interrupted).
   std::vector<double> distances(std::span<const Vec3d> points,
                                 const execution::CancelToken& cancel);
+  /// Likewise; of several triangles that are equally near one.
+  std::vector<NearestTriangle> nearest(std::span<const Vec3d> points,
+                                       const execution::CancelToken& cancel);
+
+  TreeCache& trees() { return trees_; }
 
  private:
-  /// A point to be looked up in a tile.
-  struct Query {
-    std::uint32_t tile = 0;
-    std::uint32_t point = 0;
-    friend auto operator<=>(const Query&, const Query&) = default;
-  };
+  using Query = TileQuery;
 
   /// The tiles that may hold the nearest triangle of one of a block of points, nearest box first.
   struct Candidate {
@@ -75,12 +105,14 @@ class SurfaceDistance {
 
   std::vector<Candidate> candidates(std::span<const Vec3d> block) const;
   std::uint32_t likely_tile(Vec3d point, std::span<const Candidate> candidates) const;
-  std::vector<Query> take_batch(std::span<const Vec3d> points, std::span<const double> squared,
+  std::vector<Query> take_batch(std::span<const Vec3d> points,
+                                std::span<const NearestTriangle> found,
                                 std::span<const Query>& queries) const;
-  std::vector<double> answer_batch(std::span<const Vec3d> points, std::span<const double> squared,
-                                   std::span<const Query> batch);
-  void answer(std::span<const Vec3d> points, std::vector<Query> queries,
-              std::vector<double>& squared, const execution::CancelToken& cancel);
+  std::vector<NearestTriangle> answer_batch(std::span<const Vec3d> points,
+                                            std::span<const NearestTriangle> found,
+                                            std::span<const Query> batch);
+  void answer(std::span<const Vec3d> points, std::span<const Query> queries,
+              std::vector<NearestTriangle>& found, const execution::CancelToken& cancel);
 
   const CutSurface& surface_;
   TreeCache trees_;

@@ -80,6 +80,25 @@ class Descent {
   const SurfaceTriangle* best_;
 };
 
+/// Finds the triangles with a corner at a point.
+class CornerLookup {
+ public:
+  explicit CornerLookup(std::vector<const SurfaceTriangle*>& found) : found_(found) {}
+
+  bool go_further() const { return true; }
+  void intersection(Vec3f corner, const Primitive& primitive) {
+    if (std::ranges::count(*primitive.id(), corner) > 0)
+      found_.push_back(primitive.id());
+  }
+  template <class Node>
+  bool do_intersect(Vec3f corner, const Node& node) const {
+    return squared_distance(to_double(corner), node.bbox()) == 0;
+  }
+
+ private:
+  std::vector<const SurfaceTriangle*>& found_;
+};
+
 }  // namespace
 
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
@@ -124,6 +143,22 @@ double TriangleSearch::nearest(Vec3d point, double limit, std::uint32_t& hint) c
   if (descent.best() != nullptr)
     hint = static_cast<std::uint32_t>(descent.best() - triangles.data());
   return descent.squared();
+}
+
+const SurfaceTriangle& TriangleSearch::operator[](std::uint32_t triangle) const {
+  return tree_->triangles[triangle];
+}
+
+std::vector<SurfaceTriangle> TriangleSearch::around(Vec3f corner) const {
+  std::vector<const SurfaceTriangle*> found;
+  CornerLookup lookup(found);
+  if (!tree_->triangles.empty())
+    tree_->boxes.traversal(corner, lookup);
+  std::ranges::sort(found);
+  std::vector<SurfaceTriangle> triangles;
+  for (const SurfaceTriangle* triangle : found)
+    triangles.push_back(*triangle);
+  return triangles;
 }
 
 }  // namespace meshhier::inspection

@@ -40,6 +40,10 @@ class TriangleSearch {
   /// one if it is within the limit. The hint decides the time alone: O(log n) with a good one.
   double nearest(Vec3d point, double limit, std::uint32_t& hint) const;
 
+  const SurfaceTriangle& operator[](std::uint32_t triangle) const;
+  /// All triangles with a corner there, in their order. O(log n) and what it returns.
+  std::vector<SurfaceTriangle> around(Vec3f corner) const;
+
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;

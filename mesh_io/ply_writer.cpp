@@ -68,6 +68,8 @@ std::string header_text(const PlyContent& content, std::string_view index_type) 
     text += fmt::format("property {} {}\n", content.double_coordinates ? "double" : "float", axis);
   }
   text += attribute_lines(content.attributes);
+  for (const std::string& name : content.values)
+    text += fmt::format("property float {}\n", name);
   text += fmt::format("element face {}\nproperty list uchar {} vertex_indices\n",
                       content.triangle_count, index_type);
   if (content.edge_count > 0) {
@@ -132,11 +134,16 @@ struct PlyWriter::State {
         put(value);
       }
     }
+    for (const float value : values.subspan(static_cast<std::size_t>(layout.channels()))) {
+      begin_row();
+      put(value);
+    }
   }
 
   template <class Scalar>
   void put_vertices(std::span<const Vec3<Scalar>> positions, std::span<const float> attributes) {
-    const auto channels = static_cast<std::size_t>(content.attributes.channels());
+    const auto channels =
+        static_cast<std::size_t>(content.attributes.channels()) + content.values.size();
     assert(attributes.size() == positions.size() * channels);
     assert(triangles == 0 && edges == 0);
     for (std::size_t i = 0; i < positions.size(); ++i) {

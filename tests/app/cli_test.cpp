@@ -188,8 +188,8 @@ TEST_F(CommandLine, HelpTeaches) {
 }
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
-  for (const char* command :
-       {"build", "inspect", "verify", "export", "preview", "progressive", "reconstruct", "serve"}) {
+  for (const char* command : {"build", "inspect", "verify", "compare", "export", "preview",
+                              "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out,
@@ -254,6 +254,10 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"inspect", "x", "--node", "3/4294967296"}, "LEVEL/INDEX"},
       {{"inspect", "x", "--node", "3/5", "--level", "3"}, "excludes"},
       {{"verify", "x", "--cuts", "many"}, "--cuts"},
+      {{"compare", "x"}, "TO"},
+      {{"compare", "x", "y", "--tolerance", "0.5 miles"}, "us_ft"},
+      {{"compare", "x", "y", "--tolerance", "-1"}, "--tolerance"},
+      {{"compare", "x", "y", "--level", "1", "--error", "2"}, "At most"},
       {{"verify", "x", "--cuts", "4294967296"}, "--cuts"},
       {{"verify", "x", "--seed", "1.5"}, "--seed"},
       {{"verify", "x", "--memory-budget", "lots"}, "512MiB"},
@@ -970,6 +974,28 @@ TEST_F(CommandLine, VerifyPassesWhatBuildMade) {
   EXPECT_EQ(report.at("ok"), true);
   EXPECT_THAT(report.at("problems"), IsEmpty());
   EXPECT_THAT(report.at("checks"), Not(IsEmpty()));
+}
+
+TEST_F(CommandLine, CompareTellsAndItsExitCodeKeepsTheTolerance) {
+  write_mesh("a.ply");
+  ASSERT_EQ(run({"build", write_config()}).code, 0);
+  const Outcome same = run({"compare", hierarchy(), hierarchy(), "--tolerance", "0"});
+  EXPECT_EQ(same.code, 0) << same.messages;
+  EXPECT_THAT(same.out, AllOf(HasSubstr("within the tolerance of 0"), HasSubstr("percentiles")));
+  write_text(work() / "up.txt", "1 0 0 0  0 1 0 0  0 0 1 0.25  0 0 0 1");
+  const std::string ply = work() / "difference.ply";
+  const Outcome moved = run({"compare", hierarchy(), hierarchy(), "--tolerance", "1e-3", "--json",
+                             "--transform", work() / "up.txt", "-o", ply});
+  EXPECT_EQ(moved.code, 1) << moved.messages;
+  const auto report = nlohmann::json::parse(moved.out);
+  EXPECT_GT(report.at("farthest"), 1e-3);
+  EXPECT_FALSE(report.at("within"));
+  EXPECT_THAT(text_of(ply), HasSubstr("property float distance"));
+  EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "-o", ply}).code, 5) << "it is there";
+  EXPECT_EQ(run({"compare", hierarchy(), work() / "a.ply"}).code, 4) << "no hierarchy";
+  EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "--tolerance", "1mm"}).code, kUsage)
+      << "the hierarchy does not know its unit";
+  EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "--transform", ply}).code, kUsage);
 }
 
 TEST_F(CommandLine, VerifyFindsAFlippedBit) {

@@ -1,0 +1,141 @@
+#include "app/command.h"
+#include "app/hierarchy_place.h"
+#include "app/number_text.h"
+#include "app/options.h"
+#include "hierarchy/unit.h"
+#include "inspection/compare.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace meshhier::app {
+namespace {
+
+/// A vertex is farther than the tolerance.
+constexpr int kExitFarther = 1;
+constexpr std::uint64_t kMostTransformBytes = 65536;
+
+struct CompareArguments {
+  std::string from, to;
+  WebOptions web;
+  std::string output, transform;
+  bool has_no_sign = false, json = false;
+  inspection::CompareOptions options;
+};
+
+/// "0.5" or "0.5mm".
+void store_tolerance(const std::string& text, inspection::CompareOptions& options) {
+  const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
+  const auto number = parse_number<double>(std::string_view(text).substr(0, end));
+  const std::string_view unit = std::string_view(text).substr(end);
+  const auto known = std::ranges::find(kUnitNames, unit);
+  if (!number || !(*number >= 0) || (!unit.empty() && known == kUnitNames.end())) {
+    throw CLI::ValidationError(
+        "--tolerance",
+        fmt::format("expected a length of 0 or more, perhaps with mm, cm, m, km, in, ft or us_ft, "
+                    "found \"{}\"",
+                    text));
+  }
+  options.tolerance = *number;
+  if (!unit.empty())
+    options.tolerance_unit = static_cast<Unit>(known - kUnitNames.begin());
+}
+
+int run_compare(CompareArguments arguments, execution::ProgressMode mode,
+                Environment& environment) {
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  inspection::CompareOptions& options = arguments.options;
+  options.output = arguments.output;
+  options.is_signed = !arguments.has_no_sign;
+  if (!arguments.transform.empty()) {
+    const auto bytes =
+        storage::read_file(environment.files, arguments.transform, kMostTransformBytes);
+    options.transform = inspection::parse_transform(
+        {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, arguments.transform);
+  }
+  require_no_terminal(environment, arguments.output);
+  const HierarchyPlace from(environment, arguments.from, arguments.web);
+  const HierarchyPlace to(environment, arguments.to, arguments.web);
+  const inspection::SurfaceComparison comparison =
+      inspection::compare_surfaces({from.files(), from.path()}, {to.files(), to.path()},
+                                   environment.files, options, *progress, environment.cancel);
+  progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
+  account_stream(environment, arguments.output)
+      << (arguments.json ? pretty_json(comparison_json(comparison)) : comparison_text(comparison));
+  environment.messages << from.account() << to.account();
+  return comparison.is_within() ? 0 : kExitFarther;
+}
+
+constexpr const char* kCompareFooter =
+    R"(For each vertex of FROM the exact distance to the surface of TO, negative inside of it: what moved
+between two scans, how well a model fits its scan. Nothing is thinned out, and neither must fit into
+memory. Percentiles and means are by area. Nothing aligns the two but --transform, which is made in
+a program for that. Exit code 1 if a vertex is farther than the tolerance.
+
+The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it.
+
+Examples:
+  meshhier compare monday.hier sunday.hier
+  meshhier compare model.hier scan.hier --tolerance 0.5mm --json
+  meshhier compare monday.hier sunday.hier -o moved.ply
+  meshhier compare monday.3tz https://example.org/sunday.3tz --level 3
+  meshhier compare a.hier b.hier --transform a_to_b.txt --unsigned
+)";
+
+}  // namespace
+
+void add_compare_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command =
+      parser.add_subcommand("compare", "Tell how far one surface is from another one");
+  command->add_option("FROM", arguments->from, "A hierarchy: a directory, an archive, an address")
+      ->required();
+  command->add_option("TO", arguments->to, "The one that distances are measured to")->required();
+  add_web_options(*command, arguments->web);
+
+  CLI::App* what =
+      command->add_option_group("What", "At most one of these; else the original surfaces");
+  add_integer_option(*what, {"--level", "Of both this level; the root is 0", 0, kDeepestLevel},
+                     [arguments](std::uint64_t level) {
+                       arguments->options.selection = static_cast<Level>(level);
+                     });
+  add_error_option(*what, [arguments](double error) {
+    arguments->options.selection = inspection::LargestError{error};
+  });
+  what->require_option(0, 1);
+  command
+      ->add_option_function<std::string>(
+          "--tolerance",
+          [arguments](const std::string& text) { store_tolerance(text, arguments->options); },
+          "No vertex may be farther: a length in the units of TO, or with a unit: 0.5mm")
+      ->type_name("LENGTH");
+  command->add_flag("--unsigned", arguments->has_no_sign,
+                    "Do not look on which side of TO the vertices are");
+  command
+      ->add_option("--transform", arguments->transform,
+                   "Moves FROM first: 16 numbers, a 4 x 4 matrix, rows first")
+      ->type_name("FILE")
+      ->check(name_fault);
+  command->add_option("-o,--output", arguments->output, "A PLY of FROM with the distances")
+      ->type_name("FILE")
+      ->check(name_fault);
+  command->add_flag("--force", arguments->options.replace, "Replace a file that is there");
+  command->add_flag("--json", arguments->json, "For scripts");
+  add_memory_budget_option(*command, arguments->options.memory_budget);
+  add_progress_option(*command, invocation.progress);
+  command->footer(kCompareFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_compare(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app
