@@ -1,7 +1,9 @@
 #include "app/command.h"
+#include "app/compared_hierarchy.h"
 #include "app/hierarchy_place.h"
 #include "app/number_text.h"
 #include "app/options.h"
+#include "hierarchy/error.h"
 #include "hierarchy/unit.h"
 #include "inspection/compare.h"
 
@@ -48,28 +50,37 @@ void store_tolerance(const std::string& text, inspection::CompareOptions& option
     options.tolerance_unit = static_cast<Unit>(known - kUnitNames.begin());
 }
 
+inspection::PlaceTransform read_transform(storage::FileSystem& files, const std::string& path) {
+  if (const std::uint64_t size = files.open(path)->size(); size > kMostTransformBytes)
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: expected 16 numbers, found {} bytes", path, size));
+  const auto bytes = storage::read_file(files, path, kMostTransformBytes);
+  return inspection::parse_transform({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                     path);
+}
+
 int run_compare(CompareArguments arguments, execution::ProgressMode mode,
                 Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   inspection::CompareOptions& options = arguments.options;
   options.output = arguments.output;
   options.is_signed = !arguments.has_no_sign;
-  if (!arguments.transform.empty()) {
-    const auto bytes =
-        storage::read_file(environment.files, arguments.transform, kMostTransformBytes);
-    options.transform = inspection::parse_transform(
-        {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, arguments.transform);
-  }
+  if (!arguments.transform.empty())
+    options.transform = read_transform(environment.files, arguments.transform);
   require_no_terminal(environment, arguments.output);
-  const HierarchyPlace from(environment, arguments.from, arguments.web);
-  const HierarchyPlace to(environment, arguments.to, arguments.web);
-  const inspection::SurfaceComparison comparison =
-      inspection::compare_surfaces({from.files(), from.path()}, {to.files(), to.path()},
-                                   environment.files, options, *progress, environment.cancel);
+  const auto open = [&](const std::string& name) {
+    return std::make_unique<ComparedHierarchy>(environment, name, arguments.web,
+                                               options.memory_budget, *progress);
+  };
+  const auto from = open(arguments.from), to = open(arguments.to);
+  inspection::SurfaceComparison comparison = inspection::compare_surfaces(
+      from->place(), to->place(), environment.files, options, *progress, environment.cancel);
+  comparison.from.name = from->name();
+  comparison.to.name = to->name();
   progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
   account_stream(environment, arguments.output)
       << (arguments.json ? pretty_json(comparison_json(comparison)) : comparison_text(comparison));
-  environment.messages << from.account() << to.account();
+  environment.messages << from->account() << to->account();
   return comparison.is_within() ? 0 : kExitFarther;
 }
 
@@ -77,12 +88,14 @@ constexpr const char* kCompareFooter =
     R"(For each vertex of FROM the exact distance to the surface of TO, negative inside of it: what moved
 between two scans, how well a model fits its scan. Nothing is thinned out, and neither must fit into
 memory. Percentiles and means are by area. Nothing aligns the two but --transform, which is made in
-a program for that. Exit code 1 if a vertex is farther than the tolerance.
+a program for that. Exit code 1 if a vertex is farther than the tolerance. Of a mesh a hierarchy is
+built in TMPDIR, for as long as it takes.
 
 The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it.
 
 Examples:
   meshhier compare monday.hier sunday.hier
+  meshhier compare model.ply scan.ply --tolerance 0.5
   meshhier compare model.hier scan.hier --tolerance 0.5mm --json
   meshhier compare monday.hier sunday.hier -o moved.ply
   meshhier compare monday.3tz https://example.org/sunday.3tz --level 3
@@ -95,7 +108,9 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command =
       parser.add_subcommand("compare", "Tell how far one surface is from another one");
-  command->add_option("FROM", arguments->from, "A hierarchy: a directory, an archive, an address")
+  command
+      ->add_option("FROM", arguments->from,
+                   "A hierarchy: a directory, an archive, an address; or a mesh")
       ->required();
   command->add_option("TO", arguments->to, "The one that distances are measured to")->required();
   add_web_options(*command, arguments->web);

@@ -8,6 +8,7 @@
 #include "inspection/surface_samples.h"
 #include "inspection/surface_sides.h"
 #include "mesh_io/ply_writer.h"
+#include "storage/format/archive.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/work_directory.h"
@@ -401,6 +402,12 @@ PlaceTransform parse_transform(std::string_view text, const std::string& name) {
   if (transform[12] != 0 || transform[13] != 0 || transform[14] != 0 || transform[15] != 1)
     fail("another last row");
   return transform;
+}
+
+bool is_hierarchy_there(storage::FileSystem& files, const fs::path& path) {
+  if (files.kind(path) != storage::FileKind::regular)
+    return true;  // who reads it says what is wrong
+  return storage::is_archive(*files.open(path));
 }
 
 SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlace& to,

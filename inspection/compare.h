@@ -45,6 +45,10 @@ struct CompareOptions {
   bool replace = false;
 };
 
+/// Whether there is a hierarchy, of whatever state, rather than a mesh: a directory, an archive.
+/// Throws Error(io).
+bool is_hierarchy_there(storage::FileSystem& files, const std::filesystem::path& path);
+
 /// Where a hierarchy is read.
 struct ComparedPlace {
   storage::FileSystem& files;

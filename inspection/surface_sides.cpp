@@ -1,6 +1,7 @@
 #include "inspection/surface_sides.h"
 
 #include "execution/parallel.h"
+#include "hierarchy/angle.h"
 #include "hierarchy/closest_point.h"
 #include "hierarchy/widest_corner.h"
 
@@ -56,9 +57,9 @@ double angle_at(const SurfaceTriangle& triangle, Vec3f corner) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (triangle[i] != corner)
       continue;
-    const Vec3d to_next = to_double(triangle[(i + 1) % 3]) - to_double(corner);
-    const Vec3d to_last = to_double(triangle[(i + 2) % 3]) - to_double(corner);
-    return std::atan2(length(cross(to_next, to_last)), dot(to_next, to_last));
+    const Vec3d next = unit(to_double(triangle[(i + 1) % 3]) - to_double(corner));
+    const Vec3d last = unit(to_double(triangle[(i + 2) % 3]) - to_double(corner));
+    return angle_of(dot(next, last), length(cross(next, last)));
   }
   return 0;
 }

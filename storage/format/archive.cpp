@@ -16,13 +16,22 @@ namespace {
 
 constexpr std::size_t kDirectoryBlock = std::size_t{1} << 18;
 
-ArchiveEnd find_end(const File& file) {
+std::vector<std::byte> last_bytes(const File& file) {
   const std::uint64_t size = file.size();
   std::vector<std::byte> last(std::min<std::uint64_t>(size, kLongestArchiveEnd));
   file.read_exact(size - last.size(), last);
-  std::vector<std::byte> first(std::min<std::uint64_t>(size, sizeof(std::uint32_t)));
+  return last;
+}
+
+bool means_archive(const File& file, std::span<const std::byte> last) {
+  std::vector<std::byte> first(std::min<std::uint64_t>(file.size(), sizeof(std::uint32_t)));
   file.read_exact(0, first);
-  if (!looks_like_archive(first, last)) {
+  return looks_like_archive(first, last);
+}
+
+ArchiveEnd find_end(const File& file) {
+  const std::vector<std::byte> last = last_bytes(file);
+  if (!means_archive(file, last)) {
     throw Error(ErrorCode::io,
                 fmt::format("{}: not a hierarchy: neither a directory nor a 3tz archive{}",
                             file.path().string(),
@@ -30,7 +39,7 @@ ArchiveEnd find_end(const File& file) {
                                 ? "; name the directory that it lies in"
                                 : ""));
   }
-  return parse_archive_end(last, size, file.path().string());
+  return parse_archive_end(last, file.size(), file.path().string());
 }
 
 /// Walks through the directory, block by block: memory follows what is there, not what is told.
@@ -85,6 +94,10 @@ void check_last(const File& file, const ArchiveEnd& end, const ArchiveEntry& las
 }
 
 }  // namespace
+
+bool is_archive(const File& file) {
+  return means_archive(file, last_bytes(file));
+}
 
 Archive::Archive(std::unique_ptr<File> file) : file_(std::move(file)), end_(find_end(*file_)) {
   DirectoryWalk walk(*file_, end_);

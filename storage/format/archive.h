@@ -14,6 +14,9 @@
 namespace meshhier::storage {
 
 /// Thread-safe once constructed.
+/// Whether a file means to be an archive, whatever is in it. Throws Error(io).
+bool is_archive(const File& file);
+
 class Archive {
  public:
   /// Reads the directory, and checks that it is what ArchiveWriter makes: stored files, one behind

@@ -992,7 +992,12 @@ TEST_F(CommandLine, CompareTellsAndItsExitCodeKeepsTheTolerance) {
   EXPECT_FALSE(report.at("within"));
   EXPECT_THAT(text_of(ply), HasSubstr("property float distance"));
   EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "-o", ply}).code, 5) << "it is there";
-  EXPECT_EQ(run({"compare", hierarchy(), work() / "a.ply"}).code, 4) << "no hierarchy";
+  const Outcome mesh = run({"compare", hierarchy(), work() / "a.ply", "--tolerance", "0"});
+  EXPECT_EQ(mesh.code, 0) << mesh.messages;
+  EXPECT_THAT(mesh.out, HasSubstr("a.ply: 1 tile"));
+  write_text(work() / "poem.txt", "no mesh");
+  EXPECT_EQ(run({"compare", hierarchy(), work() / "poem.txt"}).code, kUsage);
+  EXPECT_EQ(run({"compare", hierarchy(), work() / "absent.hier"}).code, 4);
   EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "--tolerance", "1mm"}).code, kUsage)
       << "the hierarchy does not know its unit";
   EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "--transform", ply}).code, kUsage);
