@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/cut_surface.h"
+#include "inspection/farthest_bound.h"
 #include "inspection/surface_distance.h"
 #include "inspection/surface_samples.h"
 #include "inspection/surface_sides.h"
@@ -19,7 +20,6 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -252,15 +252,16 @@ class Comparer {
   }
 
   /// In the order of the points.
-  std::vector<double> distances_of(const std::vector<Vec3d>& points, std::vector<Side>& sides) {
-    const std::vector<std::uint32_t> order = curve_order(points);
+  std::vector<double> distances_of(std::span<const Vec3d> points, std::vector<Side>& sides,
+                                   bool with_sides) {
+    const std::vector<std::uint32_t> order = curve_order({points.begin(), points.end()});
     std::vector<Vec3d> sorted;
     sorted.reserve(points.size());
     for (const std::uint32_t i : order)
       sorted.push_back(points[i]);
     const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
     std::vector<Side> sorted_sides(points.size(), Side::outside);
-    if (options_.is_signed)
+    if (with_sides)
       sorted_sides = surface_sides(target_, search_.trees(), sorted, nearest, cancel_);
     std::vector<double> distances(points.size());
     sides.resize(points.size());
@@ -275,7 +276,7 @@ class Comparer {
   void look_up(DifferencePly* output) {
     const std::vector<Vec3d> points = waiting_points();
     std::vector<Side> sides;
-    const std::vector<double> distances = distances_of(points, sides);
+    const std::vector<double> distances = distances_of(points, sides, options_.is_signed);
     std::size_t first = 0;
     for (const PlacedTile& tile : waiting_) {
       const std::size_t count = tile.places.size();
@@ -296,21 +297,17 @@ class Comparer {
     for (const Triangle<std::uint32_t>& t : tile.triangles) {
       const Vec3d a = points[t[0]], b = points[t[1]], c = points[t[2]];
       const double third = length(cross(b - a, c - a)) / 6;
-      double farthest = 0;
-      for (const std::uint32_t corner : t) {
+      for (const std::uint32_t corner : t)
         weights[corner] += third;
-        farthest = std::max(farthest, std::abs(distances[corner]));
-      }
-      // A point of a triangle has a corner within its longest edge / sqrt(3).
-      const double edge = std::max({length(b - a), length(c - b), length(a - c)});
-      result_.no_farther_than =
-          std::max(result_.no_farther_than, farthest + edge / std::numbers::sqrt3);
+      bound_.add({a, b, c},
+                 {std::abs(distances[t[0]]), std::abs(distances[t[1]]), std::abs(distances[t[2]])});
     }
     const bool is_cloud = result_.from.triangles == 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool is_own = i < tile.own_count;
       if (is_own) {
         result_.farthest = std::max(result_.farthest, std::abs(distances[i]));
+        bound_.add(std::abs(distances[i]));
         result_.unknown_sides += sides[i] == Side::unknown ? 1 : 0;
       }
       const double weight = is_cloud && is_own ? 1 : weights[i];
@@ -320,8 +317,15 @@ class Comparer {
   }
 
   void finish() {
-    result_.no_farther_than = std::max(result_.no_farther_than, result_.farthest) +
-                              result_.from.error_bound + result_.to.error_bound;
+    const auto measure = [&](std::span<const Vec3d> points) {
+      std::vector<Side> sides;
+      std::vector<double> distances = distances_of(points, sides, false);
+      progress_.advance(distances.size());
+      return distances;
+    };
+    progress_.stage("bound", 0, "points");
+    result_.no_farther_than =
+        bound_.refine(measure) + result_.from.error_bound + result_.to.error_bound;
     result_.tiles_read = search_.trees().tiles_read();
     if (result_.distances.empty() || to_.box().empty())
       return;
@@ -346,6 +350,7 @@ class Comparer {
   SurfaceComparison result_;
   std::vector<PlacedTile> waiting_;
   std::size_t waiting_points_ = 0;
+  FarthestBound bound_;
 };
 
 /// In units of the coordinates of `to`.

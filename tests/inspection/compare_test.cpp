@@ -3,6 +3,7 @@
 
 #include "hierarchy/error.h"
 #include "inspection/cut_surface.h"
+#include "inspection/farthest_bound.h"
 #include "inspection/surface_distance.h"
 #include "inspection/surface_samples.h"
 #include "inspection/surface_sides.h"
@@ -349,6 +350,63 @@ TEST_F(CompareTest, ThePlyHasTheDistances) {
     EXPECT_NEAR(std::abs(distance), least_distance(at, triangles), 1e-6);
     EXPECT_EQ(distance<0, std::abs(winding_number(at, triangles))> 0.5);
   }
+}
+
+/// The farthest point from scattered ones is seldom a corner.
+TEST(FarthestBoundTest, IsHardlyAboveTheFarthestPoint) {
+  std::vector<Vec3d> targets;
+  for (std::uint64_t i = 0; i < 40; ++i)
+    targets.push_back({tests::hash_noise(i, 1), tests::hash_noise(i, 2), 0});
+  const auto distance = [&](Vec3d point) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3d target : targets)
+      least = std::min(least, length(point - target));
+    return least;
+  };
+  FarthestBound bound;
+  double farthest = 0;
+  std::size_t measured = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    std::array<Vec3d, 3> corners;
+    for (std::uint64_t k = 0; k < 3; ++k)
+      corners[k] = {tests::hash_noise(3 * i + k, 3), tests::hash_noise(3 * i + k, 4),
+                    0.2 * tests::hash_noise(3 * i + k, 5)};
+    bound.add(corners, {distance(corners[0]), distance(corners[1]), distance(corners[2])});
+    constexpr int kSteps = 60;
+    for (int u = 0; u <= kSteps; ++u) {
+      for (int v = 0; u + v <= kSteps; ++v) {
+        farthest = std::max(farthest, distance(corners[0] + (corners[1] - corners[0]) * (u / 60.0) +
+                                               (corners[2] - corners[0]) * (v / 60.0)));
+      }
+    }
+  }
+  const double result = bound.refine([&](std::span<const Vec3d> points) {
+    measured += points.size();
+    std::vector<double> distances;
+    for (const Vec3d point : points)
+      distances.push_back(distance(point));
+    return distances;
+  });
+  EXPECT_GE(result, farthest);
+  EXPECT_LE(result, 1.02 * farthest);
+  EXPECT_LT(measured, 40'000U);
+}
+
+TEST(FarthestBoundTest, EndsWhereNothingIsFarAndCountsPointsWithoutTriangles) {
+  FarthestBound bound;
+  EXPECT_EQ(bound.refine([](auto) { return std::vector<double>(); }), 0);
+  bound.add(0.75);
+  EXPECT_EQ(bound.refine([](auto) { return std::vector<double>(); }), 0.75);
+  FarthestBound same;
+  for (int i = 0; i < 1000; ++i)
+    same.add({Vec3d{0.0 + i, 0, 0}, Vec3d{1.0 + i, 0, 0}, Vec3d{0.0 + i, 1, 0}}, {0, 0, 0});
+  std::size_t measured = 0;
+  const double result = same.refine([&](std::span<const Vec3d> points) {
+    measured += points.size();
+    return std::vector<double>(points.size());
+  });
+  EXPECT_LE(measured, 400'000U);
+  EXPECT_LT(result, 0.25);
 }
 
 TEST(DistanceTallyTest, QuantilesAreThoseOfSortedDistances) {
