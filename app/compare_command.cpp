@@ -133,6 +133,9 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
       ->type_name("LENGTH");
   command->add_flag("--unsigned", arguments->has_no_sign,
                     "Do not look on which side of TO the vertices are");
+  command->add_flag(
+      "--bound", arguments->options.bounds_triangles,
+      "Bound tightly what lies between the vertices; takes up to three times as long");
   command
       ->add_option("--transform", arguments->transform,
                    "Moves FROM first: 16 numbers, a 4 x 4 matrix, rows first")

@@ -17,6 +17,7 @@
 #include "storage/io/spool.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -32,6 +33,8 @@ namespace fs = std::filesystem;
 
 /// Vertices looked up together: enough to make the trees of their surroundings worth building.
 constexpr std::size_t kBatchPoints = 65536;
+/// Triangles that are bounded together.
+constexpr std::size_t kBatchTriangles = 16384;
 /// What a comparison holds beside its caches, about: the program, a batch and the trees it is
 /// looked up in, tiles on their way, sums.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{56} << 20;
@@ -170,6 +173,11 @@ std::uint64_t spare_bytes(const CompareOptions& options) {
   return options.memory_budget - std::min(options.memory_budget, kFixedBytes);
 }
 
+struct MeasuredTriangle {
+  std::array<Vec3d, 3> corners;
+  std::array<double, 3> distances{};
+};
+
 class Comparer {
  public:
   Comparer(const Opened& from, const Opened& to, const CompareOptions& options,
@@ -287,8 +295,59 @@ class Comparer {
       first += count;
       progress_.advance(1);
     }
+    bound_triangles(points, distances);
     waiting_.clear();
     waiting_points_ = 0;
+  }
+
+  /// Those of the waiting tiles.
+  void bound_triangles(std::span<const Vec3d> points, std::span<const double> distances) {
+    std::vector<MeasuredTriangle> loose;
+    std::size_t first = 0;
+    for (const PlacedTile& tile : waiting_) {
+      for (const Triangle<std::uint32_t>& t : tile.triangles) {
+        MeasuredTriangle measured;
+        for (std::size_t i = 0; i < 3; ++i) {
+          measured.corners[i] = points[first + t[i]];
+          measured.distances[i] = std::abs(distances[first + t[i]]);
+        }
+        if (options_.bounds_triangles && !bound_.is_settled(measured.corners, measured.distances))
+          loose.push_back(measured);
+        else
+          bound_.add(measured.corners, measured.distances);
+        if (loose.size() == kBatchTriangles)
+          bound_loose(loose);
+      }
+      first += tile.places.size();
+    }
+    bound_loose(loose);
+  }
+
+  /// By the triangle that is nearest to their middle: the farthest point from that is a corner.
+  void bound_loose(std::vector<MeasuredTriangle>& loose) {
+    std::vector<Vec3d> middles;
+    for (const MeasuredTriangle& t : loose)
+      middles.push_back((t.corners[0] + t.corners[1] + t.corners[2]) * (1.0 / 3));
+    const std::vector<std::uint32_t> order = curve_order(middles);
+    std::vector<Vec3d> sorted;
+    for (const std::uint32_t i : order)
+      sorted.push_back(middles[i]);
+    const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
+    const std::vector<SurfaceTriangle> targets = search_.triangles(nearest, cancel_);
+    std::vector<double> most(loose.size());
+    execution::parallel_for(
+        (loose.size() + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
+          const std::size_t first = block * kSearchedPoints;
+          for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
+            for (const Vec3d corner : loose[order[i]].corners)
+              most[i] = std::max(most[i], squared_distance(corner, targets[i]));
+          }
+        });
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+      bound_.add(std::sqrt(nearest[i].squared));
+      bound_.add(loose[order[i]].corners, loose[order[i]].distances, std::sqrt(most[i]));
+    }
+    loose.clear();
   }
 
   void account(const PlacedTile& tile, std::span<const Vec3d> points,
@@ -299,8 +358,6 @@ class Comparer {
       const double third = length(cross(b - a, c - a)) / 6;
       for (const std::uint32_t corner : t)
         weights[corner] += third;
-      bound_.add({a, b, c},
-                 {std::abs(distances[t[0]]), std::abs(distances[t[1]]), std::abs(distances[t[2]])});
     }
     const bool is_cloud = result_.from.triangles == 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

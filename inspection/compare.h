@@ -37,6 +37,9 @@ struct CompareOptions {
   /// tiles by their error.
   std::variant<Originals, Level, LargestError> selection{};
   bool is_signed = true;
+  /// Bound each triangle by the one of `to` that is nearest to its middle: distances to it are
+  /// convex. Else bounds are loose where distances are less than edges. Two more points a vertex.
+  bool bounds_triangles = false;
   std::optional<double> tolerance{};          ///< >= 0
   std::optional<Unit> tolerance_unit{};       ///< none: that of the second surface's coordinates
   std::optional<PlaceTransform> transform{};  ///< of the first surface, before it is compared

@@ -8,20 +8,22 @@
 namespace meshhier::inspection {
 
 FarthestBound::Candidate FarthestBound::candidate(const std::array<Vec3d, 3>& corners,
-                                                  const std::array<double, 3>& distances) {
+                                                  const std::array<double, 3>& distances,
+                                                  double most) {
   const auto& [a, b, c] = corners;
   const double edge = std::max({length(b - a), length(c - b), length(a - c)});
-  return {corners, distances, *std::ranges::max_element(distances) + edge / std::numbers::sqrt3};
+  const double bound = *std::ranges::max_element(distances) + edge / std::numbers::sqrt3;
+  return {corners, distances, std::min(bound, most)};
 }
 
 double FarthestBound::enough() const {
   return std::max(kEnough * known_, settled_);
 }
 
-void FarthestBound::add(const std::array<Vec3d, 3>& corners,
-                        const std::array<double, 3>& distances) {
+void FarthestBound::add(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& distances,
+                        double most) {
   add(*std::ranges::max_element(distances));
-  const Candidate added = candidate(corners, distances);
+  const Candidate added = candidate(corners, distances, most);
   if (added.bound <= enough()) {
     settled_ = std::max(settled_, added.bound);
     return;
@@ -71,9 +73,11 @@ void FarthestBound::split(std::span<const double> distances) {
     const auto& [da, db, dc] = whole[i].distances;
     const Vec3d ab = (a + b) * 0.5, bc = (b + c) * 0.5, ca = (c + a) * 0.5;
     const double dab = distances[3 * i], dbc = distances[3 * i + 1], dca = distances[3 * i + 2];
-    for (const Candidate& part :
-         {candidate({a, ab, ca}, {da, dab, dca}), candidate({ab, b, bc}, {dab, db, dbc}),
-          candidate({ca, bc, c}, {dca, dbc, dc}), candidate({ab, bc, ca}, {dab, dbc, dca})})
+    const double most = whole[i].bound;
+    for (const Candidate& part : {candidate({a, ab, ca}, {da, dab, dca}, most),
+                                  candidate({ab, b, bc}, {dab, db, dbc}, most),
+                                  candidate({ca, bc, c}, {dca, dbc, dc}, most),
+                                  candidate({ab, bc, ca}, {dab, dbc, dca}, most)})
       candidates_.push_back(part);
   }
 }

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,14 @@ namespace meshhier::inspection {
 
 class FarthestBound {
  public:
-  /// Corners and their distances, >= 0.
-  void add(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& distances);
+  /// Corners and their distances, >= 0. `most`: a bound of the triangle that is known.
+  void add(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& distances,
+           double most = std::numeric_limits<double>::infinity());
+  /// Whether add() would not keep it, for want of a better bound.
+  bool is_settled(const std::array<Vec3d, 3>& corners,
+                  const std::array<double, 3>& distances) const {
+    return candidate(corners, distances).bound <= enough();
+  }
   /// Of a point in no triangle.
   void add(double distance) { known_ = distance > known_ ? distance : known_; }
 
@@ -33,8 +40,8 @@ class FarthestBound {
 
  private:
   static constexpr std::size_t kMostPoints = 400'000;
-  static constexpr std::size_t kMostCandidates = 32'768;  ///< triangles that are kept
-  static constexpr double kEnough = 1.01;                 ///< times what is known
+  static constexpr std::size_t kMostCandidates = 8'192;  ///< triangles that are kept
+  static constexpr double kEnough = 1.01;                ///< times what is known
 
   struct Candidate {
     std::array<Vec3d, 3> corners;
@@ -43,7 +50,8 @@ class FarthestBound {
   };
 
   static Candidate candidate(const std::array<Vec3d, 3>& corners,
-                             const std::array<double, 3>& distances);
+                             const std::array<double, 3>& distances,
+                             double most = std::numeric_limits<double>::infinity());
   double enough() const;
   void drop_settled();
   void drop_nearest(std::size_t kept);

@@ -243,6 +243,25 @@ std::vector<NearestTriangle> SurfaceDistance::nearest(std::span<const Vec3d> poi
   return found;
 }
 
+std::vector<SurfaceTriangle> SurfaceDistance::triangles(std::span<const NearestTriangle> found,
+                                                        const execution::CancelToken& cancel) {
+  std::vector<Query> queries;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    queries.push_back({found[i].tile, static_cast<std::uint32_t>(i)});
+  queries = by_tile(queries, surface_.size());
+  std::vector<SurfaceTriangle> triangles(found.size());
+  std::shared_ptr<const TriangleSearch> tree;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const auto [tile, point] = queries[i];
+    if (i == 0 || tile != queries[i - 1].tile) {
+      cancel.check();
+      tree = trees_.get(std::span(&tile, 1)).front();
+    }
+    triangles[point] = (*tree)[found[point].triangle];
+  }
+  return triangles;
+}
+
 std::vector<double> SurfaceDistance::distances(std::span<const Vec3d> points,
                                                const execution::CancelToken& cancel) {
   std::vector<double> distances;

@@ -91,6 +91,11 @@ class SurfaceDistance {
   std::vector<NearestTriangle> nearest(std::span<const Vec3d> points,
                                        const execution::CancelToken& cancel);
 
+  /// The triangles themselves. Requires that nearest() has found them: squared distances are
+  /// finite.
+  std::vector<SurfaceTriangle> triangles(std::span<const NearestTriangle> found,
+                                         const execution::CancelToken& cancel);
+
   TreeCache& trees() { return trees_; }
 
  private:

@@ -221,6 +221,9 @@ TEST_F(CompareTest, DistancesAreThoseToAllTriangles) {
       sampled = std::max(sampled, least_distance(s.point, triangles));
   }
   EXPECT_LE(sampled, result.no_farther_than);
+  const SurfaceComparison bounded = compare(from, to, {.bounds_triangles = true});
+  EXPECT_LE(sampled, bounded.no_farther_than);
+  EXPECT_LE(bounded.no_farther_than, 1.02 * std::max(sampled, farthest));
 }
 
 TEST_F(CompareTest, ASurfaceIsAtItself) {
@@ -229,6 +232,9 @@ TEST_F(CompareTest, ASurfaceIsAtItself) {
   EXPECT_EQ(result.farthest, 0);
   EXPECT_TRUE(result.is_within());
   EXPECT_EQ(result.distances.weight_within(), result.distances.weight());
+  const SurfaceComparison bounded = compare(path, path, {.bounds_triangles = true});
+  EXPECT_EQ(bounded.farthest, 0);
+  EXPECT_LT(bounded.no_farther_than, 1e-6);
 }
 
 TEST_F(CompareTest, ATransformMovesTheFirst) {
