@@ -36,7 +36,21 @@ class Primitive {
   Id id_;
 };
 
-using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+/// Boxes of triangles, which CGAL wants at every level of a tree: straight from the corners.
+class BoxOfTriangle {
+ public:
+  using key_type = const SurfaceTriangle*;
+  using value_type = CGAL::Bbox_3;
+  using reference = value_type;
+
+  friend value_type get(const BoxOfTriangle& /*map*/, key_type triangle) {
+    const auto& [a, b, c] = *triangle;
+    return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z}),
+            std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
+  }
+};
+
+using Traits = CGAL::AABB_traits<Kernel, Primitive, BoxOfTriangle>;
 using BoxTree = CGAL::AABB_tree<Traits>;
 
 double squared_distance(Vec3d p, const CGAL::Bbox_3& box) {
@@ -108,7 +122,8 @@ double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
 
 struct TriangleSearch::Tree {
   explicit Tree(std::vector<SurfaceTriangle> list)
-      : triangles(std::move(list)), boxes(triangles.cbegin(), triangles.cend()) {
+      : triangles(std::move(list)), boxes(Traits(BoxOfTriangle())) {
+    boxes.insert(triangles.cbegin(), triangles.cend());
     boxes.do_not_accelerate_distance_queries();  // the caller has better hints
     boxes.build();
   }
