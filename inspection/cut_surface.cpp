@@ -109,8 +109,10 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
   const auto number_of = [](const Ghost& ghost) { return ghost.foreign.number; };
   std::ranges::sort(ghosts, {}, number_of);
   // Several ghosts may be shown at one place.
-  const auto repeats = std::ranges::unique(ghosts, {}, number_of);
-  ghosts.erase(repeats.begin(), repeats.end());
+  const auto is_repeat = [&](const Ghost& a, const Ghost& b) {
+    return number_of(a) == number_of(b);
+  };
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end(), is_repeat), ghosts.end());
 
   placed.places.assign(mesh.vertices.positions.begin(),
                        mesh.vertices.positions.begin() + mesh.own_count);
