@@ -73,10 +73,8 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
                                                options.memory_budget, *progress);
   };
   const auto from = open(arguments.from), to = open(arguments.to);
-  inspection::SurfaceComparison comparison = inspection::compare_surfaces(
+  const inspection::SurfaceComparison comparison = inspection::compare_surfaces(
       from->place(), to->place(), environment.files, options, *progress, environment.cancel);
-  comparison.from.name = from->name();
-  comparison.to.name = to->name();
   progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
   account_stream(environment, arguments.output)
       << (arguments.json ? pretty_json(comparison_json(comparison)) : comparison_text(comparison));

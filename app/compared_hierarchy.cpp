@@ -59,7 +59,7 @@ ComparedHierarchy::~ComparedHierarchy() {
 
 inspection::ComparedPlace ComparedHierarchy::place() const {
   if (folder_)
-    return {environment_.files, built_path(*folder_)};
+    return {environment_.files, built_path(*folder_), given_.path().string()};
   return {given_.files(), given_.path()};
 }
 

@@ -24,8 +24,6 @@ class ComparedHierarchy {
   ~ComparedHierarchy();
 
   inspection::ComparedPlace place() const;
-  /// As it was given, without secrets.
-  std::string name() const { return given_.path().string(); }
   /// As HierarchyPlace.
   std::string account() const { return given_.account(); }
 

@@ -8,6 +8,7 @@
 #include "inspection/surface_distance.h"
 #include "inspection/surface_samples.h"
 #include "inspection/surface_sides.h"
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive.h"
 #include "storage/format/archive_files.h"
@@ -72,7 +73,9 @@ double gap(const BoundsD& a, const BoundsD& b) {
 /// A hierarchy that is open.
 struct Opened {
   explicit Opened(const ComparedPlace& place)
-      : files(place.files, place.path), reader(files.files(), place.path) {}
+      : name(place.name.empty() ? place.path.string() : place.name),
+        files(place.files, place.path),
+        reader(files.files(), place.path) {}
 
   const BoundsD& box() const { return reader.manifest().source.bounds; }
   /// Positions of tiles are so far from what their error is told of.
@@ -81,6 +84,7 @@ struct Opened {
     return quantization ? quantization->worst_rounding : 0;
   }
 
+  std::string name;
   storage::HierarchyFiles files;
   storage::HierarchyReader reader;
 };
@@ -95,7 +99,7 @@ Cut cut_of(const storage::HierarchyReader& reader, const CompareOptions& options
 
 ComparedSurface facts_of(const Opened& opened, const CutSurface& surface) {
   ComparedSurface facts;
-  facts.name = opened.reader.directory().string();
+  facts.name = opened.name;
   facts.tiles = surface.size();
   facts.vertices = surface.place_count();
   facts.triangles = surface.total().triangles;
@@ -362,7 +366,9 @@ class Comparer {
     const bool is_cloud = result_.from.triangles == 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool is_own = i < tile.own_count;
-      if (is_own) {
+      if (is_own && !is_cloud && !tile.is_used[i]) {
+        ++result_.lone_vertices;
+      } else if (is_own) {
         result_.farthest = std::max(result_.farthest, std::abs(distances[i]));
         bound_.add(std::abs(distances[i]));
         result_.unknown_sides += sides[i] == Side::unknown ? 1 : 0;
@@ -418,7 +424,7 @@ std::optional<double> tolerance_in(const Opened& to, const CompareOptions& optio
   if (!units) {
     throw Error(ErrorCode::usage, fmt::format("the unit of {} is not known: give the tolerance "
                                               "without one, or build with \"units\"",
-                                              to.reader.directory().string()));
+                                              to.name));
   }
   return *options.tolerance * metres_of(*options.tolerance_unit) / metres_of(*units);
 }
@@ -427,6 +433,12 @@ void check_options(const Opened& from, const Opened& to, const CompareOptions& o
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     throw Error(ErrorCode::usage, "the tolerance must be a number of at least 0");
   const auto* level = std::get_if<Level>(&options.selection);
+  const BoundsD box = moved_box(options.transform, from.box());
+  for (const Vec3d corner : {box.min, box.max}) {
+    if (!box.empty() && !(mesh_io::is_coordinate(corner.x) && mesh_io::is_coordinate(corner.y) &&
+                          mesh_io::is_coordinate(corner.z)))
+      throw Error(ErrorCode::usage, "the transform leads out of the range of coordinates");
+  }
   const Level deepest = std::max(from.reader.tree().depth(), to.reader.tree().depth());
   if (level != nullptr && *level > deepest) {
     throw Error(ErrorCode::usage,

@@ -56,6 +56,7 @@ bool is_hierarchy_there(storage::FileSystem& files, const std::filesystem::path&
 struct ComparedPlace {
   storage::FileSystem& files;
   std::filesystem::path path;
+  std::string name{};  ///< for people; empty: the path
 };
 
 /// What is compared of a hierarchy.
@@ -77,6 +78,8 @@ struct SurfaceComparison {
   /// Weights are areas: a third of each triangle's for each of its corners. Without triangles all
   /// vertices weigh the same.
   DistanceTally distances;
+  /// Of `from`: they are no part of its surface, unless it has no triangle at all.
+  std::uint64_t lone_vertices = 0;
   std::uint64_t unknown_sides = 0;  ///< vertices nearest to a border of `to`: taken for outside
   double farthest = 0;              ///< of the vertices compared, exact
   /// No point of the original surface of `from` is farther from that of `to`.
@@ -96,8 +99,9 @@ struct SurfaceComparison {
 /// `distance`, and its triangles.
 ///
 /// Deterministic to the bit for any threads. Throws Error(usage) if the level is in neither tree or
-/// the tolerance is none or of a unit that cannot be converted, Error(input) if `to` has no
-/// triangle, Error(io | corrupt | interrupted), and as storage::OutputFile.
+/// the tolerance is none or of a unit that cannot be converted, or the transform leads out of the
+/// range of coordinates, Error(input) if `to` has no triangle, Error(io | corrupt | interrupted),
+/// and as storage::OutputFile.
 SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlace& to,
                                    storage::FileSystem& files, const CompareOptions& options,
                                    execution::Progress& progress,

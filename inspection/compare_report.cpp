@@ -116,6 +116,10 @@ std::string comparison_text(const SurfaceComparison& comparison) {
       text += fmt::format("  {} % {:.6g}", name_of_part(part), distances.size_quantile(part));
     text += "\n" + histogram_text(distances);
   }
+  if (comparison.lone_vertices > 0) {
+    text += fmt::format("left out: {} of the first one that no triangle has\n",
+                        counted(comparison.lone_vertices, "vertices"));
+  }
   if (comparison.unknown_sides > 0) {
     text += fmt::format(
         "{} nearest to a border of the second one: their side is not known, and "
@@ -139,6 +143,7 @@ Json comparison_json(const SurfaceComparison& comparison) {
               {"signed", comparison.is_signed},
               {"area", distances.weight()},
               {"distance", distances_json(distances)},
+              {"lone_vertices", comparison.lone_vertices},
               {"unknown_sides", comparison.unknown_sides},
               {"farthest", comparison.farthest},
               {"no_farther_than", comparison.no_farther_than}};

@@ -92,6 +92,16 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
   placed.own_count = mesh.own_count;
   placed.interior_count = mesh.interior.size();
 
+  placed.is_used.resize(mesh.own_count);
+  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+    for (const TileTriangle& triangle : *triangles) {
+      for (const TileVertex corner : triangle) {
+        if (raw(corner) < mesh.own_count)
+          placed.is_used[raw(corner)] = true;
+      }
+    }
+  }
+
   struct Ghost {
     PlacedTile::Foreign foreign;
     Vec3f place;

@@ -37,7 +37,8 @@ struct PlacedTile {
   std::uint32_t base = 0;  ///< number in the cut of the first place
   std::uint32_t own_count = 0;
   std::vector<Vec3f> places;
-  std::vector<Foreign> foreign;                    ///< of places from own_count on, ascending
+  std::vector<bool> is_used;     ///< of the own places: a triangle of the tile has it
+  std::vector<Foreign> foreign;  ///< of places from own_count on, ascending
   std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
   std::size_t interior_count = 0;
 

@@ -248,6 +248,9 @@ TEST_F(CompareTest, ATransformMovesTheFirst) {
       compare(a, b, {.transform = parse_transform("2 0 0 10\n0 2 0 0\n0 0 2 0\n0 0 0 1\n", "t")});
   EXPECT_LT(result.farthest, 1e-5);
   EXPECT_THAT(result.warnings, IsEmpty());
+  EXPECT_THROW(
+      compare(a, b, {.transform = parse_transform("1e99 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "t")}),
+      Error);
 }
 
 TEST(TransformTest, IsSixteenNumbersOfAnAffineMap) {
@@ -301,6 +304,16 @@ TEST_F(CompareTest, OnlyTilesNearbyAreRead) {
   const SurfaceComparison result = compare(write("from", corner, {.partitions = 2}), to);
   EXPECT_EQ(result.farthest, 0.25);
   EXPECT_LT(result.tiles_read, result.to.tiles / 3);
+}
+
+TEST_F(CompareTest, VerticesOfNoTriangleAreNoSurface) {
+  tests::TestMesh mesh = tests::open_grid(6, 6);
+  mesh.positions.push_back({100, 0, 0});
+  const fs::path path = write("a", mesh);
+  const SurfaceComparison result = compare(path, path, {.tolerance = 0.0});
+  EXPECT_EQ(result.lone_vertices, 1U);
+  EXPECT_EQ(result.farthest, 0);
+  EXPECT_TRUE(result.is_within());
 }
 
 TEST_F(CompareTest, PointsAndSurfacesWithoutTriangles) {
