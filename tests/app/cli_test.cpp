@@ -257,7 +257,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"compare", "x"}, "TO"},
       {{"compare", "x", "y", "--tolerance", "0.5 miles"}, "us_ft"},
       {{"compare", "x", "y", "--tolerance", "-1"}, "--tolerance"},
-      {{"compare", "x", "y", "--level", "1", "--error", "2"}, "At most"},
+      {{"compare", "x", "y", "--level", "1", "--error", "2"}, "at most 1"},
       {{"verify", "x", "--cuts", "4294967296"}, "--cuts"},
       {{"verify", "x", "--seed", "1.5"}, "--seed"},
       {{"verify", "x", "--memory-budget", "lots"}, "512MiB"},
