@@ -3,26 +3,20 @@
 #include "config/named_files.h"
 #include "pipeline/build.h"
 
-#include <random>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace meshhier::app {
-namespace {
-
-/// Nothing but the name depends on chance.
-std::filesystem::path temporary_folder() {
-  std::random_device chance;
-  return std::filesystem::temp_directory_path() /
-         fmt::format("meshhier-compared-{:08x}{:08x}", chance(), chance());
+ComparedHierarchy::BuiltFolder::BuiltFolder() : path_(temporary_path("meshhier-compared-")) {
+  std::filesystem::create_directory(path_);
 }
 
-std::filesystem::path built_path(const std::filesystem::path& folder) {
-  return folder / "mesh.hier";
+ComparedHierarchy::BuiltFolder::~BuiltFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
-
-}  // namespace
 
 ComparedHierarchy::ComparedHierarchy(Environment& environment, const std::string& name,
                                      const WebOptions& web, std::uint64_t memory_budget,
@@ -30,36 +24,23 @@ ComparedHierarchy::ComparedHierarchy(Environment& environment, const std::string
     : environment_(environment), given_(environment, name, web) {
   if (given_.is_remote() || inspection::is_hierarchy_there(given_.files(), given_.path()))
     return;
-  folder_ = temporary_folder();
-  std::filesystem::create_directory(*folder_);
-  try {
-    build(name, memory_budget, progress);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove_all(*folder_, ignored);
-    throw;
-  }
+  folder_.emplace();
+  build(name, memory_budget, progress);
 }
 
 void ComparedHierarchy::build(const std::string& mesh, std::uint64_t memory_budget,
                               execution::Progress& progress) {
   config::CommandLine words({fmt::format("memory_budget={}", memory_budget)});
-  words.output = built_path(*folder_);
+  words.output = folder_->hierarchy();
   const config::Config config = config::load_named(environment_.files, {mesh}, std::move(words));
   pipeline::BuildOptions options;
   options.leaves_work = false;  // nobody could go on with it
   pipeline::build_hierarchy(config, options, {environment_.files, progress, environment_.cancel});
 }
 
-ComparedHierarchy::~ComparedHierarchy() {
-  std::error_code ignored;
-  if (folder_)
-    std::filesystem::remove_all(*folder_, ignored);
-}
-
 inspection::ComparedPlace ComparedHierarchy::place() const {
   if (folder_)
-    return {environment_.files, built_path(*folder_), given_.path().string()};
+    return {environment_.files, folder_->hierarchy(), given_.path().string()};
   return {given_.files(), given_.path()};
 }
 

@@ -19,20 +19,30 @@ class ComparedHierarchy {
   /// outlive it. Throws as HierarchyPlace, config::load_named() and pipeline::build_hierarchy().
   ComparedHierarchy(Environment& environment, const std::string& name, const WebOptions& web,
                     std::uint64_t memory_budget, execution::Progress& progress);
-  ComparedHierarchy(const ComparedHierarchy&) = delete;
-  ComparedHierarchy& operator=(const ComparedHierarchy&) = delete;
-  ~ComparedHierarchy();
 
   inspection::ComparedPlace place() const;
   /// As HierarchyPlace.
   std::string account() const { return given_.account(); }
 
  private:
+  /// It goes with the object.
+  class BuiltFolder {
+   public:
+    BuiltFolder();
+    BuiltFolder(const BuiltFolder&) = delete;
+    BuiltFolder& operator=(const BuiltFolder&) = delete;
+    ~BuiltFolder();
+    std::filesystem::path hierarchy() const { return path_ / "mesh.hier"; }
+
+   private:
+    std::filesystem::path path_;
+  };
+
   void build(const std::string& mesh, std::uint64_t memory_budget, execution::Progress& progress);
 
   Environment& environment_;
   HierarchyPlace given_;
-  std::optional<std::filesystem::path> folder_;  ///< of what was built
+  std::optional<BuiltFolder> folder_;  ///< of what was built
 };
 
 }  // namespace meshhier::app

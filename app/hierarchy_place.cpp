@@ -59,14 +59,13 @@ storage::HttpOptions http_options(storage::FileSystem& files, const WebOptions& 
   return options;
 }
 
-/// In TMPDIR, else /tmp. Nothing else depends on chance.
-std::filesystem::path temporary_path() {
+}  // namespace
+
+std::filesystem::path temporary_path(std::string_view prefix) {
   std::random_device chance;
   return std::filesystem::temp_directory_path() /
-         fmt::format(".meshhier-fetched-{:08x}{:08x}", chance(), chance());
+         fmt::format("{}{:08x}{:08x}", prefix, chance(), chance());
 }
-
-}  // namespace
 
 void add_web_options(CLI::App& command, WebOptions& web) {
   command
@@ -93,7 +92,7 @@ HierarchyPlace::HierarchyPlace(Environment& environment, const std::string& hier
   if (!storage::is_web_address(hierarchy))
     return;
   remote_ = std::make_unique<storage::RemoteFiles>(
-      files_, hierarchy, temporary_path(), http_options(files_, web),
+      files_, hierarchy, temporary_path(".meshhier-fetched-"), http_options(files_, web),
       [&cancel = environment.cancel] { cancel.check(); });
   path_ = remote_->root();
 }

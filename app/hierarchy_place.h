@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +19,9 @@ struct WebOptions {
   std::vector<std::string> headers;  ///< "NAME: VALUE", or "@FILE" with a line each
   std::uint64_t bytes_per_second = 0;
 };
+
+/// Of a temporary file or folder, in TMPDIR, else /tmp. Nothing but names depends on chance.
+std::filesystem::path temporary_path(std::string_view prefix);
 
 /// --header and --limit-rate
 void add_web_options(CLI::App& command, WebOptions& web);

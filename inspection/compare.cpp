@@ -63,13 +63,6 @@ BoundsD moved_box(const std::optional<PlaceTransform>& transform, const BoundsD&
   return all;
 }
 
-/// How far apart two boxes are.
-double gap(const BoundsD& a, const BoundsD& b) {
-  return length(Vec3d{std::max({b.min.x - a.max.x, 0.0, a.min.x - b.max.x}),
-                      std::max({b.min.y - a.max.y, 0.0, a.min.y - b.max.y}),
-                      std::max({b.min.z - a.max.z, 0.0, a.min.z - b.max.z})});
-}
-
 /// A hierarchy that is open.
 struct Opened {
   explicit Opened(const ComparedPlace& place)
@@ -177,6 +170,15 @@ std::uint64_t spare_bytes(const CompareOptions& options) {
   return options.memory_budget - std::min(options.memory_budget, kFixedBytes);
 }
 
+std::vector<Vec3d> in_order(const std::vector<Vec3d>& points,
+                            std::span<const std::uint32_t> order) {
+  std::vector<Vec3d> sorted;
+  sorted.reserve(points.size());
+  for (const std::uint32_t i : order)
+    sorted.push_back(points[i]);
+  return sorted;
+}
+
 struct MeasuredTriangle {
   std::array<Vec3d, 3> corners;
   std::array<double, 3> distances{};
@@ -246,9 +248,10 @@ class Comparer {
                       result_.from.name, name_of(*mine), result_.to.name, name_of(*theirs)));
     }
     const BoundsD box = moved_box(options_.transform, from_.box());
-    if (!box.empty() && !to_.box().empty() && gap(box, to_.box()) > 0) {
+    const bool are_there = !box.empty() && !to_.box().empty();
+    if (const double gap = are_there ? std::sqrt(squared_gap(box, to_.box())) : 0; gap > 0) {
       warn(fmt::format("the boxes of the two are {:.6g} apart: nothing aligns them but --transform",
-                       gap(box, to_.box())));
+                       gap));
     }
   }
 
@@ -264,13 +267,10 @@ class Comparer {
   }
 
   /// In the order of the points.
-  std::vector<double> distances_of(std::span<const Vec3d> points, std::vector<Side>& sides,
+  std::vector<double> distances_of(const std::vector<Vec3d>& points, std::vector<Side>& sides,
                                    bool with_sides) {
-    const std::vector<std::uint32_t> order = curve_order({points.begin(), points.end()});
-    std::vector<Vec3d> sorted;
-    sorted.reserve(points.size());
-    for (const std::uint32_t i : order)
-      sorted.push_back(points[i]);
+    const std::vector<std::uint32_t> order = curve_order(points);
+    const std::vector<Vec3d> sorted = in_order(points, order);
     const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
     std::vector<Side> sorted_sides(points.size(), Side::outside);
     if (with_sides)
@@ -333,9 +333,7 @@ class Comparer {
     for (const MeasuredTriangle& t : loose)
       middles.push_back((t.corners[0] + t.corners[1] + t.corners[2]) * (1.0 / 3));
     const std::vector<std::uint32_t> order = curve_order(middles);
-    std::vector<Vec3d> sorted;
-    for (const std::uint32_t i : order)
-      sorted.push_back(middles[i]);
+    const std::vector<Vec3d> sorted = in_order(middles, order);
     const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
     const std::vector<SurfaceTriangle> targets = search_.triangles(nearest, cancel_);
     std::vector<double> most(loose.size());
@@ -380,7 +378,7 @@ class Comparer {
   }
 
   void finish() {
-    const auto measure = [&](std::span<const Vec3d> points) {
+    const auto measure = [&](const std::vector<Vec3d>& points) {
       std::vector<Side> sides;
       std::vector<double> distances = distances_of(points, sides, false);
       progress_.advance(distances.size());

@@ -32,7 +32,7 @@ class FarthestBound {
   void add(double distance) { known_ = distance > known_ ? distance : known_; }
 
   /// Distances of points, in their order.
-  using Measure = std::function<std::vector<double>(std::span<const Vec3d>)>;
+  using Measure = std::function<std::vector<double>(const std::vector<Vec3d>&)>;
   /// No point of the triangles is farther; at most a hundredth above what some point is, unless
   /// that takes more than kMostPoints more distances. Deterministic. Passes on what `measure`
   /// throws.

@@ -17,13 +17,6 @@ double square(double x) {
   return x * x;
 }
 
-/// Square of the distance between two boxes; 0 if they meet.
-double squared_gap(const BoundsD& a, const Bounds& b) {
-  return square(std::max({b.min.x - a.max.x, 0.0, a.min.x - b.max.x})) +
-         square(std::max({b.min.y - a.max.y, 0.0, a.min.y - b.max.y})) +
-         square(std::max({b.min.z - a.max.z, 0.0, a.min.z - b.max.z}));
-}
-
 /// Square of the largest distance between a point of one box and a point of the other.
 double squared_reach(const BoundsD& a, const Bounds& b) {
   return square(std::max(b.max.x - a.min.x, a.max.x - b.min.x)) +
@@ -248,17 +241,11 @@ std::vector<SurfaceTriangle> SurfaceDistance::triangles(std::span<const NearestT
   std::vector<Query> queries;
   for (std::size_t i = 0; i < found.size(); ++i)
     queries.push_back({found[i].tile, static_cast<std::uint32_t>(i)});
-  queries = by_tile(queries, surface_.size());
   std::vector<SurfaceTriangle> triangles(found.size());
-  std::shared_ptr<const TriangleSearch> tree;
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    const auto [tile, point] = queries[i];
-    if (i == 0 || tile != queries[i - 1].tile) {
-      cancel.check();
-      tree = trees_.get(std::span(&tile, 1)).front();
-    }
-    triangles[point] = (*tree)[found[point].triangle];
-  }
+  look_up(trees_, by_tile(queries, surface_.size()), cancel,
+          [&](const TriangleSearch& tree, std::size_t, const Query& query) {
+            triangles[query.point] = tree[found[query.point].triangle];
+          });
   return triangles;
 }
 

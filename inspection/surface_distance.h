@@ -2,6 +2,7 @@
 #pragma once
 
 #include "execution/cancel.h"
+#include "execution/parallel.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/vec.h"
 #include "inspection/cut_surface.h"
@@ -25,6 +26,17 @@ inline constexpr std::size_t kSearchedPoints = 256;
 /// tile, 60 MiB. Fixed, as what is found in one batch prunes the next.
 inline constexpr std::size_t kSearchedTiles = 8;
 
+/// Square of the distance between two boxes, neither of them empty; 0 if they meet.
+template <class A, class B>
+double squared_gap(const BoundsOf<A>& a, const BoundsOf<B>& b) {
+  const auto squared = [](double low, double high) {
+    const double gap = std::max({low, 0.0, high});
+    return gap * gap;
+  };
+  return squared(double{b.min.x} - a.max.x, double{a.min.x} - b.max.x) +
+         squared(double{b.min.y} - a.max.y, double{a.min.y} - b.max.y) +
+         squared(double{b.min.z} - a.max.z, double{a.min.z} - b.max.z);
+}
 /// Square of the distance of a point to a box; 0 inside. `bounds` must not be empty.
 double squared_distance(Vec3d point, const Bounds& bounds);
 
@@ -73,6 +85,38 @@ struct TileQuery {
 
 /// Queries in the order of their tiles; those of a tile as they come. O(n + tiles).
 std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles);
+
+/// Calls look(tree, number of the query, query) for each, in parallel, those of a few tiles at a
+/// time.
+template <class Look>
+void look_up(TreeCache& trees, std::span<const TileQuery> queries,
+             const execution::CancelToken& cancel, const Look& look) {
+  std::size_t before = 0;
+  while (!queries.empty()) {
+    cancel.check();
+    std::vector<std::uint32_t> tiles;
+    std::size_t taken = 0;
+    for (; taken < queries.size(); ++taken) {
+      if (!tiles.empty() && tiles.back() == queries[taken].tile)
+        continue;
+      if (tiles.size() == kSearchedTiles)
+        break;
+      tiles.push_back(queries[taken].tile);
+    }
+    const auto held = trees.get(tiles);
+    const auto batch = queries.first(taken);
+    execution::parallel_for(
+        (taken + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
+          const std::size_t first = block * kSearchedPoints;
+          for (std::size_t i = first; i < std::min(first + kSearchedPoints, taken); ++i) {
+            const auto tile = std::ranges::lower_bound(tiles, batch[i].tile) - tiles.begin();
+            look(*held[static_cast<std::size_t>(tile)], before + i, batch[i]);
+          }
+        });
+    before += taken;
+    queries = queries.subspan(taken);
+  }
+}
 
 class SurfaceDistance {
  public:

@@ -1,6 +1,5 @@
 #include "inspection/surface_sides.h"
 
-#include "execution/parallel.h"
 #include "hierarchy/angle.h"
 #include "hierarchy/closest_point.h"
 #include "hierarchy/widest_corner.h"
@@ -121,49 +120,6 @@ struct OpenFan {
   Fan fan;
 };
 
-/// Calls look(tree, number of the query, query) for each, in parallel, those of a few tiles at a
-/// time.
-template <class Look>
-void look_up(TreeCache& trees, std::span<const TileQuery> queries,
-             const execution::CancelToken& cancel, const Look& look) {
-  std::size_t before = 0;
-  while (!queries.empty()) {
-    cancel.check();
-    std::vector<std::uint32_t> tiles;
-    std::size_t taken = 0;
-    for (; taken < queries.size(); ++taken) {
-      if (!tiles.empty() && tiles.back() == queries[taken].tile)
-        continue;
-      if (tiles.size() == kSearchedTiles)
-        break;
-      tiles.push_back(queries[taken].tile);
-    }
-    const auto held = trees.get(tiles);
-    const auto batch = queries.first(taken);
-    execution::parallel_for(
-        (taken + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
-          const std::size_t first = block * kSearchedPoints;
-          for (std::size_t i = first; i < std::min(first + kSearchedPoints, taken); ++i) {
-            const auto tile = std::ranges::lower_bound(tiles, batch[i].tile) - tiles.begin();
-            look(*held[static_cast<std::size_t>(tile)], before + i, batch[i]);
-          }
-        });
-    before += taken;
-    queries = queries.subspan(taken);
-  }
-}
-
-bool contains(const Bounds& bounds, Vec3f point) {
-  return !bounds.empty() && squared_distance(to_double(point), bounds) == 0;
-}
-
-bool meet(const Bounds& a, const Bounds& b) {
-  const auto apart = [](float least, float most) { return least > most; };
-  return !a.empty() && !b.empty() && !apart(a.min.x, b.max.x) && !apart(b.min.x, a.max.x) &&
-         !apart(a.min.y, b.max.y) && !apart(b.min.y, a.max.y) && !apart(a.min.z, b.max.z) &&
-         !apart(b.min.z, a.max.z);
-}
-
 using OpenFans = std::vector<std::unique_ptr<OpenFan>>;
 
 /// The other tiles that may have triangles at open fans; by tile.
@@ -179,10 +135,11 @@ std::vector<TileQuery> other_tiles(const CutSurface& surface, const OpenFans& op
     }
     for (std::uint32_t tile = 0; tile < surface.size(); ++tile) {
       const Bounds& bounds = surface.facts(tile).bounds;
-      if (!meet(bounds, box))
+      if (bounds.empty() || box.empty() || squared_gap(bounds, box) > 0)
         continue;
       for (std::size_t i = first; i < end; ++i) {
-        if (open[i] && tile != nearest[i].tile && contains(bounds, open[i]->feature.corners[0]))
+        if (open[i] && tile != nearest[i].tile &&
+            squared_distance(to_double(open[i]->feature.corners[0]), bounds) == 0)
           queries.push_back({tile, static_cast<std::uint32_t>(i)});
       }
     }

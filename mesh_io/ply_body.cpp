@@ -16,6 +16,11 @@ std::string row_name(const PlyElementPlan& plan, std::uint64_t row) {
                      in_quotes(plan.element.name));
 }
 
+std::unique_ptr<PlyBody> make_body(const InputFile& input, const PlyPlan& plan, PlyPosition start) {
+  return plan.encoding == PlyEncoding::ascii ? make_text_body(input, plan, start)
+                                             : make_binary_body(input, plan, start);
+}
+
 bool is_strip_restart(std::int64_t index, PlyType type) {
   return index == -1 || (type == PlyType::u32 && index == std::int64_t{0xffffffff});
 }

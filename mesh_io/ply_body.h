@@ -49,6 +49,8 @@ std::unique_ptr<PlyBody> make_binary_body(const InputFile& input, const PlyPlan&
 /// are errors. Numbers that are not read are not looked at.
 std::unique_ptr<PlyBody> make_text_body(const InputFile& input, const PlyPlan& plan,
                                         PlyPosition start);
+/// The one that the file has.
+std::unique_ptr<PlyBody> make_body(const InputFile& input, const PlyPlan& plan, PlyPosition start);
 
 /// True if `index` restarts a strip: -1, which a uint holds as 2^32 - 1 (no vertex can have it).
 bool is_strip_restart(std::int64_t index, PlyType type);

@@ -9,11 +9,6 @@ namespace {
 constexpr std::uint64_t kLeastRun = 128;
 constexpr std::uint64_t kMostIndexed = std::uint64_t{1} << 16;
 
-std::unique_ptr<PlyBody> body_from(const InputFile& input, const PlyPlan& plan, PlyPosition start) {
-  return plan.encoding == PlyEncoding::ascii ? make_text_body(input, plan, start)
-                                             : make_binary_body(input, plan, start);
-}
-
 std::vector<Vec3d> places_of(const VertexBlock& block) {
   std::vector<Vec3d> places(block.exact.begin(), block.exact.end());
   for (const Vec3f& p : block.positions)
@@ -56,7 +51,7 @@ std::vector<Vec3d> PlyPlaces::fixed_places(std::uint64_t first, std::size_t coun
 
 std::vector<PlyPosition> PlyPlaces::make_index() const {
   std::vector<PlyPosition> index;
-  const auto body = body_from(input_, plan_, start_);
+  const auto body = make_body(input_, plan_, start_);
   PlyElementPlan part = plan_.elements[plan_.vertex_element];
   for (std::uint64_t first = 0; first < mesh_.vertex_count; first += run_vertices_) {
     index.push_back(body->position());
@@ -72,7 +67,7 @@ std::vector<Vec3d> PlyPlaces::indexed_places(std::uint64_t first, std::size_t co
     index_ = make_index();
   const std::uint64_t number = first / run_vertices_;
   const InputFile part_of_file{input_.file, index_[number + 1].offset};
-  const auto body = body_from(part_of_file, plan_, index_[number]);
+  const auto body = make_body(part_of_file, plan_, index_[number]);
   PlyElementPlan part = plan_.elements[plan_.vertex_element];
   part.element.count = count;
   MeshDescription mesh = mesh_;

@@ -68,7 +68,6 @@ class PlyFileSource final : public PlySource {
   void describe();
   void plan_blocks();
   std::unique_ptr<PlyBody> body_at(std::size_t element);
-  std::unique_ptr<PlyBody> body_from(PlyPosition start);
   std::size_t first_face_element() const;
   std::size_t element_of(PlyElementPlan::Role role) const;
   std::size_t texture_count() const;
@@ -128,18 +127,13 @@ void PlyFileSource::plan_blocks() {
     triangle_blocks_.emplace(plan_, plan_.elements[first], *rows, starts_[first]->offset);
 }
 
-std::unique_ptr<PlyBody> PlyFileSource::body_from(PlyPosition start) {
-  return plan_.encoding == PlyEncoding::ascii ? make_text_body(input(), plan_, start)
-                                              : make_binary_body(input(), plan_, start);
-}
-
 /// A body at the start of an element, or at the end of the data: from the last known start before
 /// it.
 std::unique_ptr<PlyBody> PlyFileSource::body_at(std::size_t element) {
   std::size_t known = element;
   while (!starts_[known])
     --known;
-  auto body = body_from(*starts_[known]);
+  auto body = make_body(input(), plan_, *starts_[known]);
   for (; known < element; ++known) {
     body->skip(plan_.elements[known]);
     starts_[known + 1] = body->position();
@@ -190,7 +184,7 @@ void PlyFileSource::read_vertices(const VertexVisitor& visit, const BlockRunner&
     const PlyLinesRead lines =
         read_vertex_lines(input(), plan_, description_, body->position(), visit, runner);
     first = lines.row;
-    body = body_from(lines.position);
+    body = make_body(input(), plan_, lines.position);
   }
   VertexBlocks blocks(description_, visit, first);
   body->read_vertices(plan_.elements[element], first, blocks);
@@ -203,7 +197,7 @@ FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const Triangle
   const std::size_t first = first_face_element();
   auto body = body_at(first);
   if (face > 0)
-    body = body_from({triangle_blocks_->offset_of(face), 0});
+    body = make_body(input(), plan_, {triangle_blocks_->offset_of(face), 0});
   const PlaceOf place = [this](std::uint32_t vertex) { return place_of(vertex); };
   TriangleBlocks blocks(visit, &place);
   for (std::size_t i = first; i < plan_.elements.size(); ++i) {
@@ -213,7 +207,7 @@ FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const Triangle
     } else if (plan_.encoding == PlyEncoding::ascii) {
       const PlyLinesRead lines = read_polygon_lines(input(), element, description_.vertex_count,
                                                     body->position(), blocks, runner);
-      body = body_from(lines.position);
+      body = make_body(input(), plan_, lines.position);
       body->read_faces(element, lines.row, blocks);
     } else {
       body->read_faces(element, i == first ? face : 0, blocks);
