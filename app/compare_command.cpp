@@ -6,6 +6,8 @@
 #include "hierarchy/error.h"
 #include "hierarchy/unit.h"
 #include "inspection/compare.h"
+#include "inspection/piece_mesh.h"
+#include "pipeline/build.h"
 
 #include <algorithm>
 #include <memory>
@@ -59,6 +61,35 @@ inspection::PlaceTransform read_transform(storage::FileSystem& files, const std:
                                      path);
 }
 
+/// A hierarchy of the compared vertices, that their distances become an attribute of.
+class DifferenceHierarchy {
+ public:
+  DifferenceHierarchy(const inspection::ComparedPlace& from, const std::string& output,
+                      inspection::CompareOptions& options, Environment& environment)
+      : config_(inspection::config_like(from.files, from.path, output, options.replace,
+                                        options.memory_budget, environment.files)),
+        replaces_(options.replace),
+        folder_(environment.files, output) {
+    options.output = folder_.path() / "difference.ply";
+    config_.input = options.output;
+    config_.attributes = {};
+  }
+
+  /// What was made, for people.
+  std::string build(execution::Progress& progress, Environment& environment) const {
+    pipeline::BuildOptions options{.force = replaces_, .restart = true};
+    options.leaves_work = false;  // nobody could go on with it
+    return pipeline::build_hierarchy(config_, options,
+                                     {environment.files, progress, environment.cancel})
+        .text;
+  }
+
+ private:
+  config::Config config_;
+  bool replaces_;
+  inspection::WorkFolder folder_;
+};
+
 int run_compare(CompareArguments arguments, execution::ProgressMode mode,
                 Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
@@ -73,12 +104,16 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
                                                options.memory_budget, *progress);
   };
   const auto from = open(arguments.from), to = open(arguments.to);
+  std::optional<DifferenceHierarchy> difference;
+  if (inspection::is_hierarchy_name(arguments.output))
+    difference.emplace(from->place(), arguments.output, options, environment);
   const inspection::SurfaceComparison comparison = inspection::compare_surfaces(
       from->place(), to->place(), environment.files, options, *progress, environment.cancel);
+  const std::string made = difference ? difference->build(*progress, environment) : "";
   progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
   account_stream(environment, arguments.output)
       << (arguments.json ? pretty_json(comparison_json(comparison)) : comparison_text(comparison));
-  environment.messages << from->account() << to->account();
+  environment.messages << made << from->account() << to->account();
   return comparison.is_within() ? 0 : kExitFarther;
 }
 
@@ -89,13 +124,15 @@ memory. Percentiles and means are by area. Nothing aligns the two but --transfor
 a program for that. Exit code 1 if a vertex is farther than the tolerance. Of a mesh a hierarchy is
 built in TMPDIR, for as long as it takes.
 
-The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it.
+The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it. A NAME.hier
+or NAME.3tz is a hierarchy with the attribute "distance", for the page and preview --attribute.
 
 Examples:
   meshhier compare monday.hier sunday.hier
   meshhier compare model.ply scan.ply --tolerance 0.5
   meshhier compare model.hier scan.hier --tolerance 0.5mm --json
   meshhier compare monday.hier sunday.hier -o moved.ply
+  meshhier compare monday.hier sunday.hier -o moved.hier
   meshhier compare monday.3tz https://example.org/sunday.3tz --level 3
   meshhier compare a.hier b.hier --transform a_to_b.txt --unsigned
 )";
@@ -139,7 +176,9 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
                    "Moves FROM first: 16 numbers, a 4 x 4 matrix, rows first")
       ->type_name("FILE")
       ->check(name_fault);
-  command->add_option("-o,--output", arguments->output, "A PLY of FROM with the distances")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "FROM with the distances: .hier or .3tz, or else a PLY")
       ->type_name("FILE")
       ->check(name_fault);
   command->add_flag("--force", arguments->options.replace, "Replace a file that is there");

@@ -32,6 +32,7 @@ struct PreviewArguments {
   PreviewOptions options;
   std::optional<Level> level;
   std::optional<ImageFormat> format;
+  inspection::AttributeColours attribute;
 };
 
 constexpr std::array<std::pair<std::string_view, Standpoint>, 7> kViews{
@@ -73,6 +74,12 @@ bool parse_size(std::string_view text, PreviewOptions& options) {
   options.width = *width;
   options.height = *height;
   return true;
+}
+
+std::optional<std::array<double, 2>> parse_range(std::string_view text) {
+  const auto [from, to] = halves(text, ',');
+  const auto first = parse_number<double>(from), last = parse_number<double>(to);
+  return first && last ? std::optional(std::array{*first, *last}) : std::nullopt;
 }
 
 std::optional<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
@@ -120,6 +127,11 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
   options.format = format_of(arguments);
   if (arguments.level)
     options.selection = *arguments.level;
+  const inspection::AttributeColours& attribute = arguments.attribute;
+  if (!attribute.attribute.empty())
+    options.attribute = attribute;
+  else if (attribute.ramp || attribute.range)
+    throw Error(ErrorCode::usage, "--ramp and --range need --attribute");
   if (!options.region.crs.empty())
     require_region(options.region, "--crs");
   require_no_terminal(environment, arguments.output);
@@ -197,6 +209,24 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                     });
 }
 
+void add_attribute(CLI::App& command, inspection::AttributeColours& colours) {
+  command
+      .add_option("--attribute", colours.attribute, "Colours by this attribute; inspect lists them")
+      ->type_name("NAME");
+  add_parsed_option(command, "--ramp",
+                    "Its colours; if not given, coolwarm for signed values, else viridis",
+                    "viridis|cividis|turbo|coolwarm", "viridis, cividis, turbo or coolwarm",
+                    [&colours](const std::string& text) {
+                      colours.ramp = render::ramp_named(text);
+                      return colours.ramp.has_value();
+                    });
+  add_parsed_option(command, "--range", "Values at the ends of the ramp; if not given, all",
+                    "FROM,TO", "two numbers, FROM,TO", [&colours](const std::string& text) {
+                      colours.range = parse_range(text);
+                      return colours.range.has_value();
+                    });
+}
+
 constexpr const char* kPreviewFooter =
     R"(Without --level, --cut or --error the tiles are at most a quarter of a pixel off. They are drawn
 one by one, so memory holds the picture and one tile. The front is where +z is, or -y if z points
@@ -208,6 +238,7 @@ Examples:
   meshhier preview david.hier -o david.png
   meshhier preview david.hier --view front --size 800x1200 --background white -o david.webp
   meshhier preview town.3tz --up z --view top --error 0.5 -o map.png
+  meshhier preview scan.hier --attribute quality --ramp turbo --range 0,1 -o quality.png
   meshhier preview town.3tz --polygon parcel.geojson --view top -o parcel.png
   meshhier preview david.hier --level 0 --size 640x480 --format png -o - | display
 )";
@@ -222,6 +253,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
   add_what(*command, *arguments);
   add_region_options(*command, arguments->options.region);
   add_look(*command, *arguments);
+  add_attribute(*command, arguments->attribute);
   add_file_output_options(*command, "The picture: .png or .webp", arguments->output,
                           arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);

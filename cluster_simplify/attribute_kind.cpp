@@ -95,9 +95,12 @@ std::optional<AttributePoint> AttributeKind::mean(const AttributePoint& sum, dou
 double squared_difference(const AttributeLayout& layout, std::span<const float> a,
                           std::span<const float> b) {
   const auto colours = static_cast<std::size_t>(layout.colour_offset());
-  const auto after = static_cast<std::size_t>(layout.texcoord_offset());
+  const auto after = static_cast<std::size_t>(layout.value_offset());
+  const auto behind_values = static_cast<std::size_t>(layout.texcoord_offset());
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
+    if (k >= after && k < behind_values)
+      continue;
     const double range = k >= colours && k < after ? double{full_number(layout.colour)} : 1;
     const double difference = (double{a[k]} - double{b[k]}) / range;
     sum += difference * difference;

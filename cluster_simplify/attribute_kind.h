@@ -62,7 +62,7 @@ class AttributeKind {
 };
 
 /// The sum over all channels of their squared differences, those of colours in parts of their
-/// range. Not finite if a channel is not.
+/// range, but those of values. Not finite if a channel is not.
 double squared_difference(const AttributeLayout& layout, std::span<const float> a,
                           std::span<const float> b);
 

@@ -1,12 +1,15 @@
 #include "cluster_simplify/attribute_seams.h"
 
 #include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/label_borders.h"
 #include "cluster_simplify/texture_charts.h"
 #include "cluster_simplify/tile_wedges.h"
+#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <compare>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace meshhier::cluster_simplify {
@@ -48,11 +51,14 @@ class WedgeDifference {
       : wedges_(wedges),
         class_of_(texture_classes(wedges, layout)),
         normals_(AttributeKind::normals(layout, options)),
-        colours_(AttributeKind::colours(layout, options)) {}
+        colours_(AttributeKind::colours(layout, options)),
+        values_(layout) {}
 
   bool operator()(std::uint32_t a, std::uint32_t b) const {
-    return a != b &&
-           (class_of_[a] != class_of_[b] || are_apart(normals_, a, b) || are_apart(colours_, a, b));
+    return a != b && (class_of_[a] != class_of_[b] || are_apart(normals_, a, b) ||
+                      are_apart(colours_, a, b) ||
+                      !values_.have_equal_labels(wedges_.attributes_of(a).data(),
+                                                 wedges_.attributes_of(b).data()));
   }
 
  private:
@@ -63,15 +69,12 @@ class WedgeDifference {
   const TileWedges& wedges_;
   std::vector<std::uint32_t> class_of_;
   AttributeKind normals_, colours_;
+  ValueMixer values_;
 };
 
-}  // namespace
-
-std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
-                                       const WedgeOptions& options) {
-  if (joined.mesh.copies.empty() || layout.channels() == 0)  // copies without attributes are equal
-    return {};
-  const TileWedges wedges(joined.mesh);
+/// At which wedges of one place differ.
+std::vector<PlaceEdge> wedge_seams(const TileWedges& wedges, const AttributeLayout& layout,
+                                   const WedgeOptions& options) {
   const WedgeDifference differ(wedges, layout, options);
   const std::vector<Side> sides = sides_of(wedges);
   std::vector<PlaceEdge> seams;
@@ -83,6 +86,27 @@ std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeL
       seams.push_back(a.places);
   }
   return seams;
+}
+
+}  // namespace
+
+std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
+                                       const WedgeOptions& options) {
+  const bool has_labels = ValueMixer(layout).has_labels();
+  // Copies without attributes are equal.
+  const bool may_differ = !joined.mesh.copies.empty() && layout.channels() > 0;
+  if (!may_differ && !has_labels)
+    return {};
+  const TileWedges wedges(joined.mesh);
+  std::vector<PlaceEdge> seams;
+  if (may_differ)
+    seams = wedge_seams(wedges, layout, options);
+  if (!has_labels)
+    return seams;
+  const std::vector<PlaceEdge> borders = label_borders(wedges, layout);
+  std::vector<PlaceEdge> all;
+  std::ranges::set_union(seams, borders, std::back_inserter(all));
+  return all;
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -15,8 +15,8 @@ namespace meshhier::cluster_simplify {
 using PlaceEdge = std::array<std::uint32_t, 2>;
 
 /// The edges between own places at which two triangles have, at either end, different texture
-/// coordinates, or normals or colours that `options` keep apart; ascending. None if the tile has no
-/// copies. O(t log t).
+/// coordinates, other labels, or normals or colours that `options` keep apart, and label_borders();
+/// ascending. O(t log t).
 std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
                                        const WedgeOptions& options);
 

@@ -3,6 +3,7 @@
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/motion.h"
 #include "cluster_simplify/quadric.h"
+#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <limits>
@@ -119,6 +120,22 @@ std::vector<Vec3d> least_error_vertices(const BuildTile& joined,
   return points;
 }
 
+/// Gives the representatives the means of values, likewise weighted.
+void put_values(const BuildTile& joined, const AttributeLayout& layout, Contraction& contraction) {
+  const ValueMixer values(layout);
+  if (!values.has_values())
+    return;
+  std::vector<std::vector<WeightedVertex>> cells(contraction.representatives.size());
+  for (std::size_t i = 0; i < contraction.parent_of.size(); ++i)
+    cells[contraction.parent_of[i]].push_back(
+        {joined.mesh.vertices.attributes_of(i).data(), joined.history.weights[i]});
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    values.mix(cells[cell],
+               contraction.representatives.attributes.data() +
+                   cell * static_cast<std::size_t>(contraction.representatives.channels));
+  }
+}
+
 }  // namespace
 
 Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
@@ -152,6 +169,7 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
     normalize_average(layout, attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }
+  put_values(joined, layout, result);
   result.deviation = motion_of(joined, result);
   return result;
 }

@@ -6,6 +6,7 @@
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/representatives.h"
 #include "hierarchy/four_floats.h"
+#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <array>
@@ -80,6 +81,9 @@ class OptimalPlacement {
       : mesh_(mesh),
         positions_(frame.to_local(tile.vertices.positions)),
         colours_(layout),
+        values_(layout),
+        first_value_(static_cast<std::size_t>(layout.value_offset())),
+        behind_values_(static_cast<std::size_t>(layout.texcoord_offset())),
         vertices_(vertices) {
     const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_, seams);
     prices_.emplace(tile, frame, total_area(quadrics));
@@ -181,9 +185,14 @@ class OptimalPlacement {
     const auto channels = static_cast<std::size_t>(vertices_.channels);
     float* to = vertices_.attributes.data() + c.to * channels;
     const float* from = vertices_.attributes.data() + c.from * channels;
-    for (std::size_t k = 0; k < channels; ++k)
-      to[k] = colours_.has(k) ? mixed_colour(to[k], from[k], part)
-                              : to[k] * (1 - part) + from[k] * part;
+    const auto interpolate = [&](std::size_t first, std::size_t end) {
+      for (std::size_t k = first; k < end; ++k)
+        to[k] = colours_.has(k) ? mixed_colour(to[k], from[k], part)
+                                : to[k] * (1 - part) + from[k] * part;
+    };
+    interpolate(0, first_value_);
+    values_.mix(std::array<WeightedVertex, 2>{{{to, 1 - part}, {from, part}}}, to);
+    interpolate(behind_values_, channels);
   }
 
   const CollapseMesh& mesh_;
@@ -191,6 +200,8 @@ class OptimalPlacement {
   std::vector<PlacedQuadric> placed_;
   std::optional<TopologyPrices> prices_;
   ColourLight colours_;
+  ValueMixer values_;
+  std::size_t first_value_, behind_values_;  ///< channels
   VertexArray& vertices_;
 };
 

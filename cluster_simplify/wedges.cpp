@@ -5,6 +5,7 @@
 #include "cluster_simplify/texture_charts.h"
 #include "cluster_simplify/tile_wedges.h"
 #include "cluster_simplify/wedge_clusters.h"
+#include "hierarchy/value_mixer.h"
 #include "hierarchy/vec.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters&
 
 /// What a corner shows: one of each.
 struct Combination {
-  std::uint32_t chart, normal, colour;
+  std::uint32_t chart, normal, colour, labels;
   friend auto operator<=>(const Combination&, const Combination&) = default;
 };
 
@@ -157,6 +158,7 @@ class WedgeContraction {
         layout_(layout),
         normals_(AttributeKind::normals(layout, options)),
         colours_(AttributeKind::colours(layout, options)),
+        values_(layout),
         wedges_(joined.mesh),
         clusters_(wedges_, contraction),
         use_(use_of(wedges_, clusters_)),
@@ -210,31 +212,67 @@ class WedgeContraction {
     return order;
   }
 
+  const float* channels_of_wedge(const ClusterWedge& wedge) const {
+    return wedges_.attributes_of(wedge.wedge).data();
+  }
+
+  /// For each wedge of the cluster a number of what labels it has: `order` are those that count.
+  /// All of too many have the number of the first.
+  std::vector<std::uint32_t> label_groups(std::span<const ClusterWedge> cluster,
+                                          std::span<const std::uint32_t> order) const {
+    std::vector<std::uint32_t> group_of(cluster.size());
+    std::vector<std::uint32_t> firsts;
+    for (const std::uint32_t i : order) {
+      const auto known = std::ranges::find_if(firsts, [&](std::uint32_t first) {
+        return values_.have_equal_labels(channels_of_wedge(cluster[first]),
+                                         channels_of_wedge(cluster[i]));
+      });
+      group_of[i] = static_cast<std::uint32_t>(known - firsts.begin());
+      if (known != firsts.end())
+        continue;
+      if (firsts.size() < Leaders<AttributeKind>::kMost)
+        firsts.push_back(i);
+      else
+        group_of[i] = 0;
+    }
+    return group_of;
+  }
+
   NewWedges new_wedges(std::span<const ClusterWedge> cluster, std::uint32_t c) const {
     const std::vector<std::uint32_t> order = largest_first(cluster);
     if (order.empty())
       return {};
     const AttributeGroups normals = group_attributes(normals_, wedges_, cluster, order);
     const AttributeGroups colours = group_attributes(colours_, wedges_, cluster, order);
+    const std::vector<std::uint32_t> labels = label_groups(cluster, order);
     std::vector<Shown> shown;
     for (const std::uint32_t i : order)
-      shown.push_back({{charts_[cluster[i].wedge], normals.group_of[i], colours.group_of[i]}, i});
+      shown.push_back(
+          {{charts_[cluster[i].wedge], normals.group_of[i], colours.group_of[i], labels[i]}, i});
     std::sort(shown.begin(), shown.end());
     const std::vector<Shown> combinations = firsts_of(shown);
     VertexArray vertices{{}, {}, representatives_.channels};
-    for (const auto& [what, member] : combinations)
+    auto of = shown.begin();
+    for (const auto& [what, member] : combinations) {
+      std::vector<WeightedVertex> members;
+      for (; of != shown.end() && of->what == what; ++of)
+        members.push_back({channels_of_wedge(cluster[of->member]), cluster[of->member].area});
       vertices.append(
           representatives_.positions[c],
-          combined(what.chart, normals.values[what.normal], colours.values[what.colour]));
+          combined(what.chart, normals.values[what.normal], colours.values[what.colour], members));
+    }
     return numbered(cluster, shown, combinations, vertices);
   }
 
   /// The attributes of a combination, as many of the floats as the layout has.
   std::vector<float> combined(std::uint32_t chart, const std::array<float, 4>& normal,
-                              const std::array<float, 4>& colour) const {
+                              const std::array<float, 4>& colour,
+                              std::span<const WeightedVertex> members) const {
     std::vector<float> attributes;
     attributes.insert(attributes.end(), normal.begin(), normal.begin() + layout_.colour_offset());
     attributes.insert(attributes.end(), colour.begin(), colour.begin() + layout_.colour_channels());
+    attributes.resize(static_cast<std::size_t>(layout_.texcoord_offset()));
+    values_.mix(members, attributes.data());
     if (layout_.texcoords)
       attributes.insert(attributes.end(), coordinates_[chart].begin(), coordinates_[chart].end());
     return attributes;
@@ -307,6 +345,7 @@ class WedgeContraction {
   const VertexArray& representatives_;
   const AttributeLayout& layout_;
   AttributeKind normals_, colours_;
+  ValueMixer values_;
   TileWedges wedges_;
   WedgeClusters clusters_;
   WedgeUse use_;

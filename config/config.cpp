@@ -176,11 +176,13 @@ Override split_override(const std::string& setting) {
 Json override_value(const Override& setting) {
   const ConfigKey* key = find_config_key(setting.path);
   const bool wants_text =
-      key != nullptr && (key->kind == KeyKind::path || key->kind == KeyKind::paths ||
-                         key->kind == KeyKind::text || key->kind == KeyKind::choice);
+      key != nullptr &&
+      (key->kind == KeyKind::path || key->kind == KeyKind::paths || key->kind == KeyKind::text ||
+       key->kind == KeyKind::choice || key->kind == KeyKind::names);
   ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
   Json value = Json::parse(setting.text, watched_by(guard), false);
-  const bool is_list = value.is_array() && key != nullptr && key->kind == KeyKind::paths;
+  const bool is_list = value.is_array() && key != nullptr &&
+                       (key->kind == KeyKind::paths || key->kind == KeyKind::names);
   if (value.is_discarded() || (wants_text && !value.is_string() && !is_list))
     value = setting.text;
   return value;

@@ -11,6 +11,7 @@
 #include "hierarchy/texture.h"
 #include "hierarchy/topology.h"
 #include "hierarchy/unit.h"
+#include "mesh_io/attribute_choice.h"
 #include "mesh_io/input_paths.h"
 #include "partition/direction.h"
 #include "storage/format/tile_glb.h"
@@ -177,6 +178,7 @@ struct Config {
   mesh_io::InputPaths input;  ///< not empty
   /// Two corners: only triangles that touch the box between them are built.
   std::optional<std::array<double, 6>> crop;
+  mesh_io::AttributeChoice attributes;  ///< that are read besides those that are shown
   bool weld = false;                    ///< vertices of equal position and attributes become one
   Topology topology = Topology::place;  ///< which vertices are one point of the surface
   std::filesystem::path output;         ///< a directory or file, without a slash at its end

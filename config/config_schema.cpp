@@ -31,6 +31,8 @@ constexpr double kMostSectors = 65536;
 constexpr double kMostThreads = 4096;
 /// Each is a line of the manifest and of the journal, which have a MiB.
 constexpr double kMostInputs = 100000;
+/// A mesh has no more.
+constexpr double kMostAttributes = kMaxValueChannels;
 /// Of texts that the manifest repeats, which has 1 MiB.
 constexpr double kMostTextBytes = 32768;
 /// JSON numbers are exact up to here.
@@ -231,6 +233,48 @@ ConfigKey choice(ConfigKey key, const Names& names, Field field) {
   return key;
 }
 
+ConfigKey attributes(ConfigKey key) {
+  using Which = mesh_io::AttributeChoice::Which;
+  key.kind = KeyKind::names;
+  key.maximum = kMostAttributes;
+  key.choices = {"all", "none"};
+  key.assign = [](Config& config, const Json& value) {
+    config.attributes.which = value == "all"    ? Which::all
+                              : value == "none" ? Which::none
+                                                : Which::named;
+    config.attributes.names.clear();
+    if (value.is_array())
+      value.get_to(config.attributes.names);
+  };
+  key.show = [](const Config& config) {
+    switch (config.attributes.which) {
+      case Which::all:
+        return Json("all");
+      case Which::none:
+        return Json("none");
+      case Which::named:
+        break;
+    }
+    return Json(config.attributes.names);
+  };
+  return key;
+}
+
+ConfigKey labels(ConfigKey key) {
+  key.kind = KeyKind::names;
+  key.maximum = kMostAttributes;
+  key.choices = {"integers"};
+  key.assign = [](Config& config, const Json& value) {
+    config.attributes.labels.reset();
+    if (value.is_array())
+      config.attributes.labels = value.get<std::vector<std::string>>();
+  };
+  key.show = [](const Config& config) {
+    return config.attributes.labels ? Json(*config.attributes.labels) : Json("integers");
+  };
+  return key;
+}
+
 ConfigKey deciding(ConfigKey key) {
   key.decides_result = true;
   return key;
@@ -278,6 +322,14 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "which vertices are one point of the surface: all at one place, whatever "
                       "their attributes (`place`), or each by itself (`index`)"},
           kTopologies, [](auto& c) -> auto& { return c.topology; })),
+      deciding(attributes(
+          {.path = "attributes",
+           .meaning = "which numbers of vertices are kept besides normals, colours and texture "
+                      "coordinates: `all`, `none`, or a list of their names"})),
+      deciding(labels({.path = "labels",
+                       .meaning =
+                           "which of them are labels, of which no means are made: those of integer "
+                           "types (`integers`), or a list of names"})),
       deciding(number(
           {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),
@@ -498,6 +550,18 @@ bool is_list_of_levels(const ConfigKey& key, const Json& value) {
                      [&](const Json& one) { return accepts(entry, one); });
 }
 
+bool is_choice(const ConfigKey& key, const Json& value) {
+  return value.is_string() &&
+         std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end();
+}
+
+bool is_list_of_names(const ConfigKey& key, const Json& value) {
+  return value.is_array() && static_cast<double>(value.size()) <= key.maximum &&
+         std::all_of(value.begin(), value.end(), [](const Json& name) {
+           return name.is_string() && is_attribute_name(name.get_ref<const std::string&>());
+         });
+}
+
 bool is_usable_path(const Json& value) {
   if (!value.is_string())
     return false;
@@ -569,9 +633,9 @@ bool accepts(const ConfigKey& key, const Json& value) {
     case KeyKind::size:
       return is_size_within(key, value);
     case KeyKind::choice:
-      return value.is_string() &&
-             std::find(key.choices.begin(), key.choices.end(),
-                       value.get_ref<const std::string&>()) != key.choices.end();
+      return is_choice(key, value);
+    case KeyKind::names:
+      return is_choice(key, value) || is_list_of_names(key, value);
   }
   return false;
 }
@@ -608,10 +672,12 @@ std::string expectation(const ConfigKey& key) {
     case KeyKind::size:
       return std::string(execution::kSizeSyntax);
     case KeyKind::choice:
+    case KeyKind::names:
       break;
   }
-  return fmt::format("{}\"{}\"", key.choices.size() > 1 ? "one of " : "",
-                     fmt::join(key.choices, "\", \""));
+  return fmt::format("{}\"{}\"{}", key.choices.size() > 1 ? "one of " : "",
+                     fmt::join(key.choices, "\", \""),
+                     key.kind == KeyKind::names ? " or a list of names" : "");
 }
 
 }  // namespace meshhier::config

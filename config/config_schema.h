@@ -25,7 +25,8 @@ enum class KeyKind {
   numbers,  ///< a list of so many finite numbers as `maximum` says
   levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
-  choice    ///< one of `choices`
+  choice,   ///< one of `choices`
+  names     ///< one of `choices`, or a list of at most `maximum` names of attributes
 };
 
 struct ConfigKey {

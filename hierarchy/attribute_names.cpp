@@ -19,6 +19,8 @@ std::string attribute_names(const AttributeLayout& layout) {
           (layout.alpha ? " with alpha" : ""));
   add(layout.texcoords && !layout.material, "texture coordinates");
   add(layout.material, "textures");
+  add(!layout.values.empty(),
+      std::to_string(layout.values.size()) + (layout.values.size() == 1 ? " value" : " values"));
   return names.empty() ? "none" : names;
 }
 

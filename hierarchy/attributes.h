@@ -5,17 +5,20 @@
 //
 //   normals     nx ny nz      as given (unit length or not)
 //   colours     r g b [a]     the stored number: 0..255 for u8, 0..65535 for u16, as given for f32
+//   values      one or two    each, as scalar_value.h says
 //   texcoords   u v
 //   material    m             its number in the mesh's MaterialList, where the coordinates count
 //
 // u8, u16 and float values are exact as float, so attributes survive bit for bit.
 #pragma once
 
+#include "hierarchy/scalar_value.h"
 #include "hierarchy/srgb.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace meshhier {
 
@@ -42,22 +45,34 @@ struct AttributeLayout {
   /// Colours are what the light of pictures is multiplied by, as glTF has it, and are seen where
   /// there is no picture; else they are seen without pictures alone. Only of textured meshes.
   bool tints = false;
+  std::vector<ScalarAttribute> values{};  ///< of at most kMaxValueChannels; no name twice
 
-  constexpr int colour_channels() const { return colour == ColourType::none ? 0 : alpha ? 4 : 3; }
-  constexpr int normal_offset() const { return 0; }
-  constexpr int colour_offset() const { return normals ? 3 : 0; }
-  constexpr int texcoord_offset() const { return colour_offset() + colour_channels(); }
-  constexpr int material_offset() const { return texcoord_offset() + (texcoords ? 2 : 0); }
-  constexpr int channels() const { return material_offset() + (material ? 1 : 0); }
-  /// Normals and colours, which lie first.
-  constexpr AttributeLayout without_texcoords() const {
-    return {.normals = normals, .colour = colour, .alpha = alpha, .space = space, .tints = tints};
+  int colour_channels() const { return colour == ColourType::none ? 0 : alpha ? 4 : 3; }
+  int value_channels() const {
+    int sum = 0;
+    for (const ScalarAttribute& value : values)
+      sum += channels_of(value.type);
+    return sum;
   }
-  friend constexpr bool operator==(const AttributeLayout&, const AttributeLayout&) = default;
+  int normal_offset() const { return 0; }
+  int colour_offset() const { return normals ? 3 : 0; }
+  int value_offset() const { return colour_offset() + colour_channels(); }
+  int texcoord_offset() const { return value_offset() + value_channels(); }
+  int material_offset() const { return texcoord_offset() + (texcoords ? 2 : 0); }
+  int channels() const { return material_offset() + (material ? 1 : 0); }
+  /// Normals, colours and values, which lie first.
+  AttributeLayout without_texcoords() const {
+    AttributeLayout layout = *this;
+    layout.texcoords = layout.material = false;
+    return layout;
+  }
+  friend bool operator==(const AttributeLayout&, const AttributeLayout&) = default;
 };
 
-/// The largest channel count of any layout: 3 + 4 + 2 + 1.
-inline constexpr int kMaxChannels = 10;
+/// A mesh has at most so many channels of values.
+inline constexpr int kMaxValueChannels = 54;
+/// The largest channel count of any layout: 3 + 4 + kMaxValueChannels + 2 + 1.
+inline constexpr int kMaxChannels = 10 + kMaxValueChannels;
 
 /// Colours as their light, 0 to 1, so that means are those of light; what is outside is cut.
 class ColourLight {

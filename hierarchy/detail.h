@@ -26,12 +26,12 @@ namespace meshhier {
 inline constexpr std::size_t kRunEntries = 65536;
 
 /// How many values a vertex has: x, y, z, then the attributes' channels.
-constexpr int vertex_values(const AttributeLayout& layout) {
+inline int vertex_values(const AttributeLayout& layout) {
   return 3 + layout.channels();
 }
 
 /// Bytes that value number `value` of a vertex is kept in.
-constexpr int value_bytes(const AttributeLayout& layout, int value) {
+inline int value_bytes(const AttributeLayout& layout, int value) {
   const int colour = value - 3 - layout.colour_offset();
   if (colour < 0 || colour >= layout.colour_channels())
     return 4;

@@ -9,6 +9,7 @@
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
 #include "hierarchy/unit.h"
+#include "hierarchy/value_statistics.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -100,6 +101,7 @@ struct SourceSummary {
   bool double_precision = false;           ///< coordinates do not fit float exactly
   std::optional<Unit> units;               ///< of coordinates, if the format says it
   AttributeLayout attributes;              ///< without texture coordinates if it has textures
+  std::vector<ValueStatistics> values{};   ///< of each of attributes.values
   std::optional<SourceTextures> textures;  ///< none: no picture, or the build was to ignore them
   std::vector<SourceFile> files;  ///< in their order; empty: one PLY that was read in place
   std::vector<SourceCount>

@@ -73,6 +73,7 @@ class Import {
     count("untextured_files", counts.untextured_files);
     count("dropped_normals", counts.dropped_normals);
     count("dropped_texcoords", counts.dropped_texcoords);
+    count("dropped_values", counts.dropped_values);
     count(kMadeWhite, counts.white_vertices);
     count(kHiddenColours, counts.hidden_colours);
     count("converted_colours", counts.converted_colours);
@@ -220,9 +221,9 @@ class Import {
           Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
   }
 
-  static std::unique_ptr<mesh_io::PlySource> open_ply(std::unique_ptr<storage::File> file) {
-    return mesh_io::make_ply_source(std::move(file), mesh_io::PlyWrittenBy::anyone,
-                                    mesh_io::Unplaced::visited);
+  std::unique_ptr<mesh_io::PlySource> open_ply(std::unique_ptr<storage::File> file) const {
+    return mesh_io::make_ply_source(std::move(file), {.unplaced = mesh_io::Unplaced::visited,
+                                                      .attributes = input_.attributes()});
   }
 
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
@@ -445,6 +446,7 @@ class Import {
     content.triangle_count = mesh.triangles.size();
     content.attributes = mesh.layout;
     content.double_coordinates = !mesh.fits_float;
+    content.is_import = true;
     mesh_io::PlyWriter writer(env_.files.create(ply.path()), content);
     constexpr std::uint64_t kBlock = 16384;
     const std::size_t channels = mesh.channels();

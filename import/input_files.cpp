@@ -25,11 +25,12 @@ namespace {
 constexpr std::size_t kLongestPath = 4096;
 constexpr std::size_t kLongestUnused = 100;
 
-std::optional<mesh_io::PlyPlan> plan_of(const storage::File& file) {
+std::optional<mesh_io::PlyPlan> plan_of(const storage::File& file,
+                                        const mesh_io::AttributeChoice& attributes) {
   std::string start(mesh_io::kMaxHeaderBytes, '\0');
   const auto stream = mesh_io::open_stream({file, file.size()}, {});
   start.resize(stream->read(std::as_writable_bytes(std::span(start))));
-  return mesh_io::plan_of(start, file.path());
+  return mesh_io::plan_of(start, file.path(), attributes);
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ void InputFiles::add_tileset(const std::filesystem::path& path) {
 }
 
 void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts) {
-  const std::optional<mesh_io::PlyPlan> plan = plan_of(file);
+  const std::optional<mesh_io::PlyPlan> plan = plan_of(file, use_.attributes);
   if (!plan)
     return;
   facts.has_corner_attributes = importing::has_corner_attributes(*plan, use_.textures);

@@ -31,6 +31,7 @@ struct InputUse {
   bool weld = false;  ///< vertices of equal position and attributes become one
   Textures textures = Textures::use;
   std::optional<BoundsD> crop{};  ///< only triangles that touch it, input coordinates
+  mesh_io::AttributeChoice attributes{};
 };
 
 /// What a file is called unpacked: "a.ply" of "a.ply.gz".
@@ -81,6 +82,7 @@ class InputFiles {
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return use_.weld; }
   const std::optional<BoundsD>& crop() const { return use_.crop; }
+  const mesh_io::AttributeChoice& attributes() const { return use_.attributes; }
   /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
   void note_unplaced() { has_unplaced_ = true; }
   bool has_unplaced() const { return has_unplaced_; }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -99,6 +100,17 @@ bool may_tint(std::span<const JoinedFile> files) {
   });
 }
 
+/// The first one of a value; none if the layout has not that value.
+std::optional<std::size_t> channel_of(const ScalarAttribute& value, const AttributeLayout& layout) {
+  int channel = layout.value_offset();
+  for (const ScalarAttribute& one : layout.values) {
+    if (one == value)
+      return static_cast<std::size_t>(channel);
+    channel += channels_of(one.type);
+  }
+  return std::nullopt;
+}
+
 AttributeLayout joined_layout(std::span<const JoinedFile> files) {
   AttributeLayout joined{.normals = true, .texcoords = true};
   for (const JoinedFile& file : files) {
@@ -118,6 +130,11 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
         std::max(joined.colour, file.layout.space == joined.space ? colour : type_of_light(colour));
     joined.alpha = joined.alpha || (colour != ColourType::none && file.layout.alpha);
   }
+  joined.values = files[0].layout.values;
+  std::erase_if(joined.values, [&](const ScalarAttribute& value) {
+    return !std::ranges::all_of(
+        files, [&](const JoinedFile& file) { return channel_of(value, file.layout).has_value(); });
+  });
   joined.tints = joined.material && joined.colour != ColourType::none && may_tint(files);
   return joined;
 }
@@ -129,12 +146,17 @@ class RowJoin {
       : file_(file), to_(to), plain_(plain) {
     keeps_paint_ = file.is_painted && !to.material;
     colour_ = keeps_paint_ ? file.layout.colour : own_colour(file);
+    for (const ScalarAttribute& value : to.values)
+      values_.push_back(
+          {*channel_of(value, file.layout), static_cast<std::size_t>(channels_of(value.type))});
   }
 
   void append(std::span<const float> row, storage::RecordSpool<float>& joined) const {
     if (to_.normals)
       joined.append(row.first(3));
     append_colour(row, joined);
+    for (const auto [channel, count] : values_)
+      joined.append(row.subspan(channel, count));
     if (!to_.texcoords)
       return;
     if (shows_texcoords())
@@ -149,6 +171,7 @@ class RowJoin {
     counts.untextured_files += to_.material && !from.material ? 1 : 0;
     counts.dropped_normals += from.normals && !to_.normals ? n : 0;
     counts.dropped_texcoords += from.texcoords && !shows_texcoords() ? n : 0;
+    counts.dropped_values += n * (from.values.size() - to_.values.size());
     if (to_.colour == ColourType::none)
       return;
     counts.white_vertices += colour_ == ColourType::none && !to_.material ? n : 0;
@@ -182,6 +205,10 @@ class RowJoin {
   PlainMaterials& plain_;
   bool keeps_paint_ = false;
   ColourType colour_{};
+  struct Channels {
+    std::size_t first, count;
+  };
+  std::vector<Channels> values_;  ///< of the file's vertices
 };
 
 /// So many channels from `first` on.

@@ -25,6 +25,7 @@ struct JoinCounts {
   std::uint64_t white_vertices = 0;
   std::uint64_t hidden_colours = 0;     ///< of vertices that show no picture or were to tint theirs
   std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
+  std::uint64_t dropped_values = 0;     ///< of vertices
 };
 
 /// Gives all vertices of `mesh`, which have the channels of their own files, those of all files
@@ -35,6 +36,7 @@ struct JoinCounts {
 /// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a material
 /// of
 ///   the colour that the file's material has, else a white one;
+/// * values that all files have, of one type;
 /// * other texture coordinates, if all files have them.
 /// A list of equal layouts stays as it is.
 JoinCounts join_layouts(std::span<const JoinedFile> files, RawMesh& mesh, const ImportRoom& room);

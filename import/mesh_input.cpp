@@ -14,7 +14,7 @@ MeshInput::MeshInput(const mesh_io::InputPaths& paths, storage::FileSystem& file
     : system_(files), input_(files, paths, use) {
   if (needs_import())
     return;
-  in_place_ = mesh_io::open_mesh(files.input(), paths[0]);
+  in_place_ = mesh_io::open_mesh(files.input(), paths[0], use.attributes);
   description_ = in_place_->description();
 }
 
@@ -80,7 +80,8 @@ std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
   return mesh_io::make_ply_source(
-      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()), facts_.writer);
+      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()),
+      {.writer = facts_.writer, .attributes = input_.attributes()});
 }
 
 InputRecord MeshInput::record(std::uint64_t checksum) const {

@@ -163,8 +163,10 @@ std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
     return weld_into<6>(mesh, welded, table, room);
   if (words <= 9)
     return weld_into<9>(mesh, welded, table, room);
-  static_assert(6 + kMaxChannels <= 16);
-  return weld_into<16>(mesh, welded, table, room);
+  if (words <= 16)
+    return weld_into<16>(mesh, welded, table, room);
+  constexpr std::size_t kMost = 6 + kMaxChannels;
+  return weld_into<kMost>(mesh, welded, table, room);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ class DifferencePly {
     mesh_io::PlyContent content;
     content.vertex_count = positions_.size();
     content.triangle_count = triangles_.size();
-    content.values = {"distance"};
+    content.attributes.values = {{"distance", ValueType::f32}};
     content.double_coordinates = origin != Vec3d{};
     content.comments = {comment};
     mesh_io::PlyWriter writer(output_.file(), content);

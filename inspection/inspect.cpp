@@ -10,6 +10,7 @@
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
+#include "storage/format/source_values.h"
 
 #include <algorithm>
 #include <array>
@@ -122,6 +123,18 @@ std::string textures_text(const SourceTextures& t) {
                      grouped(t.images, "pictures"), missing, grouped(t.texels, "texels"));
 }
 
+/// One of the values that vertices have.
+std::string value_text(const ScalarAttribute& attribute, const ValueStatistics& values) {
+  std::string text =
+      fmt::format("  {:<10} {} {}, {} to {}", shown(attribute.name), name_of(attribute.type),
+                  attribute.is_label ? "label" : "quantity", values.min, values.max);
+  if (!values.labels.empty())
+    text += ", " + counted(values.labels.size(), "labels");
+  if (values.missing > 0)
+    text += fmt::format(", missing at {}", grouped(values.missing, "vertices"));
+  return text + '\n';
+}
+
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
@@ -139,6 +152,8 @@ std::string source_text(const storage::Manifest& manifest) {
     text += fmt::format("origin       {} {} {}\n", o.x, o.y, o.z);
   }
   text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    text += value_text(s.attributes.values[i], s.values[i]);
   text += fmt::format("normals      {}{}\n", normals_of(manifest),
                       manifest.computed_normals ? ", 8 bits" : "");
   if (s.textures)
@@ -356,6 +371,7 @@ Json source_json(const storage::Manifest& manifest) {
           {"double_precision", s.double_precision},
           {"origin", corner(manifest.origin)},
           {"attributes", attribute_names(s.attributes)},
+          {"values", storage::source_values_json(s)},
           {"textures", textures_json(s.textures)},
           {"imported_files", files},
           {"counts", counts},

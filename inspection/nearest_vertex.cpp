@@ -23,7 +23,7 @@ std::array<double, 3> difference(const AttributeLayout& layout, const VertexAt& 
                               b.attributes().subspan(first, count));
   };
   return {between(layout.normal_offset(), layout.colour_offset()),
-          between(layout.colour_offset(), layout.texcoord_offset()),
+          between(layout.colour_offset(), layout.value_offset()),
           between(layout.texcoord_offset(), layout.channels())};
 }
 

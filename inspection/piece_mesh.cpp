@@ -9,7 +9,6 @@
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
-#include <random>
 #include <string>
 #include <variant>
 
@@ -17,25 +16,6 @@ namespace meshhier::inspection {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// That of the whole, but for the files.
-config::Config config_for(const storage::HierarchyReader& whole, const ExportOptions& options) {
-  config::Config config = config_of(whole.manifest());
-  config.output = options.output;
-  config.weld = false;
-  config.memory_budget = options.memory_budget;
-  config.storage.container = storage::lower_extension(options.output) == ".3tz"
-                                 ? storage::Container::archive
-                                 : storage::Container::files;
-  if (config.partition.count) {  // tiles as large as the whole's
-    config.partition.count.reset();
-    const Tree& tree = whole.tree();
-    config.partition.vertices = static_cast<std::uint32_t>(tree.ranks({tree.depth(), 0}).size());
-  }
-  if (!config.units)
-    config.units = whole.manifest().units;
-  return config;
-}
 
 void require_apart(storage::FileSystem& files, const fs::path& hierarchy,
                    const ExportOptions& options, const storage::FileSystem& local) {
@@ -52,33 +32,44 @@ bool is_hierarchy_name(const fs::path& output) {
   return ending == ".hier" || ending == ".3tz";
 }
 
-PieceMesh::PieceMesh(storage::FileSystem& files, const fs::path& hierarchy,
-                     const ExportOptions& options, storage::FileSystem& local,
-                     execution::Progress& progress, const execution::CancelToken& cancel)
-    : local_(local), folder_(storage::verify_scratch_path(options.output, std::random_device()())) {
-  require_apart(files, hierarchy, options, local);
+config::Config config_like(storage::FileSystem& files, const fs::path& hierarchy,
+                           const fs::path& output, bool replace, std::uint64_t memory_budget,
+                           storage::FileSystem& local) {
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader whole(place.files(), hierarchy);
-  config_ = config_for(whole, options);
-  config_.input =
-      folder_ / (hierarchy.stem().string() + (whole.manifest().textures ? ".obj" : ".ply"));
-  storage::check_output(local_, {config_.output, config_.storage.container}, options.replace);
-  ExportOptions mesh = options;
-  mesh.output = config_.input[0];
-  local_.make_directories(folder_);
-  try {
-    export_mesh(files, hierarchy, mesh, progress, cancel);
-  } catch (...) {
-    local_.remove_all(folder_);
-    throw;
+  config::Config config = config_of(whole.manifest());
+  config.output = output;
+  config.weld = false;
+  config.crop.reset();
+  config.memory_budget = memory_budget;
+  config.storage.container = storage::lower_extension(output) == ".3tz"
+                                 ? storage::Container::archive
+                                 : storage::Container::files;
+  if (config.partition.count) {  // tiles as large as the whole's
+    config.partition.count.reset();
+    const Tree& tree = whole.tree();
+    config.partition.vertices = static_cast<std::uint32_t>(tree.ranks({tree.depth(), 0}).size());
   }
+  if (!config.units)
+    config.units = whole.manifest().units;
+  storage::check_output(local, {config.output, config.storage.container}, replace);
+  return config;
 }
 
-PieceMesh::~PieceMesh() {
-  try {
-    local_.remove_all(folder_);
-  } catch (const Error&) {  // `clean` finds it
-  }
+PieceMesh::PieceMesh(storage::FileSystem& files, const fs::path& hierarchy,
+                     const ExportOptions& options, storage::FileSystem& local,
+                     execution::Progress& progress, const execution::CancelToken& cancel) {
+  require_apart(files, hierarchy, options, local);
+  config_ =
+      config_like(files, hierarchy, options.output, options.replace, options.memory_budget, local);
+  const storage::HierarchyFiles place(files, hierarchy);
+  const bool is_textured =
+      storage::HierarchyReader(place.files(), hierarchy).manifest().textures.has_value();
+  folder_.emplace(local, options.output);
+  ExportOptions mesh = options;
+  mesh.output = folder_->path() / (hierarchy.stem().string() + (is_textured ? ".obj" : ".ply"));
+  config_.input = mesh.output;
+  export_mesh(files, hierarchy, mesh, progress, cancel);
 }
 
 }  // namespace meshhier::inspection

@@ -5,14 +5,23 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "inspection/export.h"
+#include "inspection/work_folder.h"
 #include "storage/io/file.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace meshhier::inspection {
 
 /// Whether an output of export is a hierarchy: NAME.hier or NAME.3tz.
 bool is_hierarchy_name(const std::filesystem::path& output);
+
+/// By which the hierarchy was built, for something of the same kind that becomes `output`; without
+/// input and crop. Throws as HierarchyReader, and as storage::check_output().
+config::Config config_like(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                           const std::filesystem::path& output, bool replace,
+                           std::uint64_t memory_budget, storage::FileSystem& local);
 
 /// A temporary mesh beside the output, with the config by which the whole was built. It goes with
 /// the object.
@@ -27,15 +36,11 @@ class PieceMesh {
   PieceMesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
             const ExportOptions& options, storage::FileSystem& local, execution::Progress& progress,
             const execution::CancelToken& cancel);
-  PieceMesh(const PieceMesh&) = delete;
-  PieceMesh& operator=(const PieceMesh&) = delete;
-  ~PieceMesh();
 
   const config::Config& config() const { return config_; }
 
  private:
-  storage::FileSystem& local_;
-  std::filesystem::path folder_;
+  std::optional<WorkFolder> folder_;
   config::Config config_;
 };
 

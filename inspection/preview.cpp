@@ -41,9 +41,12 @@ Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
 }
 
 /// Of the root tile, which has the extent of the whole; its points if nothing else is there.
-std::vector<render::Facet> root_facets(const HierarchyReader& reader) {
+std::vector<render::Facet> root_facets(const HierarchyReader& reader,
+                                       const std::optional<AttributePainter>& painter) {
   PublishedTile root = reader.read_tile({});
-  const AttributeLayout& layout = reader.tile_format().attributes;
+  if (painter)
+    painter->paint(root);
+  const AttributeLayout& layout = painter ? painter->layout() : reader.tile_format().attributes;
   if (root.mesh.interior.empty())
     return render::points_of(root, layout);
   root.image = {};
@@ -239,10 +242,14 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   if (options.region.is_any())
     region = region_of(files, reader, options.region);
   const std::uint64_t cache_bytes = options.memory_budget / 8;
-  AttributeLayout layout = reader.tile_format().attributes;
+  std::optional<AttributePainter> painter;
+  if (options.attribute)
+    painter.emplace(reader.manifest().source, *options.attribute);
+  AttributeLayout layout = painter ? painter->layout() : reader.tile_format().attributes;
   const auto [camera, axes] = [&] {
-    const std::vector<render::Facet> root = root_facets(reader);
-    layout = render::drawn_layout(root, layout);
+    const std::vector<render::Facet> root = root_facets(reader, painter);
+    if (!painter)
+      layout = render::drawn_layout(root, layout);
     if (!region)
       return seen_by(reader, root, root, options);
     const auto piece = piece_facets(reader, *region, cache_bytes, cancel);
@@ -254,8 +261,10 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
   const double point_side = point_side_of(reader, shown, camera);
   const auto load = [&, &axes = axes](std::size_t i) {
-    render::SceneTile drawn =
-        scene_of(shown.tiles.load(shown.positions[i]), layout, point_side > 0);
+    ShownTile tile = shown.tiles.load(shown.positions[i]);
+    if (painter)
+      painter->paint(tile.tile);
+    render::SceneTile drawn = scene_of(tile, layout, point_side > 0);
     if (region)
       drawn = clip_scene(std::move(drawn), *region);
     if (point_side > 0)
@@ -263,7 +272,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     return drawn;
   };
   render::Scene scene{boxes_of(reader, shown, point_side), load,
-                      reader.manifest().textures && reader.manifest().textures->unlit
+                      !painter && reader.manifest().textures && reader.manifest().textures->unlit
                           ? render::Light::none
                           : render::Light::lamps};
   const render::PaintingOptions painting{

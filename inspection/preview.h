@@ -8,6 +8,7 @@
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "inspection/asked_region.h"
+#include "inspection/attribute_painter.h"
 #include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
@@ -35,6 +36,7 @@ struct PreviewOptions {
   std::optional<Standpoint> view;                         ///< none: the first view
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
+  std::optional<AttributeColours> attribute{};  ///< none: colours and pictures of the input
   RegionRequest region{};  ///< all else is left out, and the picture shows this piece
   std::uint64_t memory_budget = std::uint64_t{1} << 30;
 };

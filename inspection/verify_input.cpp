@@ -349,6 +349,12 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
 /// As the build did. A config that is none is told elsewhere.
 importing::InputUse use_of(const storage::Manifest& manifest) {
   importing::InputUse use;
+  use.attributes = {.which = mesh_io::AttributeChoice::Which::named, .labels = {{}}};
+  for (const ScalarAttribute& value : manifest.source.attributes.values) {
+    use.attributes.names.push_back(value.name);
+    if (value.is_label)
+      use.attributes.labels->push_back(value.name);
+  }
   use.textures = importing::shows_materials(manifest.source) ? importing::Textures::use
                                                              : importing::Textures::ignore;
   try {

@@ -3,6 +3,7 @@
 #include "mesh_io/coordinate_range.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -60,24 +61,59 @@ VertexRows::VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemor
   memory_.attributes.resize(rows * channels_);
 }
 
+VertexRows::Column::Form VertexRows::form_of(int slot) const {
+  int channel = layout_.value_offset();
+  for (const ScalarAttribute& value : layout_.values) {
+    if (channel == slot - kFirstAttributeSlot && takes_two_channels(value.type))
+      return Column::Form::two_channels;
+    channel += channels_of(value.type);
+  }
+  return Column::Form::one_float;
+}
+
+bool VertexRows::is_value(int slot) const {
+  const int channel = slot - kFirstAttributeSlot;
+  return channel >= layout_.value_offset() && channel < layout_.texcoord_offset();
+}
+
+/// Of the attributes that must be.
+bool VertexRows::all_checked_finite(std::size_t first, std::size_t count) const {
+  const float* rows = memory_.attributes.data() + first * channels_;
+  if (layout_.values.empty())
+    return all_finite(rows, count * channels_);
+  const auto before = static_cast<std::size_t>(layout_.value_offset());
+  const auto behind = static_cast<std::size_t>(layout_.texcoord_offset());
+  for (std::size_t i = 0; i < count; ++i, rows += channels_) {
+    if (!all_finite(rows, before) || !all_finite(rows + behind, channels_ - behind))
+      return false;
+  }
+  return true;
+}
+
 VertexRows::Column VertexRows::column(std::size_t row, int slot) {
   if (slot >= kFirstAttributeSlot) {
     const auto channel = static_cast<std::size_t>(slot - kFirstAttributeSlot);
     float* first = memory_.attributes.data() + row * channels_ + channel;
-    return {reinterpret_cast<std::byte*>(first), channels_ * sizeof(float), false};
+    return {reinterpret_cast<std::byte*>(first), channels_ * sizeof(float), form_of(slot)};
   }
   const auto axis = static_cast<std::size_t>(slot);
   if (wide_) {
     auto* first = reinterpret_cast<std::byte*>(memory_.exact.data() + row);
-    return {first + axis * sizeof(double), sizeof(Vec3d), true};
+    return {first + axis * sizeof(double), sizeof(Vec3d), Column::Form::one_double};
   }
   auto* first = reinterpret_cast<std::byte*>(memory_.positions.data() + row);
-  return {first + axis * sizeof(float), sizeof(Vec3f), false};
+  return {first + axis * sizeof(float), sizeof(Vec3f), Column::Form::one_float};
 }
 
 void VertexRows::put(const Column& to, double value) {
-  if (to.wide) {
+  if (to.form == Column::Form::one_double) {
     std::memcpy(to.data, &value, sizeof(value));
+    return;
+  }
+  if (to.form == Column::Form::two_channels) {
+    std::array<float, 2> halves;
+    put_value(ValueType::f64, value, halves.data());
+    std::memcpy(to.data, halves.data(), sizeof(halves));
     return;
   }
   const auto narrow = static_cast<float>(value);
@@ -99,8 +135,8 @@ bool VertexRows::is_placed(std::size_t row) const {
 ZeroedCounts VertexRows::zero_what_is_not_finite(std::size_t first, std::size_t count) {
   const std::span<float> rows =
       std::span(memory_.attributes).subspan(first * channels_, count * channels_);
-  return all_finite(rows.data(), rows.size()) ? ZeroedCounts{}
-                                              : mesh_io::zero_what_is_not_finite(layout_, rows);
+  return all_checked_finite(first, count) ? ZeroedCounts{}
+                                          : mesh_io::zero_what_is_not_finite(layout_, rows);
 }
 
 std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,
@@ -108,7 +144,7 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
   const bool sound =
       (wide_ ? all_in_range(std::span<const Vec3d>(memory_.exact).subspan(first, count))
              : all_in_range(std::span<const Vec3f>(memory_.positions).subspan(first, count))) &&
-      all_finite(memory_.attributes.data() + first * channels_, count * channels_);
+      all_checked_finite(first, count);
   if (sound && !checks.colours)
     return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
@@ -118,6 +154,8 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
     if (!checks.places && !is_placed(first + row))
       continue;
     for (int slot = 0; slot < slots; ++slot) {
+      if (is_value(slot))
+        continue;
       const double value = value_of(first + row, slot);
       const bool colour = checks.colours && slot >= first_colour && slot < last_colour;
       const bool coordinate = slot < kFirstAttributeSlot;

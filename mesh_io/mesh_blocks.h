@@ -21,12 +21,13 @@ class VertexRows {
   /// What `mesh` says decides the slots. Makes room for `rows` rows in `memory`.
   VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemory& memory);
 
-  /// Where a slot of a row goes, and the distance to the same slot of the row after it. Doubles if
-  /// wide, else floats.
+  /// Where a slot of a row goes, and the distance to the same slot of the row after it.
   struct Column {
+    enum class Form : std::uint8_t { one_float, one_double, two_channels };
+
     std::byte* data = nullptr;
     std::size_t stride = 0;
-    bool wide = false;
+    Form form = Form::one_float;
   };
   Column column(std::size_t row, int slot);
   /// Writes the value at `to.data`, as its type has it.
@@ -40,8 +41,8 @@ class VertexRows {
     int slot = 0;
     double value = 0;
   };
-  /// The first number of rows [first, first + count) that is not finite, is a coordinate out of
-  /// range, or is not what `checks` ask for.
+  /// The first number of rows [first, first + count), but for values, that is not finite, is a
+  /// coordinate out of range, or is not what `checks` ask for.
   std::optional<Defect> find_defect(std::size_t first, std::size_t count,
                                     const RowChecks& checks) const;
 
@@ -49,6 +50,9 @@ class VertexRows {
   VertexBlock block(std::uint64_t first_id, std::size_t rows, const ZeroedCounts& zeroed) const;
 
  private:
+  bool all_checked_finite(std::size_t first, std::size_t count) const;
+  Column::Form form_of(int slot) const;
+  bool is_value(int slot) const;
   double value_of(std::size_t row, int slot) const;
   bool is_placed(std::size_t row) const;
 

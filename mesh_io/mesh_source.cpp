@@ -11,9 +11,9 @@ bool VertexBlock::fits_float() const {
                              [](Vec3d p) { return meshhier::fits_float(p) || !is_finite(p); });
 }
 
-std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files,
-                                      const std::filesystem::path& path) {
-  return make_ply_source(files.open(path));
+std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files, const std::filesystem::path& path,
+                                      const AttributeChoice& attributes) {
+  return make_ply_source(files.open(path), {.attributes = attributes});
 }
 
 }  // namespace meshhier::mesh_io

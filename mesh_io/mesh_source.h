@@ -6,6 +6,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
+#include "mesh_io/attribute_choice.h"
 #include "mesh_io/block_runner.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
@@ -149,10 +150,10 @@ class MeshSource {
 /// PLY, ASCII and binary little and big endian: ply_header.h and ply_plan.h say what is read. In
 /// text a row is a line; in binary a line end may follow the data (ply_body.h). Coordinates and
 /// colours that are not finite are errors, as no average or bound can be made of them; normals and
-/// texture coordinates become 0 (zeroed.h). Errors are also a negative list length, and an index
-/// that is no vertex's. read_triangles() also checks everything behind the faces, up to the end of
-/// the file.
-std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files,
-                                      const std::filesystem::path& path);
+/// texture coordinates become 0 (zeroed.h), and values stay as they are. Errors are also a negative
+/// list length, and an index that is no vertex's. read_triangles() also checks everything behind
+/// the faces, up to the end of the file.
+std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files, const std::filesystem::path& path,
+                                      const AttributeChoice& attributes = {});
 
 }  // namespace meshhier::mesh_io

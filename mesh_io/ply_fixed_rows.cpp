@@ -24,14 +24,29 @@ void gather(const std::byte* from, std::size_t from_stride, VertexRows::Column t
   }
 }
 
+template <class T, bool Swap>
+void gather_halves(const std::byte* from, std::size_t from_stride, VertexRows::Column to,
+                   std::size_t rows) {
+  for (std::size_t i = 0; i < rows; ++i) {
+    VertexRows::put(to, static_cast<double>(load<T, Swap>(from + i * from_stride)));
+    to.data += to.stride;
+  }
+}
+
 /// One property of all rows.
 template <bool Swap>
 void gather_column(PlyType type, const std::byte* from, std::size_t from_stride,
                    VertexRows::Column to, std::size_t rows) {
   with_type(type, [&](auto zero) {
     using T = decltype(zero);
-    to.wide ? gather<T, Swap, double>(from, from_stride, to, rows)
-            : gather<T, Swap, float>(from, from_stride, to, rows);
+    switch (to.form) {
+      case VertexRows::Column::Form::one_float:
+        return gather<T, Swap, float>(from, from_stride, to, rows);
+      case VertexRows::Column::Form::one_double:
+        return gather<T, Swap, double>(from, from_stride, to, rows);
+      case VertexRows::Column::Form::two_channels:
+        return gather_halves<T, Swap>(from, from_stride, to, rows);
+    }
   });
 }
 

@@ -1,6 +1,8 @@
 // The text header of a PLY file (Turk, "The PLY Polygon File Format", 1994), as a value.
 #pragma once
 
+#include "hierarchy/scalar_value.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -14,6 +16,15 @@ enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 
 /// char uchar short ushort int uint float double, or int8 ... float64.
 enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+/// They have one order.
+constexpr ValueType value_type(PlyType type) {
+  return static_cast<ValueType>(type);
+}
+constexpr PlyType ply_type(ValueType type) {
+  return static_cast<PlyType>(type);
+}
+static_assert(value_type(PlyType::f64) == ValueType::f64 && ply_type(ValueType::i8) == PlyType::i8);
 
 constexpr std::uint64_t size_of(PlyType type) {
   constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};

@@ -20,8 +20,8 @@ using Role = PlyElementPlan::Role;
 class Planner {
  public:
   Planner(const PlyHeader& header, std::uint64_t file_bytes, const std::filesystem::path& path,
-          PlyWrittenBy writer)
-      : header_(header), file_bytes_(file_bytes), path_(path), writer_(writer) {}
+          PlyWrittenBy writer, const AttributeChoice& choice)
+      : header_(header), file_bytes_(file_bytes), path_(path), writer_(writer), choice_(choice) {}
 
   PlyPlan plan() {
     plan_.encoding = header_.encoding;
@@ -43,7 +43,9 @@ class Planner {
   void plan_attributes(PlyElementPlan& vertices);
   void plan_colours(PlyElementPlan& vertices);
   void take_colours(PlyElementPlan& vertices, const PlyColour& colour);
-  void plan_materials(PlyElementPlan& vertices);
+  void plan_texcoords(PlyElementPlan& vertices);
+  std::optional<std::string_view> value_name(const PlyProperty& property) const;
+  std::vector<std::size_t> plan_values(const PlyElementPlan& vertices);
   void check_range_grid() const;
   void check_sizes() const;
   void list_unused();
@@ -60,6 +62,7 @@ class Planner {
   std::uint64_t file_bytes_;
   const std::filesystem::path& path_;
   PlyWrittenBy writer_;
+  const AttributeChoice& choice_;
   PlyPlan plan_;
 };
 
@@ -133,28 +136,70 @@ void Planner::plan_attributes(PlyElementPlan& vertices) {
     break;
   }
   plan_colours(vertices);
-  constexpr std::array<std::array<std::string_view, 2>, 5> kTexcoords{{{"s", "t"},
-                                                                       {"u", "v"},
-                                                                       {"texture_u", "texture_v"},
-                                                                       {"texture_s", "texture_t"},
-                                                                       {"tu", "tv"}}};
-  for (const auto& names : kTexcoords) {
-    if (!find_all(vertices.element, names, found))
-      continue;
-    layout.texcoords = true;
-    assign_slots(vertices, std::span(found).first(2), layout.texcoord_offset());
-    break;
-  }
-  if (layout.texcoords && writer_ == PlyWrittenBy::import)
-    plan_materials(vertices);
+  plan_texcoords(vertices);
 }
 
-void Planner::plan_materials(PlyElementPlan& vertices) {
-  const int found = find_scalar(vertices.element, "material");
-  if (found < 0)
-    return;
-  plan_.attributes.material = true;
-  assign_slots(vertices, std::span(&found, 1), plan_.attributes.material_offset());
+constexpr std::array<std::array<std::string_view, 2>, 5> kTexcoordNames{
+    {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}, {"tu", "tv"}}};
+
+/// Texture coordinates lie behind the values, and values are what texture coordinates are not.
+void Planner::plan_texcoords(PlyElementPlan& vertices) {
+  AttributeLayout& layout = plan_.attributes;
+  std::array<int, 2> texcoords{};
+  layout.texcoords = std::ranges::any_of(kTexcoordNames, [&](const auto& names) {
+    return find_all(vertices.element, names, texcoords);
+  });
+  PlyElementPlan rest = vertices;
+  if (layout.texcoords)
+    assign_slots(rest, texcoords, 0);
+  const int material = layout.texcoords && writer_ == PlyWrittenBy::import
+                           ? find_scalar(vertices.element, "material")
+                           : -1;
+  if (material >= 0)
+    assign_slots(rest, std::span(&material, 1), 0);
+  int channel = layout.value_offset();
+  for (const std::size_t property : plan_values(rest)) {
+    const ValueType type = value_type(vertices.element.properties[property].type);
+    vertices.slots[property] = kFirstAttributeSlot + channel;
+    channel += channels_of(type);
+  }
+  if (layout.texcoords)
+    assign_slots(vertices, texcoords, layout.texcoord_offset());
+  layout.material = material >= 0;
+  if (layout.material)
+    assign_slots(vertices, std::span(&material, 1), layout.material_offset());
+}
+
+/// What the input called it; none if it is no value that can be read.
+std::optional<std::string_view> Planner::value_name(const PlyProperty& property) const {
+  std::string_view name = property.name;
+  if (writer_ == PlyWrittenBy::import) {
+    if (!name.starts_with(kImportedValue))
+      return std::nullopt;
+    name.remove_prefix(kImportedValue.size());
+  }
+  const bool is_known = std::ranges::find(plan_.attributes.values, name, &ScalarAttribute::name) !=
+                        plan_.attributes.values.end();
+  return is_attribute_name(name) && !is_known && choice_.takes(name) ? std::optional(name)
+                                                                     : std::nullopt;
+}
+
+/// The properties without a slot that are values, which are added to the layout.
+std::vector<std::size_t> Planner::plan_values(const PlyElementPlan& vertices) {
+  AttributeLayout& layout = plan_.attributes;
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < vertices.slots.size(); ++i) {
+    const PlyProperty& property = vertices.element.properties[i];
+    if (vertices.slots[i] != kSkipped || property.is_list())
+      continue;
+    const ValueType type = value_type(property.type);
+    const auto name = value_name(property);
+    if (!name || layout.value_channels() + channels_of(type) > kMaxValueChannels)
+      continue;
+    layout.values.push_back({std::string(*name), type, choice_.is_label(*name, type)});
+    found.push_back(i);
+  }
+  return found;
 }
 
 void Planner::plan_colours(PlyElementPlan& vertices) {
@@ -269,8 +314,9 @@ bool PlyElementPlan::takes(std::size_t property) const {
 }
 
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
-                      const std::filesystem::path& path, PlyWrittenBy writer) {
-  return Planner(header, file_bytes, path, writer).plan();
+                      const std::filesystem::path& path, PlyWrittenBy writer,
+                      const AttributeChoice& attributes) {
+  return Planner(header, file_bytes, path, writer, attributes).plan();
 }
 
 }  // namespace meshhier::mesh_io

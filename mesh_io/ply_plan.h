@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "mesh_io/attribute_choice.h"
 #include "mesh_io/ply_header.h"
 
 #include <array>
@@ -13,7 +14,8 @@
 
 namespace meshhier::mesh_io {
 
-/// Where a vertex property goes: coordinates are slots 0, 1, 2, attribute channel c is slot 3 + c.
+/// Where a vertex property goes: coordinates are slots 0, 1, 2, attribute channel c is slot 3 + c;
+/// a value of two channels has the first one's.
 inline constexpr int kSkipped = -1;
 inline constexpr int kFirstAttributeSlot = 3;
 
@@ -72,6 +74,10 @@ struct PlyPlan {
   std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
 };
 
+/// Of files that the import writes, what stands before the names of values: no other property has a
+/// name of that kind.
+inline constexpr std::string_view kImportedValue = "value:";
+
 /// What red, green and blue are called in files that the import writes.
 std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints);
 
@@ -94,6 +100,7 @@ enum class Unplaced : std::uint8_t { refused, visited };
 ///                        s t | u v | texture_u texture_v | texture_s texture_t | tu tv
 ///                        material                        behind the coordinates, if it is asked
 ///                        for
+///                        all other scalars               that are chosen: values of their type
 ///   element face         list vertex_indices | vertex_index
 ///                        red green blue [alpha]          if vertices have no colour
 ///   element tristrips    list vertex_indices | vertex_index
@@ -111,14 +118,15 @@ enum class Unplaced : std::uint8_t { refused, visited };
 ///                                  tx, tn                           the texture; the face
 ///
 /// Scalars that are not there as written are looked for without regard to the case of letters.
-/// Attributes of which not all parts are there are skipped. The parts of a colour must be of one
-/// type, else they are skipped: uchar is u8, ushort is u16, float and double are f32; the other
-/// integer types are read as u8, as 0 to 255 is what files mean by them (other values are errors).
-/// Everything else is skipped, and listed. Throws Error(input) if the vertices or faces cannot be
-/// read, if there are 2^32 vertices or more, or if the declared counts do not fit into
-/// `file_bytes`. Allocates nothing that a count sizes.
+/// Attributes of which not all parts are there are values like others. The parts of a colour must
+/// be of one type, else they are values: uchar is u8, ushort is u16, float and double are f32; the
+/// other integer types are read as u8, as 0 to 255 is what files mean by them (other values are
+/// errors). Of values that have no sound name (is_attribute_name()), one that is taken, or do not
+/// fit kMaxValueChannels, none is read. Everything else is skipped, and listed. Throws Error(input)
+/// if the vertices or faces cannot be read, if there are 2^32 vertices or more, or if the declared
+/// counts do not fit into `file_bytes`. Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
-                      const std::filesystem::path& path,
-                      PlyWrittenBy writer = PlyWrittenBy::anyone);
+                      const std::filesystem::path& path, PlyWrittenBy writer = PlyWrittenBy::anyone,
+                      const AttributeChoice& attributes = {});
 
 }  // namespace meshhier::mesh_io

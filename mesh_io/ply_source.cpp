@@ -21,11 +21,11 @@ namespace {
 
 class PlyFileSource final : public PlySource {
  public:
-  PlyFileSource(std::unique_ptr<storage::File> file, PlyWrittenBy writer, Unplaced unplaced)
+  PlyFileSource(std::unique_ptr<storage::File> file, const PlyReading& reading)
       : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
     const PlyHeader header = read_header();
-    plan_ = make_ply_plan(header, file_bytes_, file_->path(), writer);
-    plan_.checks.places = unplaced == Unplaced::refused;
+    plan_ = make_ply_plan(header, file_bytes_, file_->path(), reading.writer, reading.attributes);
+    plan_.checks.places = reading.unplaced == Unplaced::refused;
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
     locate_fixed_elements();
@@ -290,17 +290,19 @@ void PlyFileSource::read_texture_faces(const PlyTextureFaceVisitor& visit) {
 
 }  // namespace
 
-std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path) {
+std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path,
+                               const AttributeChoice& attributes) {
   try {
-    return make_ply_plan(parse_ply_header(start, path), UINT64_MAX, path);
+    return make_ply_plan(parse_ply_header(start, path), UINT64_MAX, path, PlyWrittenBy::anyone,
+                         attributes);
   } catch (const Error&) {
     return std::nullopt;  // who reads it says why it cannot be read
   }
 }
 
-std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file, PlyWrittenBy writer,
-                                           Unplaced unplaced) {
-  return std::make_unique<PlyFileSource>(std::move(file), writer, unplaced);
+std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
+                                           const PlyReading& reading) {
+  return std::make_unique<PlyFileSource>(std::move(file), reading);
 }
 
 }  // namespace meshhier::mesh_io

@@ -34,12 +34,18 @@ class PlySource : public MeshSource {
 inline constexpr std::size_t kMostUnnamedTextures = std::size_t{1} << 16;
 
 /// What is read of the file at the start of which is `start`; none if its header cannot be read.
-std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path);
+std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path,
+                               const AttributeChoice& attributes = {});
+
+struct PlyReading {
+  PlyWrittenBy writer = PlyWrittenBy::anyone;
+  Unplaced unplaced = Unplaced::refused;
+  AttributeChoice attributes{};
+};
 
 /// Reads the header of `file` and checks it. What is accepted: ply_header.h, ply_plan.h,
 /// ply_body.h.
 std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
-                                           PlyWrittenBy writer = PlyWrittenBy::anyone,
-                                           Unplaced unplaced = Unplaced::refused);
+                                           const PlyReading& reading = {});
 
 }  // namespace meshhier::mesh_io

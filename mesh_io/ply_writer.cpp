@@ -1,6 +1,7 @@
 #include "mesh_io/ply_writer.h"
 
 #include "mesh_io/ply_plan.h"
+#include "mesh_io/ply_values.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +9,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -20,34 +23,69 @@ namespace {
 /// Written at once: large enough that a disk streams, as much as the contract allows.
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-/// The largest row: three doubles and kMaxChannels floats.
+/// The largest row: three doubles and kMaxChannels floats, two of which may be one double.
 constexpr std::size_t kMaxRowBytes = 3 * sizeof(double) + kMaxChannels * sizeof(float);
 
 std::string_view colour_type_name(ColourType type) {
   return type == ColourType::u8 ? "uchar" : type == ColourType::u16 ? "ushort" : "float";
 }
 
-std::string attribute_lines(const AttributeLayout& layout) {
-  std::string lines;
-  const auto add = [&](std::string_view type, std::string_view name) {
-    lines += fmt::format("property {} {}\n", type, name);
+struct WrittenProperty {
+  std::string_view type;
+  std::string name;
+};
+
+/// Of normals and colours, which stand before values, and of texture coordinates, behind them.
+struct KnownProperties {
+  std::vector<WrittenProperty> before, behind;
+
+  explicit KnownProperties(const AttributeLayout& layout) {
+    const auto add = [](std::vector<WrittenProperty>& to, std::string_view type,
+                        const auto& names) {
+      for (const std::string_view name : names)
+        to.push_back({type, std::string(name)});
+    };
+    using Names = std::initializer_list<std::string_view>;
+    const std::string_view colour = colour_type_name(layout.colour);
+    if (layout.normals)
+      add(before, "float", Names{"nx", "ny", "nz"});
+    if (layout.colour != ColourType::none)
+      add(before, colour, imported_colour_names(layout.space, layout.tints));
+    if (layout.alpha)
+      add(before, colour, Names{"alpha"});
+    if (layout.texcoords)
+      add(behind, "float", Names{"s", "t"});
+    if (layout.material)
+      add(behind, "float", Names{"material"});
+  }
+};
+
+/// A value whose name another property has gets a number.
+std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, bool is_import,
+                                              const KnownProperties& known) {
+  std::vector<WrittenProperty> values;
+  const auto has = [](const std::vector<WrittenProperty>& list, const std::string& name) {
+    return std::ranges::find(list, name, &WrittenProperty::name) != list.end();
   };
-  if (layout.normals) {
-    for (const std::string_view name : {"nx", "ny", "nz"})
-      add("float", name);
+  for (const ScalarAttribute& value : layout.values) {
+    const std::string wanted = (is_import ? std::string(kImportedValue) : "") + value.name;
+    std::string name = wanted;
+    for (int number = 2; has(known.before, name) || has(known.behind, name) || has(values, name);
+         ++number)
+      name = fmt::format("{}_{}", wanted, number);
+    values.push_back({name_of(ply_type(value.type)), name});
   }
-  if (layout.colour != ColourType::none) {
-    for (const std::string_view name : imported_colour_names(layout.space, layout.tints))
-      add(colour_type_name(layout.colour), name);
+  return values;
+}
+
+std::string attribute_lines(const AttributeLayout& layout, bool is_import) {
+  const KnownProperties known(layout);
+  std::string lines;
+  for (const auto& properties :
+       {known.before, value_properties(layout, is_import, known), known.behind}) {
+    for (const auto& [type, name] : properties)
+      lines += fmt::format("property {} {}\n", type, name);
   }
-  if (layout.alpha)
-    add(colour_type_name(layout.colour), "alpha");
-  if (layout.texcoords) {
-    for (const std::string_view name : {"s", "t"})
-      add("float", name);
-  }
-  if (layout.material)
-    add("float", "material");
   return lines;
 }
 
@@ -67,9 +105,7 @@ std::string header_text(const PlyContent& content, std::string_view index_type) 
   for (const char axis : {'x', 'y', 'z'}) {
     text += fmt::format("property {} {}\n", content.double_coordinates ? "double" : "float", axis);
   }
-  text += attribute_lines(content.attributes);
-  for (const std::string& name : content.values)
-    text += fmt::format("property float {}\n", name);
+  text += attribute_lines(content.attributes, content.is_import);
   text += fmt::format("element face {}\nproperty list uchar {} vertex_indices\n",
                       content.triangle_count, index_type);
   if (content.edge_count > 0) {
@@ -123,7 +159,13 @@ struct PlyWriter::State {
     const AttributeLayout& layout = content.attributes;
     const int first_colour = layout.colour_offset();
     const int last_colour = first_colour + layout.colour_channels();
+    const int behind_values = layout.texcoord_offset();
     for (int i = 0; i < layout.channels(); ++i) {
+      if (i == last_colour && i < behind_values) {
+        put_values(values.data() + i);
+        i = behind_values - 1;
+        continue;
+      }
       const float value = values[static_cast<std::size_t>(i)];
       const bool colour = i >= first_colour && i < last_colour;
       if (colour && layout.colour == ColourType::u8) {
@@ -134,16 +176,21 @@ struct PlyWriter::State {
         put(value);
       }
     }
-    for (const float value : values.subspan(static_cast<std::size_t>(layout.channels()))) {
-      begin_row();
-      put(value);
+  }
+
+  /// `channels`: of a vertex, from the first value on.
+  void put_values(const float* channels) {
+    for (const ScalarAttribute& attribute : content.attributes.values) {
+      const double value = of_type(attribute.type, value_in(attribute.type, channels));
+      channels += channels_of(attribute.type);
+      with_type(ply_type(attribute.type),
+                [&](auto zero) { put(static_cast<decltype(zero)>(value)); });
     }
   }
 
   template <class Scalar>
   void put_vertices(std::span<const Vec3<Scalar>> positions, std::span<const float> attributes) {
-    const auto channels =
-        static_cast<std::size_t>(content.attributes.channels()) + content.values.size();
+    const auto channels = static_cast<std::size_t>(content.attributes.channels());
     assert(attributes.size() == positions.size() * channels);
     assert(triangles == 0 && edges == 0);
     for (std::size_t i = 0; i < positions.size(); ++i) {

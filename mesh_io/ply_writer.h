@@ -20,7 +20,7 @@ struct PlyContent {
   std::uint64_t triangle_count = 0;
   std::uint64_t edge_count = 0;  ///< 0: no edge element
   AttributeLayout attributes;
-  std::vector<std::string> values{};  ///< names of further properties of vertices, floats
+  bool is_import = false;  ///< values are written as kImportedValue says
   bool double_coordinates = false;
   std::vector<std::string> comments;  ///< one line each
 };
@@ -35,7 +35,7 @@ class PlyWriter {
   PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& content);
   ~PlyWriter();
 
-  /// `attributes`: of each vertex content.attributes.channels() floats, then its values.
+  /// `attributes`: of each vertex content.attributes.channels() floats.
   void write_vertices(std::span<const Vec3f> positions, std::span<const float> attributes);
   void write_vertices(std::span<const Vec3d> positions, std::span<const float> attributes);
   void write_triangles(std::span<const Triangle<std::uint32_t>> triangles);

@@ -10,6 +10,9 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace meshhier::pipeline {
 namespace {
 
@@ -74,7 +77,8 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
           files,
           {.weld = config.weld,
            .textures = config.texture.use ? importing::Textures::use : importing::Textures::ignore,
-           .crop = config.crop_box()}};
+           .crop = config.crop_box(),
+           .attributes = config.attributes}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {
@@ -83,8 +87,38 @@ bool is_read_before_plan(const importing::MeshInput& input, const config::Config
 
 namespace {
 
+/// Names that nothing has are mistyped.
+void require_attributes(const config::Config& config, const importing::MeshInput& input) {
+  const AttributeLayout& layout = input.description().attributes;
+  const auto require = [&](std::string_view key, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      if (std::ranges::find(layout.values, name, &ScalarAttribute::name) != layout.values.end())
+        continue;
+      std::vector<std::string> there;
+      for (const ScalarAttribute& value : layout.values)
+        there.push_back(value.name);
+      constexpr std::string_view kOfVertices = "vertex.";
+      for (const std::string& unused : input.files().unused()) {
+        if (unused.starts_with(kOfVertices))
+          there.push_back(unused.substr(kOfVertices.size()));
+      }
+      throw Error(
+          ErrorCode::input,
+          fmt::format("{}: {} has no \"{}\" to be read; {}", key, config.input.string(), name,
+                      there.empty() ? "there is nothing of that kind"
+                                    : fmt::format("there is {}", fmt::join(there, ", "))));
+    }
+  };
+  using Which = mesh_io::AttributeChoice::Which;
+  if (config.attributes.which == Which::named)
+    require("attributes", config.attributes.names);
+  if (config.attributes.labels && config.attributes.which != Which::none)
+    require("labels", *config.attributes.labels);
+}
+
 BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materials,
                   const config::Config& config, storage::FileSystem& files) {
+  require_attributes(config, input);
   BuildPlan plan = plan_build(config, input.description(), input.imported_bytes(),
                               plan_textures(std::move(materials), config.missing_images, files));
   input.files().check_unchanged();

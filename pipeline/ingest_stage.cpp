@@ -24,6 +24,23 @@ Vec3d widened(Vec3d p) {
   return p;
 }
 
+std::vector<ValueTally> tallies_of(const AttributeLayout& layout) {
+  return {layout.values.begin(), layout.values.end()};
+}
+
+/// `attributes`: of vertices one after another.
+void add_values(std::span<const float> attributes, const AttributeLayout& layout,
+                std::span<ValueTally> tallies) {
+  if (tallies.empty())
+    return;
+  const auto stride = static_cast<std::size_t>(layout.channels());
+  const float* channels = attributes.data() + layout.value_offset();
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    tallies[i].add(channels, stride, attributes.size() / stride);
+    channels += channels_of(layout.values[i].type);
+  }
+}
+
 /// What is learnt of one block of vertices.
 struct BlockScan {
   std::size_t count = 0;
@@ -32,12 +49,15 @@ struct BlockScan {
   std::vector<Vec3d> sample;  ///< those that `ids` name
   mesh_io::ZeroedCounts zeroed;
   ColourRange colours;
+  std::vector<ValueTally> values;
 
   void look_at(const mesh_io::VertexBlock& block, const AttributeLayout& layout,
                const partition::SampleIds& ids) {
     zeroed = block.zeroed;
     colours = {};
     colours.add(block.attributes, layout);
+    values = tallies_of(layout);
+    add_values(block.attributes, layout, values);
     float_exact = block.fits_float();
     block.exact.empty() ? look_at(block.first, block.positions, ids)
                         : look_at(block.first, block.exact, ids);
@@ -105,9 +125,12 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   sample_positions_.reserve(ids.count());
   const AttributeLayout layout = summary_.attributes;
   mesh_io::ZeroedCounts zeroed;
+  std::vector<ValueTally> values = tallies_of(layout);
   const auto take = [&](const BlockScan& block) {
     zeroed += block.zeroed;
     colours_.add(block.colours);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i].add(block.values[i]);
     summary_.bounds.add(block.bounds);
     float_exact_ = float_exact_ && block.float_exact;
     sample_positions_.insert(sample_positions_.end(), block.sample.begin(), block.sample.end());
@@ -125,6 +148,7 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
           slot.scan.look_at(source_->read_vertex_block(i, slot.memory), layout, ids);
         },
         [&](const Slot& slot) { return take(slot.scan); });
+    note_values(values);
     return zeroed;
   }
   BlockScan scan;
@@ -139,7 +163,13 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
         spooled_attributes_.append(std::as_bytes(block.attributes));
       },
       importing::parallel_blocks(context.memory().blocks_in_flight, context.cancel));
+  note_values(values);
   return zeroed;
+}
+
+void SourceMesh::note_values(std::span<const ValueTally> values) {
+  for (const ValueTally& value : values)
+    summary_.values.push_back(value.statistics());
 }
 
 void SourceMesh::choose_colour_type(execution::Progress& progress) {

@@ -125,6 +125,7 @@ class SourceMesh {
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
   mesh_io::ZeroedCounts scan(const StageContext& context);
+  void note_values(std::span<const ValueTally> values);
   void choose_colour_type(execution::Progress& progress);
   void choose_origin(const StageContext& context);
   mesh_io::VertexBlock read_input_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;

@@ -21,6 +21,7 @@ namespace meshhier::storage {
 // Component types and buffer view targets of the glTF 2.0 specification.
 inline constexpr unsigned kI8 = 5120;
 inline constexpr unsigned kU8 = 5121;
+inline constexpr unsigned kI16 = 5122;
 inline constexpr unsigned kU16 = 5123;
 inline constexpr unsigned kU32 = 5125;
 inline constexpr unsigned kF32 = 5126;

@@ -156,7 +156,7 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, format.attributes);
     for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord,
-                            Part::interior, Part::border, Part::image})
+                            Part::interior, Part::border, Part::values, Part::image})
       sizes.raw_bytes += plan[part].bytes();
     sizes.bytes += record.file_bytes;
     sizes.vertices += record.own_count;

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
+#include "storage/format/source_values.h"
 
 #include <algorithm>
 #include <array>
@@ -237,6 +238,8 @@ SourceSummary read_source(const JsonObject& object) {
   source.double_precision = object.boolean("double_precision");
   source.units = read_units(object);
   source.attributes = object.attributes("attributes");
+  if (object.has("values"))
+    read_source_values(object, source);
   if (object.has("textures"))
     source.textures = read_source_textures(object.object("textures"));
   if (source.textures && source.attributes.texcoords)
@@ -301,6 +304,8 @@ Json source_json(const SourceSummary& source) {
       {"bounds", {{"min", point_json(source.bounds.min)}, {"max", point_json(source.bounds.max)}}},
       {"double_precision", source.double_precision},
       {"attributes", attributes_json(source.attributes)}};
+  if (!source.attributes.values.empty())
+    json["values"] = source_values_json(source);
   if (source.textures)
     json["textures"] = source_textures_json(*source.textures);
   if (!source.files.empty())
@@ -337,7 +342,10 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.up = object.up("up");
   manifest.units = read_units(object);
   manifest.first_view = read_view(object);
-  manifest.screen_colours = object.count("format_version") <= kScreenColoursFormatVersion;
+  const std::uint64_t version = object.count("format_version");
+  manifest.screen_colours = version <= kScreenColoursFormatVersion;
+  if ((version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
+    object.wrong("format_version", "9 if and only if there are values");
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =

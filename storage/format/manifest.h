@@ -17,8 +17,10 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 8;
-/// The same with tiles that hold colours as screens have them.
+inline constexpr int kFormatVersion = 9;
+/// The same with tiles that have no values.
+inline constexpr int kNoValuesFormatVersion = 8;
+/// The one before: with tiles that hold colours as screens have them.
 inline constexpr int kScreenColoursFormatVersion = 7;
 /// The oldest that is read: that without a first view.
 inline constexpr int kOldestFormatVersion = 6;
@@ -81,9 +83,10 @@ struct Manifest {
   }
 
   int format_version() const {
-    return !screen_colours ? kFormatVersion
-           : first_view    ? kScreenColoursFormatVersion
-                           : kOldestFormatVersion;
+    return !source.attributes.values.empty() ? kFormatVersion
+           : !screen_colours                 ? kNoValuesFormatVersion
+           : first_view                      ? kScreenColoursFormatVersion
+                                             : kOldestFormatVersion;
   }
 };
 

@@ -9,6 +9,7 @@
 #include "storage/format/tile_pack.h"
 #include "storage/format/tile_plan.h"
 #include "storage/format/tile_sections.h"
+#include "storage/format/tile_values.h"
 
 #include <algorithm>
 #include <array>
@@ -77,6 +78,31 @@ class Writer {
     }
   }
 
+  void put_values(std::span<const float> attributes) {
+    const Section& section = plan_[Part::values];
+    const Section& raw = plan_[Part::raw_values];
+    const auto channels = static_cast<std::size_t>(plan_.layout().channels());
+    auto offset = static_cast<std::size_t>(plan_.layout().value_offset());
+    std::size_t to = 0, raw_to = 0;
+    for (const ScalarAttribute& value : plan_.layout().values) {
+      const auto value_at = [&](std::size_t v) {
+        return value_in(value.type, attributes.data() + v * channels + offset);
+      };
+      for (std::size_t v = 0; v < section.count; ++v)
+        put_stored(value.type, stored_value(value.type, value_at(v)),
+                   at(section) + v * section.stride + to);
+      for (std::size_t v = 0; v < raw.count; ++v) {
+        std::byte* target = at(raw) + v * raw.stride + raw_to;
+        takes_two_channels(value.type) ? store_little(value_at(v), target)
+                                       : store_little(attributes[v * channels + offset], target);
+      }
+      const auto count = static_cast<std::size_t>(channels_of(value.type));
+      offset += count;
+      to += kValueStride;
+      raw_to += count * sizeof(float);
+    }
+  }
+
   void put_normals(std::span<const NormalCode> normals) {
     std::ranges::copy(std::as_bytes(normals), at(plan_[Part::normal]));
   }
@@ -118,6 +144,21 @@ class Writer {
   template <Scalar T>
   void put(const Section& section, std::size_t element, std::size_t component, T value) {
     store_little(value, at(section) + element * section.stride + component * sizeof(T));
+  }
+
+  static void put_stored(ValueType type, double value, std::byte* to) {
+    switch (component_of(type)) {
+      case kI8:
+        return store_little(static_cast<std::uint8_t>(static_cast<std::int8_t>(value)), to);
+      case kU8:
+        return store_little(static_cast<std::uint8_t>(value), to);
+      case kI16:
+        return store_little(static_cast<std::uint16_t>(static_cast<std::int16_t>(value)), to);
+      case kU16:
+        return store_little(static_cast<std::uint16_t>(value), to);
+      default:
+        return store_little(static_cast<float>(value), to);
+    }
   }
 
   void put_numbers(const Section& section, std::span<const Vec3f> positions) {
@@ -244,8 +285,8 @@ ImageShape read_image_shape(const Json& document, const Json& extension, const s
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
-  const Json& extension =
-      require_extension(document, kTileExtension, tile_version(format.screen_colours), name);
+  const Json& extension = require_extension(
+      document, kTileExtension, tile_version(format.attributes, format.screen_colours), name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
@@ -280,6 +321,9 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
     const char* key = key_of(groups[i].raw);
     shape.raw[i] = groups[i].channels > 0 && extension.contains(key) && extension[key] != -1;
   }
+  const char* key = key_of(Part::raw_values);
+  shape.raw_values =
+      !format.attributes.values.empty() && extension.contains(key) && extension[key] != -1;
   return shape;
 }
 
@@ -363,6 +407,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   mesh.copies.size(),
                   shading.split_of.size(),
                   {},
+                  loses_values(format.attributes, vertices, !tree.is_partition(tile.node)),
                   format.computed_normals,
                   format.textures,
                   {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha},
@@ -388,6 +433,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
     writer.put_group(groups[i].part, groups[i], stored);
     writer.put_group(groups[i].raw, groups[i], vertices.attributes);
   }
+  writer.put_values(vertices.attributes);
   put_triangles(mesh, shading, writer);
   writer.put_list<std::uint16_t>(Part::parent_map, tile.parent_map);
   writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);

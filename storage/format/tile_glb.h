@@ -82,7 +82,8 @@ struct TileView {
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],
-/// normals brought to unit length ((0, 0, 1) if they have none), NaN and infinities as 0.
+/// normals brought to unit length ((0, 0, 1) if they have none), NaN and infinities as 0;
+/// quantities as tile_values.h says, and labels as they are.
 std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                                    const TileFormat& format);
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,

@@ -2,6 +2,7 @@
 
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
+#include "storage/format/tile_values.h"
 
 #include <nlohmann/json.hpp>
 
@@ -15,9 +16,9 @@ constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
 constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION",   "NORMAL",     "COLOR_0",      "TEXCOORD_0",  "interior", "border",
-    "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",   "splitOf",
-    "rawNormals", "rawColours", "rawTexcoords", "image"};
+    "POSITION", "NORMAL",     "COLOR_0",    "TEXCOORD_0",   "interior",    "border",
+    "values",   "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",
+    "splitOf",  "rawNormals", "rawColours", "rawTexcoords", "rawValues",   "image"};
 
 std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
@@ -48,10 +49,11 @@ Json view_json(const Section& section, Part part, const Packing* packing) {
   Json view = {{"buffer", packed ? kDecoded : kBin},
                {"byteOffset", moved ? packing->offset(part) : section.offset},
                {"byteLength", section.bytes()}};
-  const bool padded = section.stride != component_bytes(section.component) * section.components;
+  const bool padded = part == Part::values ||
+                      section.stride != component_bytes(section.component) * section.components;
   if (padded)
     view["byteStride"] = section.stride;
-  if (part <= Part::texcoord)
+  if (part <= Part::texcoord || part == Part::values)
     view["target"] = kVertexTarget;
   if (part == Part::interior || part == Part::border)
     view["target"] = kIndexTarget;
@@ -93,13 +95,27 @@ const char* attribute_name(const TilePlan& plan, Part part) {
                               : key_of(part);
 }
 
-/// Accessors have the numbers of their buffer views: the parts with an accessor come first.
+/// Of one value: all lie in one view.
+Json value_accessor_json(const TilePlan& plan, std::size_t value) {
+  const Section& section = plan[Part::values];
+  return {{"bufferView", section.view},
+          {"byteOffset", value * kValueStride},
+          {"componentType", component_of(plan.layout().values[value].type)},
+          {"count", section.count},
+          {"type", "SCALAR"}};
+}
+
+/// Accessors have the numbers of their buffer views: the parts with an accessor come first, values
+/// last.
 Json primitives_json(const TilePlan& plan) {
   Json attributes = Json::object();
   for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord}) {
     if (plan[part].view >= 0)
       attributes[attribute_name(plan, part)] = plan[part].view;
   }
+  const std::vector<std::string> values = value_attributes(plan.layout());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    attributes[values[i]] = static_cast<std::size_t>(plan[Part::values].view) + i;
   Json primitives = Json::array();
   for (const Part part : {Part::interior, Part::border}) {
     if (plan[part].view < 0)
@@ -112,6 +128,10 @@ Json primitives_json(const TilePlan& plan) {
   if (primitives.empty()) {
     primitives.push_back(
         Json::object({{"attributes", attributes}, {"material", 0}, {"mode", kPoints}}));
+  }
+  for (Json& primitive : primitives) {
+    if (!values.empty())
+      primitive["extensions"][kMetadataExtension]["propertyAttributes"] = Json::array({0});
   }
   return primitives;
 }
@@ -134,7 +154,10 @@ void add_image(const TilePlan& plan, Json& document) {
 }
 
 /// Whether the extension has the key of a part.
-bool is_told(Part part, const TileShape& shape) {
+bool is_told(Part part, const TilePlan& plan) {
+  const TileShape& shape = plan.shape();
+  if (part == Part::values || part == Part::raw_values)
+    return !plan.layout().values.empty();
   if (part == Part::split_of)
     return shape.is_shaded();
   return part != Part::image || shape.textures;
@@ -144,7 +167,7 @@ Json extension_json(const TilePlan& plan) {
   const TileShape& shape = plan.shape();
   const bool interior = shape.interior > 0;
   const bool border = shape.border > 0;
-  Json extension = {{"version", tile_version(shape.screen_colours)},
+  Json extension = {{"version", tile_version(plan.layout(), shape.screen_colours)},
                     {"level", raw(shape.node.level)},
                     {"index", shape.node.index},
                     {"ownCount", shape.own},
@@ -163,8 +186,8 @@ Json extension_json(const TilePlan& plan) {
     extension["imageWidth"] = shape.image.width;
     extension["imageHeight"] = shape.image.height;
   }
-  for (std::size_t i = static_cast<std::size_t>(Part::parent_map); i < kPartCount; ++i) {
-    if (is_told(static_cast<Part>(i), shape))
+  for (std::size_t i = static_cast<std::size_t>(Part::values); i < kPartCount; ++i) {
+    if (is_told(static_cast<Part>(i), plan))
       extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
   }
   return extension;
@@ -261,6 +284,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
     add(Part::texcoord, kF32, 2, shape.with_splits());
   add(Part::interior, index, 1, 3 * shape.interior);
   add(Part::border, index, 1, 3 * shape.border);
+  add(Part::values, kF32, layout.values.size(), shape.with_splits());
   add(Part::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
   add(Part::neighbours, kU32, 1, shape.neighbours);
   add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
@@ -270,6 +294,8 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
+  add(Part::raw_values, kF32, static_cast<std::size_t>(layout.value_channels()),
+      shape.raw_values ? shape.vertices() : 0);
   add(Part::image, kU8, 1, shape.image.bytes);
 }
 
@@ -301,12 +327,16 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
     if (part <= Part::border)
       accessors.push_back(accessor_json(*this, part, bounds));
   }
+  for (std::size_t i = 0; i < layout_.values.size(); ++i)
+    accessors.push_back(value_accessor_json(*this, i));
   const Json mesh = {{"primitives", primitives_json(*this)}};
   const Json scene = {{"nodes", Json::array({0})}};
   Json required = required_extensions(*this, packing);
   Json used = required;
   if (shape_.has_image() && shape_.textures->unlit)
     used.push_back(kUnlitExtension);
+  if (!layout_.values.empty())
+    used.push_back(kMetadataExtension);
   used.push_back(kTileExtension);
 
   Json document;
@@ -324,6 +354,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["accessors"] = std::move(accessors);
   document["bufferViews"] = std::move(views);
   document["buffers"] = buffers_json(*this, packing);
+  if (!layout_.values.empty())
+    document["extensions"][kMetadataExtension] = values_metadata(layout_);
   document["extensions"][kTileExtension] = extension_json(*this);
   if (shape_.first_view)
     document["extras"] = first_view_extras(*shape_.first_view);
@@ -333,7 +365,11 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
   const std::uint64_t component = component_bytes(TileColours(layout, false).component());
   const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
-  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
+  // Of wide types both what viewers see and what there is.
+  std::uint64_t values = 0;
+  for (const ScalarAttribute& value : layout.values)
+    values += takes_two_channels(value.type) && !is_integer(value.type) ? 12 : kValueStride;
+  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + values + (layout.texcoords ? 8 : 0);
 }
 
 double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes) {

@@ -21,11 +21,16 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-inline constexpr unsigned kTileExtensionVersion = 4;
+/// Of tiles with values.
+inline constexpr unsigned kTileExtensionVersion = 5;
+/// The same without.
+inline constexpr unsigned kNoValuesVersion = 4;
 /// The one before: the same with colours as screens have them.
 inline constexpr unsigned kScreenColoursVersion = 3;
-constexpr unsigned tile_version(bool screen_colours) {
-  return screen_colours ? kScreenColoursVersion : kTileExtensionVersion;
+inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours) {
+  return screen_colours          ? kScreenColoursVersion
+         : layout.values.empty() ? kNoValuesVersion
+                                 : kTileExtensionVersion;
 }
 inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
@@ -42,6 +47,8 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   texcoord       N                 2 f32; of textured tiles those in their picture
 //   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
+//   values         N                 4 bytes for each value, of which its component type may take
+//                                    fewer
 //   parent_map     o, root: none     u16
 //   neighbours     m                 u32, ascending
 //   ghost_starts   m + 1, m = 0: 0   u32
@@ -51,6 +58,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   raw_normals    n or none         3 f32
 //   raw_colours    n or none         3 or 4 f32
 //   raw_texcoords  n or none         2 f32
+//   raw_values     n or none         f32 or f64 for each value
 //   image          its bytes         u8, a picture as it is
 enum class Part : std::size_t {
   position,
@@ -59,6 +67,7 @@ enum class Part : std::size_t {
   texcoord,
   interior,
   border,
+  values,
   parent_map,
   neighbours,
   ghost_starts,
@@ -68,11 +77,12 @@ enum class Part : std::size_t {
   raw_normals,
   raw_colours,
   raw_texcoords,
+  raw_values,
   image
 };
-inline constexpr std::size_t kPartCount = 16;
+inline constexpr std::size_t kPartCount = 18;
 
-/// The key of a part in the extension (from parent_map on), or the name of its attribute (up to
+/// The key of a part in the extension (from values on), or the name of its attribute (up to
 /// texcoord) where it is shown.
 const char* key_of(Part part);
 
@@ -117,6 +127,7 @@ struct TileShape {
   std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
   std::uint64_t interior = 0, border = 0, copies = 0, splits = 0;
   std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
+  bool raw_values = false;
   bool computed_normals = false;
   std::optional<TextureFormat> textures{};  ///< of the hierarchy
   ImageShape image{};

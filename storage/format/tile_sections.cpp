@@ -4,6 +4,7 @@
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/tile_glb.h"
+#include "storage/format/tile_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,7 +150,55 @@ class Reader {
       if (is_raw)
         read_group(groups[i], groups[i].raw, false, attributes);
     }
+    read_values(attributes);
     return attributes;
+  }
+
+  void read_values(std::span<float> attributes) const {
+    const AttributeLayout& layout = plan_.layout();
+    const Section& section = plan_[Part::values];
+    const Section& raw_section = plan_[Part::raw_values];
+    const auto channels = static_cast<std::size_t>(layout.channels());
+    auto offset = static_cast<std::size_t>(layout.value_offset());
+    std::size_t from = section.offset, raw_from = raw_section.offset;
+    for (const ScalarAttribute& value : layout.values) {
+      const auto count = static_cast<std::size_t>(channels_of(value.type));
+      for (std::size_t v = 0; v < plan_.shape().vertices(); ++v) {
+        float* to = attributes.data() + v * channels + offset;
+        put_value(value.type,
+                  value_of_stored(value.type, stored_in(value, from + v * section.stride, v)), to);
+        if (!plan_.shape().raw_values)
+          continue;
+        const std::byte* at = bin_.data() + raw_from + v * raw_section.stride;
+        if (takes_two_channels(value.type))
+          put_value(value.type, load_little<double>(at), to);
+        else
+          *to = load_little<float>(at);
+      }
+      offset += count;
+      from += kValueStride;
+      raw_from += count * sizeof(float);
+    }
+  }
+
+  double stored_in(const ScalarAttribute& value, std::size_t offset, std::size_t vertex) const {
+    const std::byte* at = bin_.data() + offset;
+    switch (component_of(value.type)) {
+      case kI8:
+        return static_cast<std::int8_t>(load_little<std::uint8_t>(at));
+      case kU8:
+        return load_little<std::uint8_t>(at);
+      case kI16:
+        return static_cast<std::int16_t>(load_little<std::uint16_t>(at));
+      case kU16:
+        return load_little<std::uint16_t>(at);
+      default:
+        break;
+    }
+    const auto stored = load_little<float>(at);
+    if (!std::isfinite(stored))
+      fail(fmt::format("value {} of vertex {} is not finite", value.name, vertex));
+    return stored;
   }
 
   /// The vertices that the elements of a section repeat, below `limit`, ascending.

@@ -4,6 +4,7 @@
 #include "hierarchy/wgs84.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/tile_values.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>
@@ -117,7 +118,29 @@ class TilesetWriter {
     }
     document["schema"] = {{"id", "meshhier"},
                           {"classes", {{"source", {{"properties", std::move(properties)}}}}}};
+    if (!source.attributes.values.empty())
+      describe_values(document);
     document["metadata"] = {{"class", "source"}, {"properties", std::move(values)}};
+  }
+
+  /// The class that tiles have of their vertices, and what the input's values are.
+  void describe_values(Json& document) const {
+    const SourceSummary& source = manifest_.source;
+    const std::vector<std::string> ids = value_ids(source.attributes);
+    document["schema"]["classes"]["vertex"] =
+        values_metadata(source.attributes)["schema"]["classes"]["vertex"];
+    Json& statistics = document["statistics"]["classes"]["vertex"];
+    statistics["count"] = source.vertices;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const ValueStatistics& value = source.values[i];
+      statistics["properties"][ids[i]] = {{"min", value.min},
+                                          {"max", value.max},
+                                          {"extras",
+                                           {{"missing", value.missing},
+                                            {"bin_width", std::ldexp(1.0, value.bin_exponent)},
+                                            {"first_bin", value.first_bin},
+                                            {"bins", value.bins}}}};
+    }
   }
 
   /// `root`: of the file it is written into.

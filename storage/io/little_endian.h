@@ -14,13 +14,15 @@ namespace meshhier::storage {
 
 /// The numbers that files hold.
 template <class T>
-concept Scalar = std::unsigned_integral<T> || std::same_as<T, float>;
+concept Scalar = std::unsigned_integral<T> || std::same_as<T, float> || std::same_as<T, double>;
 
 /// Writes `value` little endian at `to`: sizeof(T) bytes, no alignment required.
 template <Scalar T>
 constexpr void store_little(T value, std::byte* to) {
   if constexpr (std::same_as<T, float>) {
     store_little(std::bit_cast<std::uint32_t>(value), to);
+  } else if constexpr (std::same_as<T, double>) {
+    store_little(std::bit_cast<std::uint64_t>(value), to);
   } else {
     for (std::size_t i = 0; i < sizeof(T); ++i)
       to[i] = static_cast<std::byte>(value >> (8 * i));
@@ -32,6 +34,8 @@ template <Scalar T>
 constexpr T load_little(const std::byte* from) {
   if constexpr (std::same_as<T, float>) {
     return std::bit_cast<float>(load_little<std::uint32_t>(from));
+  } else if constexpr (std::same_as<T, double>) {
+    return std::bit_cast<double>(load_little<std::uint64_t>(from));
   } else {
     T value = 0;
     for (std::size_t i = 0; i < sizeof(T); ++i) {

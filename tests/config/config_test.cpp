@@ -602,6 +602,20 @@ TEST(ConfigWeld, IsTrueOrFalse) {
   EXPECT_THAT(refusal(with(R"("weld": 1)")), HasSubstr("weld: expected true or false"));
 }
 
+TEST(ConfigAttributes, AreAllNoneOrNamed) {
+  using Which = mesh_io::AttributeChoice::Which;
+  EXPECT_EQ(parse(with("")).attributes, mesh_io::AttributeChoice{});
+  EXPECT_EQ(parse(with(R"("attributes": "none")")).attributes.which, Which::none);
+  const config::Config named = parse(with(R"("attributes": ["a", "b-c"], "labels": [])"));
+  EXPECT_EQ(named.attributes.which, Which::named);
+  EXPECT_EQ(named.attributes.names, (std::vector<std::string>{"a", "b-c"}));
+  EXPECT_EQ(named.attributes.labels, std::vector<std::string>{});
+  EXPECT_FALSE(parse(with(R"("labels": "integers")")).attributes.labels);
+  for (const char* wrong : {R"("attributes": "quality")", R"("attributes": ["a b"])",
+                            R"("attributes": [1])", R"("labels": "all")", R"("labels": 3)"})
+    EXPECT_THAT(refusal(with(wrong)), HasSubstr("or a list of names")) << wrong;
+}
+
 TEST(ConfigTopology, IsPlaceOrIndex) {
   EXPECT_EQ(parse(with("")).topology, Topology::place);
   EXPECT_EQ(parse(with(R"("topology": "index")")).topology, Topology::index);
@@ -614,7 +628,7 @@ TEST(ConfigTopology, IsPlaceOrIndex) {
 
 TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
   EXPECT_EQ(resolved_json(parse(with(""))), Json::parse(R"({
-      "weld": false, "topology": "place",
+      "weld": false, "topology": "place", "attributes": "all", "labels": "integers",
       "partition": {"vertices": 8192, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
@@ -623,7 +637,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
-      "weld": false, "topology": "place",
+      "weld": false, "topology": "place", "attributes": "all", "labels": "integers",
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,

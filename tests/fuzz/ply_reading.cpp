@@ -31,8 +31,14 @@ void append(const MeshDescription& mesh, const VertexBlock& block, PlyReading& r
     require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "finite floats");
   for (const Vec3d& p : block.exact)
     require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "finite doubles");
-  for (const float value : block.attributes)
-    require(std::isfinite(value), "finite attributes");
+  const auto channels = static_cast<std::size_t>(mesh.attributes.channels());
+  const auto first_value = static_cast<std::size_t>(mesh.attributes.value_offset());
+  const auto behind_values = static_cast<std::size_t>(mesh.attributes.texcoord_offset());
+  for (std::size_t i = 0; i < block.attributes.size(); ++i) {
+    const std::size_t channel = i % channels;
+    const bool is_value = channel >= first_value && channel < behind_values;
+    require(is_value || std::isfinite(block.attributes[i]), "finite attributes");
+  }
   reading.positions.insert(reading.positions.end(), block.positions.begin(), block.positions.end());
   reading.exact.insert(reading.exact.end(), block.exact.begin(), block.exact.end());
   reading.attributes.insert(reading.attributes.end(), block.attributes.begin(),

@@ -16,7 +16,7 @@
 //
 //   u16 own, boundary, ghosts, neighbours, chain entries, interior, border, copies; splits only if
 //       there are computed normals or textures
-//   u8  which attributes have raw values: 1, 2, 4
+//   u8  which attributes have raw values: 1, 2, 4, 8
 //   u16 bytes of the picture, u8 width, u8 height, u8 alpha, all one less and modulo what they can
 //       be: only of a textured tile with triangles
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
@@ -142,6 +142,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   const auto groups = storage::groups_of(place.format.attributes);
   for (std::size_t i = 0; i < groups.size(); ++i)
     shape.raw[i] = groups[i].channels > 0 && (raw_bits >> i & 1) != 0;
+  shape.raw_values = !place.format.attributes.values.empty() && (raw_bits & 8) != 0;
   if (shape.textures && shape.interior + shape.border > 0)
     shape.image = take_image(take);
   const storage::TilePlan plan(shape, place.format.attributes, place.format.lattice);
@@ -315,6 +316,15 @@ void check_written(const PublishedTile& tile, const Place& place) {
 
 }  // namespace
 
+/// Of most types, and one that no float holds.
+void add_values(TileFormat& format) {
+  format.attributes.values = {{"quality", ValueType::f32},
+                              {"object", ValueType::i32, true},
+                              {"grade", ValueType::u8},
+                              {"height", ValueType::i16, true},
+                              {"time", ValueType::f64}};
+}
+
 void tile(Bytes input) {
   Take take(input);
   Place place = take_place(take);
@@ -322,6 +332,10 @@ void tile(Bytes input) {
       text_of(take.rest()).find(R"("version":3,)") != std::string_view::npos;
   const bool is_gzip = text_of(take.rest()).starts_with("\x1f\x8b");
   const bool is_glb = is_gzip || text_of(take.rest()).starts_with("glTF");
+  constexpr std::string_view kWithValues = R"("version":5,)";
+  if (is_glb ? text_of(take.rest()).find(kWithValues) != std::string_view::npos
+             : place.format.attributes.texcoords && place.format.frame.origin.z > 0)
+    add_values(place.format);
   std::vector<std::byte> file =
       is_glb ? std::vector(take.rest().begin(), take.rest().end()) : make_glb(take, place);
   if (!is_gzip && storage::is_gzipped(place.format.compression))

@@ -31,7 +31,8 @@ TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
     }
   }
   EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true}.material_offset()), 9);
-  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true, true}.channels()), kMaxChannels);
+  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true, true}.channels()),
+            kMaxChannels - kMaxValueChannels);
 }
 
 TEST(Attributes, NormalsAndColoursLieBeforeTexcoords) {

@@ -104,12 +104,14 @@ TEST(PlyWriter, MaterialsAreReadOnlyByWhoAsksForThem) {
   const std::vector<float> attributes{0.5F, 0.25F, 7, 1, 0, 16777215};
   writer.write_vertices(positions, attributes);
   writer.finish();
-  const ReadMesh asked = read_mesh(*make_ply_source(files.open("out.ply"), PlyWrittenBy::import));
+  const ReadMesh asked =
+      read_mesh(*make_ply_source(files.open("out.ply"), {.writer = PlyWrittenBy::import}));
   EXPECT_EQ(asked.description.attributes, content.attributes);
   EXPECT_EQ(asked.attributes, attributes);
   const ReadMesh other = read_mesh(*open_mesh(files, "out.ply"));
-  EXPECT_EQ(other.description.attributes, AttributeLayout{.texcoords = true});
-  EXPECT_EQ(other.attributes, (std::vector<float>{0.5F, 0.25F, 1, 0}));
+  EXPECT_EQ(other.description.attributes,
+            (AttributeLayout{.texcoords = true, .values = {{"material", ValueType::f32}}}));
+  EXPECT_EQ(other.attributes, (std::vector<float>{7, 0.5F, 0.25F, 16777215, 1, 0}));
 }
 
 TEST(PlyWriter, LightIsReadOnlyOfWhatTheImportWrote) {
@@ -125,12 +127,37 @@ TEST(PlyWriter, LightIsReadOnlyOfWhatTheImportWrote) {
       writer.write_vertices(positions, std::span(attributes).first(alpha ? 4 : 3));
       writer.finish();
       const ReadMesh ours =
-          read_mesh(*make_ply_source(files.open("out.ply"), PlyWrittenBy::import));
+          read_mesh(*make_ply_source(files.open("out.ply"), {.writer = PlyWrittenBy::import}));
       EXPECT_EQ(ours.description.attributes, content.attributes);
       const ReadMesh other = read_mesh(*open_mesh(files, "out.ply"));
-      EXPECT_EQ(other.description.attributes, AttributeLayout{});
+      EXPECT_EQ(other.description.attributes.colour, ColourType::none);
     }
   }
+}
+
+/// Names of properties that the writer has itself.
+TEST(PlyWriter, ValuesKeepTheirNamesUnlessTheseAreTaken) {
+  PlyContent content;
+  content.vertex_count = 1;
+  content.attributes = {.normals = true,
+                        .texcoords = true,
+                        .values = {{"s", ValueType::u8},
+                                   {"nx", ValueType::f64},
+                                   {"nx_2", ValueType::i32},
+                                   {"red", ValueType::f32}}};
+  MemoryFiles files;
+  PlyWriter writer(files.create("out.ply"), content);
+  std::vector<float> attributes(static_cast<std::size_t>(content.attributes.channels()), 7);
+  put_value(ValueType::f64, 1.0 / 3, &attributes[4]);
+  put_value(ValueType::i32, -5, &attributes[6]);
+  writer.write_vertices(std::vector<Vec3f>{{1, 2, 3}}, attributes);
+  writer.finish();
+  const ReadMesh mesh = read_mesh(*open_mesh(files, "out.ply"));
+  EXPECT_EQ(mesh.attributes, attributes);
+  std::vector<std::string> names;
+  for (const ScalarAttribute& value : mesh.description.attributes.values)
+    names.push_back(value.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"s_2", "nx_2", "nx_2_2", "red"}));
 }
 
 TEST(PlyWriter, HeaderAndBytes) {

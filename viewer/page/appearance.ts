@@ -1,4 +1,5 @@
 // How a model is shown: its colours and surface, its light, how it stands. What of it a link and the browser keep.
+import { RAMPS } from '../src/scene/ramps.js';
 import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';
 import { DEFAULT_STANDING, MOST_STRETCH, UPS, type Standing } from '../src/scene/standing.js';
 
@@ -18,7 +19,7 @@ export interface Appearance {
 }
 
 export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'flat', 'sun', 'matcap'];
-export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height'];
+export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'attribute', 'partition', 'error', 'height'];
 export const DEFAULT_LIGHT: Light = { name: 'auto', key: null };
 
 type Json = Record<string, unknown>;
@@ -32,6 +33,24 @@ export function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], other
 }
 
 // ---- kept in the browser
+
+const LONGEST_NAME = 100; // of an attribute
+const MOST_HIDDEN = 256; // labels
+
+function readNumbers(stored: unknown): number[] {
+  const given: unknown[] = Array.isArray(stored) ? stored : [];
+  return given.filter((value): value is number => typeof value === 'number' && Number.isFinite(value));
+}
+
+function readRange(stored: unknown): Look['range'] {
+  const numbers = readNumbers(stored);
+  return numbers.length === 2 ? [numbers[0], numbers[1]] : null;
+}
+
+/// What of a look holds for other models too.
+export function lastingLook(look: Partial<Look>): Partial<Look> {
+  return Object.fromEntries(Object.entries(look).filter(([name]) => !['attribute', 'range', 'hidden'].includes(name)));
+}
 
 /// `relief` follows from the rest.
 export function readLook(stored: unknown): Look {
@@ -47,6 +66,11 @@ export function readLook(stored: unknown): Look {
     wires: look.wires === true,
     points: look.points === true,
     outline: look.outline === true,
+    attribute: typeof look.attribute === 'string' ? look.attribute.slice(0, LONGEST_NAME) : '',
+    ramp: oneOf(look.ramp, RAMPS, DEFAULT_LOOK.ramp),
+    range: readRange(look.range),
+    isolines: look.isolines === true,
+    hidden: readNumbers(look.hidden).slice(0, MOST_HIDDEN),
   };
 }
 
@@ -91,7 +115,7 @@ export function keepStanding(standings: Standings, url: string, standing: Standi
 // ---- in links
 
 const DIGITS = 4;
-const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline'] as const;
+const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline', 'isolines'] as const;
 
 function onOff(is: boolean): string {
   return is ? 'on' : 'off';
@@ -112,6 +136,10 @@ export function formatChoices({ look, light, standing }: Appearance): string {
   const add = (name: string, value: string, otherwise: string): void => { if (value !== otherwise) choices.push(`${name}=${value}`); };
   add('colours', look.colours, DEFAULT_LOOK.colours);
   add('shading', look.shading, DEFAULT_LOOK.shading);
+  add('attribute', encodeURIComponent(look.attribute), '');
+  add('ramp', look.ramp, DEFAULT_LOOK.ramp);
+  add('range', look.range?.join(',') ?? '', '');
+  add('hidden', look.hidden.join(','), '');
   for (const name of SWITCHES) add(name, onOff(look[name]), onOff(DEFAULT_LOOK[name]));
   add('light', formatLight(light), formatLight(DEFAULT_LIGHT));
   add('up', standing.up, DEFAULT_STANDING.up);
@@ -119,12 +147,20 @@ export function formatChoices({ look, light, standing }: Appearance): string {
   return choices.join('&');
 }
 
+function listed(text: string | null): number[] {
+  return text === null || text === '' ? [] : text.split(',').map(Number);
+}
+
+function attributeChoices(choices: URLSearchParams): Json {
+  return { attribute: choices.get('attribute'), ramp: choices.get('ramp'), range: listed(choices.get('range')), hidden: listed(choices.get('hidden')) };
+}
+
 /// What a link chooses, on top of what is given; a link that chooses anything of look and light chooses all of it.
 export function withChoices(text: string, given: Appearance): Appearance {
   const choices = new URLSearchParams(text);
   const standing = { ...given.standing, ...(choices.has('up') || choices.has('stretch') ? readStanding({ up: choices.get('up'), stretch: Number(choices.get('stretch') ?? 1) }) : {}) };
-  if (!['colours', 'shading', 'light', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
+  if (!['colours', 'shading', 'light', 'attribute', 'ramp', 'range', 'hidden', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
   const switches = Object.fromEntries(SWITCHES.map((name) => [name, oneOf(choices.get(name), ['on', 'off'], onOff(DEFAULT_LOOK[name])) === 'on']));
-  const look = readLook({ ...switches, colours: choices.get('colours'), shading: choices.get('shading') });
+  const look = readLook({ ...switches, colours: choices.get('colours'), shading: choices.get('shading'), ...attributeChoices(choices) });
   return { look, light: parseLight(choices.get('light') ?? DEFAULT_LIGHT.name), standing };
 }

@@ -84,6 +84,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.source.bounds, b.source.bounds);
   EXPECT_EQ(a.source.double_precision, b.source.double_precision);
   EXPECT_EQ(a.source.attributes, b.source.attributes);
+  EXPECT_EQ(a.source.values, b.source.values);
   EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.up, b.up);
   EXPECT_EQ(a.first_view, b.first_view);
@@ -144,6 +145,66 @@ TEST(Manifest, GivesEveryValueBack) {
     other.source.attributes.space = ColourSpace::linear;
     expect_same(other, parse_manifest(to_json_text(other), kManifestName));
   }
+}
+
+Manifest with_values() {
+  Manifest manifest = make_manifest();
+  manifest.source.attributes.values = {{"quality", ValueType::f32},
+                                       {"class", ValueType::i32, true}};
+  manifest.source.values = {
+      {.missing = 3,
+       .min = -0.5,
+       .max = 1.25,
+       .bin_exponent = -1,
+       .first_bin = -1,
+       .bins = {4, 0, 0, 7}},
+      {.min = 2, .max = 7, .first_bin = 2, .bins = {1, 0, 0, 0, 0, 9}, .labels = {{2, 1}, {7, 9}}}};
+  return manifest;
+}
+
+TEST(Manifest, TellsOfValues) {
+  const Manifest manifest = with_values();
+  EXPECT_EQ(manifest.format_version(), 9);
+  EXPECT_EQ(make_manifest().format_version(), 8);
+  const std::string text = to_json_text(manifest);
+  expect_same(parse_manifest(text, kManifestName), manifest);
+  EXPECT_EQ(to_json_text(parse_manifest(text, kManifestName)), text);
+}
+
+TEST(Manifest, UnsoundValuesAreRefused) {
+  const Json good = Json::parse(to_json_text(with_values()));
+  struct {
+    const char* pointer;
+    Json value;
+  } const damages[] = {{"/source/values/0/name", "two words"},
+                       {"/source/values/0/name", "class"},
+                       {"/source/values/0/type", "f16"},
+                       {"/source/values/0/kind", "name"},
+                       {"/source/values/0/missing", -1},
+                       {"/source/values/0/min", 2},
+                       {"/source/values/0/bin_exponent", 1.5},
+                       {"/source/values/0/bin_exponent", 5000},
+                       {"/source/values/0/first_bin", "1"},
+                       {"/source/values/0/bins", Json::array({-1})},
+                       {"/source/values/0/bins", std::vector<int>(65)},
+                       {"/source/values/1/labels", Json::array({2})},
+                       {"/source/values/1/labels", Json::array({2, "7"})},
+                       {"/source/values", 7},
+                       {"/format_version", 8}};
+  for (const auto& [pointer, value] : damages) {
+    Json changed = good;
+    changed[Json::json_pointer(pointer)] = value;
+    EXPECT_NE(failure(sealed(changed)), "") << pointer << ' ' << value;
+  }
+  Json without = good;
+  without["source"].erase("values");
+  EXPECT_THAT(failure(sealed(without)), HasSubstr("format_version"));
+  Json many = good;
+  for (int i = 0; i < 60; ++i) {
+    many["source"]["values"].push_back(good["source"]["values"][0]);
+    many["source"]["values"].back()["name"] = "v" + std::to_string(i);
+  }
+  EXPECT_THAT(failure(sealed(many)), HasSubstr("values"));
 }
 
 TEST(Manifest, OneOfVersion6HasNoFirstView) {
@@ -503,13 +564,13 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 9;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 9 is newer than 8"));
+  document["format_version"] = 10;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 10 is newer than 9"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 8: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 9: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

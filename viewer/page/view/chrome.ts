@@ -90,6 +90,7 @@ export class Chrome {
 
   tellSource(manifest: Manifest): void {
     this.figures.tellSource(manifest);
+    this.form.tellAttributes(manifest.source.values);
     this.about.show(this.model, manifest);
     const summary = summaryOf(this.model, manifest);
     if (this.summary.textContent !== summary) this.summary.textContent = summary;

@@ -3,7 +3,7 @@ import { Box3, Vector3 } from 'three';
 import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
 import type { PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
-import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
+import { COLOURS, formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import { towardsViewer, type Turn } from '../gallery/layout.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
@@ -313,7 +313,7 @@ export class ModelView {
       light: { ...chosen.light, ...light },
       standing: { ...chosen.standing, ...standing },
     };
-    Object.assign(preferences.look, look);
+    Object.assign(preferences.look, lastingLook(look ?? {}));
     Object.assign(preferences.light, light);
     if (standing !== undefined) preferences.standings = keepStanding(preferences.standings, this.model.url, this.presentation.chosen.standing);
     this.around.chosen();

@@ -14,7 +14,7 @@ export interface Shown {
   key: Angles;
 }
 
-type Model = Pick<HierarchyView, 'terrain' | 'hasColours' | 'hasTriangles'>;
+type Model = Pick<HierarchyView, 'terrain' | 'hasColours' | 'hasTriangles' | 'hasAttributes'>;
 
 function rigOf({ name }: Light, terrain: Terrain | null): Rig {
   if (name === 'matcap') return 'studio';
@@ -26,9 +26,10 @@ function reliefOf({ slope }: Terrain, stretch: number): number {
 }
 
 /// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun, or seen from their front, their slopes are shaded steeper.
-export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours, hasTriangles }: Model): Shown {
+export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours, hasTriangles, hasAttributes }: Model): Shown {
   const rig = rigOf(light, terrain);
-  const colours = look.colours === 'vertex' && hasColours === false ? (terrain === null ? 'plain' : 'height') : look.colours;
+  const wished = look.colours === 'attribute' && hasAttributes === false ? 'vertex' : look.colours;
+  const colours = wished === 'vertex' && hasColours === false ? (terrain === null ? 'plain' : 'height') : wished;
   const isSteep = terrain !== null && (rig === 'sun' || !terrain.upright);
   const relief = isSteep ? reliefOf(terrain, terrain.upright ? standing.stretch : 1) : 1;
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };

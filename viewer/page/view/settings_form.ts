@@ -8,6 +8,8 @@ import { MEGABYTE, RANGES, THEMES, type Preferences, type Theme } from '../prefe
 import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import { PRESETS, QUALITIES, qualityOf, type Quality } from './quality.js';
+import type { ScalarAttribute } from '../../src/index.js';
+import { AttributeForm } from './attribute_form.js';
 import { LightForm, type LightChoices } from './light_form.js';
 import type { Angles } from './lighting.js';
 
@@ -28,6 +30,7 @@ function named<Value extends string>(values: readonly Value[], names: Readonly<R
 export class SettingsForm {
   readonly root: HTMLElement;
   private readonly colours: Control<Colours>;
+  private readonly attribute: AttributeForm;
   private readonly theme: Control<Theme>;
   private readonly quality: Control<Quality | ''>;
   private readonly toggles: Record<'texture' | 'relight' | 'flat' | 'wires' | 'points' | 'outline' | 'cavities', Control<boolean>>;
@@ -38,6 +41,7 @@ export class SettingsForm {
   constructor({ look, settings, theme, language, light, standing }: Choices) {
     const text = words.settings;
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { look({ colours }); });
+    this.attribute = new AttributeForm(look);
     this.theme = choice(text.theme, named(THEMES, words.themes), theme);
     this.quality = choice<Quality | ''>(text.quality, named(QUALITIES, text.qualities), (quality) => { if (quality !== '') settings(PRESETS[quality]); });
     this.toggles = {
@@ -60,13 +64,19 @@ export class SettingsForm {
     const sliders = Object.values(this.sliders).map(({ root }) => root);
     const numbers = element('details', { class: 'numbers' }, element('summary', {}, text.numbers), ...sliders, this.finer.root);
     const languages = element('label', { class: 'language-row' }, words.parts.language, languageSelect(language));
-    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, this.light.root, this.quality.root, numbers, this.theme.root, languages);
+    this.root = element('div', { class: 'settings' }, this.colours.root, this.attribute.root, toggles, this.light.root, this.quality.root, numbers, this.theme.root, languages);
+  }
+
+  /// What the model can be coloured by.
+  tellAttributes(attributes: readonly ScalarAttribute[]): void {
+    this.attribute.tell(attributes);
   }
 
   /// `key`: where the light comes from.
   show({ look, settings, theme, light, standing }: Preferences & Appearance, key: Angles): void {
     this.light.show(light, key, standing);
     this.colours.show(look.colours);
+    this.attribute.show(look, look.colours === 'attribute');
     this.theme.show(theme);
     this.quality.show(qualityOf(settings) ?? '');
     this.toggles.flat.show(look.shading === 'flat');

@@ -53,6 +53,9 @@ export class Seam {
   /// Of ghosts and all behind them, as in the file: what moves and comes back. Null where the file has none.
   private readonly givenNormals: Normals | null;
   private readonly givenColours: Uint8Array | null;
+  private readonly givenValues: Float32Array | null;
+  /// Values of a vertex.
+  private readonly width: number;
   /// A ghost was no vertex of its tile: the last one stood in, so that the surface stays whole.
   isDamaged = false;
 
@@ -70,6 +73,8 @@ export class Seam {
     this.vertices = new Uint16Array(tile.ghosts);
     this.givenNormals = tile.normalsFrom === 'viewer' ? null : tile.normals.slice(4 * tile.own);
     this.givenColours = tile.colours?.slice(4 * tile.own) ?? null;
+    this.width = (3 * (tile.values?.length ?? 0)) / tile.positions.length;
+    this.givenValues = tile.values?.slice(this.width * tile.own) ?? null;
     this.keys = this.placeChains(tree);
     if (this.chainStarts[count] !== tile.chains.length) this.fail('its chains are not all there');
   }
@@ -77,7 +82,7 @@ export class Seam {
   /// Bytes that this holds besides the tile.
   get bytes(): number {
     const starts = this.keyStarts.byteLength + this.chainStarts.byteLength;
-    const given = (this.givenNormals?.byteLength ?? 0) + (this.givenColours?.byteLength ?? 0);
+    const given = (this.givenNormals?.byteLength ?? 0) + (this.givenColours?.byteLength ?? 0) + (this.givenValues?.byteLength ?? 0);
     return this.keys.byteLength + starts + given + 9 * this.coarser.length + 6 * this.vertices.length;
   }
 
@@ -166,23 +171,25 @@ export class Seam {
 
   /// That of the file, where it has one.
   private keepLook(from: Tile, place: number, target: number): void {
-    const { own, normals, colours } = this.tile;
+    const { own, normals, colours, values } = this.tile;
     if (this.givenNormals) copyValues(this.givenNormals, target - own, normals, target, 4);
     else copyValues(from.normals, place, normals, target, 4);
     if (colours && this.givenColours) copyValues(this.givenColours, target - own, colours, target, 4);
+    if (values && this.givenValues) copyValues(this.givenValues, target - own, values, target, this.width);
   }
 
   /// That of the vertices there that look most like ours: by normal, then colour. Normals of a build do not choose the colour: it
   /// is the one that there would be without them.
   private takeLook(from: Tile, place: number, target: number): void {
     const { givenNormals, givenColours } = this;
-    const { own, normals, normalsFrom, colours } = this.tile;
+    const { own, normals, normalsFrom, colours, values } = this.tile;
     const normalTo: Distance = (vertex) => (givenNormals ? difference(givenNormals, target - own, from.normals, vertex) : 0);
     const colourTo: Distance = (vertex) => (givenColours && from.colours ? difference(givenColours, target - own, from.colours, vertex) : 0);
     const source = nearest(verticesAt(from, place), normalTo, colourTo);
     copyValues(from.normals, source, normals, target, 4);
-    if (!colours || !givenColours) return;
     const painter = normalsFrom === 'build' ? nearest(verticesAt(from, place), colourTo) : source;
+    if (values && from.values) copyValues(from.values, painter, values, target, this.width);
+    if (!colours || !givenColours) return;
     if (from.colours) copyValues(from.colours, painter, colours, target, 4);
     else copyValues(givenColours, target - own, colours, target, 4);
   }

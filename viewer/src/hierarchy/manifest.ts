@@ -1,6 +1,7 @@
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
 import { HierarchyProblem } from './problem.js';
+import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
 import type { RemoteFiles } from './remote_files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
@@ -15,6 +16,8 @@ export interface Manifest {
     readonly triangles: number;
     readonly hasColours: boolean;
     readonly hasNormals: boolean;
+    /// What vertices have besides.
+    readonly values: readonly ScalarAttribute[];
     /// Its pictures, and those of them that were not there; null: the mesh is not textured.
     readonly textures: { readonly images: number; readonly missingImages: number } | null;
     /// In input coordinates.
@@ -50,7 +53,7 @@ export interface NamedFile {
 }
 
 export const MANIFEST = 'hierarchy.json';
-const FORMAT_VERSION = 8; // 7: tiles hold colours as screens have them
+const FORMAT_VERSION = 9; // 8: the same without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
 export const MOST_MANIFEST_BYTES = 2 ** 20;
 const MOST_PREVIEW_BYTES = 40_000;
@@ -84,6 +87,7 @@ function readSource(source: JsonValue, storage: JsonValue): Manifest['source'] {
     triangles: source.at('triangles').count(),
     hasColours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32') !== 'none',
     hasNormals: attributes.at('normals').flag(),
+    values: readScalarAttributes(source),
     textures: readTextures(source, storage),
     min: source.at('bounds').at('min').triple(),
     max: source.at('bounds').at('max').triple(),

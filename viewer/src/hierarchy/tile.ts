@@ -7,6 +7,7 @@ import { decodePicture, findPicture, type Picture } from './picture.js';
 import { placeOf, toPlaces, unsplitOf, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
 import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
+import { readScalarValues } from './scalar_values.js';
 import { detached, readColours, readNormals, readPositions, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
 
 export type Indices = Uint16Array | Uint32Array;
@@ -28,6 +29,8 @@ export interface Tile extends Places {
   readonly colours: Uint8Array | null;
   /// The picture's light is multiplied by that of the colours; else they are seen without it alone.
   readonly coloursTint: boolean;
+  /// All values of each vertex, in the manifest's order; or null.
+  readonly values: Float32Array | null;
   /// u, v of each vertex in the picture; both or none. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
@@ -148,11 +151,13 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
   const normals = given ? readNormals(glb, given, vertices) : normalsByPlace(positions, places, surface, toPlaces(places, border));
   const colour = attribute('COLOR_0') ?? attribute('_COLOR_0');
   const colours = colour ? readColours(glb, colour, vertices, counts.screenColours) : null;
+  const scalars = readScalarValues(glb, values.values, vertices);
   const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
   const texcoords = counts.pictureWidth > 0 ? readTexcoords(glb, attribute('TEXCOORD_0') ?? glb.fail('a picture without texture coordinates'), vertices) : null;
   if (counts.splits > 0 && normalsFrom !== 'build' && !texcoords) glb.fail('splits without computed normals or a picture');
   checkSplits(glb, places, positions, 3);
   if (colours) checkSplits(glb, places, colours, 4);
+  if (scalars) checkSplits(glb, places, scalars, scalars.length / vertices);
   if (normalsFrom === 'input') checkSplits(glb, places, normals, 4);
   const starts = new Uint32Array(detached(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
   checkStarts(glb, starts, counts);
@@ -165,6 +170,7 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
     normals,
     normalsFrom,
     colours,
+    values: scalars,
     coloursTint: texcoords !== null && attribute('COLOR_0') !== undefined,
     texcoords,
     indices: withRoom(interior, border),
@@ -207,8 +213,8 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
 
 /// What a tile holds, each once: what moves when it is handed over.
 export function partsOf(tile: Tile): Transferable[] {
-  const { copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
-  const arrays = [copyOf, splitOf, positions, normals, colours, texcoords, indices, border, neighbours, ghostStarts, chains];
+  const { copyOf, splitOf, positions, normals, colours, values, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
+  const arrays = [copyOf, splitOf, positions, normals, colours, values, texcoords, indices, border, neighbours, ghostStarts, chains];
   const buffers = arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
   return picture ? [...buffers, picture.bitmap] : buffers;
 }

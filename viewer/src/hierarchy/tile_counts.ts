@@ -24,11 +24,12 @@ export interface Counts extends ExpectedCounts {
   readonly chains: number;
 }
 
-const VERSION = 4;
+const VERSION = 5;
+const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
 const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
-/// What tiles without splits or pictures need not say.
-const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1 };
+/// What tiles without splits, pictures or values need not say.
+const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1 };
 
 /// MESHHIER_tile.
 export type TileValues = Record<string, number>;
@@ -45,7 +46,7 @@ function count(glb: Glb, values: TileValues, key: string, least: number, most: n
 
 function parse(glb: Glb, values: TileValues): Counts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
-  if (values.version !== VERSION && !screenColours) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
+  if (values.version !== VERSION && values.version !== NO_VALUES_VERSION && !screenColours) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
   return {
     screenColours,
     level: count(glb, values, 'level', 0, 32),

@@ -175,6 +175,11 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.root && (this.root.picture !== null || saysColour(this.root));
   }
 
+  /// Whether vertices have something besides normals, colours and texture coordinates; null: not known yet.
+  get hasAttributes(): boolean | null {
+    return this.root && this.root.values !== null;
+  }
+
   /// Whether the mesh has triangles, and not only points; null: not known yet.
   get hasTriangles(): boolean | null {
     return this.root && this.root.indices.length > 0;
@@ -394,7 +399,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
-    const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look);
+    const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look, this.manifest?.source.values);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
     for (const node of this.tiles.takeDamaged())
       this.tell(keyOf(node.level, node.index), new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));

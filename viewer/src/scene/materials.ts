@@ -5,6 +5,7 @@ import {
 } from 'three';
 import type { Alpha, Picture } from '../hierarchy/picture.js';
 import { makeMatcap } from './matcap.js';
+import { VALUE_VERTEX, valueDeclarations, valueFragment, AttributePaint } from './attribute_paint.js';
 import type { Look } from './settings.js';
 
 const PLAIN = 0xb9b4ab;
@@ -68,8 +69,9 @@ float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.4, 0.8, abs(normal
 diffuseColor.rgb *= clamp(1.0 + 1.8 * bend, 0.5, 1.4);`;
 
 /// Looks of one key have the same surfaces.
-export function surfaceKey({ colours, texture, relight, material, cavities, shading, wires, points }: Look): string {
-  return [colours, texture, relight, material, cavities, shading, wires || points].join();
+export function surfaceKey({ colours, texture, relight, material, cavities, shading, wires, points }: Look, { values }: SharedMaterials): string {
+  const attribute = colours === 'attribute' ? [values.index, values.key] : [];
+  return [colours, texture, relight, material, cavities, shading, wires || points, ...attribute].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -85,11 +87,14 @@ export interface SharedMaterials {
   readonly heights: { value: Vector2 };
   readonly relief: { value: number };
   readonly matcap: Texture;
+  /// The attribute that is shown.
+  readonly values: AttributePaint;
 }
 
 /// What of a tile its surface shows.
 export interface Painting {
   readonly hasColours: boolean;
+  readonly hasValues: boolean;
   /// The picture's light is multiplied by theirs.
   readonly coloursTint: boolean;
   readonly picture: Picture | null;
@@ -122,7 +127,7 @@ function unlitMaterial(look: Look, { picture, texture, coloursTint }: Painting):
 }
 
 /// What three's shaders are changed by, for a look.
-function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean): void {
+function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean, values: AttributePaint | null): void {
   const change = (where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void => { shader[where] = shader[where].replace(`#include <${chunk}>`, by); };
   const height = colours === 'height' ? 'varying float vHeight;\n' : '';
   change('vertexShader', 'beginnormal_vertex', RELIEF);
@@ -131,11 +136,17 @@ function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean
   if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
   if (height !== '') change('vertexShader', 'begin_vertex', HEIGHT);
   if (height !== '') change('fragmentShader', 'color_fragment', RAMP);
+  if (values !== null) {
+    change('vertexShader', 'begin_vertex', VALUE_VERTEX);
+    change('fragmentShader', 'color_fragment', valueFragment(values.isLabel));
+    shader.vertexShader = valueDeclarations(values.isLabel, true) + shader.vertexShader;
+    shader.fragmentShader = valueDeclarations(values.isLabel, false) + shader.fragmentShader;
+  }
   shader.vertexShader = `uniform vec3 upwards;\nuniform vec2 heights;\nuniform float relief;\n${height}${shader.vertexShader}`;
   shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
 }
 
-function litMaterial(look: Look, { picture, texture, hasColours, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
+function litMaterial(look: Look, { picture, texture, hasColours, hasValues, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
   const { colours, cavities, shading } = look;
   const vertexColors = colours === 'vertex' && hasColours && (texture === null || coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
@@ -145,11 +156,12 @@ function litMaterial(look: Look, { picture, texture, hasColours, coloursTint }: 
     ? new MeshMatcapMaterial({ ...parameters, matcap: shared.matcap })
     : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
   const { outwards, upwards, heights, relief } = shared;
+  const values = colours === 'attribute' && hasValues && shared.values.index >= 0 ? shared.values : null;
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, { outwards, upwards, heights, relief });
-    edit(shader, look, vertexColors);
+    Object.assign(shader.uniforms, { outwards, upwards, heights, relief }, values?.uniforms);
+    edit(shader, look, vertexColors, values);
   };
-  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities].join('-')}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, values?.key].join('-')}`;
   return material;
 }
 
@@ -192,5 +204,5 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
 export function sharedMaterials(): SharedMaterials {
   const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) }, relief: { value: 1 } };
   const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
-  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), ...uniforms };
+  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), values: new AttributePaint(), ...uniforms };
 }

@@ -1,10 +1,12 @@
 // What a user of the library may set, and what it tells.
 
-/// Tiles' colours: one for all; those of the input; one for each tile; by the error on screen; by height.
-export type Colours = 'plain' | 'vertex' | 'partition' | 'error' | 'height';
+import type { AttributeLook } from './attribute_paint.js';
 
-export interface Look {
-  /// `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
+/// Tiles' colours: one for all; those of the input; by one of its attributes; one for each tile; by the error on screen; by height.
+export type Colours = 'plain' | 'vertex' | 'attribute' | 'partition' | 'error' | 'height';
+
+export interface Look extends AttributeLook {
+  /// `attribute`: of a mesh without any it is `plain`. `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
   colours: Colours;
   /// False: no pictures.
   texture: boolean;
@@ -38,6 +40,7 @@ export interface Settings {
 /// What a view looks like if nothing is said.
 export const DEFAULT_LOOK: Look = {
   colours: 'vertex', texture: true, relight: false, material: 'lit', relief: 1, cavities: true, shading: 'smooth', wires: false, points: false, outline: false,
+  attribute: '', ramp: 'viridis', range: null, isolines: false, hidden: [],
 };
 
 const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 };

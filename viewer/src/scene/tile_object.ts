@@ -1,5 +1,5 @@
 // A tile in a three scene: its triangles, and on request its edges and vertices.
-import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
 import type { Intersection, Material, Raycaster, Texture } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
@@ -14,15 +14,15 @@ const TEXCOORD_BYTES = 8;
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need; of its picture one copy.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { level, copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
-  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + indices.byteLength;
+  const { level, copyOf, splitOf, positions, normals, colours, values, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
+  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
   return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (picture ? pictureMemory(picture, level) : 0);
 }
 
-/// What is drawn of a vertex: its position, normal and colour, if any; not its texture coordinate, which is there if there is a picture.
-export function vertexBytesOf({ normals, colours }: Tile): number {
-  return 12 + 4 * normals.BYTES_PER_ELEMENT + (colours ? 4 : 0);
+/// What is drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
+export function vertexBytesOf({ positions, normals, colours, values }: Tile): number {
+  return 12 + 4 * normals.BYTES_PER_ELEMENT + (colours ? 4 : 0) + (3 * (values?.byteLength ?? 0)) / positions.length;
 }
 
 /// What a tile's record does not tell.
@@ -57,9 +57,9 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-function paintingOf({ level, colours, coloursTint, picture }: Tile): Painting {
+function paintingOf({ level, colours, values, coloursTint, picture }: Tile): Painting {
   const texture: Texture | null = picture && tileTexture(picture, level);
-  return { hasColours: colours !== null, coloursTint, picture, texture };
+  return { hasColours: colours !== null, hasValues: values !== null, coloursTint, picture, texture };
 }
 
 export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
@@ -67,6 +67,10 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
   private wires: LineSegments | null = null;
   private points: Points | null = null;
   private readonly painting: Painting;
+  /// How its surface was made.
+  private surface: string;
+  /// The values, once one of them is shown.
+  private scalars: InterleavedBuffer | null = null;
 
   /// To be drawn once it is resolved; wires and points come with setLook().
   constructor(
@@ -78,16 +82,28 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     const painting = paintingOf(tile);
     super(new BufferGeometry(), surfaceMaterial(look, painting, shared));
     this.painting = painting;
+    this.surface = surfaceKey(look, shared);
     this.geometry.setAttribute('position', new BufferAttribute(tile.positions, 3));
     this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
     if (tile.colours) this.geometry.setAttribute('color', new BufferAttribute(tile.colours, 4, true));
     if (tile.texcoords) this.geometry.setAttribute('uv', new BufferAttribute(tile.texcoords, 2));
     this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
     for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
+    this.showValue();
     this.triangles = tile.interiorCount;
     this.matrixAutoUpdate = false;
     // Of equal depths the last one shows: the same one in whatever order tiles came.
     this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
+  }
+
+  /// Puts the value that is to be shown where the shader looks for it.
+  private showValue(): void {
+    const { tile } = this.resident;
+    const { index } = this.shared.values;
+    if (this.look.colours !== 'attribute' || tile.values === null || index < 0) return;
+    this.scalars ??= new InterleavedBuffer(tile.values, (3 * tile.values.length) / tile.positions.length);
+    this.scalars.setUsage(DynamicDrawUsage);
+    this.geometry.setAttribute('scalar', new InterleavedBufferAttribute(this.scalars, 1, index));
   }
 
   /// Those that seams change; texture coordinates are the tile's own.
@@ -144,13 +160,20 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
       attribute.addUpdateRange(first, attribute.array.length - first);
       attribute.needsUpdate = true;
     }
+    if (this.scalars === null) return;
+    const first = tile.own * this.scalars.stride;
+    this.scalars.clearUpdateRanges();
+    this.scalars.addUpdateRange(first, this.scalars.array.length - first);
+    this.scalars.needsUpdate = true;
   }
 
   /// Makes anew only what differs.
   setLook(look: Look): void {
-    const before = this.look;
     this.look = look;
-    if (surfaceKey(before) !== surfaceKey(look)) {
+    const surface = surfaceKey(look, this.shared);
+    if (this.surface !== surface) {
+      this.surface = surface;
+      this.showValue();
       this.material.dispose();
       this.material = surfaceMaterial(look, this.painting, this.shared);
     }

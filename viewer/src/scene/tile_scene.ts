@@ -3,6 +3,7 @@ import { Group } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Vector } from '../cut/viewpoint.js';
+import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
@@ -17,6 +18,7 @@ export class TileScene extends Group {
   private readonly objects = new Map<number, TileObject>();
   private cut: ReadonlyMap<number, Tile> = new Map();
   private look: Look | null = null;
+  private attributes: readonly ScalarAttribute[] = [];
   private readonly damaged: Node[] = [];
   private readonly told = new Set<number>();
   private readonly materials = sharedMaterials();
@@ -43,10 +45,12 @@ export class TileScene extends Group {
     this.matrixWorldNeedsUpdate = true;
   }
 
-  /// Shows a cut instead of the one before; true if that changes the picture.
-  show(residents: readonly ResidentTile[], look: Look): boolean {
+  /// Shows a cut instead of the one before; true if that changes the picture. `attributes`: of the model.
+  show(residents: readonly ResidentTile[], look: Look, attributes: readonly ScalarAttribute[] = []): boolean {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
-    if (isSameCut && look === this.look) return false;
+    if (isSameCut && look === this.look && attributes === this.attributes) return false;
+    this.attributes = attributes;
+    this.materials.values.set(attributes, look);
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
     this.materials.relief.value = look.relief;
@@ -122,5 +126,6 @@ export class TileScene extends Group {
     this.materials.dots.plain.dispose();
     this.materials.dots.coloured.dispose();
     this.materials.matcap.dispose();
+    this.materials.values.dispose();
   }
 }

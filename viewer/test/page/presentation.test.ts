@@ -6,9 +6,9 @@ import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 
 const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
-const HILLS = { terrain: { along: [0, 1, 0] as const, upright: true, low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true };
+const HILLS = { terrain: { along: [0, 1, 0] as const, upright: true, low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true, hasAttributes: false };
 const SHEET = { ...HILLS, terrain: { ...HILLS.terrain, along: [0, 0, 1] as const, upright: false } };
-const FORM = { terrain: null, hasColours: false, hasTriangles: true };
+const FORM = { terrain: null, hasColours: false, hasTriangles: true, hasAttributes: false };
 
 describe('what is shown', () => {
   it('is a terrain by height and under the sun, with slopes that show', () => {
@@ -36,7 +36,7 @@ describe('what is shown', () => {
   });
 
   it('is the points of a mesh without triangles', () => {
-    expect(shownOf(PLAIN, { ...FORM, hasTriangles: false }).look.points).toBe(true);
+    expect(shownOf(PLAIN, { ...FORM, hasTriangles: false, hasAttributes: false }).look.points).toBe(true);
     expect(shownOf(PLAIN, FORM).look.points).toBe(false);
   });
 

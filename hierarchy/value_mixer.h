@@ -1,0 +1,45 @@
+// Means of the values that vertices have beside normals, colours and texture coordinates.
+#pragma once
+
+#include "hierarchy/attributes.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace meshhier {
+
+/// A vertex's channels, as its layout has them, and how much it counts.
+struct WeightedVertex {
+  const float* channels = nullptr;
+  double weight = 0;
+};
+
+class ValueMixer {
+ public:
+  explicit ValueMixer(const AttributeLayout& layout);
+
+  bool has_values() const { return !values_.empty(); }
+  bool has_labels() const { return has_labels_; }
+
+  /// Puts into the channels of values of `to`, which may be one of the vertices:
+  /// * of a quantity the mean, by weight, of those that are finite; if there is none, or no weight,
+  ///   the first vertex's. Equal ones stay as they are, bit for bit;
+  /// * of a label that with the largest sum of weights, among equal ones the least.
+  /// O(v n), for labels O(v n^2). Requires a vertex, and weights of at least 0.
+  void mix(std::span<const WeightedVertex> vertices, float* to) const;
+
+  /// Whether two vertices have the same labels.
+  bool have_equal_labels(const float* a, const float* b) const;
+
+ private:
+  struct Value {
+    ValueType type;
+    bool is_label;
+    std::size_t offset;
+  };
+  std::vector<Value> values_;
+  bool has_labels_ = false;
+};
+
+}  // namespace meshhier

@@ -1,0 +1,68 @@
+// What the values of one attribute are, in numbers: range, histogram, which labels there are.
+//
+// Bins have a width that is a power of two and begin at multiples of it, so that counts of narrow
+// bins add up to those of wider ones: one pass over the values is enough, in any order, and in
+// parts.
+#pragma once
+
+#include "hierarchy/scalar_value.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshhier {
+
+struct ValueStatistics {
+  static constexpr std::size_t kMostBins = 64;
+  static constexpr std::size_t kMostLabels = 256;
+
+  struct LabelCount {
+    double label = 0;
+    std::uint64_t vertices = 0;
+    friend bool operator==(const LabelCount&, const LabelCount&) = default;
+  };
+
+  std::uint64_t missing = 0;  ///< vertices whose value is not finite
+  double min = 0, max = 0;    ///< of the others; both 0 if there are none
+  /// Of the others in bins [first_bin + i, first_bin + i + 1) * 2^bin_exponent: at most kMostBins,
+  /// of which the first and the last are not empty.
+  int bin_exponent = 0;
+  std::int64_t first_bin = 0;
+  std::vector<std::uint64_t> bins{};
+  /// Of a label: all that there are, ascending; empty if there are more than kMostLabels.
+  std::vector<LabelCount> labels{};
+
+  friend bool operator==(const ValueStatistics&, const ValueStatistics&) = default;
+};
+
+/// Makes the statistics of one attribute.
+class ValueTally {
+ public:
+  explicit ValueTally(const ScalarAttribute& attribute);
+
+  /// Of vertices whose channels lie `stride` floats apart, the first ones at `channels`.
+  void add(const float* channels, std::size_t stride, std::size_t vertices);
+  /// Of the same attribute.
+  void add(const ValueTally& other);
+  ValueStatistics statistics() const;
+
+ private:
+  void add_all(std::span<const double> values);
+  void widen(double min, double max);
+
+  ScalarAttribute attribute_;
+  std::uint64_t missing_ = 0;
+  std::optional<std::pair<double, double>> range_;
+  int exponent_ = 0;
+  std::int64_t first_bin_ = 0;
+  std::vector<std::uint64_t> bins_;  ///< of the range
+  std::map<double, std::uint64_t> labels_;
+  bool has_too_many_labels_ = false;
+};
+
+}  // namespace meshhier

@@ -1,0 +1,95 @@
+#include "inspection/attribute_painter.h"
+
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meshhier::inspection {
+namespace {
+
+constexpr Vec3f kNoValueColour{0.2F, 0.2F, 0.2F};
+
+[[noreturn]] void refuse_name(const SourceSummary& source, const std::string& name) {
+  std::vector<std::string> names;
+  for (const ScalarAttribute& value : source.attributes.values)
+    names.push_back(value.name);
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("--attribute {}: {}", plain_text(name, kMostNameBytes),
+                  names.empty() ? "the hierarchy has no attributes besides colours"
+                                : fmt::format("the hierarchy has {}", fmt::join(names, ", "))));
+}
+
+std::array<double, 2> whole_range(const ValueStatistics& values, render::ColourRamp ramp) {
+  if (ramp != render::ColourRamp::coolwarm || values.min >= 0 || values.max <= 0)
+    return {values.min, values.max};
+  const double most = std::max(-values.min, values.max);
+  return {-most, most};
+}
+
+}  // namespace
+
+AttributePainter::AttributePainter(const SourceSummary& source, const AttributeColours& colours)
+    : given_(source.attributes) {
+  const auto found = std::ranges::find(given_.values, colours.attribute, &ScalarAttribute::name);
+  if (found == given_.values.end())
+    refuse_name(source, colours.attribute);
+  attribute_ = *found;
+  const ValueStatistics& values =
+      source.values[static_cast<std::size_t>(found - given_.values.begin())];
+  offset_ = static_cast<std::size_t>(given_.value_offset());
+  for (auto before = given_.values.begin(); before != found; ++before)
+    offset_ += static_cast<std::size_t>(channels_of(before->type));
+  const bool is_signed = values.min < 0 && values.max > 0;
+  ramp_ =
+      colours.ramp.value_or(is_signed ? render::ColourRamp::coolwarm : render::ColourRamp::viridis);
+  range_ = colours.range.value_or(whole_range(values, ramp_));
+  for (const auto& label : values.labels)
+    labels_.emplace(label.label, labels_.size());
+  painted_.normals = given_.normals;
+  painted_.colour = ColourType::f32;
+  painted_.space = ColourSpace::linear;
+}
+
+void AttributePainter::paint(PublishedTile& tile) const {
+  paint(tile.mesh.vertices);
+  paint(tile.mesh.copies.vertices);
+  tile.image = {};
+  tile.shading.texcoords.clear();
+}
+
+void AttributePainter::paint(VertexArray& vertices) const {
+  std::vector<float> painted;
+  painted.reserve(vertices.size() * static_cast<std::size_t>(painted_.channels()));
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto channels = vertices.attributes_of(v);
+    const auto normal = channels.first(given_.normals ? 3 : 0);
+    painted.insert(painted.end(), normal.begin(), normal.end());
+    const Vec3f rgb = colour(value_in(attribute_.type, channels.subspan(offset_).data()));
+    painted.insert(painted.end(), {rgb.x, rgb.y, rgb.z});
+  }
+  vertices.attributes = std::move(painted);
+  vertices.channels = painted_.channels();
+}
+
+Vec3f AttributePainter::colour(double value) const {
+  if (!std::isfinite(value))
+    return kNoValueColour;
+  if (attribute_.is_label) {
+    const auto known = labels_.find(value);
+    return render::label_colour(known != labels_.end()
+                                    ? known->second
+                                    : static_cast<std::uint64_t>(std::min(std::abs(value), 1e15)));
+  }
+  const double width = range_[1] - range_[0];
+  return render::ramp_colour(ramp_, width == 0 ? 0 : (value - range_[0]) / width);
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,45 @@
+// Tiles in the colours of one of their attributes.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "render/colour_ramp.h"
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace meshhier::inspection {
+
+struct AttributeColours {
+  std::string attribute;
+  std::optional<render::ColourRamp> ramp{};  ///< none: coolwarm for signed values, else viridis
+  /// Values at the ends of the ramp; none: the least and the most, on both sides of 0 if coolwarm.
+  std::optional<std::array<double, 2>> range{};
+};
+
+class AttributePainter {
+ public:
+  /// Throws Error(usage) if the source has no such attribute: it lists those that there are.
+  AttributePainter(const SourceSummary& source, const AttributeColours& colours);
+
+  /// What painted tiles have.
+  const AttributeLayout& layout() const { return painted_; }
+  /// Gives the tile's vertices colours instead of all else but normals, and takes its picture.
+  /// Where there is no finite value they are grey. O(n).
+  void paint(PublishedTile& tile) const;
+
+ private:
+  void paint(VertexArray& vertices) const;
+  Vec3f colour(double value) const;
+
+  AttributeLayout given_, painted_;
+  ScalarAttribute attribute_;
+  std::size_t offset_ = 0;  ///< of its channels
+  render::ColourRamp ramp_{};
+  std::array<double, 2> range_{};
+  std::map<double, std::uint64_t> labels_;  ///< their numbers
+};
+
+}  // namespace meshhier::inspection

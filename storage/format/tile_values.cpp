@@ -1,0 +1,153 @@
+#include "storage/format/tile_values.h"
+
+#include "storage/format/glb.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_alphanumeric(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// Letters, digits and underscores.
+std::string as_word(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return !is_alphanumeric(c); }, '_');
+  return name;
+}
+
+/// A name that is there already gets a number behind it.
+void add_unique(std::vector<std::string>& names, const std::string& name) {
+  std::string unique = name;
+  for (int number = 2; std::ranges::find(names, unique) != names.end(); ++number)
+    unique = name + '_' + std::to_string(number);
+  names.push_back(std::move(unique));
+}
+
+const char* component_name(unsigned component) {
+  switch (component) {
+    case kI8:
+      return "INT8";
+    case kU8:
+      return "UINT8";
+    case kI16:
+      return "INT16";
+    case kU16:
+      return "UINT16";
+    default:
+      return "FLOAT32";
+  }
+}
+
+}  // namespace
+
+unsigned component_of(ValueType type) {
+  switch (type) {
+    case ValueType::i8:
+      return kI8;
+    case ValueType::u8:
+      return kU8;
+    case ValueType::i16:
+      return kI16;
+    case ValueType::u16:
+      return kU16;
+    default:
+      return kF32;
+  }
+}
+
+double stored_value(ValueType type, double value) {
+  if (component_of(type) != kF32)
+    return of_type(type, value);
+  if (!std::isfinite(value))
+    return kNoValue;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const float least = std::nextafter(kNoValue, 0.0F);
+  return static_cast<float>(
+      std::clamp(is_integer(type) ? of_type(type, value) : value, double{least}, double{kMost}));
+}
+
+double value_of_stored(ValueType type, double stored) {
+  if (component_of(type) == kF32 && stored == kNoValue)
+    return is_integer(type) ? 0 : std::numeric_limits<double>::quiet_NaN();
+  return of_type(type, stored);
+}
+
+bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bool labels_only) {
+  const auto channels = static_cast<std::size_t>(layout.channels());
+  auto offset = static_cast<std::size_t>(layout.value_offset());
+  for (const ScalarAttribute& value : layout.values) {
+    for (std::size_t v = 0; (value.is_label || !labels_only) && v < vertices.size(); ++v) {
+      const float* given = vertices.attributes.data() + v * channels + offset;
+      std::array<float, 2> read{};
+      put_value(value.type,
+                value_of_stored(value.type, stored_value(value.type, value_in(value.type, given))),
+                read.data());
+      for (std::size_t i = 0; i < static_cast<std::size_t>(channels_of(value.type)); ++i) {
+        if (std::bit_cast<std::uint32_t>(read[i]) != std::bit_cast<std::uint32_t>(given[i]))
+          return true;
+      }
+    }
+    offset += static_cast<std::size_t>(channels_of(value.type));
+  }
+  return false;
+}
+
+std::vector<std::string> value_attributes(const AttributeLayout& layout) {
+  std::vector<std::string> names{"_COLOR_0"};
+  for (const ScalarAttribute& value : layout.values) {
+    std::string word = as_word(value.name);
+    word.erase(0, std::min(word.find_first_not_of('_'), word.size()));
+    std::ranges::transform(word, word.begin(), [](char c) {
+      return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    });
+    add_unique(names, '_' + word);
+  }
+  names.erase(names.begin());
+  return names;
+}
+
+std::vector<std::string> value_ids(const AttributeLayout& layout) {
+  std::vector<std::string> names;
+  for (const ScalarAttribute& value : layout.values) {
+    std::string word = as_word(value.name);
+    if (word[0] >= '0' && word[0] <= '9')
+      word.insert(word.begin(), '_');
+    add_unique(names, word);
+  }
+  return names;
+}
+
+Json values_metadata(const AttributeLayout& layout) {
+  const std::vector<std::string> ids = value_ids(layout);
+  const std::vector<std::string> attributes = value_attributes(layout);
+  Json properties = Json::object(), places = Json::object();
+  for (std::size_t i = 0; i < layout.values.size(); ++i) {
+    const unsigned component = component_of(layout.values[i].type);
+    Json& property = properties[ids[i]];
+    property["name"] = layout.values[i].name;
+    property["type"] = "SCALAR";
+    property["componentType"] = component_name(component);
+    if (component == kF32)
+      property["noData"] = double{kNoValue};
+    places[ids[i]]["attribute"] = attributes[i];
+  }
+  Json metadata;
+  metadata["schema"]["id"] = "meshhier";
+  metadata["schema"]["classes"]["vertex"]["properties"] = std::move(properties);
+  metadata["propertyAttributes"] =
+      Json::array({{{"class", "vertex"}, {"properties", std::move(places)}}});
+  return metadata;
+}
+
+}  // namespace meshhier::storage
