@@ -19,7 +19,7 @@ export interface Appearance {
 }
 
 export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'flat', 'sun', 'matcap'];
-export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'attribute', 'partition', 'error', 'height'];
+export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
 export const DEFAULT_LIGHT: Light = { name: 'auto', key: null };
 
 type Json = Record<string, unknown>;

@@ -10,6 +10,11 @@ export interface Control<Value> {
   show(value: Value): void;
 }
 
+/// One of several values, of which some may not be there to be chosen.
+export interface Choice<Value> extends Control<Value> {
+  offer(value: Value, is: boolean): void;
+}
+
 export function checkbox(name: string, key: string | null, chosen: (on: boolean) => void): Control<boolean> {
   const input = element('input', { type: 'checkbox', 'aria-keyshortcuts': key });
   input.addEventListener('change', () => { chosen(input.checked); });
@@ -22,13 +27,17 @@ export function choice<Value extends string>(
   name: string,
   choices: readonly (readonly [Value, string])[],
   chosen: (value: Value) => void,
-): Control<Value> {
+): Choice<Value> {
   const group = `choice-${++made}`;
   const inputs = choices.map(([value]) => element('input', { type: 'radio', name: group, value }));
   const labels = choices.map(([, text], i) => element('label', {}, inputs[i], element('span', {}, text)));
   inputs.forEach((input, i) => { input.addEventListener('change', () => { chosen(choices[i][0]); }); });
   const root = element('fieldset', { class: 'choice' }, element('legend', {}, name), element('div', { class: 'segments' }, ...labels));
-  return { root, show: (value) => { inputs.forEach((input) => { input.checked = input.value === value; }); } };
+  return {
+    root,
+    show: (value) => { inputs.forEach((input) => { input.checked = input.value === value; }); },
+    offer: (value, is) => { labels.forEach((label, i) => { if (choices[i][0] === value) label.hidden = !is; }); },
+  };
 }
 
 /// A slider and a number that say the same.

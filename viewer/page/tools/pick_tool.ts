@@ -11,6 +11,7 @@ import type { Workshop } from './workshop.js';
 
 const NORMAL_DIGITS = 5;
 const DEGREE_DIGITS = 9;
+const VALUE_DIGITS = 7;
 
 type State = 'refining' | 'done' | 'missing';
 
@@ -29,6 +30,11 @@ function globeRows({ globe }: PickedPoint): (readonly [string, string])[] {
   ];
 }
 
+/// As the tiles have them: of floats.
+function valueRows({ values }: PickedPoint): (readonly [string, string])[] {
+  return values.map(({ name, value }) => [name, value === null ? '–' : String(Number(value.toPrecision(VALUE_DIGITS)))]);
+}
+
 function originOf(picked: PickedPoint, state: State): string {
   const { isOriginal, level, index } = picked;
   const from = isOriginal ? words.pick.original(String(index)) : words.pick.level(String(level));
@@ -38,7 +44,7 @@ function originOf(picked: PickedPoint, state: State): string {
 function rowsOf(picked: PickedPoint, state: State): (readonly [string, string])[] {
   const [x, y, z] = coordinates(picked);
   const normal = picked.normal.map((value) => value.toFixed(NORMAL_DIGITS)).join(', ');
-  return [['x', x], ['y', y], ['z', z], [words.pick.normal, normal], ...globeRows(picked), [words.pick.from, originOf(picked, state)]];
+  return [['x', x], ['y', y], ['z', z], [words.pick.normal, normal], ...globeRows(picked), ...valueRows(picked), [words.pick.from, originOf(picked, state)]];
 }
 
 export class PickTool implements Tool {

@@ -98,6 +98,7 @@ export class AttributeForm {
   private readonly missing = element('p', { class: 'source' });
   private attributes: readonly ScalarAttribute[] = [];
   private look: AttributeLook | null = null;
+  private on = false;
 
   constructor(private readonly chosen: Chosen) {
     const text = words.attribute;
@@ -115,12 +116,13 @@ export class AttributeForm {
     if (attributes === this.attributes) return;
     this.attributes = attributes;
     this.select.replaceChildren(...attributes.map(({ name }) => element('option', { value: name }, name)));
-    if (this.look !== null) this.show(this.look, !this.root.hidden);
+    if (this.look !== null) this.show(this.look, this.on);
   }
 
   /// `on`: the model is coloured so.
   show(look: AttributeLook, on: boolean): void {
     this.look = look;
+    this.on = on;
     this.root.hidden = !on || this.attributes.length === 0;
     if (this.root.hidden) return;
     const attribute = this.attributes[attributeIndex(this.attributes, look.attribute)];

@@ -40,7 +40,7 @@ const VIEW: Record<string, Act> = {
   ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, 1), ArrowDown: arrow(0, -1),
   '+': closer, '=': closer, '-': farther, _: farther,
   Home: home, '0': home, Escape: back, Backspace: back,
-  '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3), '5': colours(4),
+  '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3), '5': colours(4), '6': colours(5),
   t: toggle('texture'), w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
   s: toggle('panel'), l: (commands) => { commands.light(); }, g: (commands) => { commands.nextLight(); }, c: toggle('cavities'), '?': toggle('help'), h: toggle('help'),
 };

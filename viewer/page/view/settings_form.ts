@@ -1,6 +1,6 @@
 // Look, quality and theme.
 import { changedSettings, type Colours, type Look, type Settings } from '../../src/scene/settings.js';
-import { checkbox, choice, slider, type Control } from '../parts/controls.js';
+import { checkbox, choice, slider, type Choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { languageSelect } from '../parts/language_select.js';
 import { COLOURS, type Appearance } from '../appearance.js';
@@ -29,7 +29,7 @@ function named<Value extends string>(values: readonly Value[], names: Readonly<R
 
 export class SettingsForm {
   readonly root: HTMLElement;
-  private readonly colours: Control<Colours>;
+  private readonly colours: Choice<Colours>;
   private readonly attribute: AttributeForm;
   private readonly theme: Control<Theme>;
   private readonly quality: Control<Quality | ''>;
@@ -41,6 +41,7 @@ export class SettingsForm {
   constructor({ look, settings, theme, language, light, standing }: Choices) {
     const text = words.settings;
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { look({ colours }); });
+    this.colours.offer('attribute', false);
     this.attribute = new AttributeForm(look);
     this.theme = choice(text.theme, named(THEMES, words.themes), theme);
     this.quality = choice<Quality | ''>(text.quality, named(QUALITIES, text.qualities), (quality) => { if (quality !== '') settings(PRESETS[quality]); });
@@ -70,6 +71,7 @@ export class SettingsForm {
   /// What the model can be coloured by.
   tellAttributes(attributes: readonly ScalarAttribute[]): void {
     this.attribute.tell(attributes);
+    this.colours.offer('attribute', attributes.length > 0);
   }
 
   /// `key`: where the light comes from.

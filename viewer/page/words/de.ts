@@ -232,7 +232,7 @@ export const de: Words = {
       ['+ −', 'näher, weiter weg'],
       ['Pos1, 0', 'das ganze Modell'],
       ['Esc, Rücktaste', 'zurück'],
-      ['1 2 3 4 5', 'Farben: einfarbig, Original, Stücke, Fehler, Höhe'],
+      ['1 2 3 4 5 6', 'Farben: einfarbig, Original, Stücke, Fehler, Höhe, Attribut'],
       ['T W P O C F', 'Textur, Gitter, Punkte, Umriss, Furchen, kantig'],
       ['G', 'nächstes Licht'],
       ['L', 'Aussehen und Einstellungen'],

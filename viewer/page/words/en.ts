@@ -239,7 +239,7 @@ export const en = {
       ['+ −', 'closer, farther'],
       ['Home, 0', 'the whole model'],
       ['Esc, Backspace', 'back'],
-      ['1 2 3 4 5', "colours: plain, the input's, partitions, error, height"],
+      ['1 2 3 4 5 6', "colours: plain, the input's, partitions, error, height, attribute"],
       ['T W P O C F', 'texture, wires, points, outline, creases, flat shading'],
       ['G', 'next light'],
       ['L', 'look and settings'],

@@ -232,7 +232,7 @@ export const es: Words = {
       ['+ −', 'acercar, alejar'],
       ['Inicio, 0', 'el modelo completo'],
       ['Esc, Retroceso', 'atrás'],
-      ['1 2 3 4 5', 'colores: liso, original, partes, error, altura'],
+      ['1 2 3 4 5 6', 'colores: liso, original, partes, error, altura, atributo'],
       ['T W P O C F', 'textura, aristas, puntos, contorno, surcos, facetas'],
       ['G', 'luz siguiente'],
       ['L', 'aspecto y ajustes'],

@@ -91,7 +91,8 @@ export class AttributePaint {
 
 // ---- shaders
 
-const NO_VALUE = '-3.4e38';
+/// Beside a vertex without a value what lies between is none either.
+const NO_VALUE = '-1e37';
 
 /// What stands before a shader.
 export function valueDeclarations(isLabel: boolean, isVertexShader: boolean): string {

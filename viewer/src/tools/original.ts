@@ -69,9 +69,9 @@ class Descent {
   /// Border triangles too, with ghosts where their own tiles have them.
   private async lookInto({ node, record }: Met): Promise<void> {
     const tile = await this.source.load(node, record, this.options.signal);
-    const { positions, indices, interiorCount, border } = tile;
-    for (let i = 0; i < 3 * interiorCount; i += 3) this.search.look(node, positions, [indices[i], indices[i + 1], indices[i + 2]]);
-    for (let i = 0; i < border.length; i += 3) this.search.look(node, positions, [border[i], border[i + 1], border[i + 2]]);
+    const { indices, interiorCount, border } = tile;
+    for (let i = 0; i < 3 * interiorCount; i += 3) this.search.look(node, tile, [indices[i], indices[i + 1], indices[i + 2]]);
+    for (let i = 0; i < border.length; i += 3) this.search.look(node, tile, [border[i], border[i + 1], border[i + 2]]);
     letGo(tile);
   }
 }

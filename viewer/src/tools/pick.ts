@@ -18,6 +18,19 @@ export interface Hit {
   readonly corner: Vector;
   /// From the ray's beginning, in units of the model.
   readonly distance: number;
+  /// All values of the tile's vertices, as the manifest lists them: between the corners, and of that nearest one.
+  readonly between: readonly number[];
+  readonly atCorner: readonly number[];
+}
+
+/// What of a tile is looked at.
+export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
+
+/// All values of a vertex.
+function valuesAt({ positions, values }: PickedTile, vertex: number): number[] {
+  if (!values) return [];
+  const width = (3 * values.length) / positions.length;
+  return Array.from(values.subarray(width * vertex, width * (vertex + 1)));
 }
 
 /// Whether a point may be hit: what is cut away may not.
@@ -46,15 +59,18 @@ export class Search {
   ) {}
 
   /// The corners a, b, c of a tile. Returns the limit.
-  readonly look = (node: Node, positions: Float32Array, [a, b, c]: Vector): number => {
+  readonly look = (node: Node, tile: PickedTile, [a, b, c]: Vector): number => {
+    const { positions } = tile;
     const distance = this.probe.hits(positions, a, b, c);
     if (!(distance < this.limit)) return this.limit;
     const corners = [a, b, c].map((vertex) => vertexAt(positions, vertex));
     const point = corners.map((corner, k) => scale(corner, this.probe.weights[k])).reduce(add);
     if (!this.keeps(point)) return this.limit;
     const normal = unit(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
-    const corner = corners.reduce((best, other) => (distanceOf(other, point) < distanceOf(best, point) ? other : best));
-    this.hit = { node, point, normal, corner, distance };
+    const nearest = [0, 1, 2].reduce((best, other) => (distanceOf(corners[other], point) < distanceOf(corners[best], point) ? other : best));
+    const values = [a, b, c].map((vertex) => valuesAt(tile, vertex));
+    const between = values[0].map((_, i) => values.reduce((sum, each, k) => sum + each[i] * this.probe.weights[k], 0));
+    this.hit = { node, point, normal, corner: corners[nearest], distance, between, atCorner: values[nearest] };
     this.limit = distance;
     return this.limit;
   };
@@ -92,9 +108,9 @@ export class Picker {
 
   /// Border triangles change with the cut: they are looked at one by one.
   private searchTile(search: Search, { node, tile, triangles }: DrawnTile): void {
-    const { positions, indices, interiorCount } = tile;
+    const { indices, interiorCount } = tile;
     const look = (triangle: number): number =>
-      search.look(node, positions, [indices[3 * triangle], indices[3 * triangle + 1], indices[3 * triangle + 2]]);
+      search.look(node, tile, [indices[3 * triangle], indices[3 * triangle + 1], indices[3 * triangle + 2]]);
     this.treeOf(tile).visit(search.probe, search.limit, look);
     for (let triangle = interiorCount; triangle < triangles; ++triangle) look(triangle);
   }

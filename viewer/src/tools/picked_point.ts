@@ -1,5 +1,6 @@
 // What is told of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
+import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { Coordinates, type GlobePlace } from './coordinates.js';
 import type { Hit } from './pick.js';
 import type { Vector } from './vectors.js';
@@ -21,9 +22,21 @@ export interface PickedPoint {
   /// The vertex is one of the input, and these are its coordinates to the bit.
   readonly isExact: boolean;
   readonly globe: GlobePlace | null;
+  /// What the point has besides, in the order of the manifest: of labels that of the nearest vertex. Null: no value.
+  readonly values: readonly { readonly name: string; readonly value: number | null }[];
 }
 
-type Stored = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform' | 'worstRounding' | 'partitions'> & { readonly source: { readonly doublePrecision: boolean } };
+/// Beside a vertex without a value what lies between is none either.
+const NO_VALUE = -1e37;
+
+function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribute[], snaps: boolean): PickedPoint['values'] {
+  return attributes.slice(0, atCorner.length).map(({ name, kind }, i) => {
+    const value = snaps || kind === 'label' ? atCorner[i] : between[i];
+    return { name, value: value > NO_VALUE ? value : null };
+  });
+}
+
+type Stored = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform' | 'worstRounding' | 'partitions'> & { readonly source: Pick<Manifest['source'], 'doublePrecision'> & Partial<Pick<Manifest['source'], 'values'>> };
 
 /// `snaps`: to the nearest corner of the triangle.
 export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean): PickedPoint {
@@ -41,5 +54,6 @@ export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean): PickedP
     isOriginal,
     isExact: snaps && isOriginal && manifest.worstRounding === 0 && !manifest.source.doublePrecision,
     globe: coordinates.toGlobe(point),
+    values: valuesOf(hit, manifest.source.values ?? [], snaps),
   };
 }

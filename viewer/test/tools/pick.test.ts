@@ -207,7 +207,7 @@ describe.skipIf(!hasProgram)('picking', () => {
 describe('a point of a placed model', () => {
   it('has its place on the globe', () => {
     const manifest = { origin: [1, 2, 3], place: [0, 0, 0], up: 'z', transform: [0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 6378137, 0, 0, 1], worstRounding: 0, partitions: 1, source: { doublePrecision: false } } as const;
-    const hit = { node: { level: 0, index: 0 }, point: [0, 0, 4], normal: [0, 0, 1], corner: [0, 0, 5], distance: 1 } as const;
+    const hit = { node: { level: 0, index: 0 }, point: [0, 0, 4], normal: [0, 0, 1], corner: [0, 0, 5], distance: 1, between: [], atCorner: [] } as const;
     expect(pickedPoint(hit, manifest, false).globe?.height).toBeCloseTo(7, 5);
     expect(pickedPoint(hit, manifest, true).point).toEqual(add([1, 2, 3], [0, 0, 5]));
     expect(new Coordinates(manifest).fromInput([1, 2, 8])).toEqual(subtract([1, 2, 8], [1, 2, 3]));
