@@ -3,6 +3,7 @@
 #include "execution/spool_cursor.h"
 #include "hierarchy/angle.h"
 #include "import/gltf_materials.h"
+#include "import/gltf_values.h"
 #include "import/used_vertices.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/gltf_draco.h"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -81,7 +83,7 @@ class PrimitiveSources {
     GltfElementSource source =
         decoded != draco_.attributes.end() ? decoded->second : gltf_elements_of(file_, *accessor);
     if (source.components < least || source.components > most ||
-        source.component == GltfComponent::u32)
+        (source.component == GltfComponent::u32 && !name.starts_with('_')))
       file_.fail(fmt::format("{} is of no type that {} may have", source.name, name));
     return source;
   }
@@ -124,13 +126,14 @@ std::array<double, 2> transformed(const mesh_io::GltfTextureTransform& t, double
 class GltfImporter {
  public:
   GltfImporter(GltfFile& file, const GltfTransform& placement, RawMesh& mesh, Textures textures,
-               const ImportRoom& room)
+               const mesh_io::AttributeChoice& attributes, const ImportRoom& room)
       : file_(file),
         mesh_(mesh),
         textures_(textures),
         room_(room),
         scene_(gltf_scene(file.document(), file.path(), placement)),
-        materials_(file) {}
+        materials_(file),
+        found_values_(attributes) {}
 
   GltfImport run() {
     look();
@@ -226,6 +229,9 @@ class GltfImporter {
         look_at(primitive, layout);
     }
     import_.layout = layout.layout();
+    values_ = found_values_.values();
+    for (const GltfValue& value : values_)
+      import_.layout.values.push_back(value.attribute);
     if (is_textured()) {
       import_.layout.texcoords = import_.layout.material = true;
     } else if (import_.layout.colour == ColourType::none && materials_.colours().are_seen()) {
@@ -252,6 +258,7 @@ class GltfImporter {
     }
     const std::string texcoords = texcoords_of(primitive);
     layout.add(file_, primitive, texcoords);
+    found_values_.add(file_.document(), primitive);
     if (textures_ == Textures::use)
       materials_.use(primitive.material, primitive.attribute(texcoords).has_value());
   }
@@ -343,6 +350,7 @@ class GltfImporter {
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
+    std::vector<std::optional<GltfElements>> values;  ///< of values_
     std::array<double, 4> factor{1, 1, 1, 1};  ///< of the material, if vertices have its colour
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
@@ -359,6 +367,8 @@ class GltfImporter {
     if (layout.colour != ColourType::none)
       attributes.colours =
           elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
+    for (const GltfValue& value : values_)
+      attributes.values.push_back(elements(sources, value.source, 1, 4, count, true));
     if (layout.texcoords)
       attributes.texcoords = elements(sources, texcoords_of(primitive), 2, 2, count);
     if (layout.material) {
@@ -398,6 +408,7 @@ class GltfImporter {
       channels.clear();
       add_normal(all, vertex, transform, channels);
       add_colour(all, vertex, channels);
+      add_values(all, vertex, channels);
       add_texcoord(all, vertex, channels);
       import_.zeroed += mesh_io::zero_what_is_not_finite(import_.layout, channels);
       mesh_.attributes.append(channels);
@@ -479,6 +490,16 @@ class GltfImporter {
       multiply(std::span(channels).subspan(begin), all.factor);
   }
 
+  void add_values(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const ValueType type = values_[i].attribute.type;
+      const double value = all.values[i] ? all.values[i]->at(vertex)[values_[i].component]
+                                         : std::numeric_limits<double>::quiet_NaN();
+      channels.resize(channels.size() + static_cast<std::size_t>(channels_of(type)));
+      put_value(type, value, &channels.back() - (channels_of(type) - 1));
+    }
+  }
+
   /// Whole numbers stay whole.
   void multiply(std::span<float> colour, const std::array<double, 4>& factor) const {
     const bool is_whole = import_.layout.colour != ColourType::f32;
@@ -511,6 +532,7 @@ class GltfImporter {
                       {"instanced_meshes", copies_},
                       {"hidden_meshes", scene_.hidden},
                       {"ignored_skins", scene_.skinned},
+                      {"dropped_values", found_values_.dropped()},
                       {"vertices_left_out", left_out_},
                       {"vertices_without_normal", without_normal_},
                       {"vertices_without_texcoord", without_texcoord_}};
@@ -524,8 +546,10 @@ class GltfImporter {
   mesh_io::GltfScene scene_;
   GltfMaterials materials_;
   GltfImport import_;
-  bool widens_colours_ = false;  ///< from 8 bits to 16
-  std::uint64_t copies_ = 0;     ///< of EXT_mesh_gpu_instancing
+  GltfValues found_values_;
+  std::vector<GltfValue> values_;  ///< of import_.layout
+  bool widens_colours_ = false;    ///< from 8 bits to 16
+  std::uint64_t copies_ = 0;       ///< of EXT_mesh_gpu_instancing
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
   std::uint64_t without_normal_ = 0, without_texcoord_ = 0;
 };
@@ -533,8 +557,9 @@ class GltfImporter {
 }  // namespace
 
 GltfImport import_gltf(mesh_io::GltfFile& file, const GltfTransform& placement, RawMesh& mesh,
-                       Textures textures, const ImportRoom& room) {
-  return GltfImporter(file, placement, mesh, textures, room).run();
+                       Textures textures, const mesh_io::AttributeChoice& attributes,
+                       const ImportRoom& room) {
+  return GltfImporter(file, placement, mesh, textures, attributes, room).run();
 }
 
 }  // namespace meshhier::importing

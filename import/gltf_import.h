@@ -27,9 +27,11 @@ struct GltfImport {
 /// in their order. The mesh is textured if `textures` are used and a primitive's base colour has a
 /// picture that is there and coordinates. If it is not, and no primitive has vertex colours, the
 /// vertices have the base colours, if they are to be seen (PlainColours). Attributes that a
-/// primitive does not have, but another has, are filled in and counted. Throws Error(input) naming
+/// primitive does not have, but another has, are filled in and counted. Values are those of
+/// GltfValues. Throws Error(input) naming
 /// the accessor, node or view; as GltfFile.
 GltfImport import_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement,
-                       RawMesh& mesh, Textures textures, const ImportRoom& room);
+                       RawMesh& mesh, Textures textures, const mesh_io::AttributeChoice& attributes,
+                       const ImportRoom& room);
 
 }  // namespace meshhier::importing

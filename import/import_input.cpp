@@ -328,7 +328,8 @@ class Import {
         {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
          facts.format.is_gzip ? mesh_io::GltfContent::temporary : mesh_io::GltfContent::lasting,
          [this] { env_.cancel.check(); }, tile.offset});
-    const GltfImport import = import_gltf(file, tile.placement, mesh_, input_.textures(), room_);
+    const GltfImport import =
+        import_gltf(file, tile.placement, mesh_, input_.textures(), input_.attributes(), room_);
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
     count(import.zeroed);

@@ -274,7 +274,7 @@ class DocumentReader {
     GltfAttributes attributes;
     o.for_each_index(size, [&](const std::string& name, std::uint32_t number) {
       if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" ||
-          name.starts_with("TEXCOORD_"))
+          name.starts_with("TEXCOORD_") || name.starts_with('_'))
         attributes.emplace(name, number);
     });
     return attributes;

@@ -44,7 +44,7 @@ class Planner {
   void plan_colours(PlyElementPlan& vertices);
   void take_colours(PlyElementPlan& vertices, const PlyColour& colour);
   void plan_texcoords(PlyElementPlan& vertices);
-  std::optional<std::string_view> value_name(const PlyProperty& property) const;
+  std::optional<ScalarAttribute> value_of(const PlyProperty& property) const;
   std::vector<std::size_t> plan_values(const PlyElementPlan& vertices);
   void check_range_grid() const;
   void check_sizes() const;
@@ -170,18 +170,23 @@ void Planner::plan_texcoords(PlyElementPlan& vertices) {
     assign_slots(vertices, std::span(&material, 1), layout.material_offset());
 }
 
-/// What the input called it; none if it is no value that can be read.
-std::optional<std::string_view> Planner::value_name(const PlyProperty& property) const {
-  std::string_view name = property.name;
+/// None if it is no value that can be read.
+std::optional<ScalarAttribute> Planner::value_of(const PlyProperty& property) const {
+  const ValueType type = value_type(property.type);
+  ScalarAttribute value{property.name, type, choice_.is_label(property.name, type)};
   if (writer_ == PlyWrittenBy::import) {
-    if (!name.starts_with(kImportedValue))
+    value.is_label = property.name.starts_with(kImportedLabel);
+    const std::string_view prefix = value.is_label ? kImportedLabel : kImportedQuantity;
+    if (!property.name.starts_with(prefix))
       return std::nullopt;
-    name.remove_prefix(kImportedValue.size());
+    value.name.erase(0, prefix.size());
+  } else if (!choice_.takes(value.name)) {
+    return std::nullopt;
   }
-  const bool is_known = std::ranges::find(plan_.attributes.values, name, &ScalarAttribute::name) !=
-                        plan_.attributes.values.end();
-  return is_attribute_name(name) && !is_known && choice_.takes(name) ? std::optional(name)
-                                                                     : std::nullopt;
+  const auto known = std::ranges::find(plan_.attributes.values, value.name, &ScalarAttribute::name);
+  return is_attribute_name(value.name) && known == plan_.attributes.values.end()
+             ? std::optional(value)
+             : std::nullopt;
 }
 
 /// The properties without a slot that are values, which are added to the layout.
@@ -192,11 +197,10 @@ std::vector<std::size_t> Planner::plan_values(const PlyElementPlan& vertices) {
     const PlyProperty& property = vertices.element.properties[i];
     if (vertices.slots[i] != kSkipped || property.is_list())
       continue;
-    const ValueType type = value_type(property.type);
-    const auto name = value_name(property);
-    if (!name || layout.value_channels() + channels_of(type) > kMaxValueChannels)
+    const std::optional<ScalarAttribute> value = value_of(property);
+    if (!value || layout.value_channels() + channels_of(value->type) > kMaxValueChannels)
       continue;
-    layout.values.push_back({std::string(*name), type, choice_.is_label(*name, type)});
+    layout.values.push_back(*value);
     found.push_back(i);
   }
   return found;

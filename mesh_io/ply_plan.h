@@ -76,7 +76,8 @@ struct PlyPlan {
 
 /// Of files that the import writes, what stands before the names of values: no other property has a
 /// name of that kind.
-inline constexpr std::string_view kImportedValue = "value:";
+inline constexpr std::string_view kImportedQuantity = "quantity:";
+inline constexpr std::string_view kImportedLabel = "label:";
 
 /// What red, green and blue are called in files that the import writes.
 std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints);

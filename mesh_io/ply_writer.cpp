@@ -68,7 +68,10 @@ std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, boo
     return std::ranges::find(list, name, &WrittenProperty::name) != list.end();
   };
   for (const ScalarAttribute& value : layout.values) {
-    const std::string wanted = (is_import ? std::string(kImportedValue) : "") + value.name;
+    const std::string_view prefix = !is_import       ? ""
+                                    : value.is_label ? kImportedLabel
+                                                     : kImportedQuantity;
+    const std::string wanted = std::string(prefix) + value.name;
     std::string name = wanted;
     for (int number = 2; has(known.before, name) || has(known.behind, name) || has(values, name);
          ++number)

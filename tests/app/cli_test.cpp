@@ -976,6 +976,27 @@ TEST_F(CommandLine, VerifyPassesWhatBuildMade) {
   EXPECT_THAT(report.at("checks"), Not(IsEmpty()));
 }
 
+TEST_F(CommandLine, CompareMakesAHierarchyThatIsShownByTheDistance) {
+  write_mesh("a.ply");
+  ASSERT_EQ(run({"build", write_config()}).code, 0);
+  const std::string output = work() / "difference.hier";
+  const Outcome made = run({"compare", hierarchy(), hierarchy(), "-o", output});
+  EXPECT_EQ(made.code, 0) << made.messages;
+  EXPECT_THAT(made.messages, HasSubstr("made "));
+  EXPECT_THAT(run({"inspect", output}).out, HasSubstr("distance   f32 quantity, 0 to 0"));
+  EXPECT_EQ(run({"verify", output}).code, 0);
+  const std::string picture = work() / "distance.png";
+  const Outcome drawn = run({"preview", output, "--attribute", "distance", "--ramp", "turbo",
+                             "--range", "-1,1", "--size", "64x64", "-o", picture});
+  EXPECT_EQ(drawn.code, 0) << drawn.messages;
+  const std::string another = work() / "no.png";
+  const Outcome none = run({"preview", output, "--attribute", "distnce", "-o", another});
+  EXPECT_EQ(none.code, kUsage);
+  EXPECT_THAT(none.messages, HasSubstr("the hierarchy has distance"));
+  EXPECT_EQ(run({"preview", output, "--ramp", "turbo", "-o", another}).code, kUsage);
+  EXPECT_EQ(run({"compare", hierarchy(), hierarchy(), "-o", output}).code, 5) << "it is there";
+}
+
 TEST_F(CommandLine, CompareTellsAndItsExitCodeKeepsTheTolerance) {
   write_mesh("a.ply");
   ASSERT_EQ(run({"build", write_config()}).code, 0);

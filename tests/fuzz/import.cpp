@@ -39,7 +39,8 @@ void check_materials(const mesh_io::VertexBlock& block, const AttributeLayout& l
 }
 
 void check(MemoryFiles& files, const importing::ImportFacts& facts) {
-  const auto source = mesh_io::make_ply_source(files.open("imported.ply"), facts.writer);
+  const auto source =
+      mesh_io::make_ply_source(files.open("imported.ply"), {.writer = facts.writer});
   const mesh_io::MeshDescription& mesh = source->description();
   require(mesh.attributes.material == facts.textures.has_value() &&
               mesh.attributes.material == !facts.materials.empty(),

@@ -77,6 +77,12 @@ void check_vertices(const PlyPlan& plan) {
   std::set<int> slots;
   for (const int slot : vertices.slots)
     require(slot == mesh_io::kSkipped || slots.insert(slot).second, "a slot is filled once");
+  int value = mesh_io::kFirstAttributeSlot + plan.attributes.value_offset();
+  for (const ScalarAttribute& attribute : plan.attributes.values) {
+    if (takes_two_channels(attribute.type))
+      require(slots.insert(value + 1).second, "a value has its channels");
+    value += channels_of(attribute.type);
+  }
   const int last = mesh_io::kFirstAttributeSlot + plan.attributes.channels() - 1;
   require(static_cast<int>(slots.size()) == last + 1 && *slots.rbegin() == last,
           "every slot is filled");

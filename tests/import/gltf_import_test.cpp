@@ -332,6 +332,70 @@ TEST_F(GltfImportTest, SparseAccessorsReplaceElements) {
   EXPECT_THAT(failure(gltf), HasSubstr("accessors[0].sparse.indices: item 1 is 3"));
 }
 
+std::vector<double> values_of(const Imported& mesh, std::size_t attribute) {
+  const AttributeLayout& layout = mesh.layout;
+  auto offset = static_cast<std::size_t>(layout.value_offset());
+  for (std::size_t i = 0; i < attribute; ++i)
+    offset += static_cast<std::size_t>(channels_of(layout.values[i].type));
+  std::vector<double> values;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const float* channels =
+        mesh.attributes.data() + v * static_cast<std::size_t>(layout.channels()) + offset;
+    values.push_back(value_in(layout.values[attribute].type, channels));
+  }
+  return values;
+}
+
+TEST_F(GltfImportTest, AttributesOfApplicationsAreValues) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  GltfJson& attributes = primitive["attributes"];
+  attributes["_QUALITY"] = gltf.accessor(std::vector<float>{.1F, .2F, .3F, .4F}, "SCALAR");
+  attributes["_FEATURE_ID_0"] = gltf.accessor(std::vector<float>{5, 5, 6, 6}, "SCALAR");
+  attributes["_CLASS"] = gltf.accessor(std::vector<std::uint16_t>{9, 8, 7, 6}, "SCALAR");
+  attributes["_FLOW"] = gltf.accessor(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}, "VEC2");
+  attributes["TEXCOORD_7"] = gltf.accessor(kSquareUv, "VEC2");
+  gltf.show(primitive);
+  const Imported mesh = import(gltf);
+  EXPECT_THAT(mesh.layout.values, ElementsAre(ScalarAttribute{"CLASS", ValueType::u16, true},
+                                              ScalarAttribute{"FEATURE_ID_0", ValueType::f32, true},
+                                              ScalarAttribute{"FLOW_1", ValueType::f32},
+                                              ScalarAttribute{"FLOW_2", ValueType::f32},
+                                              ScalarAttribute{"QUALITY", ValueType::f32}));
+  EXPECT_THAT(values_of(mesh, 0), ElementsAre(9, 8, 7, 6));
+  EXPECT_THAT(values_of(mesh, 2), ElementsAre(1, 3, 5, 7));
+  EXPECT_THAT(values_of(mesh, 3), ElementsAre(2, 4, 6, 8));
+  EXPECT_THAT(values_of(mesh, 4), ElementsAre(double{.1F}, double{.2F}, double{.3F}, double{.4F}));
+}
+
+TEST_F(GltfImportTest, ValuesOfPrimitivesAreOfOneType) {
+  GltfBuilder gltf;
+  GltfJson one = square(gltf), other = square(gltf);
+  one["attributes"]["_A"] =
+      gltf.accessor(std::vector<std::uint8_t>{1, 2, 3, 4}, "SCALAR", {{"normalized", true}});
+  other["attributes"]["_A"] = gltf.accessor(std::vector<float>{.5F, 0, 0, 0}, "SCALAR");
+  one["attributes"]["_B"] = gltf.accessor(std::vector<float>{7, 7, 7, 7}, "SCALAR");
+  one["attributes"]["_C"] = gltf.accessor(std::vector<std::uint8_t>{1, 1, 1, 1}, "SCALAR");
+  gltf.show(one);
+  gltf.show(other);
+  const Imported mesh = import(gltf);
+  EXPECT_THAT(mesh.layout.values, ElementsAre(ScalarAttribute{"A", ValueType::f32},
+                                              ScalarAttribute{"B", ValueType::f32}));
+  EXPECT_EQ(values_of(mesh, 0)[3], 4) << "what is stored, not a fraction";
+  EXPECT_EQ(values_of(mesh, 0)[4], .5);
+  EXPECT_EQ(values_of(mesh, 1)[0], 7);
+  EXPECT_TRUE(std::isnan(values_of(mesh, 1)[4]));
+  EXPECT_EQ(mesh.count("dropped_values"), 4U);
+}
+
+TEST_F(GltfImportTest, ValuesThatAreWrongAreRefused) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["_A"] = gltf.accessor(std::vector<float>{1, 2, 3}, "SCALAR");
+  gltf.show(primitive);
+  EXPECT_THAT(failure(gltf), HasSubstr("3 elements for _A, POSITION has 4"));
+}
+
 TEST_F(GltfImportTest, ColoursKeepTheirTypeIfAllHaveIt) {
   const std::vector<std::uint8_t> bytes{0, 128, 255, 9, 1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 9, 9};
   GltfBuilder gltf;

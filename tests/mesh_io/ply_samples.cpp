@@ -136,10 +136,10 @@ ReadMesh read_mesh(MeshSource& source) {
   return mesh;
 }
 
-ReadMesh read_bytes(const Bytes& bytes) {
+ReadMesh read_bytes(const Bytes& bytes, const AttributeChoice& attributes) {
   MemoryFiles files;
   files.put(std::string(kFileName), bytes);
-  return read_mesh(*open_mesh(files, kFileName));
+  return read_mesh(*open_mesh(files, kFileName, attributes));
 }
 
 namespace {

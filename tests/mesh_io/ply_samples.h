@@ -38,7 +38,7 @@ ReadMesh read_mesh(MeshSource& source);
 /// Reads vertices in blocks, if there are any, else as a stream; triangles in blocks as far as they
 /// are whole. Blocks are read last to first if `backwards`: any order is as good.
 ReadMesh read_in_blocks(MeshSource& source, bool backwards);
-ReadMesh read_bytes(const Bytes& bytes);
+ReadMesh read_bytes(const Bytes& bytes, const AttributeChoice& attributes = {});
 
 /// The message of the Error(input) that reading throws, as a stream and in blocks alike; fails the
 /// test if there is none.
