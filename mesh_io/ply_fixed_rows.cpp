@@ -149,6 +149,11 @@ void PlyVertexBlocks::fail_truncated(const InputFile& input, std::uint64_t row) 
 
 VertexBlock PlyVertexBlocks::rows(const InputFile& input, std::uint64_t first, std::size_t count,
                                   BlockMemory& memory) const {
+  if (const std::uint64_t begin = blocks_.offset_of(first);
+      blocks_.offset_of(first + count) > input.bytes) {
+    const std::uint64_t left = input.bytes - std::min(begin, input.bytes);
+    fail_truncated(input, first + left / blocks_.stride());
+  }
   memory.bytes.resize(count * static_cast<std::size_t>(blocks_.stride()));
   input.read(blocks_.offset_of(first), memory.bytes);
   VertexRows rows(mesh_, count, memory);

@@ -56,8 +56,8 @@ class PlyVertexBlocks {
   std::uint64_t count() const { return blocks_.count(); }
   /// Thread-safe for different `memory`. Throws Error(input) for the block's first defect.
   VertexBlock read(const InputFile& input, std::uint64_t index, BlockMemory& memory) const;
-  /// Some rows that have been read once, wherever they are; nothing of them is checked again.
-  /// Throws Error(io).
+  /// Some rows, wherever they are; nothing of them is checked. Throws Error(input) if the file ends
+  /// before, Error(io).
   VertexBlock rows(const InputFile& input, std::uint64_t first, std::size_t count,
                    BlockMemory& memory) const;
 
