@@ -1,5 +1,6 @@
 #include "cluster_simplify/majority_labels.h"
 
+#include "hierarchy/value_channels.h"
 #include "hierarchy/vec.h"
 
 #include <algorithm>
@@ -42,12 +43,11 @@ void choose_majority_labels(const BuildTile& joined, const AttributeLayout& layo
   const std::vector<double> areas = areas_around(joined.mesh);
   VertexArray& representatives = contraction.representatives;
   const auto channels = static_cast<std::size_t>(representatives.channels);
-  auto offset = static_cast<std::size_t>(layout.value_offset());
-  for (const ScalarAttribute& value : layout.values) {
+  for (const PlacedValue& value : placed_values(layout)) {
     std::vector<Vote> votes;
     for (std::uint32_t place = 0; value.is_label && place < joined.mesh.own_count; ++place) {
-      const double label =
-          value_in(value.type, joined.mesh.vertices.attributes_of(place).subspan(offset).data());
+      const double label = value_in(
+          value.type, joined.mesh.vertices.attributes_of(place).subspan(value.channel).data());
       if (!std::isnan(label))
         votes.push_back({contraction.parent_of[place], label, areas[place], place});
     }
@@ -71,9 +71,8 @@ void choose_majority_labels(const BuildTile& joined, const AttributeLayout& layo
         }
       }
       put_value(value.type, best,
-                representatives.attributes.data() + representative * channels + offset);
+                representatives.attributes.data() + representative * channels + value.channel);
     }
-    offset += static_cast<std::size_t>(channels_of(value.type));
   }
 }
 

@@ -45,30 +45,25 @@ double label_of(std::span<const WeightedVertex> vertices, const ValueOf& value) 
 
 }  // namespace
 
-ValueMixer::ValueMixer(const AttributeLayout& layout) {
-  auto offset = static_cast<std::size_t>(layout.value_offset());
-  for (const ScalarAttribute& value : layout.values) {
-    values_.push_back({value.type, value.is_label, offset});
-    has_labels_ = has_labels_ || value.is_label;
-    offset += static_cast<std::size_t>(channels_of(value.type));
-  }
-}
+ValueMixer::ValueMixer(const AttributeLayout& layout)
+    : values_(placed_values(layout)),
+      has_labels_(std::ranges::any_of(values_, &PlacedValue::is_label)) {}
 
 void ValueMixer::mix(std::span<const WeightedVertex> vertices, float* to) const {
   assert(!vertices.empty());
-  for (const Value& value : values_) {
+  for (const PlacedValue& value : values_) {
     const auto of = [&](std::size_t i) {
-      return value_in(value.type, vertices[i].channels + value.offset);
+      return value_in(value.type, vertices[i].channels + value.channel);
     };
     put_value(value.type, value.is_label ? label_of(vertices, of) : mean_of(vertices, of),
-              to + value.offset);
+              to + value.channel);
   }
 }
 
 bool ValueMixer::have_equal_labels(const float* a, const float* b) const {
-  return std::ranges::all_of(values_, [&](const Value& value) {
+  return std::ranges::all_of(values_, [&](const PlacedValue& value) {
     return !value.is_label ||
-           value_in(value.type, a + value.offset) == value_in(value.type, b + value.offset);
+           value_in(value.type, a + value.channel) == value_in(value.type, b + value.channel);
   });
 }
 

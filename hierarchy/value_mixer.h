@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/value_channels.h"
 
 #include <cstddef>
 #include <span>
@@ -33,12 +34,7 @@ class ValueMixer {
   bool have_equal_labels(const float* a, const float* b) const;
 
  private:
-  struct Value {
-    ValueType type;
-    bool is_label;
-    std::size_t offset;
-  };
-  std::vector<Value> values_;
+  std::vector<PlacedValue> values_;
   bool has_labels_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "import/join_layouts.h"
 
 #include "hierarchy/srgb.h"
+#include "hierarchy/value_channels.h"
 #include "import/material_colours.h"
 
 #include <algorithm>
@@ -100,15 +101,12 @@ bool may_tint(std::span<const JoinedFile> files) {
   });
 }
 
-/// The first one of a value; none if the layout has not that value.
-std::optional<std::size_t> channel_of(const ScalarAttribute& value, const AttributeLayout& layout) {
-  int channel = layout.value_offset();
-  for (const ScalarAttribute& one : layout.values) {
-    if (one == value)
-      return static_cast<std::size_t>(channel);
-    channel += channels_of(one.type);
-  }
-  return std::nullopt;
+/// None if the layout has not that value.
+std::optional<PlacedValue> place_of(const ScalarAttribute& value, const AttributeLayout& layout) {
+  const auto found = std::ranges::find(layout.values, value);
+  if (found == layout.values.end())
+    return std::nullopt;
+  return placed_values(layout)[static_cast<std::size_t>(found - layout.values.begin())];
 }
 
 AttributeLayout joined_layout(std::span<const JoinedFile> files) {
@@ -133,7 +131,7 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
   joined.values = files[0].layout.values;
   std::erase_if(joined.values, [&](const ScalarAttribute& value) {
     return !std::ranges::all_of(
-        files, [&](const JoinedFile& file) { return channel_of(value, file.layout).has_value(); });
+        files, [&](const JoinedFile& file) { return place_of(value, file.layout).has_value(); });
   });
   joined.tints = joined.material && joined.colour != ColourType::none && may_tint(files);
   return joined;
@@ -147,16 +145,15 @@ class RowJoin {
     keeps_paint_ = file.is_painted && !to.material;
     colour_ = keeps_paint_ ? file.layout.colour : own_colour(file);
     for (const ScalarAttribute& value : to.values)
-      values_.push_back(
-          {*channel_of(value, file.layout), static_cast<std::size_t>(channels_of(value.type))});
+      values_.push_back(*place_of(value, file.layout));
   }
 
   void append(std::span<const float> row, storage::RecordSpool<float>& joined) const {
     if (to_.normals)
       joined.append(row.first(3));
     append_colour(row, joined);
-    for (const auto [channel, count] : values_)
-      joined.append(row.subspan(channel, count));
+    for (const PlacedValue& value : values_)
+      joined.append(row.subspan(value.channel, value.channels()));
     if (!to_.texcoords)
       return;
     if (shows_texcoords())
@@ -205,10 +202,7 @@ class RowJoin {
   PlainMaterials& plain_;
   bool keeps_paint_ = false;
   ColourType colour_{};
-  struct Channels {
-    std::size_t first, count;
-  };
-  std::vector<Channels> values_;  ///< of the file's vertices
+  std::vector<PlacedValue> values_;  ///< of the file's vertices
 };
 
 /// So many channels from `first` on.

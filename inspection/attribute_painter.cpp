@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/value_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,11 +43,9 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
   if (found == given_.values.end())
     refuse_name(source, colours.attribute);
   attribute_ = *found;
-  const ValueStatistics& values =
-      source.values[static_cast<std::size_t>(found - given_.values.begin())];
-  offset_ = static_cast<std::size_t>(given_.value_offset());
-  for (auto before = given_.values.begin(); before != found; ++before)
-    offset_ += static_cast<std::size_t>(channels_of(before->type));
+  const auto number = static_cast<std::size_t>(found - given_.values.begin());
+  const ValueStatistics& values = source.values[number];
+  channel_ = placed_values(given_)[number].channel;
   const bool is_signed = values.min < 0 && values.max > 0;
   ramp_ =
       colours.ramp.value_or(is_signed ? render::ColourRamp::coolwarm : render::ColourRamp::viridis);
@@ -72,7 +71,7 @@ void AttributePainter::paint(VertexArray& vertices) const {
     const auto channels = vertices.attributes_of(v);
     const auto normal = channels.first(given_.normals ? 3 : 0);
     painted.insert(painted.end(), normal.begin(), normal.end());
-    const Vec3f rgb = colour(value_in(attribute_.type, channels.subspan(offset_).data()));
+    const Vec3f rgb = colour(value_in(attribute_.type, channels.subspan(channel_).data()));
     painted.insert(painted.end(), {rgb.x, rgb.y, rgb.z});
   }
   vertices.attributes = std::move(painted);

@@ -36,7 +36,7 @@ class AttributePainter {
 
   AttributeLayout given_, painted_;
   ScalarAttribute attribute_;
-  std::size_t offset_ = 0;  ///< of its channels
+  std::size_t channel_ = 0;  ///< its first one
   render::ColourRamp ramp_{};
   std::array<double, 2> range_{};
   std::map<double, std::uint64_t> labels_;  ///< their numbers

@@ -1,5 +1,6 @@
 #include "mesh_io/mesh_blocks.h"
 
+#include "hierarchy/value_channels.h"
 #include "mesh_io/coordinate_range.h"
 
 #include <algorithm>
@@ -62,13 +63,11 @@ VertexRows::VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemor
 }
 
 VertexRows::Column::Form VertexRows::form_of(int slot) const {
-  int channel = layout_.value_offset();
-  for (const ScalarAttribute& value : layout_.values) {
-    if (channel == slot - kFirstAttributeSlot && takes_two_channels(value.type))
-      return Column::Form::two_channels;
-    channel += channels_of(value.type);
-  }
-  return Column::Form::one_float;
+  const bool is_wide = std::ranges::any_of(placed_values(layout_), [&](const PlacedValue& value) {
+    return takes_two_channels(value.type) &&
+           static_cast<int>(value.channel) == slot - kFirstAttributeSlot;
+  });
+  return is_wide ? Column::Form::two_channels : Column::Form::one_float;
 }
 
 bool VertexRows::is_value(int slot) const {

@@ -158,26 +158,31 @@ struct PlyWriter::State {
       flush();
   }
 
-  void put_attributes(std::span<const float> values) {
+  void put_attributes(std::span<const float> channels) {
     const AttributeLayout& layout = content.attributes;
-    const int first_colour = layout.colour_offset();
-    const int last_colour = first_colour + layout.colour_channels();
-    const int behind_values = layout.texcoord_offset();
-    for (int i = 0; i < layout.channels(); ++i) {
-      if (i == last_colour && i < behind_values) {
-        put_values(values.data() + i);
-        i = behind_values - 1;
-        continue;
-      }
-      const float value = values[static_cast<std::size_t>(i)];
-      const bool colour = i >= first_colour && i < last_colour;
-      if (colour && layout.colour == ColourType::u8) {
-        put(nearest<std::uint8_t>(value));
-      } else if (colour && layout.colour == ColourType::u16) {
-        put(nearest<std::uint16_t>(value));
-      } else {
-        put(value);
-      }
+    const auto part = [&](int begin, int end) {
+      return channels.subspan(static_cast<std::size_t>(begin),
+                              static_cast<std::size_t>(end - begin));
+    };
+    put_floats(part(0, layout.colour_offset()));
+    put_colour(part(layout.colour_offset(), layout.value_offset()));
+    put_values(channels.data() + layout.value_offset());
+    put_floats(part(layout.texcoord_offset(), layout.channels()));
+  }
+
+  void put_floats(std::span<const float> numbers) {
+    for (const float number : numbers)
+      put(number);
+  }
+
+  void put_colour(std::span<const float> colour) {
+    for (const float number : colour) {
+      if (content.attributes.colour == ColourType::u8)
+        put(nearest<std::uint8_t>(number));
+      else if (content.attributes.colour == ColourType::u16)
+        put(nearest<std::uint16_t>(number));
+      else
+        put(number);
     }
   }
 

@@ -1,6 +1,7 @@
 #include "pipeline/ingest_stage.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/value_channels.h"
 #include "import/input_record.h"
 #include "import/text_blocks.h"
 #include "partition/top_tree.h"
@@ -34,11 +35,9 @@ void add_values(std::span<const float> attributes, const AttributeLayout& layout
   if (tallies.empty())
     return;
   const auto stride = static_cast<std::size_t>(layout.channels());
-  const float* channels = attributes.data() + layout.value_offset();
-  for (std::size_t i = 0; i < tallies.size(); ++i) {
-    tallies[i].add(channels, stride, attributes.size() / stride);
-    channels += channels_of(layout.values[i].type);
-  }
+  const std::vector<PlacedValue> values = placed_values(layout);
+  for (std::size_t i = 0; i < tallies.size(); ++i)
+    tallies[i].add(attributes.data() + values[i].channel, stride, attributes.size() / stride);
 }
 
 /// What is learnt of one block of vertices.

@@ -1,6 +1,7 @@
 #include "storage/format/tile_glb.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/value_channels.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
@@ -82,24 +83,22 @@ class Writer {
     const Section& section = plan_[Part::values];
     const Section& raw = plan_[Part::raw_values];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
-    auto offset = static_cast<std::size_t>(plan_.layout().value_offset());
     std::size_t to = 0, raw_to = 0;
-    for (const ScalarAttribute& value : plan_.layout().values) {
+    for (const PlacedValue& value : placed_values(plan_.layout())) {
       const auto value_at = [&](std::size_t v) {
-        return value_in(value.type, attributes.data() + v * channels + offset);
+        return value_in(value.type, attributes.data() + v * channels + value.channel);
       };
       for (std::size_t v = 0; v < section.count; ++v)
         put_stored(value.type, stored_value(value.type, value_at(v)),
                    at(section) + v * section.stride + to);
       for (std::size_t v = 0; v < raw.count; ++v) {
         std::byte* target = at(raw) + v * raw.stride + raw_to;
-        takes_two_channels(value.type) ? store_little(value_at(v), target)
-                                       : store_little(attributes[v * channels + offset], target);
+        takes_two_channels(value.type)
+            ? store_little(value_at(v), target)
+            : store_little(attributes[v * channels + value.channel], target);
       }
-      const auto count = static_cast<std::size_t>(channels_of(value.type));
-      offset += count;
       to += kValueStride;
-      raw_to += count * sizeof(float);
+      raw_to += value.channels() * sizeof(float);
     }
   }
 

@@ -1,6 +1,7 @@
 #include "storage/format/tile_sections.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/value_channels.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/tile_glb.h"
@@ -159,14 +160,16 @@ class Reader {
     const Section& section = plan_[Part::values];
     const Section& raw_section = plan_[Part::raw_values];
     const auto channels = static_cast<std::size_t>(layout.channels());
-    auto offset = static_cast<std::size_t>(layout.value_offset());
     std::size_t from = section.offset, raw_from = raw_section.offset;
-    for (const ScalarAttribute& value : layout.values) {
-      const auto count = static_cast<std::size_t>(channels_of(value.type));
+    const std::vector<PlacedValue> placed = placed_values(layout);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      const PlacedValue& value = placed[i];
+      const ScalarAttribute& attribute = layout.values[i];
       for (std::size_t v = 0; v < plan_.shape().vertices(); ++v) {
-        float* to = attributes.data() + v * channels + offset;
+        float* to = attributes.data() + v * channels + value.channel;
         put_value(value.type,
-                  value_of_stored(value.type, stored_in(value, from + v * section.stride, v)), to);
+                  value_of_stored(value.type, stored_in(attribute, from + v * section.stride, v)),
+                  to);
         if (!plan_.shape().raw_values)
           continue;
         const std::byte* at = bin_.data() + raw_from + v * raw_section.stride;
@@ -175,9 +178,8 @@ class Reader {
         else
           *to = load_little<float>(at);
       }
-      offset += count;
       from += kValueStride;
-      raw_from += count * sizeof(float);
+      raw_from += value.channels() * sizeof(float);
     }
   }
 

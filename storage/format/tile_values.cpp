@@ -1,5 +1,6 @@
 #include "storage/format/tile_values.h"
 
+#include "hierarchy/value_channels.h"
 #include "storage/format/glb.h"
 
 #include <algorithm>
@@ -85,20 +86,18 @@ double value_of_stored(ValueType type, double stored) {
 
 bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bool labels_only) {
   const auto channels = static_cast<std::size_t>(layout.channels());
-  auto offset = static_cast<std::size_t>(layout.value_offset());
-  for (const ScalarAttribute& value : layout.values) {
+  for (const PlacedValue& value : placed_values(layout)) {
     for (std::size_t v = 0; (value.is_label || !labels_only) && v < vertices.size(); ++v) {
-      const float* given = vertices.attributes.data() + v * channels + offset;
+      const float* given = vertices.attributes.data() + v * channels + value.channel;
       std::array<float, 2> read{};
       put_value(value.type,
                 value_of_stored(value.type, stored_value(value.type, value_in(value.type, given))),
                 read.data());
-      for (std::size_t i = 0; i < static_cast<std::size_t>(channels_of(value.type)); ++i) {
+      for (std::size_t i = 0; i < value.channels(); ++i) {
         if (std::bit_cast<std::uint32_t>(read[i]) != std::bit_cast<std::uint32_t>(given[i]))
           return true;
       }
     }
-    offset += static_cast<std::size_t>(channels_of(value.type));
   }
   return false;
 }

@@ -1,7 +1,5 @@
 // Which attribute colours the model, and how: a legend that one can change.
-import type { AttributeLook } from '../../src/index.js';
-import type { ScalarAttribute } from '../../src/index.js';
-import { attributeIndex, labelColour, rampColour, RAMPS, wholeRange, type RampName } from '../../src/index.js';
+import { attributeIndex, labelColour, rampColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
 import { formatCount, formatLength } from '../numbers.js';
 import { checkbox, choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
@@ -22,13 +20,18 @@ function gradient(ramp: RampName): string {
   return `linear-gradient(to right, ${stops.join(', ')})`;
 }
 
+/// Of the whole range, 0 to 1.
+function partOf({ min, max }: ScalarAttribute, value: number): number {
+  return Math.min(Math.max((value - min) / (max - min || 1), 0), 1);
+}
+
 /// Where the histogram's bars lie, as parts of the whole range.
-function bars({ bins, firstBin, binWidth, min, max }: ScalarAttribute): { left: number; width: number; height: number }[] {
+function bars(attribute: ScalarAttribute): { left: number; width: number; height: number }[] {
+  const { bins, firstBin, binWidth } = attribute;
   const most = Math.max(...bins, 1);
-  const part = (value: number): number => Math.min(Math.max((value - min) / (max - min || 1), 0), 1);
   return bins.map((count, i) => {
-    const left = part((firstBin + i) * binWidth);
-    return { left, width: part((firstBin + i + 1) * binWidth) - left, height: Math.sqrt(count / most) };
+    const left = partOf(attribute, (firstBin + i) * binWidth);
+    return { left, width: partOf(attribute, (firstBin + i + 1) * binWidth) - left, height: Math.sqrt(count / most) };
   });
 }
 
@@ -68,14 +71,12 @@ class Legend {
 
   show(attribute: ScalarAttribute, ramp: RampName, range: readonly [number, number]): void {
     this.attribute = attribute;
-    const { min, max } = attribute;
     this.strip.style.background = gradient(ramp);
-    const part = (value: number): number => Math.min(Math.max((value - min) / (max - min || 1), 0), 1);
-    const [left, right] = [part(Math.min(...range)), part(Math.max(...range))];
+    const [left, right] = [partOf(attribute, Math.min(...range)), partOf(attribute, Math.max(...range))];
     this.strip.style.marginInline = `${100 * left}% ${100 * (1 - right)}%`;
     this.strip.style.transform = range[0] > range[1] ? 'scaleX(-1)' : '';
     for (const i of [0, 1] as const) {
-      this.handles[i].value = String(Math.round(STEPS * part(range[i])));
+      this.handles[i].value = String(Math.round(STEPS * partOf(attribute, range[i])));
       this.numbers[i].value = String(Number(range[i].toPrecision(7)));
     }
     this.histogram.replaceChildren(...bars(attribute).map(({ left: x, width, height }) => {

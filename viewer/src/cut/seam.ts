@@ -1,6 +1,7 @@
 // What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
 import { placeOf, verticesAt } from '../hierarchy/copies.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
+import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, tilePath, type Tree } from '../hierarchy/tree.js';
 import type { Normals } from '../hierarchy/vertex_values.js';
@@ -73,7 +74,7 @@ export class Seam {
     this.vertices = new Uint16Array(tile.ghosts);
     this.givenNormals = tile.normalsFrom === 'viewer' ? null : tile.normals.slice(4 * tile.own);
     this.givenColours = tile.colours?.slice(4 * tile.own) ?? null;
-    this.width = (3 * (tile.values?.length ?? 0)) / tile.positions.length;
+    this.width = valueWidth(tile);
     this.givenValues = tile.values?.slice(this.width * tile.own) ?? null;
     this.keys = this.placeChains(tree);
     if (this.chainStarts[count] !== tile.chains.length) this.fail('its chains are not all there');

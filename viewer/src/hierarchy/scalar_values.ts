@@ -24,6 +24,14 @@ export interface ScalarAttribute {
   readonly labels: readonly number[];
 }
 
+/// Beside a vertex without a value what lies between is none either.
+export const LEAST_VALUE = -1e37;
+
+/// How many values a vertex has, of as many positions.
+export function valueWidth({ positions, values }: { readonly positions: Float32Array; readonly values?: Float32Array | null }): number {
+  return (3 * (values?.length ?? 0)) / positions.length;
+}
+
 function numbers(value: JsonValue): number[] {
   return value.items().map((item) => item.number());
 }

@@ -1,6 +1,6 @@
 // Colours by an attribute: what the shaders of all tiles of a model have in common.
 import { DataTexture, Vector2 } from 'three';
-import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { labelTexture, rampTexture, type RampName } from './ramps.js';
 
 /// How an attribute is shown.
@@ -91,9 +91,6 @@ export class AttributePaint {
 
 // ---- shaders
 
-/// Beside a vertex without a value what lies between is none either.
-const NO_VALUE = '-1e37';
-
 /// What stands before a shader.
 export function valueDeclarations(isLabel: boolean, isVertexShader: boolean): string {
   const varying = `${isLabel ? 'flat ' : ''}varying float vValue;\n`;
@@ -105,7 +102,7 @@ export const VALUE_VERTEX = `#include <begin_vertex>
 vValue = scalar;`;
 
 const QUANTITY = `#include <color_fragment>
-if (vValue > ${NO_VALUE}) {
+if (vValue > ${LEAST_VALUE}) {
   float valuePart = (vValue - valueRange.x) / (valueRange.y == valueRange.x ? 1.0 : valueRange.y - valueRange.x);
   diffuseColor.rgb = texture2D(valueRamp, vec2(clamp(valuePart, 0.5 / 256.0, 255.5 / 256.0), 0.5)).rgb;
   if (isolineStep > 0.0) {

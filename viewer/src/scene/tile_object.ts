@@ -2,6 +2,7 @@
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
 import type { Intersection, Material, Raycaster, Texture } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
+import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
@@ -21,8 +22,8 @@ export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
 }
 
 /// What is drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
-export function vertexBytesOf({ positions, normals, colours, values }: Tile): number {
-  return 12 + 4 * normals.BYTES_PER_ELEMENT + (colours ? 4 : 0) + (3 * (values?.byteLength ?? 0)) / positions.length;
+export function vertexBytesOf(tile: Tile): number {
+  return 12 + 4 * tile.normals.BYTES_PER_ELEMENT + (tile.colours ? 4 : 0) + 4 * valueWidth(tile);
 }
 
 /// What a tile's record does not tell.
@@ -101,7 +102,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     const { tile } = this.resident;
     const { index } = this.shared.values;
     if (this.look.colours !== 'attribute' || tile.values === null || index < 0) return;
-    this.scalars ??= new InterleavedBuffer(tile.values, (3 * tile.values.length) / tile.positions.length);
+    this.scalars ??= new InterleavedBuffer(tile.values, valueWidth(tile));
     this.scalars.setUsage(DynamicDrawUsage);
     this.geometry.setAttribute('scalar', new InterleavedBufferAttribute(this.scalars, 1, index));
   }

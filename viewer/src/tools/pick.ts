@@ -1,6 +1,7 @@
 // The point of the drawn surface that a ray meets first.
 import type { PerspectiveCamera, Matrix4 } from 'three';
 import { Vector3 } from 'three';
+import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { DrawnTile } from '../scene/surface.js';
@@ -27,10 +28,9 @@ export interface Hit {
 export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
 
 /// All values of a vertex.
-function valuesAt({ positions, values }: PickedTile, vertex: number): number[] {
-  if (!values) return [];
-  const width = (3 * values.length) / positions.length;
-  return Array.from(values.subarray(width * vertex, width * (vertex + 1)));
+function valuesAt(tile: PickedTile, vertex: number): number[] {
+  const width = valueWidth(tile);
+  return Array.from((tile.values ?? new Float32Array(0)).subarray(width * vertex, width * (vertex + 1)));
 }
 
 /// Whether a point may be hit: what is cut away may not.

@@ -1,6 +1,6 @@
 // What is told of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
-import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { Coordinates, type GlobePlace } from './coordinates.js';
 import type { Hit } from './pick.js';
 import type { Vector } from './vectors.js';
@@ -26,13 +26,10 @@ export interface PickedPoint {
   readonly values: readonly { readonly name: string; readonly value: number | null }[];
 }
 
-/// Beside a vertex without a value what lies between is none either.
-const NO_VALUE = -1e37;
-
 function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribute[], snaps: boolean): PickedPoint['values'] {
   return attributes.slice(0, atCorner.length).map(({ name, kind }, i) => {
     const value = snaps || kind === 'label' ? atCorner[i] : between[i];
-    return { name, value: value > NO_VALUE ? value : null };
+    return { name, value: value > LEAST_VALUE ? value : null };
   });
 }
 
