@@ -13,22 +13,23 @@ namespace meshhier::importing {
 
 using FaceColour = std::array<float, 4>;
 
-/// The numbers of a colour as parts of a corner, and back: integers of 16 bits, or three floats.
+/// The numbers of a colour as parts of a corner, all but CornerParts::kValues, and back: integers
+/// of 16 bits, or three floats.
 inline CornerParts::Parts parts_of(const FaceColour& colour, ColourType type) {
   if (type == ColourType::f32) {
-    return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]),
+    return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]), 0,
             std::bit_cast<std::uint32_t>(colour[2])};
   }
   const auto pair = [&](std::size_t i) {
     return static_cast<std::uint32_t>(colour[i]) << 16 | static_cast<std::uint32_t>(colour[i + 1]);
   };
-  return {pair(0), pair(2), 0};
+  return {pair(0), pair(2)};
 }
 
 inline FaceColour colour_of(const CornerParts::Parts& parts, ColourType type) {
   if (type == ColourType::f32) {
     return {std::bit_cast<float>(parts[0]), std::bit_cast<float>(parts[1]),
-            std::bit_cast<float>(parts[2]), 0};
+            std::bit_cast<float>(parts[3]), 0};
   }
   const auto number = [](std::uint32_t bits) { return static_cast<float>(bits & 0xffff); };
   return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};

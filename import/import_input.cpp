@@ -542,15 +542,17 @@ ImportMemory plan_import(std::uint64_t memory_budget) {
 std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory) {
   // The PLY has at most the size of the text or soup. What lies in spools and sorts beside it, up
   // to the pool in memory: once the size of a text of floats, three times where corners have
-  // attributes, and three times that of an STL, whose corners are sorted. Five times that of a
-  // PLY with textured or coloured faces: corners are sorted twice, 40 bytes each, and a face has
-  // 17. Gzip packs such files to a third or a quarter.
+  // attributes, and three times that of an STL, whose corners are sorted. Six times that of a PLY
+  // with textured faces: corners are sorted twice, 44 bytes each, and a face has 17. Ten times
+  // where faces have values: a face has 14 bytes, and each corner may become a vertex. Gzip packs
+  // such files to a third or a quarter.
   constexpr std::uint64_t kSpools = 3;
-  constexpr std::uint64_t kCorneredSpools = 5;
+  constexpr std::uint64_t kCorneredSpools = 6;
+  constexpr std::uint64_t kValuedSpools = 10;
   constexpr std::uint64_t kPacked = 4;
   constexpr std::uint64_t kLeastVertexBytes = 12;
   std::uint64_t content = input.geometry_bytes();
-  std::uint64_t cornered = 0;
+  std::uint64_t cornered = 0;  // what these take beyond kSpools times
   for (const InputFileFacts& file : input.all()) {
     if (input.crop() && file.is_plain_ply() && !file.has_corner_attributes) {
       // A byte a vertex, of 12 bytes at least; how large the piece is shows when it is read.
@@ -559,10 +561,12 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
     }
     const std::uint64_t bytes = file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
     content += bytes - file.identity.bytes;
-    cornered += file.has_corner_attributes ? bytes : 0;
+    if (file.face_values > 0)
+      cornered += (kValuedSpools + file.face_values / 2 - kSpools) * bytes;
+    else if (file.has_corner_attributes)
+      cornered += (kCorneredSpools - kSpools) * bytes;
   }
-  const std::uint64_t spools =
-      input.is_unpacked_only() ? 0 : kSpools * content + (kCorneredSpools - kSpools) * cornered;
+  const std::uint64_t spools = input.is_unpacked_only() ? 0 : kSpools * content + cornered;
   return content + spools - std::min(spools, memory.pool_bytes);
 }
 

@@ -40,7 +40,7 @@ std::filesystem::path without_gz(std::filesystem::path path) {
 }
 
 bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures) {
-  return plan.face_colour != ColourType::none ||
+  return plan.face_colour != ColourType::none || !plan.face_values.empty() ||
          (textures == Textures::use && plan.texcoords != mesh_io::PlyTexcoords::none);
 }
 
@@ -107,6 +107,7 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
   if (!plan)
     return;
   facts.has_corner_attributes = importing::has_corner_attributes(*plan, use_.textures);
+  facts.face_values = plan->face_values.size() + (plan->face_colour == ColourType::none ? 0 : 1);
   for (const std::string& name : plan->unused) {
     if (known_unused_.insert(name).second)
       unused_.push_back(name);

@@ -12,6 +12,7 @@
 #include "mesh_io/tileset.h"
 #include "storage/io/file.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -46,6 +47,7 @@ struct InputFileFacts {
   storage::FileIdentity identity;
   bool has_corner_attributes = false;          ///< as importing::has_corner_attributes()
   std::optional<mesh_io::TilesetMesh> tile{};  ///< of a tileset: where in the file it is
+  std::size_t face_values = 0;                 ///< that faces have, a colour counts as one
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// What its content is called in messages when it is no longer packed.

@@ -414,8 +414,8 @@ void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, Ra
     }
     // kNone + 1 is 0.
     for (const ObjCorner& c : triangle) {
-      splitter.add(
-          {c.position, {shown.has_picture ? c.texcoord + 1 : 0, c.normal + 1, shown.number + 1}});
+      splitter.add({c.position,
+                    {shown.has_picture ? c.texcoord + 1 : 0, c.normal + 1, 0, shown.number + 1}});
     }
   }
 }
@@ -427,7 +427,7 @@ void add_plain_corners(const ObjParts& parts, const std::optional<ObjPaint>& pai
   for (std::uint64_t i = 0; i < triangles.size(); ++i) {
     const std::uint32_t material = paint ? paint->part(names.at(i)) : 0;
     for (const ObjCorner& c : triangles.at(i))
-      splitter.add({c.position, {c.texcoord + 1, c.normal + 1, material}});
+      splitter.add({c.position, {c.texcoord + 1, c.normal + 1, 0, material}});
   }
 }
 

@@ -109,25 +109,20 @@ void append_coloured(const OffParts& parts, const AttributeLayout& given,
   add_corners(parts, layout.colour, splitter, room);
   SplitVertices vertices(room.scratch);
   splitter.split(vertices, mesh);
-  execution::SpoolCursor numbers(vertices.positions, room.cancel);
+  SplitCursor split(vertices, room.cancel);
   execution::SpoolCursor positions(parts.positions, room.cancel);
   execution::SpoolCursor attributes(parts.attributes, room.cancel);
-  std::array<execution::SpoolCursor<std::uint32_t>, CornerParts::kCount> shown{
-      {{vertices.parts[0], room.cancel},
-       {vertices.parts[1], room.cancel},
-       {vertices.parts[2], room.cancel}}};
   const auto channels = static_cast<std::size_t>(given.channels());
   const auto before = static_cast<std::size_t>(layout.colour_offset());
   for (std::uint64_t i = 0; i < vertices.count(); ++i) {
-    const std::uint32_t vertex = numbers.at(i);
+    const std::uint32_t vertex = split.position(i);
     mesh.positions.append(positions.at(vertex));
     const auto append_given = [&](std::size_t from, std::size_t to) {
       for (std::size_t c = from; c < to; ++c)
         mesh.attributes.append(attributes.at(vertex * channels + c));
     };
     append_given(0, before);
-    const FaceColour colour =
-        colour_of({shown[0].at(i), shown[1].at(i), shown[2].at(i)}, layout.colour);
+    const FaceColour colour = colour_of(split.parts(i), layout.colour);
     mesh.attributes.append(
         std::span(colour).first(static_cast<std::size_t>(layout.colour_channels())));
     append_given(before, channels);

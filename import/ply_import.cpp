@@ -2,6 +2,7 @@
 
 #include "execution/spool_cursor.h"
 #include "import/face_colours.h"
+#include "import/face_values.h"
 #include "import/place_vertices.h"
 #include "import/ply_pictures.h"
 #include "import/ply_texture_faces.h"
@@ -73,6 +74,7 @@ class PlyImporter {
         texcoords_(textures == Textures::use ? plan_.texcoords : PlyTexcoords::none),
         white_(white_face(plan_.face_colour)),
         triangles_(room.scratch),
+        values_(plan_.face_values, room),
         given_(source.description().attributes) {}
 
   PlyImport run() {
@@ -85,10 +87,9 @@ class PlyImporter {
     import_.counts.degenerate_triangles += read.degenerate_triangles;
     if (texcoords_ != PlyTexcoords::none)
       pictures_.emplace(plan_, path_, triangles_.textures, files_, mesh_.materials);
-    if (pictures_ && pictures_->any_is_there())
-      append_textured();
-    else if (has_colours())
-      append_coloured();
+    is_textured_ = pictures_ && pictures_->any_is_there();
+    if (is_textured_ || has_colours() || values_.any())
+      append_cornered();
     else
       append_plain();
     return import_;
@@ -145,19 +146,40 @@ class PlyImporter {
       triangles_.texcoords.append(texcoords);
     if (has_colours())
       triangles_.colours.append(face.row ? face.colour : white_);
+    values_.add(face.values);
     triangles_.textures.insert(texture);
   }
 
-  void append_textured() {
+  /// Pictures count instead of colours.
+  ColourType face_colour() const { return is_textured_ ? ColourType::none : plan_.face_colour; }
+
+  /// Corners that show something else than others at their vertex become vertices.
+  void append_cornered() {
+    values_.compare();
     CornerSplitter splitter(source_.description().vertex_count, room_);
-    add_shown_corners(splitter);
-    import_.layout = given_.without_texcoords();
-    import_.layout.texcoords = import_.layout.material = true;
-    const auto channels = static_cast<std::size_t>(given_.texcoord_offset());
-    append_split(splitter, [&](std::span<const float> given, const CornerParts::Parts& parts) {
-      mesh_.attributes.append(given.first(channels));
-      append_shown(given, parts);
-    });
+    is_textured_ ? add_shown_corners(splitter) : add_corners(splitter);
+    AttributeLayout& layout = import_.layout = given_;
+    if (is_textured_)
+      layout.texcoords = layout.material = true;
+    if (face_colour() != ColourType::none) {
+      layout.colour = plan_.face_colour;
+      layout.alpha = plan_.face_alpha;
+    }
+    layout.values.insert(layout.values.end(), plan_.face_values.begin(), plan_.face_values.end());
+    append_split(splitter);
+  }
+
+  void add_corners(CornerSplitter& splitter) {
+    execution::SpoolCursor triangles(triangles_.all, room_.cancel);
+    execution::SpoolCursor colours(triangles_.colours, room_.cancel);
+    for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+      CornerParts::Parts parts{};
+      if (has_colours())
+        parts = parts_of(colours.at(i), plan_.face_colour);
+      parts[CornerParts::kValues] = values_of(i);
+      for (const std::uint32_t corner : triangles.at(i).corners)
+        splitter.add({corner, parts});
+    }
   }
 
   void add_shown_corners(CornerSplitter& splitter) {
@@ -166,14 +188,53 @@ class PlyImporter {
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
       const auto& [corners, texture] = triangles.at(i);
       const std::uint32_t material = pictures_->material_of(texture, mesh_.materials) + 1;
+      const std::uint32_t values = values_of(i);
       const bool has_own = has_own_texcoords() && pictures_->is_there(texture);
       for (std::size_t k = 0; k < 3; ++k) {
         const Texcoord at = has_own ? texcoords.at(i)[k] : Texcoord{};
-        splitter.add(
-            {corners[k],
-             {std::bit_cast<std::uint32_t>(at[0]), std::bit_cast<std::uint32_t>(at[1]), material}});
+        splitter.add({corners[k],
+                      {std::bit_cast<std::uint32_t>(at[0]), std::bit_cast<std::uint32_t>(at[1]),
+                       values, material}});
       }
     }
+  }
+
+  /// CornerParts::kValues of a triangle; ascending.
+  std::uint32_t values_of(std::uint64_t triangle) {
+    return values_.any() ? values_.number_of(triangle) : 0;
+  }
+
+  void append_split(CornerSplitter& splitter) {
+    triangles_.clear();
+    SplitVertices vertices(room_.scratch);
+    splitter.split(vertices, mesh_);
+    import_.split_vertices = vertices.count() - source_.description().vertex_count;
+    SplitCursor split(vertices, room_.cancel);
+    std::uint64_t next = 0;
+    read_vertices([&](std::uint64_t vertex, Vec3d position, std::span<const float> attributes) {
+      for (; next < split.size() && split.position(next) == vertex; ++next) {
+        mesh_.positions.append(position);
+        append_attributes(attributes, split.parts(next));
+      }
+    });
+  }
+
+  /// Part by part, as AttributeLayout has them.
+  void append_attributes(std::span<const float> given, const CornerParts::Parts& parts) {
+    const auto colours = static_cast<std::size_t>(given_.colour_offset());
+    const auto texcoords = static_cast<std::size_t>(given_.texcoord_offset());
+    mesh_.attributes.append(given.first(colours));
+    if (face_colour() != ColourType::none) {
+      const FaceColour colour = colour_of(parts, plan_.face_colour);
+      mesh_.attributes.append(
+          std::span(colour).first(static_cast<std::size_t>(import_.layout.colour_channels())));
+    }
+    mesh_.attributes.append(given.subspan(colours, texcoords - colours));
+    mesh_.attributes.append(values_.channels(parts[CornerParts::kValues]));
+    if (is_textured_)
+      append_shown(given, parts);
+    else
+      mesh_.attributes.append(given.subspan(texcoords));
   }
 
   void append_shown(std::span<const float> given, const CornerParts::Parts& parts) {
@@ -193,49 +254,6 @@ class PlyImporter {
       shown[1] = static_cast<float>(1 - double{at[1]});
     }
     mesh_.attributes.append(shown);
-  }
-
-  void append_coloured() {
-    CornerSplitter splitter(source_.description().vertex_count, room_);
-    execution::SpoolCursor triangles(triangles_.all, room_.cancel);
-    execution::SpoolCursor colours(triangles_.colours, room_.cancel);
-    for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-      const CornerParts::Parts parts = parts_of(colours.at(i), plan_.face_colour);
-      for (const std::uint32_t corner : triangles.at(i).corners)
-        splitter.add({corner, parts});
-    }
-    import_.layout = given_;
-    import_.layout.colour = plan_.face_colour;
-    import_.layout.alpha = plan_.face_alpha;
-    const auto before = static_cast<std::size_t>(import_.layout.colour_offset());
-    const auto count = static_cast<std::size_t>(import_.layout.colour_channels());
-    append_split(splitter, [&](std::span<const float> given, const CornerParts::Parts& parts) {
-      const FaceColour colour = colour_of(parts, plan_.face_colour);
-      mesh_.attributes.append(given.first(before));
-      mesh_.attributes.append(std::span(colour).first(count));
-      mesh_.attributes.append(given.subspan(before));
-    });
-  }
-
-  /// Calls append(attributes of the file, parts) for each vertex, whose place is appended here.
-  template <class Append>
-  void append_split(CornerSplitter& splitter, const Append& append) {
-    triangles_.clear();
-    SplitVertices vertices(room_.scratch);
-    splitter.split(vertices, mesh_);
-    import_.split_vertices = vertices.count() - source_.description().vertex_count;
-    execution::SpoolCursor positions(vertices.positions, room_.cancel);
-    std::array<execution::SpoolCursor<std::uint32_t>, CornerParts::kCount> parts{
-        {{vertices.parts[0], room_.cancel},
-         {vertices.parts[1], room_.cancel},
-         {vertices.parts[2], room_.cancel}}};
-    std::uint64_t next = 0;
-    read_vertices([&](std::uint64_t vertex, Vec3d position, std::span<const float> attributes) {
-      for (; next < vertices.count() && positions.at(next) == vertex; ++next) {
-        mesh_.positions.append(position);
-        append(attributes, {parts[0].at(next), parts[1].at(next), parts[2].at(next)});
-      }
-    });
   }
 
   /// Calls take(number, position, attributes) for each vertex of the file.
@@ -283,11 +301,13 @@ class PlyImporter {
   PlyTexcoords texcoords_;
   FaceColour white_;  ///< of strips
   PlyTriangles triangles_;
+  FaceValues values_;
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;
   std::optional<PlyTextureFaces> texture_faces_;
   mesh_io::PlyFace shown_;  ///< with what its texture face says
   std::optional<PlyPictures> pictures_;
+  bool is_textured_ = false;  ///< a picture is there
   PlyImport import_;
 };
 

@@ -1,5 +1,5 @@
-// PLY files whose faces show pictures or have colours as meshes: corners that show another picture,
-// another place of it or another colour are other vertices.
+// PLY files whose faces show pictures or have colours or values as meshes: corners that show
+// another picture, another place of it, another colour or other values are other vertices.
 #pragma once
 
 #include "import/input_files.h"
@@ -27,11 +27,11 @@ struct PlyImport {
 /// Appends the mesh of `source` to `mesh`, but for its layout. `path`: of the file, whose folder
 /// has the pictures. If a triangle shows a picture that is there, the file is textured: vertices
 /// are ordered as in the file, then by the bits of their texture coordinates, which are glTF's,
-/// then by their material. There is one material for each picture that triangles use, by first
-/// use; triangles without a picture are white. Else, if faces have colours, vertices are ordered as
-/// in the file, then by their colour. Else the mesh is that of the vertices and triangles alone.
-/// Pictures that triangles should show and that are not there are noted in the mesh's table.
-/// Throws as PlySource. Requires has_corner_attributes().
+/// then by the first triangle with their values, then by their material. There is one material for
+/// each picture that triangles use, by first use; triangles without a picture are white. Else, if
+/// faces have colours or values, vertices are ordered as in the file, then by these. Else the mesh
+/// is that of the vertices and triangles alone. Pictures that triangles should show and that are
+/// not there are noted in the mesh's table. Throws as PlySource. Requires has_corner_attributes().
 PlyImport import_ply_corners(mesh_io::PlySource& source, const std::filesystem::path& path,
                              Textures textures, RawMesh& mesh, mesh_io::NamedFiles& files,
                              const ImportRoom& room);

@@ -2,13 +2,14 @@
 // vertices of their own, out of core.
 #pragma once
 
+#include "execution/spool_cursor.h"
 #include "import/raw_mesh.h"
 #include "partition/external_sort.h"
 
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace meshhier::importing {
@@ -16,8 +17,9 @@ namespace meshhier::importing {
 /// What a corner shows: a vertex of the file, and what it has there, as references or as bits; 0 is
 /// none.
 struct CornerParts {
-  static constexpr std::size_t kCount = 3;
-  static constexpr std::size_t kMaterial = 2;  ///< its number in the mesh's table, from 1 on
+  static constexpr std::size_t kCount = 4;
+  static constexpr std::size_t kValues = 2;    ///< which values its face has, from 1 on
+  static constexpr std::size_t kMaterial = 3;  ///< its number in the mesh's table, from 1 on
 
   using Parts = std::array<std::uint32_t, kCount>;
   std::uint32_t position = 0;
@@ -32,7 +34,7 @@ struct SplitVertices {
   explicit SplitVertices(storage::ScratchFile& scratch)
       : positions(scratch, kImportSpoolBytes),
         parts{{References(scratch, kImportSpoolBytes), References(scratch, kImportSpoolBytes),
-               References(scratch, kImportSpoolBytes)}} {}
+               References(scratch, kImportSpoolBytes), References(scratch, kImportSpoolBytes)}} {}
 
   std::uint64_t count() const { return positions.size(); }
   /// Throws Error(input) if there are 2^32 vertices or more.
@@ -41,6 +43,28 @@ struct SplitVertices {
   References positions;
   std::array<References, CornerParts::kCount> parts;
   std::array<std::uint64_t, CornerParts::kCount> without{};  ///< vertices whose part is 0
+};
+
+/// Reads the vertices forwards.
+class SplitCursor {
+ public:
+  SplitCursor(const SplitVertices& vertices, const execution::CancelToken& cancel)
+      : positions_(vertices.positions, cancel),
+        parts_{{{vertices.parts[0], cancel},
+                {vertices.parts[1], cancel},
+                {vertices.parts[2], cancel},
+                {vertices.parts[3], cancel}}} {}
+
+  std::uint64_t size() const { return positions_.size(); }
+  std::uint32_t position(std::uint64_t vertex) { return positions_.at(vertex); }
+  CornerParts::Parts parts(std::uint64_t vertex) {
+    return {parts_[0].at(vertex), parts_[1].at(vertex), parts_[2].at(vertex), parts_[3].at(vertex)};
+  }
+
+ private:
+  using Cursor = execution::SpoolCursor<std::uint32_t>;
+  Cursor positions_;
+  std::array<Cursor, CornerParts::kCount> parts_;
 };
 
 /// Takes the corners of triangles, three after three, then numbers their vertices.
@@ -71,10 +95,11 @@ class CornerSplitter {
   };
   /// Of equal ones the corner does not matter.
   struct UseKey {
-    using Key = std::pair<std::uint64_t, std::uint64_t>;
+    using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
     Key operator()(const Use& use) const {
       const auto& [position, parts] = use.shown;
-      return {std::uint64_t{position} << 32 | parts[0], std::uint64_t{parts[1]} << 32 | parts[2]};
+      return {std::uint64_t{position} << 32 | parts[0], std::uint64_t{parts[1]} << 32 | parts[2],
+              parts[3]};
     }
   };
   struct CornerVertex {

@@ -88,7 +88,7 @@ constexpr std::array<std::string_view, 8> kFaceTexcoords{
 /// Whether faces have coordinates of their own.
 bool plan_face_texcoords(PlyElementPlan& plan, const std::filesystem::path& path) {
   plan.texcoords = find_list(plan.element, kFaceTexcoords);
-  for (const std::string_view name : {"texnumber", "texture_number", "texture_index", "texid"}) {
+  for (const std::string_view name : kPlyTextureNumbers) {
     if (!plan.texnumber)
       plan.texnumber = find_integer(plan.element, name, path);
   }

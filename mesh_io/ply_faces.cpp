@@ -72,11 +72,18 @@ std::string take_colour(const PlyElementPlan& plan, const PlyRow& row, PlyFace& 
   return {};
 }
 
+void take_values(const PlyElementPlan& plan, const PlyRow& row, PlyFace& face) {
+  face.values.clear();
+  for (const std::size_t property : plan.values)
+    face.values.push_back(row.values[property][0]);
+}
+
 }  // namespace
 
 std::string take_face(const PlyElementPlan& plan, const PlyRow& row, const PlyFaceLimits& limits,
                       PlyFace& face) {
   face.row = row.number;
+  take_values(plan, row, face);
   std::string defect = take_corners(plan, row, limits.vertices, face.corners);
   if (defect.empty())
     defect = take_texture(plan, row, limits.textures, face.texture);

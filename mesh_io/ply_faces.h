@@ -22,6 +22,7 @@ struct PlyFace {
   std::vector<float> texcoords;        ///< u v of each corner, v from the bottom row; or empty
   std::int32_t texture = 0;            ///< number of its picture; -1: none
   std::array<float, 4> colour{};       ///< as attributes have it; of polygons, if they have any
+  std::vector<double> values;          ///< PlyPlan::face_values; of polygons
 };
 
 /// What a face shows, in a list of its own.

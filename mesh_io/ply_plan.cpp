@@ -3,6 +3,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_face_plan.h"
 #include "mesh_io/ply_properties.h"
+#include "mesh_io/ply_value_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -29,6 +30,8 @@ class Planner {
       plan_.elements.push_back(measure(element));
     plan_vertices();
     plan_faces(plan_, header_.texture_files, path_);
+    if (writer_ == PlyWrittenBy::anyone)
+      plan_face_values(plan_, choice_, path_);
     check_range_grid();
     check_sizes();
     list_unused();
@@ -44,7 +47,6 @@ class Planner {
   void plan_colours(PlyElementPlan& vertices);
   void take_colours(PlyElementPlan& vertices, const PlyColour& colour);
   void plan_texcoords(PlyElementPlan& vertices);
-  std::optional<ScalarAttribute> value_of(const PlyProperty& property) const;
   std::vector<std::size_t> plan_values(const PlyElementPlan& vertices);
   void check_range_grid() const;
   void check_sizes() const;
@@ -124,11 +126,7 @@ void assign_slots(PlyElementPlan& vertices, std::span<const int> properties, int
 void Planner::plan_attributes(PlyElementPlan& vertices) {
   AttributeLayout& layout = plan_.attributes;
   std::array<int, 3> found{};
-  constexpr std::array<std::array<std::string_view, 3>, 3> kNormals{
-      {{"nx", "ny", "nz"},
-       {"normalx", "normaly", "normalz"},
-       {"normal_x", "normal_y", "normal_z"}}};
-  for (const auto& names : kNormals) {
+  for (const PlyNames3& names : kPlyNormals) {
     if (!find_all(vertices.element, names, found))
       continue;
     layout.normals = true;
@@ -170,25 +168,6 @@ void Planner::plan_texcoords(PlyElementPlan& vertices) {
     assign_slots(vertices, std::span(&material, 1), layout.material_offset());
 }
 
-/// None if it is no value that can be read.
-std::optional<ScalarAttribute> Planner::value_of(const PlyProperty& property) const {
-  const ValueType type = value_type(property.type);
-  ScalarAttribute value{property.name, type, choice_.is_label(property.name, type)};
-  if (writer_ == PlyWrittenBy::import) {
-    value.is_label = property.name.starts_with(kImportedLabel);
-    const std::string_view prefix = value.is_label ? kImportedLabel : kImportedQuantity;
-    if (!property.name.starts_with(prefix))
-      return std::nullopt;
-    value.name.erase(0, prefix.size());
-  } else if (!choice_.takes(value.name)) {
-    return std::nullopt;
-  }
-  const auto known = std::ranges::find(plan_.attributes.values, value.name, &ScalarAttribute::name);
-  return is_attribute_name(value.name) && known == plan_.attributes.values.end()
-             ? std::optional(value)
-             : std::nullopt;
-}
-
 /// The properties without a slot that are values, which are added to the layout.
 std::vector<std::size_t> Planner::plan_values(const PlyElementPlan& vertices) {
   AttributeLayout& layout = plan_.attributes;
@@ -197,11 +176,10 @@ std::vector<std::size_t> Planner::plan_values(const PlyElementPlan& vertices) {
     const PlyProperty& property = vertices.element.properties[i];
     if (vertices.slots[i] != kSkipped || property.is_list())
       continue;
-    const std::optional<ScalarAttribute> value = value_of(property);
-    if (!value || layout.value_channels() + channels_of(value->type) > kMaxValueChannels)
-      continue;
-    layout.values.push_back(*value);
-    found.push_back(i);
+    if (const auto value = value_of(property, choice_, writer_, layout)) {
+      layout.values.push_back(*value);
+      found.push_back(i);
+    }
   }
   return found;
 }
@@ -306,7 +284,8 @@ bool PlyElementPlan::takes(std::size_t property) const {
     case Role::polygons:
     case Role::texture_faces:
       return property == corners || property == texcoords || property == texnumber ||
-             property == face || std::ranges::find(colour, property) != colour.end();
+             property == face || std::ranges::find(colour, property) != colour.end() ||
+             std::ranges::find(values, property) != values.end();
     case Role::strips:
       return property == corners;
     case Role::vertices:

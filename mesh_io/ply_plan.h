@@ -38,6 +38,7 @@ struct PlyElementPlan {
   std::optional<std::size_t> face;       ///< of texture faces: whose they are; none: in their order
   std::array<std::size_t, 2> texcoord{};  ///< of texture vertices: the properties u and v
   std::vector<std::size_t> colour;        ///< of polygons: the three or four properties of theirs
+  std::vector<std::size_t> values;        ///< of polygons: PlyPlan::face_values
   std::uint64_t min_row_bytes = 0;  ///< of a row, all lists empty; in text the fewest characters
   std::optional<std::uint64_t> stride;  ///< bytes of every row: binary, and no property is a list
 
@@ -69,6 +70,7 @@ struct PlyPlan {
   /// Of faces: only if vertices have none. `face_alpha`: with integers alone.
   ColourType face_colour = ColourType::none;
   bool face_alpha = false;
+  std::vector<ScalarAttribute> face_values;  ///< behind `attributes.values`
   std::vector<std::string> unused;  ///< what is skipped: "vertex.intensity", or an element: "edge"
   bool has_unnamed_texcoords = false;        ///< faces have them, and no picture is named
   std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
@@ -104,6 +106,9 @@ enum class Unplaced : std::uint8_t { refused, visited };
 ///                        all other scalars               that are chosen: values of their type
 ///   element face         list vertex_indices | vertex_index
 ///                        red green blue [alpha]          if vertices have no colour
+///                        all other scalars               that are chosen and that vertices do not
+///                                                        have: values, but for normals, colours
+///                                                        and numbers of textures
 ///   element tristrips    list vertex_indices | vertex_index
 ///
 /// and, if comments name texture files (TextureFile NAME), of polygons also

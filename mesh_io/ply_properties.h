@@ -28,6 +28,14 @@ bool find_all(const PlyElement& element, std::span<const std::string_view> names
 std::optional<std::size_t> find_list(const PlyElement& element,
                                      std::span<const std::string_view> names);
 
+using PlyNames3 = std::array<std::string_view, 3>;
+inline constexpr std::array<PlyNames3, 3> kPlyNormals{
+    {{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}, {"normal_x", "normal_y", "normal_z"}}};
+
+/// Of faces: which texture they show.
+inline constexpr std::array<std::string_view, 4> kPlyTextureNumbers{"texnumber", "texture_number",
+                                                                    "texture_index", "texid"};
+
 /// Red, green, blue, and two names that alpha has.
 using PlyColourNames = std::array<std::string_view, 5>;
 inline constexpr std::array<PlyColourNames, 3> kPlyColours{

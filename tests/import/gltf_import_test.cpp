@@ -332,20 +332,6 @@ TEST_F(GltfImportTest, SparseAccessorsReplaceElements) {
   EXPECT_THAT(failure(gltf), HasSubstr("accessors[0].sparse.indices: item 1 is 3"));
 }
 
-std::vector<double> values_of(const Imported& mesh, std::size_t attribute) {
-  const AttributeLayout& layout = mesh.layout;
-  auto offset = static_cast<std::size_t>(layout.value_offset());
-  for (std::size_t i = 0; i < attribute; ++i)
-    offset += static_cast<std::size_t>(channels_of(layout.values[i].type));
-  std::vector<double> values;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const float* channels =
-        mesh.attributes.data() + v * static_cast<std::size_t>(layout.channels()) + offset;
-    values.push_back(value_in(layout.values[attribute].type, channels));
-  }
-  return values;
-}
-
 TEST_F(GltfImportTest, AttributesOfApplicationsAreValues) {
   GltfBuilder gltf;
   GltfJson primitive = square(gltf);
@@ -362,10 +348,10 @@ TEST_F(GltfImportTest, AttributesOfApplicationsAreValues) {
                                               ScalarAttribute{"FLOW_1", ValueType::f32},
                                               ScalarAttribute{"FLOW_2", ValueType::f32},
                                               ScalarAttribute{"QUALITY", ValueType::f32}));
-  EXPECT_THAT(values_of(mesh, 0), ElementsAre(9, 8, 7, 6));
-  EXPECT_THAT(values_of(mesh, 2), ElementsAre(1, 3, 5, 7));
-  EXPECT_THAT(values_of(mesh, 3), ElementsAre(2, 4, 6, 8));
-  EXPECT_THAT(values_of(mesh, 4), ElementsAre(double{.1F}, double{.2F}, double{.3F}, double{.4F}));
+  EXPECT_THAT(mesh.values(0), ElementsAre(9, 8, 7, 6));
+  EXPECT_THAT(mesh.values(2), ElementsAre(1, 3, 5, 7));
+  EXPECT_THAT(mesh.values(3), ElementsAre(2, 4, 6, 8));
+  EXPECT_THAT(mesh.values(4), ElementsAre(double{.1F}, double{.2F}, double{.3F}, double{.4F}));
 }
 
 TEST_F(GltfImportTest, ValuesOfPrimitivesAreOfOneType) {
@@ -381,10 +367,10 @@ TEST_F(GltfImportTest, ValuesOfPrimitivesAreOfOneType) {
   const Imported mesh = import(gltf);
   EXPECT_THAT(mesh.layout.values, ElementsAre(ScalarAttribute{"A", ValueType::f32},
                                               ScalarAttribute{"B", ValueType::f32}));
-  EXPECT_EQ(values_of(mesh, 0)[3], 4) << "what is stored, not a fraction";
-  EXPECT_EQ(values_of(mesh, 0)[4], .5);
-  EXPECT_EQ(values_of(mesh, 1)[0], 7);
-  EXPECT_TRUE(std::isnan(values_of(mesh, 1)[4]));
+  EXPECT_EQ(mesh.values(0)[3], 4) << "what is stored, not a fraction";
+  EXPECT_EQ(mesh.values(0)[4], .5);
+  EXPECT_EQ(mesh.values(1)[0], 7);
+  EXPECT_TRUE(std::isnan(mesh.values(1)[4]));
   EXPECT_EQ(mesh.count("dropped_values"), 4U);
 }
 

@@ -59,6 +59,19 @@ std::uint32_t Imported::material_of(std::size_t triangle) const {
   return static_cast<std::uint32_t>(all[0]);
 }
 
+std::vector<double> Imported::values(std::size_t attribute) const {
+  auto offset = static_cast<std::size_t>(layout.value_offset());
+  for (std::size_t i = 0; i < attribute; ++i)
+    offset += static_cast<std::size_t>(channels_of(layout.values[i].type));
+  std::vector<double> all;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const float* channels =
+        attributes.data() + v * static_cast<std::size_t>(layout.channels()) + offset;
+    all.push_back(value_in(layout.values[attribute].type, channels));
+  }
+  return all;
+}
+
 Vec2f Imported::texcoord(std::size_t triangle, std::size_t corner) const {
   const std::size_t first =
       triangles.at(triangle)[corner] * static_cast<std::size_t>(layout.channels()) +
@@ -93,7 +106,7 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   storage::MemoryPool pool(how.memory.pool_bytes);
   Warnings warnings;
   const execution::CancelToken cancel;
-  importing::MeshInput input(inputs, files, {how.weld, how.textures, how.crop});
+  importing::MeshInput input(inputs, files, {how.weld, how.textures, how.crop, how.attributes});
   if (input.needs_import()) {
     input.import({how.folder / "imported.ply", how.folder / "import", pool, how.memory.sort_bytes,
                   warnings, cancel});

@@ -29,6 +29,8 @@ struct Imported {
   std::vector<std::string> companions() const;
   /// The number of a triangle's material, which all of its corners must name.
   std::uint32_t material_of(std::size_t triangle) const;
+  /// Number `attribute` of layout.values, of all vertices.
+  std::vector<double> values(std::size_t attribute) const;
   /// Texture coordinates of a corner.
   Vec2f texcoord(std::size_t triangle, std::size_t corner) const;
   /// "a.png 0 1, 0.5 1, 1 0" or "#ff0000" of what it shows; "0 1, ..." if nothing is textured.
@@ -47,6 +49,7 @@ struct ImportHow {
   importing::ImportMemory memory = kRoomy;
   std::filesystem::path folder = "w";  ///< for temporary files
   std::optional<BoundsD> crop{};
+  mesh_io::AttributeChoice attributes{};
 };
 
 /// Throws as importing::MeshInput.

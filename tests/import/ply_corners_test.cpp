@@ -15,6 +15,7 @@
 namespace meshhier::importing {
 namespace {
 
+using mesh_io::AttributeChoice;
 using mesh_io::PlyEncoding;
 using mesh_io::PlyType;
 using mesh_io::tests::kEncodings;
@@ -274,10 +275,10 @@ TEST_F(PlyCornersTest, ColoursOfVerticesCountInsteadOfThoseOfFaces) {
   put("a.ply",
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-      "property float quality\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "property list uchar float quality\nelement face 1\nproperty list uchar int vertex_indices\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nelement edge 1\n"
       "property int vertex1\nproperty int vertex2\nend_header\n"
-      "0 0 0 1 2 3 0.5\n1 0 0 1 2 3 0.5\n1 1 0 1 2 3 0.5\n3 0 1 2 9 9 9\n0 1\n");
+      "0 0 0 1 2 3 1 0.5\n1 0 0 1 2 3 1 0.5\n1 1 0 1 2 3 0\n3 0 1 2 9 9 9\n0 1\n");
   const Imported mesh = import();
   EXPECT_THAT(mesh.summary.files, IsEmpty()) << "read where it lies";
   EXPECT_EQ(colour_of(mesh, 0), (std::vector<float>{1, 2, 3}));
@@ -351,8 +352,15 @@ TEST_F(PlyCornersTest, PicturesThatAreNotUsedAreTold) {
 }
 
 TEST_F(PlyCornersTest, WhatIsNotUsedIsListed) {
-  put("a.ply", triangle("", "property float confidence\nproperty float intensity\n", " 1 2"));
-  EXPECT_THAT(import().summary.unused, ElementsAre("vertex.confidence", "vertex.intensity"));
+  put("a.ply", triangle("", "property float confidence\nproperty uchar flags\n", " 1 2"));
+  EXPECT_THAT(import().summary.unused, ElementsAre("vertex.flags"));
+  EXPECT_THAT(
+      import("a.ply", {.attributes = {.which = AttributeChoice::Which::none}}).summary.unused,
+      ElementsAre("vertex.confidence", "vertex.flags"));
+  EXPECT_THAT(
+      import("a.ply", {.attributes = {.which = AttributeChoice::Which::named, .names = {"flags"}}})
+          .summary.unused,
+      ElementsAre("vertex.confidence"));
   put("a.ply", triangle("",
                         "property float normalx\nproperty float normaly\n"
                         "property float normalz\n",
@@ -368,9 +376,10 @@ TEST_F(PlyCornersTest, WhatIsNotUsedIsListed) {
     numbers += " 0";
   }
   put("a.ply", triangle("", many, numbers));
-  const Imported mesh = import();
+  const Imported mesh = import("a.ply", {.attributes = {.which = AttributeChoice::Which::none}});
   EXPECT_THAT(mesh.summary.unused, SizeIs(101));
   EXPECT_EQ(mesh.summary.unused.back(), "50 more");
+  EXPECT_THAT(import().layout.values, SizeIs(kMaxValueChannels)) << "and no more";
 }
 
 }  // namespace

@@ -186,8 +186,10 @@ TEST_F(TexturedPlyTest, NobodysPropertyIsTakenForOurMaterials) {
   for (const char* name : {"a.ply", "a.ply.gz"}) {
     for (const bool weld : {false, true}) {
       const Imported mesh = import({.weld = weld}, name);
-      EXPECT_EQ(mesh.layout, AttributeLayout{.texcoords = true});
-      EXPECT_THAT(mesh.attributes, ElementsAre(0, 0, 1, 0, 1, 1));
+      EXPECT_FALSE(mesh.layout.material);
+      EXPECT_THAT(mesh.layout.values,
+                  ElementsAre(ScalarAttribute{"material", ValueType::f32, false}));
+      EXPECT_THAT(mesh.attributes, ElementsAre(5, 0, 0, 5, 1, 0, 5, 1, 1));
     }
   }
 }
