@@ -130,7 +130,7 @@ ValueStatistics ValueTally::statistics() const {
   result.bins = bins_;
   if (!has_too_many_labels_) {
     for (const auto& [label, count] : labels_)
-      result.labels.push_back({label, count});
+      result.labels.push_back({label, count, {}});
   }
   return result;
 }

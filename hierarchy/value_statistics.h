@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct ValueStatistics {
   struct LabelCount {
     double label = 0;
     std::uint64_t vertices = 0;
+    std::string name{};  ///< what the input calls it; empty if it says nothing
     friend bool operator==(const LabelCount&, const LabelCount&) = default;
   };
 

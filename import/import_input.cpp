@@ -63,6 +63,7 @@ class Import {
       count(one.name, one.count);
     note_files();
     note_textures();
+    facts_.label_names = std::move(mesh_.label_names);
     std::ranges::sort(facts_.counts, {}, &SourceCount::name);
     return std::move(facts_);
   }
@@ -339,7 +340,8 @@ class Import {
   }
 
   Added add_obj(InputStream& stream, const std::filesystem::path& path) {
-    const ObjImport import = import_obj(stream, path, mesh_, named_, input_.textures(), room_);
+    const ObjImport import =
+        import_obj(stream, path, mesh_, named_, input_.textures(), input_.attributes(), room_);
     checked_base(path, 0);
     const mesh_io::ObjCounts& counts = import.counts;
     count("split_vertices", import.split_vertices);
@@ -503,6 +505,24 @@ void TemporaryFile::counted() {
   use_.add_grown(bytes_);
 }
 
+namespace {
+
+/// Of the values that vertices have.
+void name_labels(const AllLabelNames& all, SourceSummary& summary) {
+  constexpr std::size_t kLongest = 100;
+  for (std::size_t i = 0; i < summary.values.size(); ++i) {
+    const auto names = all.find(summary.attributes.values[i].name);
+    if (names == all.end())
+      continue;
+    for (ValueStatistics::LabelCount& one : summary.values[i].labels) {
+      if (one.label > 0)
+        one.name = plain_text(names->second.name(static_cast<std::uint16_t>(one.label)), kLongest);
+    }
+  }
+}
+
+}  // namespace
+
 void ImportFacts::complete(SourceSummary& summary) const {
   summary.file_bytes = 0;
   for (const SourceFile& file : files)
@@ -513,6 +533,7 @@ void ImportFacts::complete(SourceSummary& summary) const {
   summary.counts.insert(summary.counts.end(), counts.begin(), counts.end());
   std::ranges::sort(summary.counts, {}, &SourceCount::name);
   summary.textures = textures;
+  name_labels(label_names, summary);
   if (faces)
     summary.faces = *faces;
   summary.degenerate_triangles += degenerate_triangles;

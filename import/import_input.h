@@ -14,6 +14,7 @@
 #include "execution/progress.h"
 #include "images/material_list.h"
 #include "import/input_files.h"
+#include "import/label_names.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_plan.h"
 #include "storage/io/file.h"
@@ -62,6 +63,7 @@ struct ImportFacts {
   /// Those that triangles use, as AttributeLayout::material of the PLY numbers them; empty unless
   /// the mesh is textured.
   images::MaterialList materials;
+  AllLabelNames label_names;
   /// Of a textured mesh. Its texels are not counted: nothing is decoded here.
   std::optional<SourceTextures> textures;
 

@@ -3,6 +3,7 @@
 #include "execution/spool_cursor.h"
 #include "hierarchy/small_letters.h"
 #include "import/material_colours.h"
+#include "import/obj_labels.h"
 #include "import/obj_textures.h"
 #include "import/place_lookup.h"
 #include "import/split_corners.h"
@@ -45,14 +46,17 @@ bool has_texcoords(const ObjTriangle& triangle) {
 /// All that a file holds, as it stands there.
 class ObjParts final : public mesh_io::ObjVisitor {
  public:
-  ObjParts(storage::ScratchFile& scratch, const std::filesystem::path& path, Textures use)
+  ObjParts(storage::ScratchFile& scratch, const std::filesystem::path& path, Textures use,
+           const mesh_io::AttributeChoice& attributes, AllLabelNames& label_names)
       : names(path),
+        labels(attributes, label_names),
         positions(scratch, kImportSpoolBytes),
         colours(scratch, kImportSpoolBytes),
         texcoords(scratch, kImportSpoolBytes),
         normals(scratch, kImportSpoolBytes),
         triangles(scratch, kImportSpoolBytes),
         materials(scratch, kImportSpoolBytes),
+        combinations(scratch, kImportSpoolBytes),
         keeps_materials_(use == Textures::use),
         places_(positions) {}
 
@@ -85,7 +89,11 @@ class ObjParts final : public mesh_io::ObjVisitor {
   void use_material(const std::string& name) override {
     if (keeps_materials_)
       names.begin(name);
+    labels.begin(ObjLabel::material, name);
   }
+  bool takes_groups() const override { return labels.are_asked(); }
+  void use_group(const std::string& names) override { labels.begin(ObjLabel::group, names); }
+  void use_object(const std::string& name) override { labels.begin(ObjLabel::object, name); }
   void use_libraries(const std::string& statement) override {
     if (keeps_materials_)
       names.add_libraries(statement);
@@ -94,15 +102,19 @@ class ObjParts final : public mesh_io::ObjVisitor {
     triangles.append(triangle);
     if (keeps_materials_)
       materials.append(names.use(has_texcoords(triangle)));
+    if (labels.are_asked())
+      combinations.append(labels.use());
   }
 
   MaterialNames names;
+  ObjLabels labels;
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<ObjColour> colours;  ///< none, or one a position, perhaps kNoColour
   storage::RecordSpool<Texcoord> texcoords;
   storage::RecordSpool<Vec3f> normals;
   storage::RecordSpool<ObjTriangle> triangles;
-  storage::RecordSpool<std::uint32_t> materials;  ///< number in `names`, one a triangle; or none
+  storage::RecordSpool<std::uint32_t> materials;     ///< number in `names`, one a triangle; or none
+  storage::RecordSpool<std::uint32_t> combinations;  ///< number in `labels`, likewise
 
  private:
   bool keeps_materials_;
@@ -396,6 +408,20 @@ bool do_colours_tint(const ObjParts& parts, ObjSurface& surface, const ImportRoo
   return is_plain_coloured;
 }
 
+/// CornerParts::kValues of the corners of triangles, which come in their order.
+class CornerLabels {
+ public:
+  CornerLabels(const ObjParts& parts, const ImportRoom& room)
+      : combinations_(parts.combinations, room.cancel) {}
+
+  std::uint32_t part(std::uint64_t triangle) {
+    return combinations_.size() == 0 ? 0 : combinations_.at(triangle);
+  }
+
+ private:
+  execution::SpoolCursor<std::uint32_t> combinations_;
+};
+
 /// Where all corners have colours that tint, no material changes them.
 void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, RawMesh& mesh,
                        CornerSplitter& splitter, const ImportRoom& room) {
@@ -403,6 +429,7 @@ void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, Ra
   std::optional<CornerColours> colours;
   if (tint)
     colours.emplace(parts);
+  CornerLabels labels(parts, room);
   std::optional<std::uint32_t> white;
   for (std::uint64_t i = 0; i < triangles.count(); ++i) {
     const ObjTriangle& triangle = triangles.triangle(i);
@@ -415,7 +442,8 @@ void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, Ra
     // kNone + 1 is 0.
     for (const ObjCorner& c : triangle) {
       splitter.add({c.position,
-                    {shown.has_picture ? c.texcoord + 1 : 0, c.normal + 1, 0, shown.number + 1}});
+                    {shown.has_picture ? c.texcoord + 1 : 0, c.normal + 1, labels.part(i),
+                     shown.number + 1}});
     }
   }
 }
@@ -424,10 +452,11 @@ void add_plain_corners(const ObjParts& parts, const std::optional<ObjPaint>& pai
                        CornerSplitter& splitter, const ImportRoom& room) {
   execution::SpoolCursor triangles(parts.triangles, room.cancel);
   execution::SpoolCursor names(parts.materials, room.cancel);
+  CornerLabels labels(parts, room);
   for (std::uint64_t i = 0; i < triangles.size(); ++i) {
     const std::uint32_t material = paint ? paint->part(names.at(i)) : 0;
     for (const ObjCorner& c : triangles.at(i))
-      splitter.add({c.position, {c.texcoord + 1, c.normal + 1, 0, material}});
+      splitter.add({c.position, {c.texcoord + 1, c.normal + 1, labels.part(i), material}});
   }
 }
 
@@ -444,7 +473,7 @@ bool append_colour(ObjColour colour, std::uint32_t paint, RawMesh& mesh) {
   return is_known;
 }
 
-void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const ObjLook& look,
+void append_vertices(ObjParts& parts, const SplitVertices& vertices, const ObjLook& look,
                      ObjImport& import, RawMesh& mesh, const ImportRoom& room) {
   const AttributeLayout& layout = import.layout;
   storage::RecordSpool<Texcoord> texcoords(room.scratch, kImportSpoolBytes);
@@ -460,6 +489,7 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const
   execution::SpoolCursor all_normals(normals, room.cancel);
   execution::SpoolCursor shown(vertices.parts[kTexcoord], room.cancel);
   execution::SpoolCursor materials(vertices.parts[CornerParts::kMaterial], room.cancel);
+  execution::SpoolCursor combinations(vertices.parts[CornerParts::kValues], room.cancel);
   for (std::uint64_t i = 0; i < vertices.count(); ++i) {
     const std::uint32_t position = places.at(i);
     mesh.positions.append(positions.at(position));
@@ -476,6 +506,7 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const
       const bool is_plain = layout.material && materials.at(i) > 0 && shown.at(i) == 0;
       import.hidden_colours += is_coloured && is_plain && !layout.tints ? 1 : 0;
     }
+    mesh.attributes.append(parts.labels.channels(combinations.at(i)));
     if (layout.texcoords && !layout.material)
       mesh.attributes.append(all_texcoords.at(i));
     if (layout.material) {
@@ -544,13 +575,15 @@ mesh_io::ObjCounts read_parts(mesh_io::InputStream& stream, const std::filesyste
 }  // namespace
 
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
-                     mesh_io::NamedFiles& files, Textures textures, const ImportRoom& room) {
-  ObjParts parts(room.scratch, path, textures);
+                     mesh_io::NamedFiles& files, Textures textures,
+                     const mesh_io::AttributeChoice& attributes, const ImportRoom& room) {
+  ObjParts parts(room.scratch, path, textures, attributes, mesh.label_names);
   ObjImport import;
   import.counts = read_parts(stream, path, parts, room);
   import.fits_float = import.counts.fits_float;
   import.layout.texcoords = import.counts.textured_corners > 0;
   import.layout.normals = import.counts.normal_corners > 0;
+  import.layout.values = parts.labels.attributes();
   if (parts.has_polypaint())
     import.counts.coloured = import.counts.positions;
   else
@@ -567,7 +600,8 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
       import.layout.colour = PlainColours::kType;
     import.material_colours = look.paint->count();
   }
-  if (import.layout.texcoords || import.layout.normals || look.paint)
+  if (import.layout.texcoords || import.layout.normals || look.paint ||
+      !import.layout.values.empty())
     append_split(parts, look, import, mesh, room);
   else
     import.filled_colours = append_plain(parts, mesh, room);

@@ -40,11 +40,16 @@ struct ObjImport {
 /// material's colour, with 0 0 as coordinates. Pictures that triangles should show and that are not
 /// there are noted in the table in any case.
 ///
+/// `attributes`: of those that name "group", "object" or "material", the file has a label (u16) if
+/// it has statements of that kind: their names' numbers in mesh.label_names, 0 before the first.
+/// Corners of other labels are other combinations, ordered behind the normal.
+///
 /// In a file without such pictures, the colours of the materials that triangles have are those of
 /// the vertices where these have none: then a combination ends with the colour. If no vertex has
 /// one, only those that are to be seen (PlainColours). `files`: of the file system that has the
 /// libraries and pictures. Throws as mesh_io::read_obj and read_libraries.
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
-                     mesh_io::NamedFiles& files, Textures textures, const ImportRoom& room);
+                     mesh_io::NamedFiles& files, Textures textures,
+                     const mesh_io::AttributeChoice& attributes, const ImportRoom& room);
 
 }  // namespace meshhier::importing

@@ -5,6 +5,7 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
+#include "import/label_names.h"
 #include "import/material_table.h"
 #include "storage/io/spool.h"
 
@@ -25,8 +26,9 @@ struct RawMesh {
   std::size_t channels() const { return static_cast<std::size_t>(layout.channels()); }
 
   AttributeLayout layout;
-  MaterialTable materials;  ///< numbered as layout.material has them
-  bool fits_float = true;   ///< all coordinates do, or their texts (mesh_io::DecimalNumber)
+  MaterialTable materials;    ///< numbered as layout.material has them
+  AllLabelNames label_names;  ///< numbered as values of these attributes
+  bool fits_float = true;     ///< all coordinates do, or their texts (mesh_io::DecimalNumber)
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<float> attributes;  ///< channels() a vertex
   storage::RecordSpool<Triangle<std::uint32_t>> triangles;

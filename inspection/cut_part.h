@@ -29,7 +29,7 @@ CutPart part_of_tile(PublishedTile tile);
 
 /// The parts of a cut, one for each of its tiles, together all that it shows, each triangle once.
 /// Beside a neighbour that is shown coarser a ghost is the vertex of the place that it moves to
-/// whose normal, then colour, is nearest to its own; it keeps its texture coordinate.
+/// that nearest_vertex() finds; it keeps its texture coordinate.
 class CutParts {
  public:
   /// `cache_bytes`: for neighbours. `reader` must outlive it. Throws Error(corrupt) if there are

@@ -2,8 +2,7 @@
 //
 // A corner beside a neighbour of the tile's own level is the vertex there that is like it, bit for
 // bit; of several alike, one that the neighbour's triangles at this border use. Beside a neighbour
-// that is shown coarser it is the vertex of the place that it moves to whose normal is nearest to
-// its own; among equals the colour decides, then the texture coordinate.
+// that is shown coarser it is the vertex of the place that it moves to that nearest_vertex() finds.
 #pragma once
 
 #include "execution/cancel.h"

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace meshhier::inspection {
 namespace {
@@ -123,13 +124,28 @@ std::string textures_text(const SourceTextures& t) {
                      grouped(t.images, "pictures"), missing, grouped(t.texels, "texels"));
 }
 
+/// The first of their names: ": 1 door, 2 roof, ...".
+std::string names_text(const std::vector<ValueStatistics::LabelCount>& labels) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> names;
+  for (const auto& [label, vertices, name] : labels) {
+    if (!name.empty() && names.size() == kMost) {
+      names.emplace_back("...");
+      break;
+    }
+    if (!name.empty())
+      names.push_back(fmt::format("{} {}", label, shown(name)));
+  }
+  return names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", "));
+}
+
 /// One of the values that vertices have.
 std::string value_text(const ScalarAttribute& attribute, const ValueStatistics& values) {
   std::string text =
       fmt::format("  {:<10} {} {}, {} to {}", shown(attribute.name), name_of(attribute.type),
                   attribute.is_label ? "label" : "quantity", values.min, values.max);
   if (!values.labels.empty())
-    text += ", " + counted(values.labels.size(), "labels");
+    text += ", " + counted(values.labels.size(), "labels") + names_text(values.labels);
   if (values.missing > 0)
     text += fmt::format(", missing at {}", grouped(values.missing, "vertices"));
   return text + '\n';

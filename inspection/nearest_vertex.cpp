@@ -13,8 +13,8 @@ double squared_difference(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-/// How unlike two vertices are: by normal, colour, texture coordinate.
-std::array<double, 3> difference(const AttributeLayout& layout, const VertexAt& a,
+/// How unlike two vertices are: by values, normal, colour, texture coordinate.
+std::array<double, 4> difference(const AttributeLayout& layout, const VertexAt& a,
                                  const VertexAt& b) {
   const auto between = [&](int begin, int end) {
     const auto first = static_cast<std::size_t>(begin),
@@ -22,7 +22,14 @@ std::array<double, 3> difference(const AttributeLayout& layout, const VertexAt& 
     return squared_difference(a.attributes().subspan(first, count),
                               b.attributes().subspan(first, count));
   };
-  return {between(layout.normal_offset(), layout.colour_offset()),
+  double differing = 0;
+  int channel = layout.value_offset();
+  for (const ScalarAttribute& value : layout.values) {
+    const int end = channel + channels_of(value.type);
+    differing += between(channel, end) == 0 ? 0 : 1;
+    channel = end;
+  }
+  return {differing, between(layout.normal_offset(), layout.colour_offset()),
           between(layout.colour_offset(), layout.value_offset()),
           between(layout.texcoord_offset(), layout.channels())};
 }

@@ -16,8 +16,9 @@ namespace meshhier::inspection {
 std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& copies,
                                   std::uint32_t place);
 
-/// The one of `all` whose normal is nearest to that of `vertex`; among equals the colour decides,
-/// then the texture coordinate, then the order. Requires at least one.
+/// The one of `all` that differs from `vertex` in the fewest values, so that labels stay on their
+/// side; among equals the nearest normal decides, then the colour, the texture coordinate, the
+/// order. Requires at least one.
 std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
                            std::span<const VertexAt> all);
 

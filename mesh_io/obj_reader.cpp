@@ -220,6 +220,10 @@ class ObjReader::Impl {
       return read_material();
     if (word == "mtllib")
       return read_libraries();
+    if (word == "g")
+      return read_group();
+    if (word == "o")
+      return read_object();
     if (word.starts_with('#'))
       return word == kObjPolypaint ? read_polypaint() : words_.skip_line();
     count_statement(word);
@@ -246,17 +250,23 @@ class ObjReader::Impl {
     visitor_.use_material(words_.take_rest());
   }
 
+  void read_group() {
+    ++counts_.groups;
+    visitor_.takes_groups() ? visitor_.use_group(words_.take_rest()) : words_.skip_line();
+  }
+
+  void read_object() {
+    ++counts_.objects;
+    visitor_.takes_groups() ? visitor_.use_object(words_.take_rest()) : words_.skip_line();
+  }
+
   void read_libraries() {
     ++counts_.libraries;
     visitor_.use_libraries(words_.take_rest());
   }
 
   void count_statement(std::string_view word) {
-    if (word == "g")
-      ++counts_.groups;
-    else if (word == "o")
-      ++counts_.objects;
-    else if (word == "p" || word == "l")
+    if (word == "p" || word == "l")
       ++counts_.points_and_lines;
     else if (is_one_of(word, kIgnored))
       ++counts_.others;

@@ -41,6 +41,11 @@ class ObjVisitor {
   virtual void use_material(const std::string& /*name*/) {}
   /// mtllib: the rest of the line, which is one name or several.
   virtual void use_libraries(const std::string& /*names*/) {}
+  /// Whether the next two are called.
+  virtual bool takes_groups() const { return false; }
+  /// g and o, likewise.
+  virtual void use_group(const std::string& /*names*/) {}
+  virtual void use_object(const std::string& /*name*/) {}
   /// A position that was added; for polygons whose shape must be known.
   virtual Vec3d position(std::uint32_t number) = 0;
   /// Three different positions.
@@ -101,7 +106,7 @@ bool is_obj_statement(std::string_view word);
 ///   vn x y z
 ///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
 ///                                        back; polygons are cut as their shape asks for
-///   usemtl NAME | mtllib NAME [NAME ...]
+///   usemtl NAME | mtllib NAME [NAME ...] | g NAME [NAME ...] | o NAME
 ///   #MRGB mmrrggbb...                    colours of ZBrush, 8 hexadecimal digits a vertex; the
 ///   mask
 ///                                        mm is ignored

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -26,13 +27,16 @@ Json value_json(const ScalarAttribute& attribute, const ValueStatistics& statist
             {"bins", statistics.bins}};
   if (statistics.labels.empty())
     return json;
-  Json labels = Json::array(), vertices = Json::array();
-  for (const auto& [label, count] : statistics.labels) {
+  Json labels = Json::array(), vertices = Json::array(), names = Json::array();
+  for (const auto& [label, count, name] : statistics.labels) {
     labels.push_back(label);
     vertices.push_back(count);
+    names.push_back(name);
   }
   json["labels"] = std::move(labels);
   json["label_vertices"] = std::move(vertices);
+  if (std::ranges::any_of(statistics.labels, [](const auto& label) { return !label.name.empty(); }))
+    json["label_names"] = std::move(names);
   return json;
 }
 
@@ -55,6 +59,19 @@ std::vector<std::uint64_t> counts_of(const JsonObject& object, const char* key, 
   if (!is_sound)
     object.wrong(key, "a short list of counts");
   return list.get<std::vector<std::uint64_t>>();
+}
+
+/// Empty ones if there are none.
+std::vector<std::string> names_of(const JsonObject& object, std::size_t count) {
+  if (!object.has("label_names"))
+    return std::vector<std::string>(count);
+  const Json& list = object.at("label_names");
+  const bool is_sound =
+      list.is_array() && list.size() == count &&
+      std::all_of(list.begin(), list.end(), [](const Json& name) { return name.is_string(); });
+  if (!is_sound)
+    object.wrong("label_names", "as many texts as labels");
+  return list.get<std::vector<std::string>>();
 }
 
 std::int64_t integer_of(const JsonObject& object, const char* key, double most) {
@@ -98,8 +115,9 @@ ValueStatistics statistics_of(const JsonObject& object) {
       counts_of(object, "label_vertices", ValueStatistics::kMostLabels);
   if (labels.empty() || labels.size() != vertices.size())
     object.wrong("label_vertices", "as many as labels");
+  const std::vector<std::string> names = names_of(object, labels.size());
   for (std::size_t i = 0; i < labels.size(); ++i)
-    statistics.labels.push_back({labels[i], vertices[i]});
+    statistics.labels.push_back({labels[i], vertices[i], names[i]});
   return statistics;
 }
 

@@ -101,6 +101,19 @@ std::vector<std::string> Imported::all_shown() const {
   return all;
 }
 
+std::vector<ValueStatistics> Imported::statistics() const {
+  std::vector<ValueStatistics> all;
+  auto channel = static_cast<std::size_t>(layout.value_offset());
+  for (const ScalarAttribute& attribute : layout.values) {
+    ValueTally tally(attribute);
+    tally.add(attributes.data() + channel, static_cast<std::size_t>(layout.channels()),
+              positions.size());
+    all.push_back(tally.statistics());
+    channel += static_cast<std::size_t>(channels_of(attribute.type));
+  }
+  return all;
+}
+
 Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inputs,
                       const ImportHow& how) {
   storage::MemoryPool pool(how.memory.pool_bytes);
@@ -115,6 +128,8 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   result.layout = input.description().attributes;
   result.materials = input.materials();
   read(*input.open(), result);
+  result.summary.attributes = result.layout;
+  result.summary.values = result.statistics();
   input.complete(result.summary);
   result.record = input.record(0);
   result.warnings = input.files().warnings();

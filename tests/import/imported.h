@@ -31,6 +31,8 @@ struct Imported {
   std::uint32_t material_of(std::size_t triangle) const;
   /// Number `attribute` of layout.values, of all vertices.
   std::vector<double> values(std::size_t attribute) const;
+  /// As SourceSummary::values, but for names.
+  std::vector<ValueStatistics> statistics() const;
   /// Texture coordinates of a corner.
   Vec2f texcoord(std::size_t triangle, std::size_t corner) const;
   /// "a.png 0 1, 0.5 1, 1 0" or "#ff0000" of what it shows; "0 1, ..." if nothing is textured.

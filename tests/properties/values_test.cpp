@@ -2,6 +2,8 @@
 // they are labels.
 #include "config/config.h"
 #include "hierarchy/error.h"
+#include "hierarchy/value_channels.h"
+#include "inspection/cut_part.h"
 #include "inspection/verify.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/build.h"
@@ -301,6 +303,52 @@ TEST_F(ValuesTest, OfAnImportAreThoseOfTheFiles) {
   EXPECT_EQ(sorted_bits(values_of(reader, 4, raw(reader.tree().depth()))), sorted_bits(expected));
   EXPECT_EQ(reader.manifest().source.values[4].labels.size(),
             std::set<double>(expected.begin(), expected.end()).size());
+}
+
+/// A label of each face: corners of a triangle have the same one, in every tile and in cuts that
+/// mix levels, where ghosts become vertices of coarser tiles.
+TEST_F(ValuesTest, OfFacesStayOnTheirTriangles) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nelement face {}\nproperty list uchar int vertex_indices\n"
+      "property int part\nend_header\n",
+      mesh_.positions.size(), mesh_.triangles.size());
+  for (const Vec3f p : mesh_.positions)
+    text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+  for (const auto& [a, b, c] : mesh_.triangles) {
+    const Vec3f p = mesh_.positions[a];
+    const int part = int(std::floor(2 * (p.x + 1))) + 4 * int(std::floor(2 * (p.y + 1)));
+    text += fmt::format("3 {} {} {} {}\n", a, b, c, part - 7);
+  }
+  write(path("mesh.ply"), text);
+  build(config("mesh.ply", "mesh.hier"));
+  expect_verified("mesh.hier", "mesh.ply");
+  const storage::HierarchyReader reader(*files_, path("mesh.hier"));
+  ASSERT_GT(raw(reader.tree().depth()), 2);
+  const std::vector<PlacedValue> values = placed_values(reader.tile_format().attributes);
+  ASSERT_EQ(values.size(), 1U);
+  const auto node = [](int level, std::uint32_t index) { return NodeId{Level(level), index}; };
+  const std::vector<std::vector<NodeId>> cuts{{node(0, 0)},
+                                              {node(1, 0), node(2, 2), node(2, 3)},
+                                              {node(1, 1), node(2, 0), node(2, 1)},
+                                              {node(2, 0), node(2, 1), node(2, 2), node(2, 3)}};
+  for (const std::vector<NodeId>& nodes : cuts) {
+    inspection::CutParts parts(reader, Cut(reader.tree(), nodes), 1 << 20);
+    std::size_t triangles = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const inspection::CutPart part = parts.load(i);
+      const auto label = [&](std::uint32_t vertex) {
+        return value_in(values[0].type,
+                        part.vertices.attributes_of(vertex).data() + values[0].channel);
+      };
+      for (const auto& [a, b, c] : part.triangles) {
+        EXPECT_EQ(label(a), label(b)) << nodes.size();
+        EXPECT_EQ(label(a), label(c)) << nodes.size();
+        ++triangles;
+      }
+    }
+    EXPECT_GT(triangles, 200U);
+  }
 }
 
 }  // namespace

@@ -109,8 +109,8 @@ describe.skipIf(!hasProgram)('values of a hierarchy', () => {
   });
 });
 
-const QUANTITY: ScalarAttribute = { name: 'q', kind: 'quantity', min: -1, max: 3, missing: 0, binWidth: 1, firstBin: -1, bins: [1, 0, 0, 0, 1], labels: [] };
-const LABEL: ScalarAttribute = { ...QUANTITY, name: 'l', kind: 'label', min: 2, max: 5, labels: [2, 5] };
+const QUANTITY: ScalarAttribute = { name: 'q', kind: 'quantity', min: -1, max: 3, missing: 0, binWidth: 1, firstBin: -1, bins: [1, 0, 0, 0, 1], labels: [], labelNames: [] };
+const LABEL: ScalarAttribute = { ...QUANTITY, name: 'l', kind: 'label', min: 2, max: 5, labels: [2, 5], labelNames: ['', 'door'] };
 
 describe('an attribute as colours', () => {
   it('is the one of that name, else the first', () => {

@@ -32,7 +32,7 @@ function globeRows({ globe }: PickedPoint): (readonly [string, string])[] {
 
 /// As the tiles have them: of floats.
 function valueRows({ values }: PickedPoint): (readonly [string, string])[] {
-  return values.map(({ name, value }) => [name, value === null ? '–' : String(Number(value.toPrecision(VALUE_DIGITS)))]);
+  return values.map(({ name, value, label }) => [name, label || (value === null ? '–' : String(Number(value.toPrecision(VALUE_DIGITS))))]);
 }
 
 function originOf(picked: PickedPoint, state: State): string {

@@ -145,14 +145,14 @@ export class AttributeForm {
   }
 
   /// A box for each that shows or hides it.
-  private showLabels({ labels, min, max }: ScalarAttribute, hidden: readonly number[]): void {
+  private showLabels({ labels, labelNames, min, max }: ScalarAttribute, hidden: readonly number[]): void {
     if (labels.length === 0) {
       this.labels.replaceChildren(element('li', {}, words.attribute.manyLabels(formatLength(min), formatLength(max))));
       return;
     }
     const focused = [...this.labels.querySelectorAll('input')].findIndex((input) => input === document.activeElement);
     this.labels.replaceChildren(...labels.map((label, i) => {
-      const box = checkbox(String(label), null, (on) => { this.chosen({ hidden: on ? hidden.filter((each) => each !== label) : [...hidden, label] }); });
+      const box = checkbox(labelNames[i] || String(label), null, (on) => { this.chosen({ hidden: on ? hidden.filter((each) => each !== label) : [...hidden, label] }); });
       box.show(!hidden.includes(label));
       const swatch = element('span', { class: 'swatch', 'aria-hidden': 'true' });
       swatch.style.background = css(labelColour(i));

@@ -30,15 +30,12 @@ function difference<Kind extends Values>(a: Kind, i: number, b: Kind, j: number)
 /// Of a vertex, from what is looked for.
 type Distance = (vertex: number) => number;
 
-/// Of several vertices: the second distance decides between those of the least first one; then the first in order.
-function nearest(vertices: readonly number[], first: Distance, second: Distance = () => 0): number {
-  let [found, least, leastSecond] = [-1, Infinity, Infinity];
-  for (const vertex of vertices) {
-    const [distance, further] = [first(vertex), second(vertex)];
-    if (distance > least || (distance === least && further >= leastSecond)) continue;
-    [found, least, leastSecond] = [vertex, distance, further];
-  }
-  return found;
+/// Of several vertices: each distance decides between those that are equally near by those before; then the first in order.
+function nearest(vertices: readonly number[], ...distances: readonly Distance[]): number {
+  return vertices.reduce((found, vertex) => {
+    const deciding = distances.find((distance) => distance(vertex) !== distance(found));
+    return deciding !== undefined && deciding(vertex) < deciding(found) ? vertex : found;
+  });
 }
 
 export class Seam {
@@ -179,20 +176,32 @@ export class Seam {
     if (values && this.givenValues) copyValues(this.givenValues, target - own, values, target, this.width);
   }
 
-  /// That of the vertices there that look most like ours: by normal, then colour. Normals of a build do not choose the colour: it
+  /// That of the vertices there that look most like ours: by how many values differ, so that labels stay on their side, then by
+  /// normal, then colour. Normals of a build do not choose the colour: it
   /// is the one that there would be without them.
   private takeLook(from: Tile, place: number, target: number): void {
     const { givenNormals, givenColours } = this;
     const { own, normals, normalsFrom, colours, values } = this.tile;
     const normalTo: Distance = (vertex) => (givenNormals ? difference(givenNormals, target - own, from.normals, vertex) : 0);
     const colourTo: Distance = (vertex) => (givenColours && from.colours ? difference(givenColours, target - own, from.colours, vertex) : 0);
-    const source = nearest(verticesAt(from, place), normalTo, colourTo);
+    const valuesTo: Distance = (vertex) => this.differingValues(target, from, vertex);
+    const source = nearest(verticesAt(from, place), valuesTo, normalTo, colourTo);
     copyValues(from.normals, source, normals, target, 4);
-    const painter = normalsFrom === 'build' ? nearest(verticesAt(from, place), colourTo) : source;
+    const painter = normalsFrom === 'build' ? nearest(verticesAt(from, place), valuesTo, colourTo) : source;
     if (values && from.values) copyValues(from.values, painter, values, target, this.width);
     if (!colours || !givenColours) return;
     if (from.colours) copyValues(from.colours, painter, colours, target, 4);
     else copyValues(givenColours, target - own, colours, target, 4);
+  }
+
+  /// How many of the values that the file has of `target` a vertex of `from` does not have.
+  private differingValues(target: number, from: Tile, vertex: number): number {
+    const { givenValues: given, width } = this;
+    let count = 0;
+    for (let k = 0; given && from.values && k < width; ++k) {
+      if (given[width * (target - this.tile.own) + k] !== from.values[width * vertex + k]) ++count;
+    }
+    return count;
   }
 
   private place(vertex: number): number {

@@ -22,6 +22,13 @@ export interface ScalarAttribute {
   readonly bins: readonly number[];
   /// All labels, ascending; empty of quantities, and if there are very many.
   readonly labels: readonly number[];
+  /// What the input calls each of them; '' if it says nothing.
+  readonly labelNames: readonly string[];
+}
+
+/// The name of a label, or '' if it has none.
+export function labelName({ labels, labelNames }: ScalarAttribute, label: number): string {
+  return labelNames[labels.indexOf(label)] ?? '';
 }
 
 /// Beside a vertex without a value what lies between is none either.
@@ -39,7 +46,12 @@ function numbers(value: JsonValue): number[] {
 /// Of the manifest's source.
 export function readScalarAttributes(source: JsonValue): ScalarAttribute[] {
   if (!source.has('values')) return [];
-  return source.at('values').items().slice(0, MOST_VALUES).map((value) => ({
+  return source.at('values').items().slice(0, MOST_VALUES).map(readScalarAttribute);
+}
+
+function readScalarAttribute(value: JsonValue): ScalarAttribute {
+  const labels = value.has('labels') ? numbers(value.at('labels')) : [];
+  return {
     name: value.at('name').text(),
     kind: value.at('kind').oneOf('quantity', 'label'),
     min: value.at('min').number(),
@@ -48,8 +60,9 @@ export function readScalarAttributes(source: JsonValue): ScalarAttribute[] {
     binWidth: 2 ** value.at('bin_exponent').number(),
     firstBin: value.at('first_bin').number(),
     bins: numbers(value.at('bins')),
-    labels: value.has('labels') ? numbers(value.at('labels')) : [],
-  }));
+    labels,
+    labelNames: value.has('label_names') ? value.at('label_names').items().map((name) => name.text()) : labels.map(() => ''),
+  };
 }
 
 /// How a value is read, by its component type.

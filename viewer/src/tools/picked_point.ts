@@ -1,6 +1,6 @@
 // What is told of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
-import { LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { LEAST_VALUE, labelName, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { Coordinates, type GlobePlace } from './coordinates.js';
 import type { Hit } from './pick.js';
 import type { Vector } from './vectors.js';
@@ -22,14 +22,15 @@ export interface PickedPoint {
   /// The vertex is one of the input, and these are its coordinates to the bit.
   readonly isExact: boolean;
   readonly globe: GlobePlace | null;
-  /// What the point has besides, in the order of the manifest: of labels that of the nearest vertex. Null: no value.
-  readonly values: readonly { readonly name: string; readonly value: number | null }[];
+  /// What the point has besides, in the order of the manifest: of labels that of the nearest vertex. Null: no value. `label`: its name, or ''.
+  readonly values: readonly { readonly name: string; readonly value: number | null; readonly label: string }[];
 }
 
 function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribute[], snaps: boolean): PickedPoint['values'] {
-  return attributes.slice(0, atCorner.length).map(({ name, kind }, i) => {
+  return attributes.slice(0, atCorner.length).map((attribute, i) => {
+    const { name, kind } = attribute;
     const value = snaps || kind === 'label' ? atCorner[i] : between[i];
-    return { name, value: value > LEAST_VALUE ? value : null };
+    return { name, value: value > LEAST_VALUE ? value : null, label: labelName(attribute, value) };
   });
 }
 

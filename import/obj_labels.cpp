@@ -1,0 +1,58 @@
+#include "import/obj_labels.h"
+
+namespace meshhier::importing {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNames{"group", "object", "material"};
+
+}  // namespace
+
+ObjLabels::ObjLabels(const mesh_io::AttributeChoice& choice, AllLabelNames& names) : names_(names) {
+  for (std::size_t label = 0; label < kLabels; ++label) {
+    if (choice.which == mesh_io::AttributeChoice::Which::named && choice.takes(kNames[label]))
+      asked_.push_back(label);
+  }
+}
+
+void ObjLabels::begin(ObjLabel label, const std::string& name) {
+  const auto i = static_cast<std::size_t>(label);
+  names_now_[i] = name;
+  has_name_[i] = is_there_[i] = true;
+  current_ = 0;
+}
+
+std::uint32_t ObjLabels::use() {
+  if (current_ > 0)
+    return current_;
+  Combination combination{};
+  for (const std::size_t label : asked_) {
+    if (has_name_[label])
+      combination[label] = names_[std::string(kNames[label])].number(names_now_[label]);
+  }
+  const auto [known, is_new] =
+      numbers_.try_emplace(combination, static_cast<std::uint32_t>(combinations_.size() + 1));
+  if (is_new)
+    combinations_.push_back(combination);
+  return current_ = known->second;
+}
+
+std::vector<ScalarAttribute> ObjLabels::attributes() const {
+  std::vector<ScalarAttribute> all;
+  for (const std::size_t label : asked_) {
+    if (is_there_[label])
+      all.push_back({std::string(kNames[label]), ValueType::u16, true});
+  }
+  return all;
+}
+
+std::span<const float> ObjLabels::channels(std::uint32_t combination) {
+  channels_.clear();
+  for (const std::size_t label : asked_) {
+    if (is_there_[label])
+      channels_.push_back(combination == 0 ? 0.0F
+                                           : combinations_[combination - std::size_t{1}][label]);
+  }
+  return channels_;
+}
+
+}  // namespace meshhier::importing
