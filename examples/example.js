@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the pages share: which hierarchy they show, and plain words where that fails.
 
 /// Puts a text over the page; none takes it away.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene of three with light, a camera that the pointer turns, and a canvas as large as the window.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vite';
 

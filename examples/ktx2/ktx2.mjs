@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Copies a textured hierarchy for 3D Tiles viewers: its pictures become KTX2 (KHR_texture_basisu), which graphics devices keep compressed, in a
 // quarter of the memory or an eighth.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A tile's GLB with its picture as KTX2.
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { encodeToKTX2 } from 'ktx2-encoder';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Links: `#MODEL&px,py,pz,tx,ty,tz&NAME=VALUE…`. MODEL is the path of the hierarchy relative to the listing, and
 // empty for the one model that the query names; the camera and what was chosen (appearance.ts) may be missing.
 import { readable } from './listing.js';

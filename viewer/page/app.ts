@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shows what the address says: the gallery, or a model.
 import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './address.js';
 import { EarlyStart } from './early_start.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a model is shown: its colours and surface, its light, how it stands. What of it a link and the browser keep.
 import { RAMPS } from '../src/scene/ramps.js';
 import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';

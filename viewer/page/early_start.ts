@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the first picture needs is asked for before the code that draws it is there: the root tile, or the beginning of an
 // archive, which tells where it is; and a worker that decodes it.
 import { HEAD_BYTES, isArchiveUrl } from '../src/hierarchy/archive_format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy, or the beginning of one, within the page itself (`meshhier page`): JSON in a script element.
 import { JsonValue } from '../src/json_value.js';
 import { unpacked } from '../src/hierarchy/bytes.js';

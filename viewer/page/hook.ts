@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `window.meshhier`: the page for scripts and tests.
 import type { Stats } from '../src/scene/settings.js';
 import { problemOfPose, type Pose } from './address.js';

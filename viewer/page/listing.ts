@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
 import { isArchiveUrl } from '../src/hierarchy/archive_format.js';

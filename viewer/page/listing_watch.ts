@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fetches the listing, and again and again until there is one with models and while it tells of jobs.
 import { drain } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';

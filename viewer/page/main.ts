@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import './style/base.css';
 import './style/gallery.css';
 import { App } from './app.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The history entry of an open model: what the page writes into it, and the way back from it.
 import { formatAddress, type Spot } from './address.js';
 import type { Model } from './listing.js';

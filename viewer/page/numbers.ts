@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers for people, as their language writes them. Every function takes any number, and what is no number becomes a dash.
 import { locale } from './words/words.js';
 

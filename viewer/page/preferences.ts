@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
 import { changedSettings, type Look, type Settings } from '../src/scene/settings.js';
 import { oneOf, readLight, readLook, readStandings, type Light, type Standings } from './appearance.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What failed and what to do: one message at a time, the newest, in a region that can be dismissed.
 import { element, iconButton } from './parts/element.js';
 import { ICONS } from './parts/icons.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the page's address says beside the link to a view: `?models=URL` another listing, `?model=URL` one
 // hierarchy without a listing. The language, `?lang=`, is chosen by words/words.ts.
 import { modelOfPath, resolveUrl, type Model } from './listing.js';

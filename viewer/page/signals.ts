@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What may be given up for more than one reason.
 
 /// Aborts `ending` as soon as `signal` is, unless `ending` was before. As AbortSignal.any, which browsers have since 2024.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light, dark, or as the system has it.
 import { THEMES, type Theme } from './preferences.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the page goes from one view to another. Within a frame it leaves no entries behind: the browser's Back belongs to the page
 // around it.
 

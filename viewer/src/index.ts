@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 export { HierarchyView, type ViewEvents, type ViewOptions } from './scene/hierarchy_view.js';
 export type { DrawnTile, TileSource } from './scene/surface.js';
 export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';

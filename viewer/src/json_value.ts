@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // JSON of strangers: each value is asked for as the type that it must have.
 
 /// What is wrong; must throw.

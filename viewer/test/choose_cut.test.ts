@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { chooseCut, type ChosenNode, type Limits, type Sources } from '../src/cut/choose_cut.js';
 import type { Viewpoint } from '../src/cut/viewpoint.js';

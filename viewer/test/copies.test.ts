@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Places with several vertices: seams of texture coordinates, hard edges.
 import { describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { pictureSize } from '../src/hierarchy/picture_size.js';
 import { jpeg, png, webp } from './support/pictures.js';

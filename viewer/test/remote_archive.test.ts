@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hierarchies in an archive, from hosts that know ranges and such that do not.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, statSync } from 'node:fs';

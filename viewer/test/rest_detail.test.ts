@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { PAUSE_MS, RestDetail } from '../src/cut/rest_detail.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any cut that the viewer assembles is the one that the program assembles, triangle by triangle.
 import { readFileSync } from 'node:fs';
 import path from 'node:path';

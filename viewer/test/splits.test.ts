@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vertices that a build gave several normals.
 import { describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { Group, Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { distance, looksAway, pixelsOf, squarePixels } from '../src/cut/viewpoint.js';

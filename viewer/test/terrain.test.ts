@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { readTile, type Tile } from '../src/hierarchy/tile.js';
 import { heightsOf, terrainOf } from '../src/scene/terrain.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tiles with pictures.
 import { MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, SRGBColorSpace, type Texture } from 'three';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { TileStore, type ResidentTile, type StoreHost, type Wanted } from '../src/cut/tile_store.js';
 import type { Tile } from '../src/hierarchy/tile.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { Tree, keyOf, tilePath, type Node } from '../src/hierarchy/tree.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values of vertices: out of the manifest and tiles of a real hierarchy, along seams, under a ray, and as colours.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';

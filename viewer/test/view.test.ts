@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Turns what is pointed at or focused, a frame after the other while there is something to turn.
 
 const RADIANS_A_MILLISECOND = 0.00035;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What of the listing is shown, in which order and in which groups.
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
 import { readable, type Job, type Model } from '../listing.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the gallery shows of an entry: an element that can be put into a list and taken out again.
 
 export interface Cell {

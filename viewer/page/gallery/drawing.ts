@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws an outline into a canvas, fainter towards its back.
 import { cellMatrix, fitAt, type Turn } from './layout.js';
 import type { Shape } from './shape.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws still outlines one a frame, so that scrolling does not wait for them.
 
 export interface Drawable {

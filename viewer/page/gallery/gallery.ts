@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The thumbnail preview: all models as pictures, in groups, and the meshes that are becoming some.
 import type { Job, Listing, Model } from '../listing.js';
 import { formatCount } from '../numbers.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where cells of one size lie in a page: groups one below the other, each with a heading and rows of cells. All lengths are CSS pixels.
 
 export interface Metrics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A mesh that is being made into a hierarchy: what it looks like, how far it is, or why it failed.
 import type { Job } from '../listing.js';
 import { formatDuration, formatPercent } from '../numbers.js';

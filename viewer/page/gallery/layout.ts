@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How an outline is turned and seen in its cell.
 import type { FirstView } from '../../src/hierarchy/first_view.js';
 

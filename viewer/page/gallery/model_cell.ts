@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A model in the gallery: a link with its picture, its name and its size. The picture is the hierarchy's own; where it has none,
 // its outline stands still. What is pointed at or focused shows its outline, which turns; if that stays so, its root tile does, shaded.
 import { formatAddress, NOWHERE } from '../address.js';

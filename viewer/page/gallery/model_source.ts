@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a cell shows of a model, fetched when it is asked for.
 import { isArchiveUrl } from '../../src/hierarchy/archive_format.js';
 import { withoutLastSlashes, type Fetch } from '../../src/hierarchy/bytes.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A model's outline as the gallery turns it.
 import type { Outline } from '../../src/hierarchy/outline.js';
 import { ballOf, fitOf, turnTo, type Ball, type Fit, type Turn } from './layout.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The shaded root of what is pointed at or focused for a while. Its code, the view's, and its tile come only then.
 import type { RootPicture } from '../view/root_picture.js';
 import type { Turn } from './layout.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds and orders models.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How an outline is turned: by itself, by a drag across it, and by the arrow keys; and when there is one to be turned.
 import { dragged, USUAL_TURN, type Turn } from './layout.js';
 

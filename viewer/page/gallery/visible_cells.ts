@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Of thousands of cells those near the window: only these are elements of the page, which is as high as all of them.
 import { element } from '../parts/element.js';
 import type { Group } from './arrangement.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is known of a model, for people: of what is not known there is no line.
 import type { Manifest } from '../../src/index.js';
 import { UNITS, unitOfModel } from '../../src/tools/units.js';

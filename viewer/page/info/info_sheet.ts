@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // About a model: its source, licence and sizes.
 import type { Manifest } from '../../src/index.js';
 import type { Model } from '../listing.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Controls of forms: each has a name that can be seen and heard, and tells what was chosen.
 import type { Range } from '../preferences.js';
 import { element } from './element.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes elements. Texts are set as text, never as markup.
 
 type Child = Node | string | null;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Strokes of the drawings on buttons, on a grid of 24.
 
 export const ICONS = {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whether the focus is moved by keys, for what only those who do so need.
 
 export function watchInput(): void {

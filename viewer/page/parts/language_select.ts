@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Chooses the page's language. Each one calls itself what its speakers call it.
 import { LANGUAGES, type Language } from '../words/languages.js';
 import { language, TABLES, words } from '../words/words.js';

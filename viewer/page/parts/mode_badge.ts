@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Names the mode in force.
 import type { Mode } from '../../src/scene/settings.js';
 import { words } from '../words/words.js';

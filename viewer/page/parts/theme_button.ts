@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Goes from one theme to the next.
 import { nextTheme } from '../theme.js';
 import type { Theme } from '../preferences.js';

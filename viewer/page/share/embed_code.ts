@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What another page is given to show a model, or this one to show it again.
 import { formatAddress, type Spot } from '../address.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A link to what is shown, and the code for other pages; each with a button that copies it.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';

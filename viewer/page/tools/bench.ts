@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the tools need of the view, and the view of the tools.
 import type { PerspectiveCamera } from 'three';
 import type { HierarchyView } from '../../src/index.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bookmarks, turntable, full screen, and pictures of any size.
 import type { Bookmark } from '../../src/tools/notes.js';
 import { MOST_SIZE, takePicture } from '../../src/tools/screenshot.js';

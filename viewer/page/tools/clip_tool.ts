@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cuts the model open by a plane or a box, and draws the section.
 import { Coordinates } from '../../src/tools/coordinates.js';
 import { boxPlanes, flipped, isKept, localNormal, type CutPlane } from '../../src/tools/planes.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The orientation cube: it turns with the model, and its faces can be clicked.
 import { cubeTransform, positionFor, SIDES, type Side } from '../../src/tools/orientation.js';
 import { element } from '../parts/element.js';

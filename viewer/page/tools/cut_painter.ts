@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws the model cut open, as the clip tool says.
 import { Sphere, Vector3, type PerspectiveCamera, type Scene, type WebGLRenderer } from 'three';
 import type { HierarchyView } from '../../src/index.js';

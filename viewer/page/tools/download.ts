@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that the page makes.
 
 /// A name that every file system takes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A list of texts that can be changed, gone to and removed.
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A list of names and values in a card.
 import { element } from '../parts/element.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Strokes of the drawings on the tools' buttons, on a grid of 24.
 import type { ToolName } from './bench.js';
 

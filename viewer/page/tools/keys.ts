@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The keys of the tools; those of the view are in view/keys.ts.
 import type { ToolName } from './bench.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Says what a tool still does though its card is closed, and ends it.
 import { element, icon } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';

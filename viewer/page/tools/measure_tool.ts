@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Distances along points of the surface.
 import { measuresOf, type Measures } from '../../src/tools/measure.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The notes and bookmarks of the open model: in the page's address while they are short.
 import { isEmpty, MOST_ENTRIES, packNotes, unpackNotes, type Bookmark, type Note, type Notebook } from '../../src/tools/notes.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Notes at points of the surface, with files of them.
 import { formatNotes, readNotes, type Note } from '../../src/tools/notes.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Marks over the picture: points, lines and texts, at their places in each frame.
 import { Vector4, type Matrix4, type PerspectiveCamera } from 'three';
 import type { Vector } from '../../src/tools/vectors.js';

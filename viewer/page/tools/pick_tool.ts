@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coordinates of a point, as the input has them.
 import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { checkbox } from '../parts/controls.js';

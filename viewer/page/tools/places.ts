@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Between the input's coordinates and the world of the picture, however the model stands.
 import { Vector3 } from 'three';
 import type { HierarchyView } from '../../src/index.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a place of the picture to a point of the model: at once as it is shown, then as it is in the original.
 import { pickOriginal } from '../../src/tools/original.js';
 import { Picker, rayThrough, type Hit, type Keeps } from '../../src/tools/pick.js';

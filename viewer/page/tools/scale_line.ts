@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scale bar below the picture.
 import { scaleBar, unitsPerPixel } from '../../src/tools/scale_bar.js';
 import { element } from '../parts/element.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A tool of the bar.
 import type { Mark } from './overlay.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What was chosen for the tools, kept in the browser. Whatever is stored there, what comes out is sound.
 import { isUnitName, type UnitName } from '../../src/tools/units.js';
 

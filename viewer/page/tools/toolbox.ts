@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
 import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import { element, iconButton } from '../parts/element.js';

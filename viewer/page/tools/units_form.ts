@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // In which unit the model is, and in which one lengths are shown.
 import { UNIT_NAMES, UNITS, type UnitName } from '../../src/tools/units.js';
 import { element } from '../parts/element.js';

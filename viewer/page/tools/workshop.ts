@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What tools share.
 import type { LengthScale } from '../../src/tools/units.js';
 import type { Bench } from './bench.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files that a visitor has chosen or dropped, those in folders too.
 import type { Chosen } from './plan.js';
 

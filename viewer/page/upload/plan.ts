@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What becomes of files that were dropped or chosen: which are meshes, and which belong to which of them.
 import { words } from '../words/words.js';
 

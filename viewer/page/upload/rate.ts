@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How quickly something goes on: over the last seconds, as it may become slower.
 
 const WINDOW = 5000; // milliseconds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the page says of an upload that the server did not take.
 import { words } from '../words/words.js';
 import type { Answer } from './send.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sends an upload to the server. XMLHttpRequest tells how much has gone; fetch does not.
 import type { Upload } from './plan.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The word that a server asks for before it takes meshes: known as long as the tab.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';

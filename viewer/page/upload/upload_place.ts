@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The gallery's part for uploads. Its code comes when a server takes some, which a static host never does.
 import type { UploadOffer } from '../listing.js';
 import type { Surroundings, Uploader } from './uploader.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One upload, as the page shows it: how far it is, and a button that ends it.
 import { formatBytes, formatDuration } from '../numbers.js';
 import { element, iconButton } from '../parts/element.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Takes files that are dropped onto the gallery or chosen, and sends them one upload after the other.
 import './upload.css';
 import type { UploadOffer } from '../listing.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which attribute colours the model, and how: a legend that one can change.
 import { attributeIndex, labelColour, rampColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
 import { formatCount, formatLength } from '../numbers.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moves a camera that looks at a target, upright. Nothing here keeps what it is given.
 import { Vector3, type Box3 } from 'three';
 import type { Pose } from '../address.js';

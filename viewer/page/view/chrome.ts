@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything around the picture: bars, badge, sheets.
 import type { Manifest, Stats } from '../../src/index.js';
 import { summaryOf } from '../info/facts.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A way from one pose to another.
 import { between, type CameraPose } from './camera_pose.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames while there is something new to draw, and none otherwise.
 
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet

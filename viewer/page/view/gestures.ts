@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mouse, pen, touch and wheel, as movements of the camera.
 import type { Navigation } from './navigation.js';
 

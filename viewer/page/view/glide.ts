@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is still to be moved of a gesture: each frame takes its part, so that movements end softly.
 
 const SETTLING = 70; // milliseconds until a third is left

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The keyboard, as movements and commands.
 import type { ToolName } from '../tools/bench.js';
 import { TOOL_KEYS } from '../tools/keys.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // While L is held, a drag turns the light; L alone opens the settings.
 import type { Angles } from './lighting.js';
 

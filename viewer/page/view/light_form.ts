@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light, and how the model stands.
 import type { Standing, Up } from '../../src/index.js';
 import { MOST_STRETCH, UPS } from '../../src/index.js';

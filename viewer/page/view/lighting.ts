@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The light of the picture: a key, a fill and a rim, and the sky. They go with the camera; the sun stays where it is.
 import { DirectionalLight, Group, HemisphereLight, type Camera, type Object3D } from 'three';
 

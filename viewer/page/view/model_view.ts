@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
 import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the camera is, and all that moves it: gestures, keys and flights.
 import { Box3, Vector3 } from 'three';
 import { depthOf, pan, retarget, turn, wholeView, zoom, CameraPose } from './camera_pose.js';

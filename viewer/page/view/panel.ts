@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The figures of a view.
 import type { Manifest, Stats } from '../../src/index.js';
 import { formatBytes, formatCount, formatDecimal, formatMilliseconds, formatPercent } from '../numbers.js';

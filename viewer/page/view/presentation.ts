@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shows a model as it was chosen; what was left to the page is chosen here, by what the model is.
 import type { HierarchyView, Look, Terrain } from '../../src/index.js';
 import { LIGHTS, type Appearance, type Light } from '../appearance.js';

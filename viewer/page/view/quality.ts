@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Qualities by name: what most people choose instead of numbers.
 import type { Settings } from '../../src/scene/settings.js';
 import { MEGABYTE } from '../preferences.js';

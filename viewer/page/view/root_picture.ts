@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A model in a cell of the gallery: its root tile, shaded, turned as its outline is. Comes with the view's code.
 import { MathUtils, Matrix4, NeutralToneMapping, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import TileWorker from '../../src/hierarchy/tile_worker.js?worker';

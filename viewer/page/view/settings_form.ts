@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look, quality and theme.
 import { changedSettings, type Colours, type Look, type Settings } from '../../src/scene/settings.js';
 import { checkbox, choice, slider, type Choice, type Control } from '../parts/controls.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fewer pixels while the camera moves, where the frame rate cannot be held otherwise; all of them at rest.
 
 const LEAST = 0.5;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What opens beside the picture, or over its lower part where it is narrow: one at a time there.
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';

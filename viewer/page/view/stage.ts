@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What draws: canvas, scene, camera and light.
 import { Box3, Group, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
 import { words } from '../words/words.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tools of a view, loaded when they are first used, and the notes that its links have.
 import { choiceOf, type Spot } from '../address.js';
 import type { Bench, ToolName, Tools } from '../tools/bench.js';

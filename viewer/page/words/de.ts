@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page's words in German.
 import type { Words } from './en.js';
 

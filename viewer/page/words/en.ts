@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page's words in English. Every other table has the same keys: `Words` sees to it.
 // A group for each part of the page. Words with something in them are functions; numbers come written out, with the
 // count beside them where the words depend on it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page's words in Spanish.
 import type { Words } from './en.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The languages of the page, and which of them a visitor gets.
 
 export const LANGUAGES = ['en', 'de', 'es'] as const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page's words, in the visitor's language: a table for each language, all with the keys of the English one.
 // The language holds as long as the page: another one is chosen by loading it again.
 import { loadPreferences } from '../preferences.js';

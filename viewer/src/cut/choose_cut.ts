@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which cut a view asks for: from the root down, always what has the largest error on screen is refined next, as long as
 // there is room (the distribution by distance and error of Zunino et al., "Level of detail based on frame rate").
 import type { TileRecord } from '../hierarchy/tile_index.js';

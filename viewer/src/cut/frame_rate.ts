@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How many vertices the frame rate asked for allows (Zunino et al.: the detail follows the measured rate).
 
 /// Intervals are averaged over as long as this, and over three frames at least; very slow ones over two. The longest

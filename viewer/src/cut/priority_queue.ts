@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Items by their priority, the largest first. O(log n) each.
 export class PriorityQueue<Item> {
   private readonly heap: { priority: number; item: Item }[] = [];

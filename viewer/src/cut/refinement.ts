@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a viewpoint to the tiles that are drawn, and those that are asked for.
 import type { Cone } from '../hierarchy/normals.js';
 import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';

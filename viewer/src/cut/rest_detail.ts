@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When a still view asks for more detail than a moving one: first for as much as was asked for, then, whenever that is there, for
 // twice as much.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
 import { placeOf, verticesAt } from '../hierarchy/copies.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
 import { Seam } from './seam.js';
 import { letGo, type Tile } from '../hierarchy/tile.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a mesh is looked at from: what of a tile is in view, and how large its error is there.
 import type { Cone } from '../hierarchy/normals.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a camera stands and what it looks at, as an attribute: px,py,pz,tx,ty,tz.
 
 export interface CameraPlace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Importing this makes `<meshhier-viewer>` known to the page.
 import { defineViewer } from './viewer_element.js';
 

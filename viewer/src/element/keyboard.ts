@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keys that move a camera around what it looks at.
 import { Spherical, Vector3, type PerspectiveCamera } from 'three';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
 import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';

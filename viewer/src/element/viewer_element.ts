@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <meshhier-viewer src="URL of a hierarchy">: a model in any page.
 import type { ViewOptions } from '../scene/hierarchy_view.js';
 import type { Settings } from '../scene/settings.js';

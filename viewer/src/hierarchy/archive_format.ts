@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy's archive, NAME.3tz (docs/file_format.md, section 8): a zip of stored files, what comes first in it, and its
 // index of names. Nothing of it is trusted: offsets and sizes are checked where they are used.
 import { HierarchyProblem } from './problem.js';

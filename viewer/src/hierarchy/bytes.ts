@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files over HTTP, or over whatever `fetch` is given.
 import { HierarchyProblem } from './problem.js';
 

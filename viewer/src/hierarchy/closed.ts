@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import type { Indices } from './tile.js';
 
 const SPAN = 65536; // above any vertex's number here

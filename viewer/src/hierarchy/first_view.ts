@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From where a model is looked at first: what the root tile and the outline say in their extras (docs/file_format.md, section 5.2).
 
 /// Degrees: from the model's front to its right, and above its equator.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tiles as glTF binaries (docs/file_format.md, sections 4.3, 4.4 and 4.8): the sections of the BIN chunk, out of their
 // compression.
 import { MeshoptDecoder } from 'meshoptimizer/decoder';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The container of glTF binaries as meshhier writes them (docs/file_format.md, section 4.2).
 import { HierarchyProblem } from './problem.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files of archives that the browser keeps for the next visit (CacheStorage; secure pages have it). Browsers themselves keep few parts of
 // files.
 

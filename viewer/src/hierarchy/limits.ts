@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the format allows of a tile (docs/file_format.md): sizes are computed from counts within these.
 
 /// Vertices of its own.

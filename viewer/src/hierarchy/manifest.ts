@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
 import { HierarchyProblem } from './problem.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Normals of meshes that have none, and the cone that holds nearly all of a tile's.
 import type { Indices } from './tile.js';
 

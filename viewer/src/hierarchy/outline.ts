@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
 import { readFirstView, type FirstView } from './first_view.js';
 import { readContainer } from './glb_container.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture of a tile (docs/file_format.md, section 4.10).
 import type { Glb } from './glb.js';
 import { pictureSize, type Size } from './picture_size.js';

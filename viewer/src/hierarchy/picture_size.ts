@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How large a picture is, out of the beginning of its file: known before anything decodes it.
 
 export interface Size {

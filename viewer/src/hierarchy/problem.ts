@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What is wrong with a file, and which one it is. Everything in this library throws these for bad
 /// input; anything else is a defect.
 export class HierarchyProblem extends Error {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One file over HTTP, of which parts are read (RFC 9110, section 14).
 import { receive, receivePieces, respond, type Fetch } from './bytes.js';
 import { HierarchyProblem } from './problem.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files in an archive on any host that knows ranges (docs/file_format.md, section 8).
 //
 // An archive begins with the manifest, the root tile and the index of tiles: they are found from its beginning, and so is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files of a hierarchy at a URL: those of a directory, or those in an archive.
 import { isArchiveUrl } from './archive_format.js';
 import { fetchBytes, fetchRange, withoutLastSlashes, type Fetch } from './bytes.js';

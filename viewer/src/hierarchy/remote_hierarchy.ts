@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy at a URL: its root first, then what tells of the rest.
 import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';

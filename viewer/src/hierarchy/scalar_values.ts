@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What vertices have besides normals, colours and texture coordinates (docs/file_format.md, sections 2 and 4.11).
 import type { JsonValue } from '../json_value.js';
 import type { Glb, Gltf } from './glb.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A tile as it is drawn: what its file (docs/file_format.md, section 4) holds for that, in arrays of its own.
 import { readFirstView, type FirstView } from './first_view.js';
 import { Glb } from './glb.js';

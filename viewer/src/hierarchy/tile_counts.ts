@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The counts of a tile (docs/file_format.md, section 4.4), checked before anything is sized by them.
 import type { Glb } from './glb.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, MOST_SIDE, mostSplits } from './limits.js';

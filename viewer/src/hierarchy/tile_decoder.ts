@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tiles out of their files, in workers if there are any, else where it is called.
 import { NOT_DECODED } from './picture.js';
 import { HierarchyProblem } from './problem.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
 import { archivedBytes } from './archive_format.js';

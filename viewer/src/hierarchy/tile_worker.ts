@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Decodes tiles beside the page: {id, bytes, name, expected} in, {id, tile} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
 import { HierarchyProblem } from './problem.js';
 import { partsOf, readTile } from './tile.js';

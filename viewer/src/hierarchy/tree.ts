@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tree of a hierarchy: all of it follows from the number of partitions (docs/file_format.md, section 1).
 
 /// A node with a tile: level, and number in its level (on the last level: the partition's).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the vertices of a tile have (docs/file_format.md, section 4.3), as it is drawn.
 import type { Glb, Gltf } from './glb.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files of a progressive stream, run by run (docs/file_format.md, section 7).
 import { drain } from '../hierarchy/bytes.js';
 import { StreamError } from './stream_index.js';

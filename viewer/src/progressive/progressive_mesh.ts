@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The client of a progressive stream: two arrays, and what each file's lists put into them.
 //
 // Lin & Luo, "Progressive Display Method for Interactive Mobile 3D Graphics": vertices and triangles

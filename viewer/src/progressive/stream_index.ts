@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // progressive.json: what a progressive stream is made from, and its files (docs/file_format.md,
 // section 7).
 import { JsonValue, type Fail } from '../json_value.js';

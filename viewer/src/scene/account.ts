@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the differences save: a client without memory would be sent each view whole (Lluch et al.).
 
 export interface ShownFile {

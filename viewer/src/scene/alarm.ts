@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Calls once when the earliest of the times that were asked for has come.
 export class Alarm {
   private timer: ReturnType<typeof setTimeout> | null = null;

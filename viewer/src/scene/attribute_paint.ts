@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours by an attribute: what the shaders of all tiles of a model have in common.
 import { DataTexture, Vector2 } from 'three';
 import { LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tells when a lost device is back: from then on it has nothing of what it was given.
 export class ContextWatch {
   private readonly canvases = new WeakSet<EventTarget>();

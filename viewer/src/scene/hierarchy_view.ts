@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
 import { Box3, Group, Vector3, type Matrix4, type Object3DEventMap, type PerspectiveCamera } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a ball of clay looks in a bright room: what is seen of a surface by its normal alone.
 import { DataTexture, LinearFilter, SRGBColorSpace } from 'three';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The materials of tiles: three's own, so that any scene's lights do.
 import {
   Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type Texture,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a view is called (Kim & Lee).
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { distance, isWhollyInView, pixelsOf, type Box, type Viewpoint } from '../cut/viewpoint.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The shape-outline over a mesh.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from 'three';
 import type { Outline } from '../hierarchy/outline.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours for numbers: perceptual ramps of the field, and colours for names.
 import { ClampToEdgeWrapping, DataTexture, LinearFilter, NearestFilter, SRGBColorSpace } from 'three';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a user of the library may set, and what it tells.
 
 import type { AttributeLook } from './attribute_paint.js';

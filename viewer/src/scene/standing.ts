@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a mesh stands: which of its axes is up, and how many times higher it is than wide.
 import type { Vector } from '../cut/viewpoint.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A tile in a three scene: its triangles, and on request its edges and vertices.
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
 import type { Intersection, Material, Raycaster, Texture } from 'three';

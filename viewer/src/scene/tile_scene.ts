@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tiles of a cut in a three scene, joined along their seams.
 import { Group } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';

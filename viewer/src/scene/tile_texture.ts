@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture of a tile on the GPU.
 import { LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace, Texture } from 'three';
 import { bitmapBytes, type Picture } from '../hierarchy/picture.js';

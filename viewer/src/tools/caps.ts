@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws a closed model cut open by planes, with caps where it is full: the stencil counts backs less fronts behind a plane.
 // The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
 import {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From the tiles' coordinates to the input's, and to the earth. In double precision: where the input's coordinates fit
 // 32-bit floats, what comes out are its own numbers, to the bit.
 import type { Manifest } from '../hierarchy/manifest.js';

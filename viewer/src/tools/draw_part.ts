@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parts of a picture by a renderer of three: on its own canvas, so that they look as the page does.
 import { Vector2, type PerspectiveCamera, type WebGLRenderer } from 'three';
 import type { DrawPart } from './screenshot.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lengths along points of the input.
 import { add, distanceOf, dot, scale, subtract, type Vector } from './vectors.js';
 

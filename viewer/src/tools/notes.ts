@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Notes at points, and places of the camera, as a file or in a link. Whatever is read, what comes out is sound.
 import { JsonValue, type Fail } from '../json_value.js';
 import type { Vector } from './vectors.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From which sides a model is looked at, in upright coordinates: y up, the front towards z.
 import type { Vector } from './vectors.js';
 

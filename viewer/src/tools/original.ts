@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The point of the original mesh that a ray meets first: down the tree, always where the ray enters next, to partitions
 // that are asked for, looked at, and let go.
 import { PriorityQueue } from '../cut/priority_queue.js';

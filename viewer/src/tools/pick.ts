@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The point of the drawn surface that a ray meets first.
 import type { PerspectiveCamera, Matrix4 } from 'three';
 import { Vector3 } from 'three';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is told of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
 import { LEAST_VALUE, labelName, type ScalarAttribute } from '../hierarchy/scalar_values.js';

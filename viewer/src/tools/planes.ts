@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Planes that cut a model open: what lies behind any of them is cut away.
 import { Matrix4, Plane, Vector3 } from 'three';
 import { dot, unit, type Vector } from './vectors.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture as a PNG file, row by row: what is in memory are a few rows and the file.
 // Needs CompressionStream (Chrome 80, Firefox 113, Safari 16.4).
 

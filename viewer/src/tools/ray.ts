@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rays against boxes and triangles, in double precision. No ray passes between two triangles that share an edge
 // (Woop, Benthin & Wald 2013, "Watertight ray/triangle intersection").
 import { unit, type Vector } from './vectors.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A bar of a round length, as long in the picture as that length is at one depth.
 import type { LengthScale } from './units.js';
 

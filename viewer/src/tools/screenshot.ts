@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture of any size: drawn in parts that every graphics card can draw, and written row by row.
 import { PngWriter } from './png.js';
 

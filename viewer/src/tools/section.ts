@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a plane cuts what is drawn: segments of triangles, joined into polylines. Each edge of the mesh is cut in one point,
 // the same for all triangles at it, so that lines meet exactly.
 import type { DrawnTile } from '../scene/surface.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A section as a drawing, in true size: one unit of the drawing is one of the input.
 import { UNITS, type UnitName } from './units.js';
 import type { Polyline } from './section.js';

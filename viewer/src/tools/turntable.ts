@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Turns a model once in a while, as long as it is on.
 
 const SECONDS = 24; // a turn

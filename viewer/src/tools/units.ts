@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Units of length. A model's is not known unless its manifest says it, somebody else does, or it is placed on the globe.
 import type { Manifest } from '../hierarchy/manifest.js';
 import { Coordinates } from './coordinates.js';

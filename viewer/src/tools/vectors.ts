@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Points and directions in double precision.
 import type { Vector } from '../cut/viewpoint.js';
 

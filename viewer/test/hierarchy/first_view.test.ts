@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { directionOf, readFirstView } from '../../src/hierarchy/first_view.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { readOutline } from '../../src/hierarchy/outline.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';

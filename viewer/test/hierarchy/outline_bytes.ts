@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes outlines for tests, good and bad ones.
 
 export interface OutlineParts {

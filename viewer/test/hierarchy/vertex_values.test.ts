@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import type { Glb } from '../../src/hierarchy/glb.js';
 import { readColours, type Accessor } from '../../src/hierarchy/vertex_values.js';

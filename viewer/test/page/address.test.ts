@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { choiceOf, formatAddress, linkPath, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { arrangeModels, findJobs, type Wish } from '../../page/gallery/arrangement.js';
 import { modelOfPath, type Model } from '../../page/listing.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { between, CameraPose, depthOf, depthRange, pan, retarget, turn, VIEW_ANGLE, wholeView, zoom } from '../../page/view/camera_pose.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Contrast of texts, by WCAG 2.1, section 1.4.3: 4.5 at least; of what only draws, 3.
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';

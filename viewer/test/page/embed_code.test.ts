@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { parseAddress } from '../../page/address.js';
 import { readQuery } from '../../page/query.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a page has within it, and what it goes on with.
 import { gzipSync } from 'node:zlib';
 import { afterEach, describe, expect, it, vi } from 'vitest';

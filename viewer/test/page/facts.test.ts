@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import type { Manifest } from '../../src/index.js';
 import { factsOf, summaryOf } from '../../page/info/facts.js';

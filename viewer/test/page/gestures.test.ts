@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Moves } from '../../page/view/glide.js';
 import { Gestures } from '../../page/view/gestures.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { zoomOfSpread } from '../../page/view/gestures.js';
 import { Glide } from '../../page/view/glide.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { Grid, type Extent, type Metrics } from '../../page/gallery/grid.js';
 import { random } from '../support/random.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { stateText } from '../../page/gallery/job_cell.js';
 import type { Job } from '../../page/listing.js';

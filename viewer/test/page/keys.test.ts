@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { INNER_KEYS, TOOL_KEYS } from '../../page/tools/keys.js';
 import { needsKey, VIEW_KEYS } from '../../page/view/keys.js';

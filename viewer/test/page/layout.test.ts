@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { ballOf, cellMatrix, dragged, fitAt, fitOf, multiply, towardsViewer, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
 import { directionOf } from '../../src/hierarchy/first_view.js';

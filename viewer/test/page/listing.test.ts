@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { ListingError, modelOfPath, nameOfPath, parseListing, resolveUrl } from '../../page/listing.js';
 

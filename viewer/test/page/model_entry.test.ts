@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import type { Pose } from '../../page/address.js';
 import { modelOfPath } from '../../page/listing.js';

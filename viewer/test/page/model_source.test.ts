@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { resolveObjectURL } from 'node:buffer';
 import { readdirSync, readFileSync, statSync } from 'node:fs';
 import path from 'node:path';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { NotebookStore } from '../../page/tools/notebook.js';
 import { MOST_ENTRIES, packNotes, unpackNotes, type Note } from '../../src/tools/notes.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { formatBytes, formatCount, formatDate, formatDecimal, formatDuration, formatMilliseconds, formatPercent, formatRough, numbersOf } from '../../page/numbers.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { HierarchyView } from '../../src/index.js';
 import { parsePreferences } from '../../page/preferences.js';

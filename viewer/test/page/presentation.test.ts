@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { DEFAULT_LIGHT, LIGHTS, type Appearance, type Light } from '../../page/appearance.js';
 import { keyOf, turned } from '../../page/view/lighting.js';

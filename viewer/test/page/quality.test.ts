@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { changedSettings } from '../../src/scene/settings.js';
 import { MEGABYTE, parsePreferences, RANGES } from '../../page/preferences.js';

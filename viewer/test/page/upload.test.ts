@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { droppedFiles } from '../../page/upload/chosen_files.js';
 import type { Upload } from '../../page/upload/plan.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { chooseLanguage, LANGUAGES, localeOf } from '../../page/words/languages.js';
 import { TOOL_TABLES } from '../../page/tools/words/words.js';

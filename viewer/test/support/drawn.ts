@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles as if a view drew them.
 import { Box3, Sphere, Vector3 } from 'three';
 import type { DrawnTile } from '../../src/index.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hierarchies that the program makes for these tests, and files instead of a host.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

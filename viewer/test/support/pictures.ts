@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures as files; JPEG and WebP no more of them than tells their sizes.
 import { png as paintedPng } from '../../../tests/web/png.mjs';
 import { pictureSize } from '../../src/hierarchy/picture_size.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A mesh as meshgen writes it: binary, little endian, coordinates in floats or doubles first, triangles behind.
 import { readFileSync } from 'node:fs';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A host of one file, of which it sends parts.
 import type { Fetch } from '../../src/hierarchy/bytes.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tiles as bytes (docs/file_format.md, section 4), made by hand.
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 

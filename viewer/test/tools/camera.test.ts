@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { cubeTransform, positionFor, SIDES, type Side } from '../../src/tools/orientation.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { Group, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Points, Scene, Vector3, type Material, type WebGLRenderer } from 'three';
 import { describe, expect, it } from 'vitest';
 import { ClippedPainter } from '../../src/tools/caps.js';

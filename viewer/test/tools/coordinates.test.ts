@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { Coordinates, globePlace, type Placement } from '../../src/tools/coordinates.js';
 import { distanceOf, type Vector } from '../../src/tools/vectors.js';

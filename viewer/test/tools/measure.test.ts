@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { measuresOf } from '../../src/tools/measure.js';
 import { roundLength, scaleBar, unitsPerPixel } from '../../src/tools/scale_bar.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { formatNotes, MOST_ENTRIES, MOST_TEXT, NotesProblem, packNotes, readNotes, unpackNotes, type Notebook } from '../../src/tools/notes.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Picking on real hierarchies: on what is drawn, and on the original.
 import { readdirSync } from 'node:fs';
 import path from 'node:path';

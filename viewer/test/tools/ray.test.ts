@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { RayProbe } from '../../src/tools/ray.js';
 import { TriangleTree } from '../../src/tools/triangle_tree.js';

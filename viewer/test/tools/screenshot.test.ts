@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { inflateSync } from 'node:zlib';
 import { describe, expect, it } from 'vitest';
 import { PngWriter } from '../../src/tools/png.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 import { Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { afterAll, describe, expect, it } from 'vitest';
 import { HierarchyView } from '../../src/index.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tools' words in German.
 import type { ToolWords } from './en.js';
 

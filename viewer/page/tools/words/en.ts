@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tools' words in English; they come with the tools. Every other table has the same keys: `ToolWords` sees to it.
 
 export const en = {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tools' words, in the language of the page.
 import type { Language } from '../../words/languages.js';
 import { language } from '../../words/words.js';
