@@ -9,7 +9,7 @@
 #include "server/site.h"
 #include "server/uploads.h"
 #include "server/watch.h"
-#include "storage/io/child_process.h"
+#include "storage/io/own_program.h"
 
 #include <chrono>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "app/viewer_place.h"
 
 #include "hierarchy/error.h"
-#include "storage/io/child_process.h"
+#include "storage/io/own_program.h"
 
 #include <array>
 #include <vector>

@@ -6,8 +6,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -18,8 +16,6 @@
 
 namespace meshhier::storage {
 namespace {
-
-constexpr const char* kOwnProgram = "/proc/self/exe";
 
 /// Both ends of a pipe.
 struct Pipe {
@@ -123,21 +119,6 @@ int ChildProcess::wait() {
   }
   process_ = -1;
   return exit_code(status);
-}
-
-std::string own_program() {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::read_symlink(kOwnProgram, error);
-  // That of a file which was replaced ends with a remark that it was.
-  return !error && std::filesystem::exists(path, error) ? path.string() : kOwnProgram;
-}
-
-std::string own_directory() {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::read_symlink(kOwnProgram, error);
-  if (error)
-    fail(std::string("cannot resolve ") + kOwnProgram, error.value());
-  return path.parent_path().string();
 }
 
 }  // namespace meshhier::storage

@@ -40,9 +40,4 @@ class ChildProcess {
   int errors_ = -1;  ///< its standard error, read here; -1: dropped
 };
 
-/// The program that runs, as a path that starts it again, even if its file is not there any more.
-std::string own_program();
-/// Where its file lies. Throws Error(io).
-std::string own_directory();
-
 }  // namespace meshhier::storage

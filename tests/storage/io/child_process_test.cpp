@@ -1,5 +1,7 @@
 #include "storage/io/child_process.h"
 
+#include "storage/io/own_program.h"
+
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -92,6 +94,12 @@ TEST(ChildProcessTest, OwnProgramIsThisOne) {
   EXPECT_TRUE(std::filesystem::equivalent(own_program(), "/proc/self/exe"));
   EXPECT_EQ(own_directory(), std::filesystem::path(own_program()).parent_path().string());
   EXPECT_EQ(::access(own_program().c_str(), X_OK), 0);
+  EXPECT_TRUE(std::filesystem::equivalent(own_code(), "/proc/self/exe"));
+  // That of another program, which started this one.
+  ::setenv("MESHHIER_PROGRAM", "/opt/meshhier/bin/meshhier", 1);
+  EXPECT_TRUE(std::filesystem::equivalent(own_program(), "/proc/self/exe"));
+  EXPECT_TRUE(std::filesystem::equivalent(own_code(), "/proc/self/exe"));
+  ::unsetenv("MESHHIER_PROGRAM");
 }
 
 }  // namespace
