@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""What can go wrong, as types."""
+
+
+class Error(Exception):
+    """The base of all errors of this package."""
+
+
+class NotAHierarchyError(Error):
+    """There is no hierarchy at that place, or one of a version that this package does not know."""
+
+
+class CorruptError(Error):
+    """A file of a hierarchy is not what the format says."""
+
+
+class UsageError(Error):
+    """The call makes no sense for this hierarchy: a level that it does not have, a key that no config has."""
+
+
+class ProgramError(Error):
+    """The program ended with a failure.
+
+    Attributes:
+        exit_code: as docs/command_line.md tells them, 128 + n after signal n.
+        message: what the program said, without its progress.
+    """
+
+    def __init__(self, message: str, exit_code: int) -> None:
+        super().__init__(message)
+        self.message = message
+        self.exit_code = exit_code
+
+
+class InputError(ProgramError):
+    """The mesh cannot be read, or holds what no hierarchy can."""
+
+
+class BudgetError(ProgramError):
+    """Memory or disk do not suffice."""
+
+
+class VerifyError(ProgramError):
+    """The hierarchy is not what it should be; the message tells all problems."""
+
+
+class ProgramNotFoundError(Error):
+    """The program `meshhier` is not there."""

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""What a hierarchy says of itself (docs/file_format.md, section 2)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import CorruptError, NotAHierarchyError
+from .tree import Node, Tree
+
+_VERSIONS = range(7, 10)
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """A number that vertices have besides normal, colour and texture coordinates.
+
+    Attributes:
+        name: the input's.
+        type: "i8", "u8", "i16", "u16", "i32", "u32", "f32" or "f64".
+        kind: "quantity", of which simplified tiles have means, or "label".
+        min, max: of all vertices of the input that have a value.
+        labels: number -> name ("" if the input has none); of labels, if there are at most 256.
+    """
+
+    name: str
+    type: str
+    kind: str
+    min: float
+    max: float
+    labels: dict[int, str]
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Where quantized positions lie: corner + step * n, relative to the origin."""
+
+    corner: NDArray[np.float64]
+    step: float
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """Attributes:
+    json: all of it, as the file has it.
+    origin: (3,) float64, to be added to positions of tiles for input coordinates.
+    tree: of its partitions.
+    attributes: "normals", "alpha", "texcoords", "colours", ...: what the input has.
+    scalars: its further numbers, in the order of tiles.
+    lattice: of quantized positions, or None.
+    is_textured: tiles have pictures.
+    """
+
+    json: dict[str, Any] = field(repr=False)
+    origin: NDArray[np.float64]
+    tree: Tree
+    attributes: dict[str, Any]
+    scalars: list[Scalar]
+    lattice: Optional[Lattice]
+    is_textured: bool
+
+    def tile_name(self, node: Node) -> str:
+        """The name of a tile's file within the hierarchy."""
+        group = node.index // 10000 * 10000 if self.json["format_version"] > 6 else 0
+        folder = f"tiles/{node.level:02}/" + (f"{group:06}/" if group else "")
+        return f"{folder}{node.index:06}.glb"
+
+
+def _scalar(value: dict[str, Any]) -> Scalar:
+    labels = [int(label) for label in value.get("labels", [])]
+    names = value.get("label_names", [""] * len(labels))
+    return Scalar(value["name"], value["type"], value["kind"], value["min"], value["max"], dict(zip(labels, names)))
+
+
+def read_manifest(data: bytes, path: str) -> Manifest:
+    """Of `hierarchy.json`. Raises NotAHierarchyError, CorruptError."""
+    try:
+        text = json.loads(data)
+    except ValueError as error:
+        raise CorruptError(f"{path}: hierarchy.json: {error}") from error
+    if not isinstance(text, dict) or text.get("format") != "meshhier":
+        raise NotAHierarchyError(f"{path}: hierarchy.json is of something else")
+    if text.get("format_version") not in _VERSIONS:
+        raise NotAHierarchyError(
+            f"{path}: format version {text.get('format_version')}; this package reads {_VERSIONS[0]} to {_VERSIONS[-1]}"
+        )
+    try:
+        source = text["source"]
+        lattice = text["storage"]["positions"]
+        return Manifest(
+            json=text,
+            origin=np.asarray(text["origin"], np.float64),
+            tree=Tree(text["partitions"]),
+            attributes=source["attributes"],
+            scalars=[_scalar(value) for value in source.get("values", [])],
+            lattice=Lattice(np.asarray(lattice["corner"], np.float64), lattice["step"]) if lattice else None,
+            is_textured="textures" in source,
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise CorruptError(f"{path}: hierarchy.json: {error!r}") from error

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""The kd-tree, which follows from its number of partitions (docs/file_format.md, section 1)."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Iterator, NamedTuple
+
+
+class Node(NamedTuple):
+    """A node of the tree: its level from the root (0) down, and its number from left to right."""
+
+    level: int
+    index: int  # type: ignore[assignment]  # tuples have a method of that name
+
+    def __str__(self) -> str:
+        return f"{self.level}/{self.index}"
+
+
+class Tree:
+    """The nodes of a hierarchy of `partitions` partitions."""
+
+    def __init__(self, partitions: int) -> None:
+        self.partitions = partitions
+        self.depth = (partitions - 1).bit_length()
+
+    def range(self, node: Node) -> tuple[int, int]:
+        """The partitions [first, end) of a node."""
+        if node.level == self.depth:
+            return node.index, node.index + 1
+        first, end = 0, self.partitions
+        for bit in reversed(range(node.level)):
+            middle = first + (end - first + 1) // 2
+            if node.index >> bit & 1:
+                first = middle
+            else:
+                end = middle
+        return first, end
+
+    def is_early(self, node: Node) -> bool:
+        """Whether the node holds one partition above the last level, and so has no tile."""
+        first, end = self.range(node)
+        return node.level < self.depth and end - first == 1
+
+    def tile(self, node: Node) -> Node:
+        """The node whose tile stands for `node`: itself, or the partition of an early one."""
+        return Node(self.depth, self.range(node)[0]) if self.is_early(node) else node
+
+    def ancestor(self, node: Node, level: int) -> Node:
+        """The node of `level` that holds `node`."""
+        if level == node.level:
+            return node
+        if node.level < self.depth:
+            return Node(level, node.index >> (node.level - level))
+        return Node(level, _path(self.partitions, self.depth, node.index) >> (self.depth - level))
+
+    def children(self, node: Node) -> list[Node]:
+        """The nodes below that have tiles: two, or none of a partition."""
+        if node.level == self.depth:
+            return []
+        if node.level == self.depth - 1:
+            first, end = self.range(node)
+            return [Node(self.depth, p) for p in range(first, end)]
+        return [self.tile(Node(node.level + 1, 2 * node.index + k)) for k in (0, 1)]
+
+    def level(self, level: int) -> list[Node]:
+        """The nodes with tiles that show the whole model at a level: early ones as their partitions."""
+        if level == self.depth:
+            return [Node(level, p) for p in range(self.partitions)]
+        return [self.tile(Node(level, index)) for index in range(2**level)]
+
+    def tiles(self) -> Iterator[Node]:
+        """All nodes with tiles, in the order of the index."""
+        for level in range(self.depth):
+            for index in range(2**level):
+                if not self.is_early(Node(level, index)):
+                    yield Node(level, index)
+        for partition in range(self.partitions):
+            yield Node(self.depth, partition)
+
+    def common_level(self, one: Node, other: Node) -> int:
+        """The level of the deepest node that holds both, which are on one level."""
+        level = one.level
+        while self.ancestor(one, level) != self.ancestor(other, level):
+            level -= 1
+        return level
+
+
+@lru_cache(maxsize=1 << 16)
+def _path(partitions: int, depth: int, partition: int) -> int:
+    """Which halves lead to a partition, a bit a level; below an early node: the left one."""
+    first, end, path = 0, partitions, 0
+    for _ in range(depth):
+        middle = first + (end - first + 1) // 2
+        path <<= 1
+        if partition >= middle:
+            path, first = path | 1, middle
+        else:
+            end = middle
+    return path

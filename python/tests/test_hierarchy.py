@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""What a hierarchy says of itself, and what is refused."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshhier
+
+
+def test_it_tells_what_it_is(torus: str, built: Any) -> None:
+    with meshhier.open(built(torus, "plain.hier")) as hierarchy:
+        assert hierarchy.levels == hierarchy.tree.depth + 1
+        assert hierarchy.errors[-1] == 0 and (np.diff(hierarchy.errors) < 0).all()
+        low, high = hierarchy.bounds
+        assert (low < high).all()
+        root = meshhier.Node(0, 0)
+        assert 0 < hierarchy.error(root) <= hierarchy.bound(root)
+        assert (hierarchy.tile_bounds(root)[0] >= low - 0.1).all()
+        assert "20736 triangles" in repr(hierarchy)
+
+
+def test_tiles_come_one_by_one(torus: str, built: Any) -> None:
+    hierarchy = meshhier.open(built(torus, "early.hier", partition__count=11))
+    for level in range(hierarchy.levels):
+        tiles = list(hierarchy.iter_tiles(level))
+        assert [tile.node for tile in tiles] == hierarchy.tree.level(level)
+    tiles = list(hierarchy.iter_tiles())
+    assert len(tiles) == 11 and sum(tile.own for tile in tiles) == hierarchy.vertices
+    for tile in tiles:
+        assert tile.triangles.max() < len(tile.positions)
+        assert len(tile.chains) == len(tile.neighbours)
+
+
+def test_the_tree_is_that_of_the_index(torus: str, built: Any) -> None:
+    hierarchy = meshhier.open(built(torus, "early.hier", partition__count=11))
+    assert list(hierarchy.tree.tiles()) == [meshhier.Node(int(r["level"]), int(r["index"])) for r in hierarchy._index]
+    for node in hierarchy.tree.tiles():
+        for child in hierarchy.tree.children(node):
+            assert hierarchy.tree.ancestor(child, node.level) == node
+
+
+@pytest.mark.parametrize("options", [{"level": -1}, {"level": 99}, {"level": 1, "error": 1.0}, {"nodes": [(1, 0)]}, {"nodes": [(1, 0), (0, 0)]}, {"nodes": [(9, 9)]}])
+def test_what_makes_no_sense_is_refused(options: Any, torus: str, built: Any) -> None:
+    with pytest.raises(meshhier.UsageError):
+        meshhier.open(built(torus, "plain.hier")).cut(**options)
+
+
+def test_what_is_no_hierarchy_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.3tz").write_bytes(b"no archive")
+    (tmp_path / "b.hier").mkdir()
+    (tmp_path / "b.hier" / "hierarchy.json").write_text('{"format": "else"}')
+    (tmp_path / "c.hier").mkdir()
+    (tmp_path / "c.hier" / "hierarchy.json").write_text('{"format": "meshhier", "format_version": 99}')
+    for name in ("none.hier", "a.3tz", "b.hier", "c.hier", "."):
+        with pytest.raises(meshhier.NotAHierarchyError):
+            meshhier.open(tmp_path / name)
+
+
+@pytest.mark.parametrize("compression", ["none", "meshopt_zlib"])
+def test_damage_is_an_error_of_its_own(compression: str, torus: str, built: Any, tmp_path: Path) -> None:
+    """Any byte of a tile: what comes is arrays or CorruptError, and nothing else."""
+    whole = Path(built(torus, f"{compression}.hier", storage__compression=compression))
+    shutil.copytree(whole, tmp_path / "a.hier")
+    name = tmp_path / "a.hier" / "tiles" / "01" / "000000.glb"
+    data = name.read_bytes()
+    random = np.random.default_rng(7)
+    hierarchy = meshhier.open(tmp_path / "a.hier")
+    for at in [*range(0, 40), *random.integers(0, len(data), 300).tolist()]:
+        damaged = bytearray(data)
+        damaged[at] ^= int(random.integers(1, 256))
+        name.write_bytes(damaged)
+        try:
+            hierarchy.read_tile(meshhier.Node(1, 0))
+        except meshhier.CorruptError:
+            pass
+    name.write_bytes(data[: len(data) // 2])
+    with pytest.raises(meshhier.CorruptError):
+        hierarchy.cut(level=1)
+    name.unlink()
+    with pytest.raises(meshhier.CorruptError, match="missing"):
+        hierarchy.cut(level=1)
+
+
+def test_what_others_call_it(torus: str, built: Any) -> None:
+    mesh = meshhier.open(built(torus, "plain.hier")).cut(level=1)
+    for module, convert in (("trimesh", mesh.to_trimesh), ("pyvista", mesh.to_pyvista), ("open3d", mesh.to_open3d)):
+        try:
+            __import__(module)
+        except ImportError:
+            print(f"skipped: {module} is not there")
+            continue
+        assert convert() is not None
+
+
+def test_a_ply_of_it_is_read_back(torus: str, built: Any, tmp_path: Path) -> None:
+    mesh = meshhier.open(built(torus, "plain.hier")).cut(level=1)
+    mesh.write_ply(str(tmp_path / "a.ply"))
+    again = meshhier.build(tmp_path / "a.ply", tmp_path / "a.hier").cut()
+    assert len(again.triangles) == len(mesh.triangles)
+    assert np.allclose(np.sort(again.positions, axis=0), np.sort(mesh.positions, axis=0))

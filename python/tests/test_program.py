@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""The program, as functions."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import meshhier
+
+
+def test_its_version_is_that_of_the_package() -> None:
+    said = subprocess.run([meshhier.find_program(), "--version"], check=True, capture_output=True, text=True).stdout
+    assert said.split()[1] == meshhier.__version__
+
+
+def test_a_build_tells_how_far_it_is(torus: str, tmp_path: Path) -> None:
+    told: list[meshhier.Progress] = []
+    hierarchy = meshhier.build(torus, tmp_path / "a.hier", settings={"memory_budget": "128MiB", "threads": 1}, progress=told.append)
+    assert hierarchy.triangles == 20736
+    assert {"ingest", "simplify"} <= {one.stage for one in told}
+    assert told[-1].job_done == pytest.approx(1, abs=0.1)
+    meshhier.verify(hierarchy.path, input=torus)
+
+
+def test_a_callback_stops_it_and_it_goes_on(torus: str, tmp_path: Path) -> None:
+    def stop(progress: meshhier.Progress) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        meshhier.build(torus, tmp_path / "a.hier", progress=stop)
+    assert not (tmp_path / "a.hier").exists()
+    assert meshhier.build(torus, tmp_path / "a.hier").triangles == 20736
+
+
+def test_failures_have_types(torus: str, tmp_path: Path) -> None:
+    (tmp_path / "broken.ply").write_text("ply\nformat ascii 1.0\nelement vertex 1\n")
+    with pytest.raises(meshhier.InputError, match="broken.ply") as broken:
+        meshhier.build(tmp_path / "broken.ply", tmp_path / "a.hier")
+    assert broken.value.exit_code == 3
+    with pytest.raises(meshhier.InputError):
+        meshhier.build(tmp_path / "broken.ply", tmp_path / "a.hier", progress=lambda _: None)
+    with pytest.raises(meshhier.UsageError, match="no_such_key"):
+        meshhier.build(torus, tmp_path / "a.hier", settings={"no_such_key": 1})
+    with pytest.raises(meshhier.BudgetError):
+        meshhier.build(torus, tmp_path / "a.hier", settings={"memory_budget": "1MiB"})
+    hierarchy = meshhier.build(torus, tmp_path / "a.hier")
+    with pytest.raises(meshhier.ProgramError) as there:
+        meshhier.build(torus, tmp_path / "a.hier")
+    assert there.value.exit_code == 5
+    tile = tmp_path / "a.hier" / "tiles" / "00" / "000000.glb"
+    tile.write_bytes(tile.read_bytes()[:-1] + b"x")
+    with pytest.raises(meshhier.VerifyError, match="000000.glb"):
+        meshhier.verify(hierarchy.path)
+
+
+def test_a_program_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MESHHIER", "/nonexistent/meshhier")
+    with pytest.raises(meshhier.ProgramNotFoundError):
+        meshhier.verify("a.hier")
+    monkeypatch.delenv("MESHHIER")
+    monkeypatch.setenv("PATH", "/nonexistent")
+    with pytest.raises(meshhier.ProgramNotFoundError, match="MESHHIER"):
+        meshhier.find_program()
