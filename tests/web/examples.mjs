@@ -13,7 +13,7 @@ import { serve } from './server.mjs';
 
 const HERE = path.dirname(fileURLToPath(import.meta.url));
 const ROOT = path.join(HERE, '../..');
-const PAGES = ['cesium', '3d-tiles-renderer', 'three', 'element'];
+const PAGES = ['cesium', '3d-tiles-renderer', 'three', 'element', 'engine'];
 const DAMAGED = 'damaged.hier';
 const PATIENCE = 240_000; // milliseconds
 const BACKGROUND = [0x1c, 0x25, 0x30]; // of example.css
