@@ -52,7 +52,7 @@ make_portable_folder() {
   local root=$1 libraries=$1/lib/meshhier name proj library path
   local -a files
   rm -rf "$root"
-  cmake --install "$release" --prefix "$root" >&2
+  cmake --install "$release" --prefix "$root" --component Unspecified >&2
   mkdir -p "$libraries"
   mv "$root/bin/meshhier" "$libraries/meshhier"
   cp "$release/meshgen" "$libraries/meshgen"

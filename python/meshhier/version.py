@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-__version__ = "0.1.0"
+__version__ = "1.0.0"

@@ -1,0 +1,185 @@
+// Reads hierarchies of meshhier, and makes them: all that is public of the library.
+//
+//   find_package(meshhier 1 REQUIRED)
+//   target_link_libraries(viewer PRIVATE meshhier::meshhier)
+//
+// What is here stays source- and binary-compatible within a major version (semantic versioning);
+// no other header is installed. C++17. The library is under GPL-3.0-or-later.
+//
+// Coordinates and lengths are in the input's units. Objects may be used from one thread at a time,
+// different ones from different threads. Nothing is kept between calls but what is in the objects.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#define MESHHIER_API __attribute__((visibility("default")))
+
+namespace meshhier::v1 {
+
+/// Of the library: "1.0.0".
+MESHHIER_API std::string version();
+
+/// As the program's exit codes.
+enum class Failure {
+  usage = 2,         ///< the call, a setting or a config is wrong
+  input = 3,         ///< the mesh is broken or not supported
+  io = 4,            ///< a file could not be read or written
+  exists = 5,        ///< the output is there already, or another build is at work on it
+  budget = 6,        ///< memory or disk do not suffice
+  corrupt = 7,       ///< the hierarchy is damaged
+  internal = 70,     ///< a defect of the library: please report it
+  interrupted = 130  ///< asked to stop; the same build goes on where it was
+};
+
+/// Of all functions here. The message names the file, and says what to do.
+class MESHHIER_API Error : public std::runtime_error {
+ public:
+  Error(Failure failure, const std::string& message);
+  Failure failure() const { return failure_; }
+
+ private:
+  Failure failure_;
+};
+
+using Point = std::array<double, 3>;
+
+/// A node of the tree: its level from the root (0) down, and its number from left to right.
+struct Node {
+  std::uint32_t level = 0;
+  std::uint32_t index = 0;
+
+  friend bool operator==(Node a, Node b) { return a.level == b.level && a.index == b.index; }
+  friend bool operator<(Node a, Node b) {
+    return a.level != b.level ? a.level < b.level : a.index < b.index;
+  }
+};
+
+/// What the index says of a tile.
+struct TileFacts {
+  Node node;
+  double error = 0;  ///< estimated distance to the original surface; 0 of the finest, and never
+                     ///< less than that of a tile below
+  double bound = 0;     ///< certain upper bound of the Hausdorff distance to it
+  Point low{}, high{};  ///< the box of all its vertices, ghosts among them
+  std::uint32_t vertices = 0, triangles = 0;
+  std::uint64_t file_bytes = 0;
+};
+
+/// A number that vertices have besides normal, colour and texture coordinates.
+struct AttributeFacts {
+  std::string name;
+  std::string type;       ///< "i8", "u8", "i16", "u16", "i32", "u32", "f32", "f64"
+  bool is_label = false;  ///< names something; of others coarser tiles have means
+};
+
+/// What one tile of a cut draws. Vertices are those that its triangles use; where it meets a tile
+/// that is shown coarser they lie where that tile has them.
+struct Part {
+  Node node;
+  std::vector<Point> positions;
+  /// The input's, or computed ones of length 1; empty if there are neither.
+  std::vector<std::array<float, 3>> normals;
+  /// Red, green, blue, alpha, 0 to 1, as a screen has them unless colours_are_linear(); else empty.
+  std::vector<std::array<float, 4>> colours;
+  /// In the tile's picture, (0, 0) is its upper left corner; without pictures the input's; or
+  /// empty.
+  std::vector<std::array<float, 2>> texcoords;
+  /// One list for each of attributes(); NaN: no value.
+  std::vector<std::vector<double>> values;
+  /// Equal numbers, in all parts of a cut, are one place of the surface.
+  std::vector<std::uint32_t> places;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::byte> image;  ///< the picture's file; empty: there is none
+  std::string image_type;        ///< "image/jpeg", "image/png", "image/webp"
+};
+
+class Cut;
+
+/// What a build made: many resolutions of one mesh, on disk. Copies share what was read.
+class MESHHIER_API Hierarchy {
+ public:
+  /// A folder (scan.hier) or an archive (scan.3tz). Reads manifest and index.
+  explicit Hierarchy(const std::string& path);
+
+  std::uint32_t levels() const;    ///< level 0 is one tile; levels() - 1 has the original triangles
+  std::uint64_t vertices() const;  ///< of the input
+  std::uint64_t triangles() const;
+  Point low() const;  ///< of the input's box
+  Point high() const;
+  Point origin() const;  ///< in the midst of the model, or 0: good to subtract before floats
+  bool is_z_up() const;
+  bool is_textured() const;
+  bool colours_are_linear() const;
+  const std::vector<AttributeFacts>& attributes() const;
+
+  /// All of them, by level, then by index.
+  const std::vector<TileFacts>& tiles() const;
+  /// Throws Error(usage) if there is no such tile.
+  const TileFacts& tile(Node node) const;
+  /// The two tiles below one; none below the finest.
+  std::vector<Node> children(Node node) const;
+
+  /// The tiles of a level. Throws Error(usage) if there is none.
+  std::vector<Node> level(std::uint32_t level) const;
+  /// The coarsest tiles that are no farther than this from the original surface.
+  std::vector<Node> within(double error) const;
+  /// What is to be seen of these tiles, without a crack. Each finest tile must be one of them, or
+  /// below exactly one; else throws Error(usage). `cache_bytes`: for neighbours.
+  Cut cut(const std::vector<Node>& nodes,
+          std::uint64_t cache_bytes = std::uint64_t{64} << 20) const;
+
+ private:
+  friend class Cut;
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+/// The parts of a cut: together all that it shows, each triangle once.
+class MESHHIER_API Cut {
+ public:
+  std::size_t size() const;
+  Node node(std::size_t position) const;
+  /// Reads a tile, and of its neighbours those that are shown coarser. Requires position < size().
+  Part load(std::size_t position);
+
+ private:
+  friend class Hierarchy;
+  struct Parts;
+  explicit Cut(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+  std::shared_ptr<Parts> parts_;
+};
+
+/// How far a build is.
+struct Progress {
+  std::string stage;         ///< "simplify"
+  std::uint64_t done = 0;    ///< of the stage, in `unit`s
+  std::uint64_t total = 0;   ///< 0: unknown
+  std::string unit;          ///< "tiles"
+  double job_done = -1;      ///< part of the whole build, 0 to 1; -1: unknown
+  double seconds_left = -1;  ///< of the whole build; -1: unknown
+};
+
+struct BuildRequest {
+  std::vector<std::string>
+      meshes;          ///< PLY, OBJ, glTF, STL, OFF, tileset.json: joined; or one config
+  std::string output;  ///< "scan.hier", or "scan.3tz" for one file
+  std::map<std::string, std::string> settings;  ///< {"memory_budget", "2GiB"}; docs/config.md
+  bool replace = false;                         ///< an output that is there
+  /// Is called four times a second at most, on any thread, one call at a time. False: stop.
+  std::function<bool(const Progress&)> progress;
+  std::function<void(const std::string&)> warn;  ///< what to know, a line each
+};
+
+/// Makes a hierarchy. Its memory is that of the budget, its threads those of "threads". A build
+/// that was stopped goes on with the next call.
+MESHHIER_API void build(const BuildRequest& request);
+
+}  // namespace meshhier::v1
