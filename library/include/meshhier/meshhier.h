@@ -65,8 +65,8 @@ struct Node {
 /// What the index says of a tile.
 struct TileFacts {
   Node node;
-  double error = 0;  ///< estimated distance to the original surface; 0 of the finest, and never
-                     ///< less than that of a tile below
+  double error = 0;     ///< estimated distance to the original surface; 0 of the finest, and never
+                        ///< less than that of a tile below
   double bound = 0;     ///< certain upper bound of the Hausdorff distance to it
   Point low{}, high{};  ///< the box of all its vertices, ghosts among them
   std::uint32_t vertices = 0, triangles = 0;
