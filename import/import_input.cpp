@@ -246,6 +246,7 @@ class Import {
         import_ply_corners(source, path, input_.textures(), mesh_, named_, room_);
     checked_base(path, 0);
     count("split_vertices", import.split_vertices);
+    warn_of_split(source, import, path);
     count(kHiddenColours, import.hidden_colours);
     count(import.counts.polygons);
     count(import.zeroed);
@@ -254,6 +255,20 @@ class Import {
             .faces = import.counts.faces,
             .degenerate_triangles = import.counts.degenerate_triangles,
             .unplaced = import.unplaced};
+  }
+
+  /// Where nearly each face has values of its own, each vertex becomes about six.
+  void warn_of_split(const mesh_io::PlySource& source, const PlyImport& import,
+                     const std::filesystem::path& path) {
+    constexpr std::size_t kLongestPath = 4096;
+    const std::uint64_t given = source.description().vertex_count;
+    if (source.plan().face_values.empty() || import.split_vertices <= given)
+      return;
+    env_.progress.warn(fmt::format(
+        "{}: values of faces make {} of {}, and the hierarchy larger; \"attributes\" of the config "
+        "chooses which are read",
+        plain_text(path.string(), kLongestPath), counted(given + import.split_vertices, "vertices"),
+        given));
   }
 
   Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {

@@ -105,6 +105,7 @@ TEST_F(FaceValuesTest, FacesOfOneValueSplitNothing) {
                                                 {"quality", PlyType::f32, {nan, nan, nan}}}));
   const Imported mesh = import();
   EXPECT_EQ(mesh.count("split_vertices"), 0U);
+  EXPECT_THAT(mesh.warnings, IsEmpty());
   EXPECT_THAT(mesh.values(0), ElementsAre(5, 5, 5, 5, 5));
   EXPECT_THAT(mesh.values(1), testing::Each(testing::IsNan()));
 }
@@ -125,6 +126,8 @@ TEST_F(FaceValuesTest, ManyFacesOfManyValues) {
   EXPECT_EQ(tight.attributes, roomy.attributes);
   EXPECT_EQ(tight.triangles, roomy.triangles);
   EXPECT_LE(tight.disk_bytes, tight.predicted_bytes);
+  ASSERT_THAT(roomy.warnings, SizeIs(1));
+  EXPECT_THAT(roomy.warnings[0], testing::HasSubstr("values of faces make "));
 }
 
 TEST_F(FaceValuesTest, TheyAreChosenByName) {
