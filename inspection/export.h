@@ -19,7 +19,7 @@ namespace meshhier::inspection {
 struct OutlineSelection {};
 
 /// A whole level (Cut::of_level); one node's tile with its border triangles and
-/// ghosts; the cut in a text file (parse_cut() in hierarchy/cut.h); tiles by their error; the
+/// ghosts; the cut in a text file (inspection/cut_file.h); tiles by their error; the
 /// outline.
 using ExportSelection =
     std::variant<Level, NodeId, std::filesystem::path, LargestError, OutlineSelection>;
