@@ -1,10 +1,12 @@
 #include "import/face_values.h"
 
 #include "hierarchy/error.h"
+#include "import/append_value.h"
 #include "partition/external_sort.h"
 
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 
@@ -94,12 +96,8 @@ void FaceValues::split_groups(std::size_t attribute) {
 std::span<const float> FaceValues::channels(std::uint32_t number) {
   channels_.clear();
   for (std::size_t i = 0; i < attributes_.size(); ++i) {
-    const ValueType type = attributes_[i].type;
-    const auto channels = static_cast<std::size_t>(channels_of(type));
-    channels_.resize(channels_.size() + channels);
     const std::uint64_t first = (std::uint64_t{number} - 1) * attributes_.size();
-    put_value(type, number == 0 ? none_[i] : lookup_.at(first + i),
-              channels_.data() + channels_.size() - channels);
+    append_value(attributes_[i].type, number == 0 ? none_[i] : lookup_.at(first + i), channels_);
   }
   return channels_;
 }

@@ -23,8 +23,10 @@ class FaceValues {
   void add(std::span<const double> values);
   /// Ends adding. Two sorts an attribute.
   void compare();
-  /// From 1 on: equal if the values are, bit for bit. Ascending triangles.
-  std::uint32_t number_of(std::uint64_t triangle) { return numbers_cursor_.at(triangle) + 1; }
+  /// From 1 on: equal if the values are, bit for bit; 0 if faces have none. Ascending triangles.
+  std::uint32_t number_of(std::uint64_t triangle) {
+    return any() ? numbers_cursor_.at(triangle) + 1 : 0;
+  }
   /// The channels of the values of that number, as AttributeLayout has them; 0: of none. Valid
   /// until the next call.
   std::span<const float> channels(std::uint32_t number);

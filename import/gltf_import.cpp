@@ -2,6 +2,7 @@
 
 #include "execution/spool_cursor.h"
 #include "hierarchy/angle.h"
+#include "import/append_value.h"
 #include "import/gltf_materials.h"
 #include "import/gltf_values.h"
 #include "import/used_vertices.h"
@@ -495,8 +496,7 @@ class GltfImporter {
       const ValueType type = values_[i].attribute.type;
       const double value = all.values[i] ? all.values[i]->at(vertex)[values_[i].component]
                                          : std::numeric_limits<double>::quiet_NaN();
-      channels.resize(channels.size() + static_cast<std::size_t>(channels_of(type)));
-      put_value(type, value, &channels.back() - (channels_of(type) - 1));
+      append_value(type, value, channels);
     }
   }
 

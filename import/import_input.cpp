@@ -260,15 +260,13 @@ class Import {
   /// Where nearly each face has values of its own, each vertex becomes about six.
   void warn_of_split(const mesh_io::PlySource& source, const PlyImport& import,
                      const std::filesystem::path& path) {
-    constexpr std::size_t kLongestPath = 4096;
     const std::uint64_t given = source.description().vertex_count;
     if (source.plan().face_values.empty() || import.split_vertices <= given)
       return;
-    env_.progress.warn(fmt::format(
-        "{}: values of faces make {} of {}, and the hierarchy larger; \"attributes\" of the config "
-        "chooses which are read",
-        plain_text(path.string(), kLongestPath), counted(given + import.split_vertices, "vertices"),
-        given));
+    env_.progress.warn(mesh_io::file_message(
+        path, fmt::format("values of faces make {} of {}, and the hierarchy larger; \"attributes\" "
+                          "of the config chooses which are read",
+                          counted(given + import.split_vertices, "vertices"), given)));
   }
 
   Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {

@@ -15,9 +15,7 @@ ObjLabels::ObjLabels(const mesh_io::AttributeChoice& choice, AllLabelNames& name
 }
 
 void ObjLabels::begin(ObjLabel label, const std::string& name) {
-  const auto i = static_cast<std::size_t>(label);
-  names_now_[i] = name;
-  has_name_[i] = is_there_[i] = true;
+  names_now_[static_cast<std::size_t>(label)] = name;
   current_ = 0;
 }
 
@@ -26,8 +24,8 @@ std::uint32_t ObjLabels::use() {
     return current_;
   Combination combination{};
   for (const std::size_t label : asked_) {
-    if (has_name_[label])
-      combination[label] = names_[std::string(kNames[label])].number(names_now_[label]);
+    if (names_now_[label])
+      combination[label] = names_[std::string(kNames[label])].number(*names_now_[label]);
   }
   const auto [known, is_new] =
       numbers_.try_emplace(combination, static_cast<std::uint32_t>(combinations_.size() + 1));
@@ -39,7 +37,7 @@ std::uint32_t ObjLabels::use() {
 std::vector<ScalarAttribute> ObjLabels::attributes() const {
   std::vector<ScalarAttribute> all;
   for (const std::size_t label : asked_) {
-    if (is_there_[label])
+    if (names_now_[label])
       all.push_back({std::string(kNames[label]), ValueType::u16, true});
   }
   return all;
@@ -48,7 +46,7 @@ std::vector<ScalarAttribute> ObjLabels::attributes() const {
 std::span<const float> ObjLabels::channels(std::uint32_t combination) {
   channels_.clear();
   for (const std::size_t label : asked_) {
-    if (is_there_[label])
+    if (names_now_[label])
       channels_.push_back(combination == 0 ? 0.0F
                                            : combinations_[combination - std::size_t{1}][label]);
   }

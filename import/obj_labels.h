@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,9 +42,8 @@ class ObjLabels {
 
   std::vector<std::size_t> asked_;  ///< ObjLabel, in their order
   AllLabelNames& names_;
-  std::array<std::string, kLabels> names_now_;
-  std::array<bool, kLabels> has_name_{}, is_there_{};
-  std::uint32_t current_ = 0;  ///< 0: to be looked up
+  std::array<std::optional<std::string>, kLabels> names_now_;  ///< none before the first statement
+  std::uint32_t current_ = 0;                                  ///< 0: to be looked up
   std::map<Combination, std::uint32_t> numbers_;
   std::vector<Combination> combinations_;
   std::vector<float> channels_;

@@ -176,7 +176,7 @@ class PlyImporter {
       CornerParts::Parts parts{};
       if (has_colours())
         parts = parts_of(colours.at(i), plan_.face_colour);
-      parts[CornerParts::kValues] = values_of(i);
+      parts[CornerParts::kValues] = values_.number_of(i);
       for (const std::uint32_t corner : triangles.at(i).corners)
         splitter.add({corner, parts});
     }
@@ -188,7 +188,7 @@ class PlyImporter {
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
       const auto& [corners, texture] = triangles.at(i);
       const std::uint32_t material = pictures_->material_of(texture, mesh_.materials) + 1;
-      const std::uint32_t values = values_of(i);
+      const std::uint32_t values = values_.number_of(i);
       const bool has_own = has_own_texcoords() && pictures_->is_there(texture);
       for (std::size_t k = 0; k < 3; ++k) {
         const Texcoord at = has_own ? texcoords.at(i)[k] : Texcoord{};
@@ -197,11 +197,6 @@ class PlyImporter {
                        values, material}});
       }
     }
-  }
-
-  /// CornerParts::kValues of a triangle; ascending.
-  std::uint32_t values_of(std::uint64_t triangle) {
-    return values_.any() ? values_.number_of(triangle) : 0;
   }
 
   void append_split(CornerSplitter& splitter) {

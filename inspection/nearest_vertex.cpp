@@ -1,5 +1,7 @@
 #include "inspection/nearest_vertex.h"
 
+#include "hierarchy/value_channels.h"
+
 #include <algorithm>
 #include <array>
 
@@ -14,22 +16,19 @@ double squared_difference(std::span<const float> a, std::span<const float> b) {
 }
 
 /// How unlike two vertices are: by values, normal, colour, texture coordinate.
-std::array<double, 4> difference(const AttributeLayout& layout, const VertexAt& a,
-                                 const VertexAt& b) {
+std::array<double, 4> difference(const AttributeLayout& layout, std::span<const PlacedValue> values,
+                                 const VertexAt& a, const VertexAt& b) {
   const auto between = [&](int begin, int end) {
     const auto first = static_cast<std::size_t>(begin),
                count = static_cast<std::size_t>(end) - first;
     return squared_difference(a.attributes().subspan(first, count),
                               b.attributes().subspan(first, count));
   };
-  double differing = 0;
-  int channel = layout.value_offset();
-  for (const ScalarAttribute& value : layout.values) {
-    const int end = channel + channels_of(value.type);
-    differing += between(channel, end) == 0 ? 0 : 1;
-    channel = end;
-  }
-  return {differing, between(layout.normal_offset(), layout.colour_offset()),
+  const auto differing = std::ranges::count_if(values, [&](const PlacedValue& value) {
+    const int begin = static_cast<int>(value.channel);
+    return between(begin, begin + channels_of(value.type)) != 0;
+  });
+  return {static_cast<double>(differing), between(layout.normal_offset(), layout.colour_offset()),
           between(layout.colour_offset(), layout.value_offset()),
           between(layout.texcoord_offset(), layout.channels())};
 }
@@ -46,8 +45,11 @@ std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& cop
 
 std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
                            std::span<const VertexAt> all) {
+  if (all.size() == 1)
+    return 0;
+  const std::vector<PlacedValue> values = placed_values(layout);
   const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-    return difference(layout, vertex, a) < difference(layout, vertex, b);
+    return difference(layout, values, vertex, a) < difference(layout, values, vertex, b);
   });
   return static_cast<std::size_t>(nearest - all.begin());
 }

@@ -57,7 +57,7 @@ make_portable_folder() {
   mv "$root/bin/meshhier" "$libraries/meshhier"
   cp "$release/meshgen" "$libraries/meshgen"
   # It is loaded when it is needed, by the name to which the one for compilers is a link, as CMakeLists.txt has it.
-  proj=$(ldconfig -p | awk '$1 == "libproj.so" { print $NF; exit }')
+  proj=$(ldconfig -p | awk '$1 == "libproj.so" && !found++ { print $NF }')
   proj=$(dirname "$proj")/$(readlink "$proj")
   files=("$proj" "$loader" /usr/share/proj/proj.db)
   cp -L "$proj" "$libraries/"
@@ -77,8 +77,8 @@ make_portable_folder() {
   chmod -R u=rwX,go=rX "$root"
 }
 
-# Packs the folder $1 into $2; equal content gives equal bytes, whatever the processors (-T0 does not promise that).
+# Packs the folder $1 into $2; equal content gives equal bytes.
 pack_portable_folder() {
   tar --create --directory "$(dirname "$1")" --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner \
-    --format=gnu "$(basename "$1")" | xz -6 -T2 --block-size=32MiB >"$2"
+    --format=gnu "$(basename "$1")" | pack >"$2"
 }

@@ -41,7 +41,7 @@ class Progress:
 
 ProgressCallback = Callable[[Progress], None]
 
-_ERRORS = {2: UsageError, 3: InputError, 6: BudgetError, 7: VerifyError}
+_ERRORS = {3: InputError, 6: BudgetError, 7: VerifyError}
 
 
 def find_program() -> str:
@@ -60,8 +60,9 @@ def find_program() -> str:
 
 
 def _fail(message: str, code: int) -> NoReturn:
-    kind = _ERRORS.get(code, ProgramError)
-    raise UsageError(message) if kind is UsageError else kind(message, code)
+    if code == 2:
+        raise UsageError(message)
+    raise _ERRORS.get(code, ProgramError)(message, code)
 
 
 def _run(words: Sequence[str], progress: Optional[ProgressCallback]) -> None:

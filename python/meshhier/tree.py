@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Iterator, NamedTuple
+from typing import Callable, Iterator, NamedTuple
 
 
 class Node(NamedTuple):
@@ -28,13 +28,7 @@ class Tree:
         """The partitions [first, end) of a node."""
         if node.level == self.depth:
             return node.index, node.index + 1
-        first, end = 0, self.partitions
-        for bit in reversed(range(node.level)):
-            middle = first + (end - first + 1) // 2
-            if node.index >> bit & 1:
-                first = middle
-            else:
-                end = middle
+        first, end, _ = _walk(self.partitions, node.level, lambda level, _: node.index >> (node.level - 1 - level) & 1 == 1)
         return first, end
 
     def is_early(self, node: Node) -> bool:
@@ -86,15 +80,20 @@ class Tree:
         return level
 
 
+def _walk(partitions: int, levels: int, is_right: Callable[[int, int], bool]) -> tuple[int, int, int]:
+    """Goes down from the root: the partitions [first, end) that are left, and which halves were taken, a bit each.
+
+    `is_right(level, middle)` says whether to take the half from `middle` on.
+    """
+    first, end, path = 0, partitions, 0
+    for level in range(levels):
+        middle = first + (end - first + 1) // 2
+        right = is_right(level, middle)
+        first, end, path = (middle, end, 2 * path + 1) if right else (first, middle, 2 * path)
+    return first, end, path
+
+
 @lru_cache(maxsize=1 << 16)
 def _path(partitions: int, depth: int, partition: int) -> int:
-    """Which halves lead to a partition, a bit a level; below an early node: the left one."""
-    first, end, path = 0, partitions, 0
-    for _ in range(depth):
-        middle = first + (end - first + 1) // 2
-        path <<= 1
-        if partition >= middle:
-            path, first = path | 1, middle
-        else:
-            end = middle
-    return path
+    """Which halves lead to a partition; below an early node: the left one."""
+    return _walk(partitions, depth, lambda _, middle: partition >= middle)[2]

@@ -1,5 +1,6 @@
 #include "import/imported.h"
 
+#include "hierarchy/value_channels.h"
 #include "tests/support/warnings.h"
 
 #include <algorithm>
@@ -60,14 +61,11 @@ std::uint32_t Imported::material_of(std::size_t triangle) const {
 }
 
 std::vector<double> Imported::values(std::size_t attribute) const {
-  auto offset = static_cast<std::size_t>(layout.value_offset());
-  for (std::size_t i = 0; i < attribute; ++i)
-    offset += static_cast<std::size_t>(channels_of(layout.values[i].type));
+  const PlacedValue value = placed_values(layout)[attribute];
   std::vector<double> all;
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const float* channels =
-        attributes.data() + v * static_cast<std::size_t>(layout.channels()) + offset;
-    all.push_back(value_in(layout.values[attribute].type, channels));
+    const std::size_t first = v * static_cast<std::size_t>(layout.channels());
+    all.push_back(value_in(value.type, attributes.data() + first + value.channel));
   }
   return all;
 }
@@ -103,13 +101,12 @@ std::vector<std::string> Imported::all_shown() const {
 
 std::vector<ValueStatistics> Imported::statistics() const {
   std::vector<ValueStatistics> all;
-  auto channel = static_cast<std::size_t>(layout.value_offset());
-  for (const ScalarAttribute& attribute : layout.values) {
-    ValueTally tally(attribute);
-    tally.add(attributes.data() + channel, static_cast<std::size_t>(layout.channels()),
+  const std::vector<PlacedValue> placed = placed_values(layout);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    ValueTally tally(layout.values[i]);
+    tally.add(attributes.data() + placed[i].channel, static_cast<std::size_t>(layout.channels()),
               positions.size());
     all.push_back(tally.statistics());
-    channel += static_cast<std::size_t>(channels_of(attribute.type));
   }
   return all;
 }
