@@ -11,6 +11,7 @@
 #include "inspection/shown_tiles.h"
 #include "render/directions.h"
 #include "render/raster.h"
+#include "render/scene.h"
 #include "render/shade.h"
 #include "render/tile_facets.h"
 
@@ -131,11 +132,8 @@ DrawnLevel draw_level(const storage::HierarchyReader& reader, const render::Came
   std::uint64_t triangles = 0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const inspection::ShownTile shown = surface.load(i);
-    const auto draw = [&](render::Raster& raster, NormalKind kind) {
-      raster.draw(render::facets_of(shown.tile, without_colours, shown.border, kind));
-    };
-    draw(own, NormalKind::own);
-    draw(facets, NormalKind::facets);
+    render::scene_tile(shown.tile, without_colours, shown.border).draw(own);
+    facets.draw(render::facets_of(shown.tile, without_colours, shown.border, NormalKind::facets));
     triangles += shown.tile.mesh.interior.size() + shown.border.size();
   }
   return {triangles, shaded(std::move(own)), shaded(std::move(facets))};

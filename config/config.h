@@ -108,20 +108,26 @@ using Container = storage::Container;
 inline constexpr std::array kContainers{NamedValue{"files", Container::files},
                                         NamedValue{"3tz", Container::archive}};
 
-/// What tiles get if the mesh has no normals.
+/// What tiles get to be lit by.
 enum class Normals {
   smooth,  ///< computed ones, smooth but for creases
-  none
+  none,
+  map,          ///< the same; simplified tiles a map of the original's normals besides
+  map_or_none,  ///< a map where it pays
 };
-inline constexpr std::array kNormals{NamedValue{"smooth", Normals::smooth},
-                                     NamedValue{"none", Normals::none}};
+inline constexpr std::array kNormals{
+    NamedValue{"smooth", Normals::smooth}, NamedValue{"none", Normals::none},
+    NamedValue{"map", Normals::map}, NamedValue{"auto", Normals::map_or_none}};
+constexpr bool makes_maps(Normals normals) {
+  return normals == Normals::map || normals == Normals::map_or_none;
+}
 
 struct StorageConfig {
   Container container = Container::files;  ///< decides nothing of the files themselves
   Compression compression = Compression::none;
   std::optional<std::uint32_t>
       position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
-  Normals normals = Normals::smooth;  ///< no effect on a mesh that has normals
+  Normals normals = Normals::smooth;
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 
@@ -129,6 +135,13 @@ using ImageFormat = meshhier::ImageFormat;
 inline constexpr std::array kImageFormats{NamedValue{kImageFormatNames[0], ImageFormat::jpeg},
                                           NamedValue{kImageFormatNames[1], ImageFormat::png},
                                           NamedValue{kImageFormatNames[2], ImageFormat::webp}};
+
+/// Of storage.normals map and auto.
+struct NormalMapConfig {
+  std::uint32_t texels = 896;  ///< side of a map, at most
+  NormalMapFormat format;
+  friend bool operator==(const NormalMapConfig&, const NormalMapConfig&) = default;
+};
 
 /// What becomes of the pictures of a textured mesh.
 struct TextureConfig {
@@ -192,6 +205,7 @@ struct Config {
   FirstViewConfig first_view;
   StorageConfig storage;
   TextureConfig texture;
+  NormalMapConfig normal_map;
   MissingImages missing_images = MissingImages::warn;
   /// Which axis of the input points up; none: z of a tileset, else y (with_input_frame()).
   std::optional<UpAxis> up;

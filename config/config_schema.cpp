@@ -419,8 +419,22 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "storage.normals",
            .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
                       "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
-                      "they are"},
+                      "they are. `map`: simplified tiles get a normal map of the original surface "
+                      "besides; `auto`: those where it halves the difference, of a degree or "
+                      "more. Meshes with pictures have no maps"},
           kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
+      deciding(number(
+          {.path = "normal_map.texels",
+           .meaning = "side of a normal map, at most; there are fewer texels where the "
+                      "original has no more to show"},
+          kTexels, [](auto& c) -> auto& { return c.normal_map.texels; })),
+      deciding(choice(
+          {.path = "normal_map.format",
+           .meaning = "how normal maps are stored; `png` and `webp` lose nothing"},
+          kImageFormats, [](auto& c) -> auto& { return c.normal_map.format.format; })),
+      deciding(number(
+          {.path = "normal_map.quality", .meaning = "of `jpeg`"}, {1, kBestQuality},
+          [](auto& c) -> auto& { return c.normal_map.format.quality; })),
       deciding(boolean(
           {.path = "texture.use",
            .meaning =
@@ -584,6 +598,7 @@ const std::vector<ConfigSection>& config_sections() {
       {"first_view", "from where the model is looked at before anybody turns it"},
       {"storage", "how tiles are stored"},
       {"storage.positions", "how positions are rounded; without it they keep every bit"},
+      {"normal_map", "what normal maps of simplified tiles are like"},
       {"texture", "what becomes of the pictures of a textured mesh"},
       {"placement",
        "where the tileset puts the model: on the globe (WGS 84), x to the east; where its map "

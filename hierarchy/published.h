@@ -45,6 +45,7 @@ struct TileRecord {
       0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
   std::uint32_t image_width = 0, image_height = 0;  ///< of its picture, texels; 0: it has none
   float texel = 0;  ///< mean size of the picture's texels on the surface, input units; 0 without
+  bool has_normal_map = false;  ///< `image` and `texel` are those of its normal map
   std::uint64_t file_bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };
@@ -56,11 +57,20 @@ struct PublishedTile {
   std::vector<std::uint16_t>
       parent_map;      ///< own vertex -> vertex of the parent's tile; empty for the root
   GhostChains chains;  ///< one per ghost
-  Shading shading;     ///< if the build computed normals or the tile has a picture, else empty
+  Shading shading;     ///< as far as the build computed normals, pictures or normal maps
   TileImage image;     ///< empty unless the mesh is textured
   /// From where the model is looked at first: of the root, unless an older program made it.
   std::optional<Standpoint> first_view{};
+  TileImage normal_map{};  ///< empty unless the tile has one: opaque
 };
+
+/// Leaves a tile what its vertices have.
+inline void drop_pictures(PublishedTile& tile) {
+  tile.image = {};
+  tile.normal_map = {};
+  tile.shading.texcoords.clear();
+  tile.shading.tangents.clear();
+}
 
 /// A file that was imported.
 struct SourceFile {

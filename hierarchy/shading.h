@@ -1,5 +1,5 @@
-// What a build adds to the vertices of tiles: normals for a mesh that has none, and coordinates in
-// the tile's own picture for a mesh with textures.
+// What a build adds to the vertices of tiles: normals for a mesh that has none, coordinates in
+// the tile's own picture for a mesh with textures, coordinates and tangents for a normal map.
 //
 // They are kept apart from the tile's mesh: at a crease a vertex has several normals, at the border
 // of a chart several coordinates, and who asks for the mesh (verify --input, export, streams) gets
@@ -8,6 +8,7 @@
 #pragma once
 
 #include "hierarchy/normal_code.h"
+#include "hierarchy/tangent_code.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 
@@ -19,12 +20,14 @@ namespace meshhier {
 /// Of a tile. Vertices have the numbers of VertexNumbers, [0, n): places, then copies. Split i has
 /// the number n + i.
 struct Shading {
-  std::vector<NormalCode> normals;      ///< of vertices, then of splits; empty: no computed normals
-  std::vector<Vec2f> texcoords;         ///< likewise, in the tile's picture; empty: it has none
+  std::vector<NormalCode> normals;  ///< of vertices, then of splits; empty: no computed normals
+  std::vector<Vec2f> texcoords;  ///< likewise, in the tile's picture or normal map; empty: it has
+                                 ///< neither
   std::vector<std::uint32_t> split_of;  ///< of each split its vertex, < n; ascending
   /// The triangles of the mesh, one for one and corner for corner, with numbers of vertices and
   /// splits. Empty if there are no splits: each corner has the normal of its vertex then.
   std::vector<TileTriangle> interior, border;
+  std::vector<TangentCode> tangents{};  ///< as `texcoords`, for the normal map; empty: it has none
 
   bool empty() const { return normals.empty() && texcoords.empty(); }
   friend bool operator==(const Shading&, const Shading&) = default;

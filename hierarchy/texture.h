@@ -49,6 +49,13 @@ struct TextureFormat {
   friend constexpr bool operator==(const TextureFormat&, const TextureFormat&) = default;
 };
 
+/// What a hierarchy says of all its tiles' normal maps.
+struct NormalMapFormat {
+  ImageFormat format = ImageFormat::jpeg;  ///< jpeg: of red, green and blue as they are
+  int quality = 85;                        ///< 1 ... 100, of jpeg; webp loses nothing
+  friend constexpr bool operator==(const NormalMapFormat&, const NormalMapFormat&) = default;
+};
+
 /// How a picture of that alpha is stored.
 constexpr ImageFormat stored_format(const TextureFormat& textures, AlphaMode alpha) {
   const bool needs_alpha = alpha != AlphaMode::opaque && textures.format == ImageFormat::jpeg;

@@ -92,4 +92,11 @@ std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int 
   return encode_webp(image, quality);
 }
 
+std::vector<std::byte> encode_normal_map(const Image& image, const NormalMapFormat& format) {
+  assert(image.channels == 3);
+  constexpr int kLossless = 100;
+  return format.format == ImageFormat::jpeg ? encode_normal_jpeg(image, format.quality)
+                                            : encode_image(image, format.format, kLossless);
+}
+
 }  // namespace meshhier::images

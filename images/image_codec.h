@@ -61,4 +61,10 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
 /// texel takes up to 6 bytes of jpeg (all coefficients), 4 of webp, 21 of lossless webp.
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 
+/// Of directions instead of colours: a jpeg keeps red and green, which say nearly all, as exactly
+/// as `quality` has it and with all of their texels, and blue as it is worth; a viewer decodes it
+/// as any RGB picture. `quality` has no effect on png and webp, which lose nothing. Requires 3
+/// channels.
+std::vector<std::byte> encode_normal_map(const Image& image, const NormalMapFormat& format);
+
 }  // namespace meshhier::images

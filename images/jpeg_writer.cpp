@@ -3,6 +3,7 @@
 #include "images/formats.h"
 #include "images/library_call.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -18,10 +19,12 @@ namespace {
 
 /// From here on chroma has as many samples as luma.
 constexpr int kFullChromaQuality = 90;
+/// Of the blue of a direction, which follows from red and green but for its sign.
+constexpr int kBlueQuality = 30;
 
 class JpegWriter final : public RowWriter {
  public:
-  JpegWriter(const WrittenImage& image, JpegCodes codes, ByteSink sink);
+  JpegWriter(const WrittenImage& image, JpegCodes codes, ByteSink sink, JpegContent content);
   ~JpegWriter() override { jpeg_destroy_compress(&jpeg_); }
   JpegWriter(const JpegWriter&) = delete;
   JpegWriter& operator=(const JpegWriter&) = delete;
@@ -37,7 +40,8 @@ class JpegWriter final : public RowWriter {
     return *static_cast<JpegWriter*>(jpeg->client_data);
   }
   void set_callbacks();
-  void set_parameters(const WrittenImage& image, JpegCodes codes);
+  void set_parameters(const WrittenImage& image, JpegCodes codes, JpegContent content);
+  void keep_directions(int quality);
   void empty_buffer();
   void send_buffer(std::size_t bytes);
 
@@ -49,7 +53,8 @@ class JpegWriter final : public RowWriter {
   std::array<std::byte, 65536> buffer_{};
 };
 
-JpegWriter::JpegWriter(const WrittenImage& image, JpegCodes codes, ByteSink sink)
+JpegWriter::JpegWriter(const WrittenImage& image, JpegCodes codes, ByteSink sink,
+                       JpegContent content)
     : call_(ErrorCode::internal, "libjpeg"), sink_(std::move(sink)) {
   assert(image.channels == 3);
   set_callbacks();
@@ -58,7 +63,7 @@ JpegWriter::JpegWriter(const WrittenImage& image, JpegCodes codes, ByteSink sink
       jpeg_create_compress(&jpeg_);
       jpeg_.mem->max_memory_to_use = 0;  // whatever JPEGMEM says
       jpeg_.dest = &destination_;
-      set_parameters(image, codes);
+      set_parameters(image, codes, content);
       jpeg_start_compress(&jpeg_, TRUE);
     });
   } catch (...) {
@@ -96,7 +101,7 @@ void JpegWriter::send_buffer(std::size_t bytes) {
   empty_buffer();
 }
 
-void JpegWriter::set_parameters(const WrittenImage& image, JpegCodes codes) {
+void JpegWriter::set_parameters(const WrittenImage& image, JpegCodes codes, JpegContent content) {
   jpeg_.image_width = image.width;
   jpeg_.image_height = image.height;
   jpeg_.input_components = 3;
@@ -107,6 +112,21 @@ void JpegWriter::set_parameters(const WrittenImage& image, JpegCodes codes) {
   jpeg_.optimize_coding = codes == JpegCodes::best ? TRUE : FALSE;
   jpeg_.comp_info[0].h_samp_factor = image.quality < kFullChromaQuality ? 2 : 1;
   jpeg_.comp_info[0].v_samp_factor = jpeg_.comp_info[0].h_samp_factor;
+  if (content == JpegContent::directions)
+    keep_directions(image.quality);
+}
+
+/// Red, green and blue as they are (the Adobe marker says so), by the table of luminance.
+void JpegWriter::keep_directions(int quality) {
+  jpeg_set_colorspace(&jpeg_, JCS_RGB);
+  jpeg_set_quality(&jpeg_, std::min(quality, kBlueQuality), TRUE);
+  std::array<unsigned, DCTSIZE2> coarse{};
+  std::ranges::copy(jpeg_.quant_tbl_ptrs[0]->quantval, coarse.begin());
+  jpeg_set_quality(&jpeg_, quality, TRUE);
+  jpeg_add_quant_table(&jpeg_, 1, coarse.data(), 100, TRUE);
+  jpeg_.comp_info[2].quant_tbl_no = 1;
+  for (int i = 0; i < 3; ++i)
+    jpeg_.comp_info[i].h_samp_factor = jpeg_.comp_info[i].v_samp_factor = 1;
 }
 
 void JpegWriter::write_row(const std::uint8_t* row) {
@@ -117,14 +137,21 @@ void JpegWriter::write_row(const std::uint8_t* row) {
 }  // namespace
 
 std::unique_ptr<RowWriter> open_jpeg_writer(const WrittenImage& image, JpegCodes codes,
-                                            ByteSink sink) {
-  return std::make_unique<JpegWriter>(image, codes, std::move(sink));
+                                            ByteSink sink, JpegContent content) {
+  return std::make_unique<JpegWriter>(image, codes, std::move(sink), content);
 }
 
 std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
   return encode_rows(image, [&](ByteSink sink) {
     return open_jpeg_writer({ImageFormat::jpeg, quality, image.width, image.height, image.channels},
                             JpegCodes::best, std::move(sink));
+  });
+}
+
+std::vector<std::byte> encode_normal_jpeg(const Image& image, int quality) {
+  return encode_rows(image, [&](ByteSink sink) {
+    return open_jpeg_writer({ImageFormat::jpeg, quality, image.width, image.height, image.channels},
+                            JpegCodes::best, std::move(sink), JpegContent::directions);
   });
 }
 

@@ -60,8 +60,8 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
 void AttributePainter::paint(PublishedTile& tile) const {
   paint(tile.mesh.vertices);
   paint(tile.mesh.copies.vertices);
-  tile.image = {};
-  tile.shading.texcoords.clear();
+  if (tile.normal_map.empty())
+    drop_pictures(tile);
 }
 
 void AttributePainter::paint(VertexArray& vertices) const {

@@ -8,14 +8,15 @@
 namespace meshhier::inspection {
 namespace {
 
-/// Colours are light already.
-constexpr std::size_t kColourChannels = 3;
+/// Colours, which are light already, and tangents.
+constexpr std::size_t kMixedChannels = 6;
 
-ClippedCorner corner_of(const render::FacetCorner& from, Vec2f texcoord) {
+ClippedCorner corner_of(const render::FacetCorner& from, Vec2f texcoord, const Vec3f& tangent) {
   ClippedCorner corner;
   corner.position = from.position;
   corner.normal = from.normal;
-  corner.attributes = {from.colour.x, from.colour.y, from.colour.z};
+  corner.attributes = {from.colour.x, from.colour.y, from.colour.z,
+                       tangent.x,     tangent.y,     tangent.z};
   corner.texcoord = texcoord;
   return corner;
 }
@@ -24,10 +25,14 @@ render::FacetCorner facet_corner(const ClippedCorner& from) {
   return {from.position, from.normal, {from.attributes[0], from.attributes[1], from.attributes[2]}};
 }
 
+Vec3f tangent_of(const ClippedCorner& from) {
+  return {from.attributes[3], from.attributes[4], from.attributes[5]};
+}
+
 }  // namespace
 
 render::SceneTile clip_scene(render::SceneTile tile, const Region& region) {
-  const CornerMixer mixer({}, kColourChannels);
+  const CornerMixer mixer({}, kMixedChannels);
   const TriangleClipper clipper(region, mixer);
   std::vector<render::Facet> facets;
   std::vector<render::Skin> skins;
@@ -36,7 +41,7 @@ render::SceneTile clip_scene(render::SceneTile tile, const Region& region) {
     const render::Skin skin = tile.skins.empty() ? render::Skin{} : tile.skins[i];
     ClippedPolygon triangle;
     for (std::size_t k = 0; k < 3; ++k)
-      triangle.push_back(corner_of(facet[k], skin.texcoords[k]));
+      triangle.push_back(corner_of(facet[k], skin.texcoords[k], skin.tangents[k]));
     for (const ClippedPolygon& piece : clipper.pieces(std::move(triangle))) {
       for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
         facets.push_back(
@@ -45,6 +50,7 @@ render::SceneTile clip_scene(render::SceneTile tile, const Region& region) {
           continue;
         render::Skin& made = skins.emplace_back(skin);
         made.texcoords = {piece[0].texcoord, piece[k].texcoord, piece[k + 1].texcoord};
+        made.tangents = {tangent_of(piece[0]), tangent_of(piece[k]), tangent_of(piece[k + 1])};
       }
     }
   }

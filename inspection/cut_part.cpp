@@ -61,7 +61,7 @@ class PartMaker {
         number < vertices ? number : tile_.shading.split_of[number - vertices];
     const ShownPlace shown = find_(numbers_[vertex].place);
     part_.places.push_back(shown.number);
-    if (!tile_.shading.texcoords.empty())
+    if (!tile_.image.empty())
       part_.texcoords.push_back(tile_.shading.texcoords[number]);
     if (shown.other) {
       add_moved(at(mesh, vertex), shown);

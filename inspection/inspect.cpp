@@ -263,6 +263,19 @@ std::string pictures_text(const TextureFormat& format, const storage::PictureSum
                      pictures.height);
 }
 
+/// Of the tiles that have one.
+std::string normal_maps_text(const NormalMapFormat& format,
+                             const std::vector<TileRecord>& records) {
+  const storage::PictureSummary maps = storage::summarize_pictures(records);
+  const auto simplified = static_cast<std::uint64_t>(
+      std::ranges::count_if(records, [](const TileRecord& r) { return r.error > 0; }));
+  return fmt::format(
+      "normal maps  {}{}: {} of {} simplified tiles, {:.0f} x {:.0f} on average\n",
+      kImageFormatNames[static_cast<std::size_t>(format.format)],
+      format.format == ImageFormat::jpeg ? fmt::format(" of quality {}", format.quality) : "",
+      grouped(maps.tiles), grouped(simplified), maps.width, maps.height);
+}
+
 std::string tile_sizes_text(const storage::CountRange& bytes) {
   return fmt::format("tiles        {} on average, standard deviation {:.2f} of the mean\n",
                      grouped(static_cast<std::uint64_t>(std::llround(bytes.mean)), "bytes"),
@@ -411,6 +424,10 @@ Json storage_json(const storage::Manifest& manifest) {
                {"positions", nullptr},
                {"normals", normals_of(manifest)},
                {"texture", nullptr}};
+  if (const auto& maps = manifest.normal_maps) {
+    json["normal_map"] = {{"format", kImageFormatNames[static_cast<std::size_t>(maps->format)]},
+                          {"quality", maps->quality}};
+  }
   if (const auto& textures = manifest.textures) {
     json["texture"] = {{"format", kImageFormatNames[static_cast<std::size_t>(textures->format)]},
                        {"quality", textures->quality},
@@ -482,6 +499,8 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += tile_sizes_text(all_sizes(reader).tile_bytes);
   if (manifest.textures)
     text += pictures_text(*manifest.textures, storage::summarize_pictures(reader.records()));
+  if (manifest.normal_maps)
+    text += normal_maps_text(*manifest.normal_maps, reader.records());
   text += partitions_text(levels.back(),
                           storage::summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);

@@ -19,6 +19,7 @@ inline std::uint64_t memory_bytes(const VertexArray& vertices) {
 
 inline std::uint64_t memory_bytes(const Shading& shading) {
   return shading.normals.size() * sizeof(NormalCode) + shading.texcoords.size() * sizeof(Vec2f) +
+         shading.tangents.size() * sizeof(TangentCode) +
          shading.split_of.size() * sizeof(std::uint32_t) +
          (shading.interior.size() + shading.border.size()) * sizeof(TileTriangle);
 }
@@ -31,8 +32,8 @@ inline std::uint64_t memory_bytes(const PublishedTile& tile) {
          (mesh.interior.size() + mesh.border.size()) * sizeof(TileTriangle) +
          (mesh.interior_wedges.size() + mesh.border_wedges.size()) * sizeof(CornerWedges) +
          tile.parent_map.size() * sizeof(std::uint16_t) + memory_bytes(tile.shading) +
-         tile.image.bytes.size() + tile.chains.size() * sizeof(std::uint32_t) +
-         tile.chains.entries().size_bytes();
+         tile.image.bytes.size() + tile.normal_map.bytes.size() +
+         tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }
 
 /// Values by node; the least recently used go first. What get() returns never depends on the limit,

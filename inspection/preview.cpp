@@ -49,8 +49,7 @@ std::vector<render::Facet> root_facets(const HierarchyReader& reader,
   const AttributeLayout& layout = painter ? painter->layout() : reader.tile_format().attributes;
   if (root.mesh.interior.empty())
     return render::points_of(root, layout);
-  root.image = {};
-  root.shading.texcoords.clear();
+  drop_pictures(root);
   return render::scene_tile(root, layout).facets;
 }
 
@@ -71,8 +70,7 @@ render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout
 /// Of the piece, without pictures.
 void add_piece(ShownTile shown, const AttributeLayout& layout, const Region& region,
                std::vector<render::Facet>& facets) {
-  shown.tile.image = {};
-  shown.tile.shading.texcoords.clear();
+  drop_pictures(shown.tile);
   const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
   const render::SceneTile piece = clip_scene(scene_of(shown, layout, is_points), region);
   facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());

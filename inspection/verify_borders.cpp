@@ -182,7 +182,7 @@ void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
 
 void tell_wrong_copies(const VerifyJob& job, const WrongCopies& wrong) {
   const storage::TileFormat& format = job.reader.tile_format();
-  const bool has_common_splits = format.computed_normals && !format.textures;
+  const bool has_common_splits = format.computed_normals && !format.textures && !format.normal_maps;
   job.problems.add(fmt::format(
       "tile {}: of its {} of vertices in tile {}, {} are not there, or in another order (the "
       "first: of vertex {})",

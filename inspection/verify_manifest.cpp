@@ -94,14 +94,20 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
     problems.compare("storage.compression", storage::name_of(manifest.compression),
                      storage::name_of(config.storage.compression));
   }
-  problems.require(!manifest.computed_normals || config.storage.normals == config::Normals::smooth,
+  problems.require(!manifest.computed_normals || config.storage.normals != config::Normals::none,
                    "\"storage.normals\" are computed, but \"config\" asks for none");
   if (says("/storage/normals")) {
     const bool is_unlit = manifest.textures && manifest.textures->unlit;
-    const bool needs_normals = config.storage.normals == config::Normals::smooth &&
+    const bool needs_normals = config.storage.normals != config::Normals::none &&
                                !source.attributes.normals && source.triangles > 0 && !is_unlit;
     problems.require(manifest.computed_normals || !needs_normals,
                      "\"config\" asks for normals, but \"storage.normals\" are not computed");
+  }
+  problems.require(!manifest.normal_maps || config::makes_maps(config.storage.normals),
+                   "there are normal maps, but \"config\" asks for none");
+  if (says("/normal_map/format")) {
+    problems.require(!manifest.normal_maps || *manifest.normal_maps == config.normal_map.format,
+                     "\"storage.normal_map\" is not that of \"config.normal_map\"");
   }
   if (says("/texture/format")) {
     problems.require(!manifest.textures || *manifest.textures == config.texture.format,

@@ -1,4 +1,4 @@
-// What only textured tiles have: splits by texture coordinates, and a picture.
+// What only tiles with a picture or a normal map have: splits by texture coordinates, and that.
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "inspection/verify_parts.h"
@@ -95,7 +95,10 @@ void verify_texture(const VerifyJob& job, const PublishedTile& tile) {
   if (!has_different_splits(tile.shading))
     job.problems.add(path + ": a split is like its vertex, or like another split of that");
   try {
-    read_picture(tile.image, path + ": the picture");
+    if (!tile.image.empty())
+      read_picture(tile.image, path + ": the picture");
+    if (!tile.normal_map.empty())
+      read_picture(tile.normal_map, path + ": the normal map");
   } catch (const Error& error) {
     job.problems.add(error.what());
   }

@@ -242,7 +242,7 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
 
 void verify_alone(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile) {
   verify_tile(job, record, tile);
-  if (!tile.image.empty())
+  if (!tile.image.empty() || !tile.normal_map.empty())
     verify_texture(job, tile);
   if (!job.tree().is_partition(record.node))
     verify_image(job, tile);

@@ -6,6 +6,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/leaves_stage.h"
+#include "pipeline/normal_map_stage.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/publish_stage.h"
@@ -167,6 +168,8 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     make_textures(forest, {materials, pictures}, textures, journal, {0, depth + 1}, context);
     picture_scratch.remove();
   }
+  if (context.plan.job.normal_map_side > 0)
+    make_normal_maps(forest, textures, journal, {0, depth}, context);
   DiskNeed need = refined.value_or(context.plan.disk);
   if (const std::uint64_t splits = forest.split_count(); splits > 0) {
     need = with_splits(context.plan, need, splits);

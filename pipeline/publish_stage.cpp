@@ -7,6 +7,7 @@
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/images_stage.h"
+#include "pipeline/normal_map_stage.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/preview.h"
 #include "pipeline/simplify_stage.h"
@@ -53,7 +54,7 @@ std::optional<Lattice> lattice_of(const DistributedSource& source, const StageCo
 }
 
 storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
-                              const StageContext& context) {
+                              const TextureStore& textures, const StageContext& context) {
   storage::TileFormat format = {source.summary.attributes,
                                 {source.origin, context.config.up_axis()},
                                 context.config.storage.compression,
@@ -61,6 +62,8 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
   format.computed_normals = computed_normals;
   if (source.summary.textures)
     format.textures = context.config.texture.format;
+  if (context.plan.job.normal_map_side > 0 && textures.has_normal_maps())
+    format.normal_maps = context.config.normal_map.format;
   format.lattice = lattice_of(source, context);
   return format;
 }
@@ -112,14 +115,23 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
 struct FinishedMesh {
   TileMesh mesh;
   Shading shading;
-  TileImage image;
+  TileImage image, normal_map;
   std::vector<std::uint16_t> parent_map;
 };
+
+void add_normal_map(TileTexture texture, FinishedMesh& finished) {
+  if (texture.normal_map.empty())
+    return;
+  finished.shading = texture::with_texcoords(finished.mesh, finished.shading, texture.corners);
+  finished.shading.tangents =
+      texture::tangents_of(finished.mesh, finished.shading, texture.tangents);
+  finished.normal_map = std::move(texture.normal_map);
+}
 
 /// Orders a partition's vertices, and gives all vertices their normals and texture coordinates.
 FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   const Forest& forest = to.forest;
-  FinishedMesh finished{std::move(mesh), {}, {}, forest.published_parent_map(node)};
+  FinishedMesh finished{std::move(mesh), {}, {}, {}, forest.published_parent_map(node)};
   OwnShading normals = forest.computes_normals() ? forest.normals(node) : OwnShading{};
   if (forest.tree().is_partition(node)) {
     const std::vector<std::uint32_t> copy_places = finished.mesh.copies.places;
@@ -141,6 +153,8 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
       finished.shading = texture::with_texcoords(finished.mesh, finished.shading, texture.corners);
     finished.image = std::move(texture.image);
   }
+  if (to.format.normal_maps && !forest.tree().is_partition(node))
+    add_normal_map(to.textures.texture(node), finished);
   return finished;
 }
 
@@ -159,6 +173,7 @@ Standpoint first_view_of(const TileWriter& to, Forest& forest) {
   tile.node = node;
   tile.mesh = std::move(root.mesh);
   tile.shading = std::move(root.shading);
+  tile.normal_map = std::move(root.normal_map);
   return choose_first_view(tile, to.format);
 }
 
@@ -182,22 +197,23 @@ void write_tile_file(const TileWriter& writer, NodeId node, std::span<const std:
 
 Published write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
-  auto [mesh, shading, image, parent_map] = finish(to, node, forest.load(node).mesh);
+  auto [mesh, shading, image, normal_map, parent_map] = finish(to, node, forest.load(node).mesh);
   Published published;
   if (to.format.lattice)
     published.rounding = round_to(*to.format.lattice, mesh);
   TileRecord& record = published.record;
   record = describe(to, node, mesh, shading);
-  if (!image.empty()) {
-    record.image_width = image.width;
-    record.image_height = image.height;
+  record.has_normal_map = !normal_map.empty();
+  if (const TileImage& shown = record.has_normal_map ? normal_map : image; !shown.empty()) {
+    record.image_width = shown.width;
+    record.image_height = shown.height;
     record.texel = to.textures.texels(node).own;
   }
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
-  const std::vector<std::byte> bytes =
-      storage::encode_tile({node, mesh, shading, image, record.bounds, parent_map, chains,
-                            node == forest.tree().root() ? to.first_view : std::nullopt},
-                           forest.tree(), to.format);
+  const std::vector<std::byte> bytes = storage::encode_tile(
+      {node, mesh, shading, image, record.bounds, parent_map, chains,
+       node == forest.tree().root() ? to.first_view : std::nullopt, &normal_map},
+      forest.tree(), to.format);
   write_tile_file(to, node, bytes);
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
@@ -249,7 +265,8 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
   }
   context.progress.stage("publish", left.size(), "tiles");
   TileWriter writer{forest, textures,
-                    format_of(*journal.source(), forest.computes_normals(), context), to, context};
+                    format_of(*journal.source(), forest.computes_normals(), textures, context), to,
+                    context};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
   // A picture as it was stored, on its own, and in the tile's file.
@@ -294,7 +311,8 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   const Tree& tree = context.tree();
   const SourceSummary source = complete_source(journal, context);
   const std::vector<Published> tiles = journal.published();
-  storage::TileFormat format = format_of(*journal.source(), forest.computes_normals(), context);
+  storage::TileFormat format =
+      format_of(*journal.source(), forest.computes_normals(), textures, context);
   std::optional<storage::Quantization> quantization;
   if (format.lattice) {
     quantization.emplace();
@@ -336,11 +354,14 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.quantization = quantization;
   manifest.computed_normals = format.computed_normals;
   manifest.textures = format.textures;
+  manifest.normal_maps = format.normal_maps;
   manifest.config = config::resolved_json(context.config);
   if (!source.textures) {
     manifest.config.erase("texture");  // what decided nothing
     manifest.config.erase("missing_images");
   }
+  if (context.plan.job.normal_map_side == 0)
+    manifest.config.erase("normal_map");
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
   manifest.outline_bytes = outline_file.size();
@@ -383,10 +404,10 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kMostSplits = 0.5;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   const double splits =
-      job.computes_normals || job.textured
+      job.computes_normals || job.textured || job.normal_map_side > 0
           ? kMostSplits * vertices * storage::expected_split_bytes(job.published_attribute_bytes)
           : 0;
-  const double pictures = published_picture_bytes(job, tiles);
+  const double pictures = published_picture_bytes(job, tiles) + published_map_bytes(job, tiles);
   return {plain + pictures, plain * job.published_ratio + pictures,
           tiles.files() * kFileSlack + splits +
               (job.draws_preview ? double{storage::kMostPreviewBytes} + kFileSlack : 0)};

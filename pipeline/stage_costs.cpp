@@ -5,6 +5,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/leaves_stage.h"
+#include "pipeline/normal_map_stage.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
@@ -31,10 +32,14 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
 }  // namespace
 
 MemoryCosts memory_costs(const JobSize& job) {
-  return {bookkeeping_bytes(job), ingest_memory(job),
-          partition_memory(job),  leaves_memory(job),
-          simplify_memory(job),   images_memory(job),
-          texture_memory(job),    job.draws_preview ? preview_memory(job) : first_view_memory(job),
+  return {bookkeeping_bytes(job),
+          ingest_memory(job),
+          partition_memory(job),
+          leaves_memory(job),
+          simplify_memory(job),
+          images_memory(job),
+          job.textured ? texture_memory(job) : normal_map_memory(job),
+          job.draws_preview ? preview_memory(job) : first_view_memory(job),
           chunk_spools(job)};
 }
 
@@ -42,7 +47,7 @@ DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePop
   DiskCosts costs;
   for (const DiskVolumes& stage :
        {imported_disk(job), ingest_disk(job), partition_disk(job, memory), leaves_disk(job, tiles),
-        simplify_disk(job, tiles), texture_disk(job, tiles)}) {
+        simplify_disk(job, tiles), texture_disk(job, tiles), normal_map_disk(job, tiles)}) {
     costs.volumes.insert(costs.volumes.end(), stage.begin(), stage.end());
   }
   costs.output = publish_output(job, tiles);
@@ -76,6 +81,8 @@ std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& 
   times.insert(times.end(), {leaves_time(job), simplify_time(job, tiles)});
   if (job.textured)
     times.push_back(texture_time(job, tiles));
+  if (job.normal_map_side > 0)
+    times.push_back(normal_map_time(job, tiles));
   times.insert(times.end(), {outline_time(config, tiles), publish_time(job, tiles)});
   return times;
 }

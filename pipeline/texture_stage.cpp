@@ -2,12 +2,12 @@
 
 #include "execution/memory_gate.h"
 #include "execution/parallel.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
 #include "images/row_writer.h"
 #include "pipeline/plan/tile_room.h"
+#include "pipeline/tiles/finer_surfaces.h"
 #include "pipeline/tiles/vertex_order.h"
 #include "texture/leaf_atlas.h"
 #include "texture/reduction.h"
@@ -18,7 +18,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 
@@ -120,100 +119,6 @@ class SourcePicture {
   Image image_;  ///< unless it is reduced
   std::uint32_t rows_ = 0;
 };
-
-// ---- simplified tiles ----------------------------------------------------------------------
-
-/// The cells of a grid that the border triangles of a tile reach: what of the neighbours' surfaces
-/// may be near them.
-class BorderCells {
- public:
-  explicit BorderCells(const TileMesh& mesh) {
-    for (const TileTriangle& t : mesh.border)
-      bounds_.add(bounds_of_triangle(mesh.vertices.positions, t));
-    const Vec3f size = bounds_.max - bounds_.min;
-    cell_ = std::max({size.x, size.y, size.z}) / kCells;
-    for (const TileTriangle& t : mesh.border)
-      for_each_cell(grown(bounds_of_triangle(mesh.vertices.positions, t)),
-                    [&](std::size_t cell) { reached_[cell] = true; });
-  }
-
-  bool reaches(std::span<const Vec3f> positions, const TileTriangle& triangle) const {
-    const Bounds box = bounds_of_triangle(positions, triangle);
-    if (!overlaps(box))
-      return false;
-    bool found = false;
-    for_each_cell(box, [&](std::size_t cell) { found = found || reached_[cell]; });
-    return found;
-  }
-
- private:
-  static constexpr int kCells = 32;
-  static constexpr std::size_t kSide = kCells + 1;
-
-  static Bounds bounds_of_triangle(std::span<const Vec3f> positions, const TileTriangle& t) {
-    Bounds box;
-    for (const TileVertex corner : t)
-      box.add(positions[raw(corner)]);
-    return box;
-  }
-  Bounds grown(Bounds box) const {
-    const Vec3f step{cell_, cell_, cell_};
-    return {box.min - step, box.max + step};
-  }
-  bool overlaps(const Bounds& box) const {
-    const Bounds all = grown(bounds_);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (box.max[axis] < all.min[axis] || box.min[axis] > all.max[axis])
-        return false;
-    }
-    return true;
-  }
-  std::size_t index(float value, int axis) const {
-    if (!(cell_ > 0))
-      return 0;
-    const float at = (value - bounds_.min[axis]) / cell_;
-    return static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(kCells)));
-  }
-  template <class Visit>
-  void for_each_cell(const Bounds& box, const Visit& visit) const {
-    for (std::size_t x = index(box.min.x, 0); x <= index(box.max.x, 0); ++x) {
-      for (std::size_t y = index(box.min.y, 1); y <= index(box.max.y, 1); ++y) {
-        for (std::size_t z = index(box.min.z, 2); z <= index(box.max.z, 2); ++z)
-          visit((x * kSide + y) * kSide + z);
-      }
-    }
-  }
-
-  Bounds bounds_;
-  float cell_ = 0;
-  std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
-};
-
-/// A finer surface, or what of it lies near the border.
-struct Finer {
-  std::shared_ptr<const BakeSource> source;
-  std::vector<TileTriangle> triangles;  ///< empty: all
-  std::vector<texture::CornerTexcoords> corners;
-
-  texture::TexturedSurface surface() const {
-    return triangles.empty()
-               ? source->surface()
-               : texture::TexturedSurface{source->positions, triangles, corners, &source->image};
-  }
-};
-
-Finer near(const BorderCells& border, std::shared_ptr<const BakeSource> source) {
-  Finer part;
-  for (std::size_t t = 0; t < source->triangles.size(); ++t) {
-    if (border.reaches(source->positions, source->triangles[t])) {
-      part.triangles.push_back(source->triangles[t]);
-      part.corners.push_back(source->corners[t]);
-    }
-  }
-  if (!part.triangles.empty())
-    part.source = std::move(source);
-  return part;
-}
 
 // ---- all tiles -----------------------------------------------------------------------------
 
@@ -338,9 +243,10 @@ class TextureMaker {
     TexelSizes texels = texels_below(node);
     const execution::MemoryGate::Share share = gate_.enter(bake_bytes(side_));
     if (!source.triangles.empty()) {
-      const std::vector<Finer> finer = finer_surfaces(node, mesh);
+      const std::vector<FinerSurface> finer = finer_surfaces(
+          forest_, node, mesh, [&](NodeId child) { return textures_.source(child); });
       std::vector<texture::TexturedSurface> surfaces;
-      for (const Finer& one : finer) {
+      for (const FinerSurface& one : finer) {
         surfaces.push_back(one.surface());
         source.alpha = std::max(source.alpha, one.source->alpha);
       }
@@ -400,28 +306,6 @@ class TextureMaker {
     below.lost =
         static_cast<float>(std::sqrt(squares / static_cast<double>(children.span().size())));
     return below;
-  }
-
-  /// The node's children, then those of its neighbours, as far as they are near the border.
-  std::vector<Finer> finer_surfaces(NodeId node, const TileMesh& mesh) const {
-    std::vector<Finer> surfaces;
-    const Tree& tree = forest_.tree();
-    const auto add = [&](NodeId parent, const auto& choose) {
-      const Tree::Children children = tree.children(parent);
-      for (const NodeId child : children.span()) {
-        Finer one = choose(textures_.source(tree.tile_node(child)));
-        if (one.source && !one.source->triangles.empty())
-          surfaces.push_back(std::move(one));
-      }
-    };
-    add(node, [](auto source) { return Finer{std::move(source), {}, {}}; });
-    const BorderCells border(mesh);
-    std::set<std::uint32_t> neighbours;
-    for (const GhostRef& ghost : mesh.ghosts)
-      neighbours.insert(ghost.tile);
-    for (const std::uint32_t neighbour : neighbours)
-      add({node.level, neighbour}, [&](auto source) { return near(border, std::move(source)); });
-    return surfaces;
   }
 
   const Forest& forest_;

@@ -27,9 +27,12 @@ class MipTexture;
 
 /// What a facet has in place of its corners' colours, or is tinted by them.
 struct Skin {
-  const MipTexture* texture = nullptr;  ///< none: colours stay
-  std::array<Vec2f, 3> texcoords{};     ///< of the corners
-  bool is_tinted = false;               ///< its light is multiplied by that of the colours
+  const MipTexture* texture = nullptr;     ///< none: colours stay
+  std::array<Vec2f, 3> texcoords{};        ///< of the corners
+  bool is_tinted = false;                  ///< its light is multiplied by that of the colours
+  const MipTexture* normal_map = nullptr;  ///< of the same coordinates: numbers, as glTF has them
+  std::array<Vec3f, 3> tangents{};         ///< of the corners, of any length
+  bool is_mirrored = false;                ///< the bitangent is on the other side
 };
 
 /// Of length 1; 0 of what has no direction.

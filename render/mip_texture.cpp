@@ -32,6 +32,23 @@ images::Image halved(const images::Image& picture) {
   return half;
 }
 
+/// The same of numbers: a mean of four.
+images::Image halved_numbers(const images::Image& picture) {
+  images::Image half((picture.width + 1) / 2, (picture.height + 1) / 2, picture.channels);
+  for (std::uint32_t y = 0; y < half.height; ++y) {
+    const std::uint32_t below = std::min(2 * y + 1, picture.height - 1);
+    for (std::uint32_t x = 0; x < half.width; ++x) {
+      const std::uint32_t beside = std::min(2 * x + 1, picture.width - 1);
+      for (std::uint32_t c = 0; c < picture.channels; ++c) {
+        const int sum = picture.at(2 * x, 2 * y)[c] + picture.at(beside, 2 * y)[c] +
+                        picture.at(2 * x, below)[c] + picture.at(beside, below)[c];
+        half.at(x, y)[c] = static_cast<std::uint8_t>((sum + 2) / 4);
+      }
+    }
+  }
+  return half;
+}
+
 /// 0 to 1.
 double within_picture(float coordinate, Wrap wrap) {
   const double at = std::isfinite(coordinate) ? coordinate : 0;
@@ -57,6 +74,10 @@ MipTexture::TexelPair pair_at(double coordinate, double size, std::uint32_t coun
   return {{wrapped(texel, count, wrap), wrapped(texel + 1, count, wrap)}, at - first};
 }
 
+/// 0 to 65535.
+Vec3d number_of_texel(const std::uint8_t* texel) {
+  return Vec3d{double(texel[0]), double(texel[1]), double(texel[2])} * 257;
+}
 Vec3d light_of_texel(const LightTable& table, const std::uint8_t* texel) {
   const auto light = [&](std::size_t c) { return static_cast<double>(table.light(texel[c])); };
   return {light(0), light(1), light(2)};
@@ -82,12 +103,13 @@ LevelPair levels_at(double level, std::size_t count) {
 
 }  // namespace
 
-MipTexture::MipTexture(images::Image picture, Wraps wraps, AlphaMode alpha)
-    : wraps_(wraps), alpha_(picture.channels == 4 ? alpha : AlphaMode::opaque) {
+MipTexture::MipTexture(images::Image picture, Wraps wraps, AlphaMode alpha, TexelKind kind)
+    : wraps_(wraps), alpha_(picture.channels == 4 ? alpha : AlphaMode::opaque), kind_(kind) {
   levels_.push_back(alpha_ == AlphaMode::opaque ? without_alpha(std::move(picture))
                                                 : std::move(picture));
   while (levels_.back().width > 1 || levels_.back().height > 1)
-    levels_.push_back(halved(levels_.back()));
+    levels_.push_back(kind == TexelKind::light ? halved(levels_.back())
+                                               : halved_numbers(levels_.back()));
 }
 
 Vec3f MipTexture::light_at(Vec2f texcoord, double level) const {
@@ -118,9 +140,12 @@ Vec3d MipTexture::light_on(std::uint32_t level, Vec2f texcoord) const {
   const images::Image& image = levels_[level];
   const LightTable& table = LightTable::get();
   const auto [across, down] = square_on(level, texcoord);
+  const auto texel = [&](std::uint32_t x, std::uint32_t y) {
+    return kind_ == TexelKind::light ? light_of_texel(table, image.at(x, y))
+                                     : number_of_texel(image.at(x, y));
+  };
   const auto row = [&, &across = across](std::uint32_t y) {
-    return mix(light_of_texel(table, image.at(across.texels[0], y)),
-               light_of_texel(table, image.at(across.texels[1], y)), across.share);
+    return mix(texel(across.texels[0], y), texel(across.texels[1], y), across.share);
   };
   return mix(row(down.texels[0]), row(down.texels[1]), down.share) * (1.0 / 65535);
 }

@@ -15,19 +15,23 @@ struct Wraps {
   Wrap u = Wrap::repeat, v = Wrap::repeat;
 };
 
+/// What texels are: light of a screen, or the numbers of a normal map.
+enum class TexelKind { light, numbers };
+
 /// The picture and its pyramid, 8 bits a channel, all in memory. Immutable, thread-safe.
 class MipTexture {
  public:
   /// Alpha is left out if it is opaque. Requires a picture of a texel or more. O(texels).
-  explicit MipTexture(images::Image picture, Wraps wraps = {}, AlphaMode alpha = AlphaMode::opaque);
+  explicit MipTexture(images::Image picture, Wraps wraps = {}, AlphaMode alpha = AlphaMode::opaque,
+                      TexelKind kind = TexelKind::light);
 
   std::uint32_t width() const { return levels_.front().width; }
   std::uint32_t height() const { return levels_.front().height; }
   bool is_opaque() const { return alpha_ == AlphaMode::opaque; }
 
-  /// Linear light, 0 to 1: mixed from four texels of each of two levels of the pyramid. `level`: 0
-  /// is the picture itself, each further one has half of its width and height. What is no number is
-  /// looked up at 0.
+  /// Linear light (or numbers), 0 to 1: mixed from four texels of each of two levels of the
+  /// pyramid. `level`: 0 is the picture itself, each further one has half of its width and height.
+  /// What is no number is looked up at 0.
   Vec3f light_at(Vec2f texcoord, double level) const;
 
   /// Whether a sample is seen at a place: of a mask where alpha is 0.5 or more, of what is to blend
@@ -52,6 +56,7 @@ class MipTexture {
   std::vector<images::Image> levels_;
   Wraps wraps_;
   AlphaMode alpha_;
+  TexelKind kind_;
 };
 
 /// Level at which a texel has as much area as a sample, of a facet on which a sample covers so many

@@ -37,11 +37,11 @@ double area(double ab_x, double ab_y, double ac_x, double ac_y) {
 }
 
 /// The camera's lines are parallel: it is the same all over a facet.
-double level_of(const Skin& skin, const Places& places) {
+double level_of(const Skin& skin, const MipTexture& texture, const Places& places) {
   const auto& [a, b, c] = places;
   const auto& [s, t, r] = skin.texcoords;
   const double texels =
-      double{1} * skin.texture->width() * skin.texture->height() *
+      double{1} * texture.width() * texture.height() *
       area(double{t.u} - s.u, double{t.v} - s.v, double{r.u} - s.u, double{r.v} - s.v);
   return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
 }
@@ -71,12 +71,16 @@ class SeenSurface {
     colour_ = facet[0].colour;
     is_one_colour_ = facet[1].colour == colour_ && facet[2].colour == colour_;
     if (skin.texture != nullptr)
-      level_ = level_of(skin, places);
+      level_ = level_of(skin, *skin.texture, places);
+    if (skin.normal_map != nullptr)
+      set_frames(camera, places);
   }
 
   Vec3f normal(const Weights& w) const {
     const Vec3f unit = unit_or_zero(blend(w, normals_));
-    return unit == Vec3f{} ? flat_ : unit;
+    if (unit == Vec3f{})
+      return flat_;
+    return skin_.normal_map == nullptr ? unit : mapped_normal(w, unit);
   }
   Vec3f colour(const Weights& w) const {
     if (skin_.texture == nullptr)
@@ -93,6 +97,28 @@ class SeenSurface {
   }
 
  private:
+  /// From the side that is seen: all of a frame is turned round with the normals.
+  void set_frames(const Camera& camera, const Places& places) {
+    map_level_ = level_of(skin_, *skin_.normal_map, places);
+    for (std::size_t i = 0; i < 3; ++i) {
+      tangents_[i] = to_double(camera.turned(unit_or_zero(skin_.tangents[i])));
+      bitangents_[i] = cross(normals_[i], tangents_[i]) * (skin_.is_mirrored ? -1.0 : 1.0);
+    }
+    if (flat_normal(places).z < 0) {
+      for (std::size_t i = 0; i < 3; ++i)
+        tangents_[i] = tangents_[i] * -1;
+    }
+  }
+
+  Vec3f mapped_normal(const Weights& w, Vec3f normal) const {
+    const Vec3f numbers = skin_.normal_map->light_at(texcoord(w), map_level_) * 2.0F;
+    const Vec3f tangent = unit_or_zero(blend(w, tangents_));
+    const Vec3f bitangent = unit_or_zero(blend(w, bitangents_));
+    const Vec3f mixed = unit_or_zero(tangent * (numbers.x - 1) + bitangent * (numbers.y - 1) +
+                                     normal * (numbers.z - 1));
+    return mixed == Vec3f{} ? normal : mixed;
+  }
+
   Vec3f corner_colour(const Weights& w) const {
     // The sum of weights is 1 but for the last bits of a double: a float's blend with itself is
     // that float.
@@ -107,9 +133,11 @@ class SeenSurface {
   Skin skin_;
   Vec3f flat_;  ///< the facet's own normal
   Three normals_, colours_;
-  Vec3f colour_;  ///< of the first corner
+  Three tangents_, bitangents_;  ///< with a normal map
+  Vec3f colour_;                 ///< of the first corner
   bool is_one_colour_ = false;
-  double level_ = 0;  ///< of its texture
+  double level_ = 0;      ///< of its texture
+  double map_level_ = 0;  ///< of its normal map
 };
 
 /// Nothing if one of them is not finite.

@@ -28,6 +28,13 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
         Wraps{Wrap::clamp, Wrap::clamp}, image.alpha);
     result.skins = skins_of(tile, layout, *result.texture, border);
   }
+  if (const TileImage& map = tile.normal_map; !map.empty()) {
+    const std::uint64_t texels = std::uint64_t{map.width} * map.height;
+    result.normal_map = std::make_unique<const MipTexture>(
+        images::decode_image(map.bytes, "the normal map of tile " + to_text(tile.node), texels),
+        Wraps{Wrap::clamp, Wrap::clamp}, AlphaMode::opaque, TexelKind::numbers);
+    result.skins = map_skins_of(tile, *result.normal_map, border);
+  }
   drop_repeated(result.facets, result.skins);
   return result;
 }

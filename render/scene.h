@@ -23,6 +23,7 @@ struct SceneTile {
   std::vector<Facet> facets;
   std::vector<Skin> skins;                    ///< of the facets; empty: they have their colours
   std::unique_ptr<const MipTexture> texture;  ///< what the skins show
+  std::unique_ptr<const MipTexture> normal_map{};
 
   void draw(Raster& raster) const;
 };

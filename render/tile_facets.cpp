@@ -124,6 +124,23 @@ std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& lay
   return skins;
 }
 
+std::vector<Skin> map_skins_of(const PublishedTile& tile, const MipTexture& normal_map,
+                               std::span<const std::uint32_t> border) {
+  const Shading& shading = tile.shading;
+  std::vector<Skin> skins;
+  for (const TileTriangle& t : drawn_triangles(tile, border)) {
+    Skin& skin = skins.emplace_back();
+    skin.normal_map = &normal_map;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TangentCode& tangent = shading.tangents[raw(t[k])];
+      skin.texcoords[k] = shading.texcoords[raw(t[k])];
+      skin.tangents[k] = {float(tangent[0]), float(tangent[1]), float(tangent[2])};
+      skin.is_mirrored = tangent[3] < 0;
+    }
+  }
+  return skins;
+}
+
 AttributeLayout drawn_layout(std::span<const Facet> root, AttributeLayout layout) {
   const auto is_white = [](const Facet& facet) {
     return std::ranges::all_of(facet, [](const FacetCorner& corner) {

@@ -1,8 +1,10 @@
 #include "texture/bake.h"
 
 #include "hierarchy/bounds.h"
+#include "texture/distinct_triangles.h"
 #include "texture/fill.h"
 #include "texture/nearest_triangle.h"
+#include "texture/sample_blocks.h"
 #include "texture/texel_fit.h"
 #include "texture/texel_light.h"
 #include "texture/texel_sampler.h"
@@ -12,15 +14,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 namespace meshhier::texture {
 namespace {
-
-/// How far a surface that faces alike may be, in texels, so that it is taken before a nearer one
-/// that does not.
-constexpr double kReach = 32;
 
 /// The triangles of several surfaces, numbered through.
 NearestTriangle joined(std::span<const TexturedSurface> surfaces, std::span<const Vec3f> tile) {
@@ -44,43 +41,6 @@ std::uint32_t channels_of(std::span<const TexturedSurface> surfaces) {
   }
   return channels;
 }
-
-/// Triangles, each once.
-class DistinctTriangles {
- public:
-  explicit DistinctTriangles(std::span<const TileTriangle> all) : number_(all.size()) {
-    std::vector<std::uint32_t> order(all.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return all[a] != all[b] ? all[a] < all[b] : a < b;
-    });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const bool again = i > 0 && all[order[i]] == all[order[i - 1]];
-      number_[order[i]] = again ? number_[order[i - 1]] : order[i];
-    }
-    for (std::uint32_t t = 0; t < all.size(); ++t) {
-      if (number_[t] == t) {
-        number_[t] = static_cast<std::uint32_t>(triangles_.size());
-        triangles_.push_back(all[t]);
-      } else {
-        number_[t] = number_[number_[t]];  // of the first, which came before
-      }
-    }
-  }
-  std::span<const TileTriangle> triangles() const { return triangles_; }
-  /// Of all triangles, from one entry for each distinct one.
-  std::vector<CornerTexcoords> expanded(const std::vector<CornerTexcoords>& of_distinct) const {
-    std::vector<CornerTexcoords> all;
-    all.reserve(number_.size());
-    for (const std::uint32_t number : number_)
-      all.push_back(of_distinct[number]);
-    return all;
-  }
-
- private:
-  std::vector<std::uint32_t> number_;  ///< in triangles_, of each triangle
-  std::vector<TileTriangle> triangles_;
-};
 
 /// Takes the colours of samples from finer surfaces.
 class Painter {
@@ -118,8 +78,6 @@ class Painter {
   }
 
  private:
-  /// Texels of a block along each side.
-  static constexpr std::uint32_t kBlock = 8;
   /// What is compared of a picture: one in so many texels along each side.
   static constexpr std::uint32_t kLostStep = 4;
   /// Of 8-bit values: 32 decibels.
@@ -140,52 +98,23 @@ class Painter {
     return {plane.left, plane.top, plane.right, plane.bottom};
   }
 
-  /// Block by block of texels, which have much around them in common.
   void measure(const ChartPlane& plane, TexelMeans& means) {
-    for (std::uint32_t top = plane.top; top < plane.bottom; top += kBlock) {
-      for (std::uint32_t left = plane.left; left < plane.right; left += kBlock) {
-        const TexelRange block{left, top, std::min(left + kBlock, plane.right),
-                               std::min(top + kBlock, plane.bottom)};
-        look_around(block);
-        measure(plane, block, means);
-      }
-    }
-  }
-
-  void measure(const ChartPlane& plane, const TexelRange& block, TexelMeans& means) {
-    for (std::uint32_t y = block.top; y < block.bottom; ++y) {
-      for (std::uint32_t i = block.left; i < block.right; ++i) {
-        // To and fro: each texel is beside the last one.
-        const std::uint32_t x = (y - block.top) % 2 == 0 ? i : block.left + block.right - 1 - i;
-        const std::size_t number = std::size_t{y} * means.width + x;
-        const TexelSample& sample = samples_.at(x, y);
-        if (sample.triangle == kNoFace || means.is_known[number] != 0)
-          continue;
-        if (const NearestTriangle::Found found = find(plane, sample, sample.point);
-            found.triangle != NearestTriangle::kNone) {
-          means.lights[number] = sampler_.around(found);
-          means.is_known[number] = 1;
-        }
-      }
-    }
-  }
-
-  void look_around(const TexelRange& block) {
-    BoundsD box;
-    for (std::uint32_t y = block.top; y < block.bottom; ++y) {
-      for (std::uint32_t x = block.left; x < block.right; ++x) {
-        const TexelSample& sample = samples_.at(x, y);
-        if (sample.triangle != kNoFace)
-          box.add(sample.point);
-      }
-    }
-    if (!box.empty())
-      nearest_.look_around(box);
+    for_each_sample(samples_, plane, nearest_,
+                    [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
+                      const std::size_t number = std::size_t{y} * means.width + x;
+                      if (means.is_known[number] != 0)
+                        return;
+                      if (const NearestTriangle::Found found = find(plane, sample, sample.point);
+                          found.triangle != NearestTriangle::kNone) {
+                        means.lights[number] = sampler_.around(found);
+                        means.is_known[number] = 1;
+                      }
+                    });
   }
 
   NearestTriangle::Found find(const ChartPlane& plane, const TexelSample& sample,
                               const Vec3d& point) {
-    return nearest_(point, samples_.facing(plane, sample), kReach * texel_);
+    return nearest_(point, samples_.facing(plane, sample), kFacingReach * texel_);
   }
 
   images::Image stored(const TexelMeans& means, std::uint32_t height) const {

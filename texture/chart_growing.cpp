@@ -13,11 +13,6 @@ constexpr double kLeastOwn = 0.4;
 /// How many rings of neighbours the surroundings are.
 constexpr int kRings = 5;
 
-Vec3d unit(const Vec3d& v) {
-  const double size = length(v);
-  return size > 0 ? v * (1 / size) : Vec3d{};
-}
-
 std::vector<Vec3d> smooth_normals(const Faces& faces) {
   std::vector<Vec3d> smooth(faces.normals.size());
   for (std::size_t t = 0; t < smooth.size(); ++t)
@@ -33,7 +28,7 @@ std::vector<Vec3d> smooth_normals(const Faces& faces) {
     smooth = std::move(next);
   }
   for (Vec3d& normal : smooth)
-    normal = unit(normal);
+    normal = direction_of(normal);
   return smooth;
 }
 
@@ -72,7 +67,7 @@ class Grower {
         queue_.push_back(other);
         sum = sum + faces_.normals[other] * faces_.areas[other];
         if (queue_.size() > kSteady)
-          normal = unit(sum);
+          normal = direction_of(sum);
       }
     }
     sums_.push_back(sum);
@@ -105,7 +100,7 @@ class Grower {
   }
 
   bool may_join(std::uint32_t chart, std::uint32_t other) const {
-    const Vec3d normal = unit(sums_[chart] + sums_[other]);
+    const Vec3d normal = direction_of(sums_[chart] + sums_[other]);
     return std::ranges::all_of(members_[chart], [&](std::uint32_t t) {
       return faces_.areas[t] == 0 || dot(normal, faces_.normals[t]) >= kLeastOwn;
     });

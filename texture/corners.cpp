@@ -169,4 +169,26 @@ Shading with_texcoords(const TileMesh& mesh, const Shading& normals,
   return Splitter(mesh, normals, corners)();
 }
 
+std::vector<TangentCode> tangents_of(const TileMesh& mesh, const Shading& shown,
+                                     std::span<const CornerTangents> corners) {
+  std::vector<TangentCode> tangents(shown.texcoords.size(), kNoTangent);
+  auto corner = corners.begin();
+  const auto give = [&](std::span<const TileTriangle> triangles) {
+    for (const TileTriangle& triangle : triangles) {
+      for (std::size_t k = 0; k < 3; ++k)
+        tangents[raw(triangle[k])] = (*corner)[k];
+      ++corner;
+    }
+  };
+  if (!shown.split_of.empty()) {
+    give(shown.interior);
+    give(shown.border);
+    return tangents;
+  }
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  give(numbers.numbered(mesh.interior, mesh.interior_wedges));
+  give(numbers.numbered(mesh.border, mesh.border_wedges));
+  return tangents;
+}
+
 }  // namespace meshhier::texture

@@ -2,16 +2,21 @@
 #pragma once
 
 #include "hierarchy/shading.h"
+#include "hierarchy/tangent_code.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace meshhier::texture {
 
 /// Of the three corners of a triangle, in its order.
 using CornerTexcoords = std::array<Vec2f, 3>;
+
+/// For a normal map, likewise.
+using CornerTangents = std::array<TangentCode, 3>;
 
 /// The part of its picture that a triangle covers.
 double area_of(const CornerTexcoords& corners);
@@ -23,5 +28,10 @@ double area_of(const CornerTexcoords& corners);
 /// corners of triangles of equal vertices.
 Shading with_texcoords(const TileMesh& mesh, const Shading& normals,
                        std::span<const CornerTexcoords> corners);
+
+/// Of all vertices and splits that with_texcoords() gave: those of their corners, one a triangle,
+/// interior ones first; kNoTangent of vertices without a triangle. O(n).
+std::vector<TangentCode> tangents_of(const TileMesh& mesh, const Shading& shown,
+                                     std::span<const CornerTangents> corners);
 
 }  // namespace meshhier::texture

@@ -13,6 +13,12 @@ namespace meshhier::texture {
 
 inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
 
+/// Of length 1; 0 of what has no length.
+inline Vec3d direction_of(const Vec3d& vector) {
+  const double size = length(vector);
+  return size > 0 ? vector * (1 / size) : Vec3d{};
+}
+
 struct Faces {
   std::vector<Vec3d> normals;  ///< of length 1; 0 if there is no area
   std::vector<double> areas;

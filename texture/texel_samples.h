@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace meshhier::texture {
@@ -39,6 +40,11 @@ class TexelSamples {
   }
   /// One a triangle.
   std::vector<CornerTexcoords> texcoords() const;
+  /// Of a chart of the layout.
+  std::span<const std::uint32_t> triangles_of(std::size_t chart) const {
+    return std::span(charts_.triangles)
+        .subspan(charts_.begin_of(chart), charts_.ends[chart] - charts_.begin_of(chart));
+  }
 
  private:
   template <class Visit>

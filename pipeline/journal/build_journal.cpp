@@ -373,7 +373,7 @@ bool BuildJournal::can_make_all_leaves() const {
 /// Pictures are needed as long as a partition has none of its own.
 bool BuildJournal::can_make_all_textures() {
   const auto left = [](char has) { return has == 0; };
-  return textures_ == nullptr || std::ranges::none_of(has_texture_.back(), left) ||
+  return pictures_ == nullptr || std::ranges::none_of(has_texture_.back(), left) ||
          restore_pictures();
 }
 
@@ -386,7 +386,9 @@ std::uint64_t BuildJournal::steps() const {
   for (int l = 0; l < raw(forest_.tree().depth()); ++l)
     tiles += has_tile_[static_cast<std::size_t>(l)].size();
   const std::uint64_t published = forest_.tree().tile_count();
-  return chunks_.count() + tiles + published + (textures_ != nullptr ? published : 0);
+  const std::uint64_t pictures =
+      pictures_ != nullptr ? published : published - forest_.tree().partition_count();
+  return chunks_.count() + tiles + published + (textures_ != nullptr ? pictures : 0);
 }
 
 std::vector<IndexedStep> BuildJournal::take_steps(Level level) {

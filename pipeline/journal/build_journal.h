@@ -80,8 +80,8 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
 struct Workpieces {
   Forest& forest;
   Chunks& chunks;
-  TextureStore* textures = nullptr;  ///< null, both, if the mesh has none
-  images::ImageStore* pictures = nullptr;
+  TextureStore* textures = nullptr;        ///< null if tiles have neither pictures nor normal maps
+  images::ImageStore* pictures = nullptr;  ///< null if the mesh has none
 };
 
 /// A picture that could not be decoded, and why.

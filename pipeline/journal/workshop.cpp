@@ -60,8 +60,9 @@ Workshop::Workshop(const std::filesystem::path& directory, const AttributeLayout
       journal(open_journal(pieces(context))) {}
 
 Workpieces Workshop::pieces(const StageContext& context) {
-  return context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
-                                             : Workpieces{forest, chunks};
+  if (context.plan.textures.is_textured())
+    return {forest, chunks, &textures, &pictures};
+  return {forest, chunks, context.plan.job.normal_map_side > 0 ? &textures : nullptr};
 }
 
 Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity,

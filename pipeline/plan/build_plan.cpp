@@ -109,7 +109,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.largest_tile =
       std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
   job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
-  job.computes_normals = config.storage.normals == config::Normals::smooth &&
+  job.computes_normals = config.storage.normals != config::Normals::none &&
                          !mesh.attributes.normals && mesh.face_count > 0 &&
                          !(textures.is_textured() && config.texture.format.unlit);
   job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes) +
@@ -119,6 +119,9 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.has_map = config.placement.crs.has_value();
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);
+  if (config::makes_maps(config.storage.normals) && !job.textured && mesh.face_count > 0)
+    job.normal_map_side = config.normal_map.texels;
+  job.normal_map_format = config.normal_map.format.format;
   return job;
 }
 

@@ -36,6 +36,8 @@ struct JobSize {
   std::uint64_t picture_bytes = 0;      ///< of these, decoded into scratch space
   std::uint64_t decoder_bytes = 0;      ///< what decoding the hungriest of them holds
   std::uint64_t adding_bytes = 0;       ///< what storing the widest of them holds
+  std::uint32_t normal_map_side = 0;    ///< of a simplified tile, texels at most; 0: there are none
+  ImageFormat normal_map_format = ImageFormat::jpeg;
   bool draws_preview = false;
   bool has_map = false;  ///< PROJ places the model
 

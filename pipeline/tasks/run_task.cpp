@@ -7,6 +7,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/leaves_stage.h"
+#include "pipeline/normal_map_stage.h"
 #include "pipeline/plan/build_stats.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/read_stage.h"
@@ -293,6 +294,8 @@ void Task::leaves(const StageContext& context) {
 }
 
 void Task::textures(const LevelRange& levels, const StageContext& context) {
+  if (context.plan.job.normal_map_side > 0 && levels.top < levels.end)
+    make_normal_maps(workshop_->forest, workshop_->textures, workshop_->journal, levels, context);
   if (!context.plan.textures.is_textured() || levels.top == levels.end)
     return;
   if (!workshop_->journal.restore_pictures())

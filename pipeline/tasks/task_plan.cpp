@@ -293,7 +293,8 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
   plan.tasks = request.tasks;
   plan.program = request.program;
   const importing::MeshInput input = open_input(plan.config, files);
-  plan.textured = input.needs_import() && plan.config.texture.use;
+  plan.textured = (input.needs_import() && plan.config.texture.use) ||
+                  config::makes_maps(plan.config.storage.normals);
   plan.levels = count_levels(plan.config, input, request.tasks);
   plan.fingerprint = fingerprint_of(plan);
   if (is_there(plan, request.work, files)) {

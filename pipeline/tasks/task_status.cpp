@@ -79,6 +79,7 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
   // Of the time of `partition`: a sweep, the vertices, and twice as many triangles.
   constexpr double kSweep = 0.25, kVertices = 0.25, kTriangles = 0.5;
   const double partition = by_stage["partition"];
+  const double texture = by_stage["texture"] + by_stage["normal maps"];  // a mesh has one of them
   double rest = 1, texture_rest = 1;
   for (const TaskStage& stage : stages_of(plan)) {
     double& seconds = by_task_stage[stage.name];
@@ -86,7 +87,7 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
       case TaskKind::read:
         for (const auto& [name, time] : by_stage) {
           if (name != "partition" && name != "leaves" && name != "simplify" && name != "texture" &&
-              name != "publish" && name != "outline" && name != "images")
+              name != "normal maps" && name != "publish" && name != "outline" && name != "images")
             seconds += time;
         }
         seconds += partition * kSweep;
@@ -113,11 +114,11 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
         seconds = by_stage["images"];
         break;
       case TaskKind::texture:
-        seconds = by_stage["texture"] * share(stage.levels_up + 1);
+        seconds = texture * share(stage.levels_up + 1);
         texture_rest -= share(stage.levels_up + 1);
         break;
       case TaskKind::texture_top:
-        seconds = by_stage["texture"] * texture_rest;
+        seconds = texture * texture_rest;
         break;
       case TaskKind::publish:
         seconds = by_stage["publish"];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <tuple>
 #include <utility>
 
 namespace meshhier::pipeline {
@@ -16,52 +17,76 @@ std::span<const T> all_of(const std::vector<T>& values) {
   return values;
 }
 
+/// Two of bytes at kImageBytes, the picture's and the normal map's.
+using TextureHead = std::array<std::uint64_t, 11>;
+constexpr std::size_t kImageBytes = 4;
+
 std::vector<std::byte> encode(const TileTexture& texture) {
   const TileImage& image = texture.image;
-  const std::array<std::uint64_t, 6> head{static_cast<std::uint64_t>(image.format),
-                                          static_cast<std::uint64_t>(image.alpha),
-                                          image.width,
-                                          image.height,
-                                          image.bytes.size(),
-                                          texture.corners.size()};
-  storage::Packer packer(sizeof head + image.bytes.size() +
-                         texture.corners.size() * sizeof(texture::CornerTexcoords));
+  const TileImage& map = texture.normal_map;
+  const TextureHead head{static_cast<std::uint64_t>(image.format),
+                         static_cast<std::uint64_t>(image.alpha),
+                         image.width,
+                         image.height,
+                         image.bytes.size(),
+                         map.bytes.size(),
+                         texture.corners.size(),
+                         static_cast<std::uint64_t>(map.format),
+                         map.width,
+                         map.height,
+                         texture.tangents.size()};
+  storage::Packer packer(sizeof head + image.bytes.size() + map.bytes.size() +
+                         texture.corners.size() * sizeof(texture::CornerTexcoords) +
+                         texture.tangents.size() * sizeof(texture::CornerTangents));
   packer.put(std::span<const std::uint64_t>(head));
   packer.put(all_of(texture.corners));
+  packer.put(all_of(texture.tangents));
   packer.put(all_of(image.bytes));
+  packer.put(all_of(map.bytes));
   return packer.take();
 }
 
 TileTexture decode_texture(std::span<const std::byte> bytes) {
   storage::Unpacker unpacker(bytes);
-  const auto head = unpacker.get<std::uint64_t>(6);
+  const auto head = unpacker.get<std::uint64_t>(std::tuple_size_v<TextureHead>);
   TileTexture texture;
   texture.image.format = static_cast<ImageFormat>(head[0]);
   texture.image.alpha = static_cast<AlphaMode>(head[1]);
   texture.image.width = static_cast<std::uint32_t>(head[2]);
   texture.image.height = static_cast<std::uint32_t>(head[3]);
-  texture.corners = unpacker.get<texture::CornerTexcoords>(head[5]);
-  texture.image.bytes = unpacker.get<std::byte>(head[4]);
+  texture.normal_map.format = static_cast<ImageFormat>(head[7]);
+  texture.normal_map.width = static_cast<std::uint32_t>(head[8]);
+  texture.normal_map.height = static_cast<std::uint32_t>(head[9]);
+  texture.corners = unpacker.get<texture::CornerTexcoords>(head[6]);
+  texture.tangents = unpacker.get<texture::CornerTangents>(head[10]);
+  texture.image.bytes = unpacker.get<std::byte>(head[kImageBytes]);
+  texture.normal_map.bytes = unpacker.get<std::byte>(head[kImageBytes + 1]);
   unpacker.finish();
   return texture;
 }
 
+using SourceHead = std::array<std::uint64_t, 9>;
+
 std::vector<std::byte> encode(const BakeSource& source) {
-  const std::array<std::uint64_t, 6> head{
+  const texture::NormalTexels& directions = source.directions;
+  const SourceHead head{
       source.positions.size(), source.triangles.size(), source.image.width,
-      source.image.height,     source.image.channels,   static_cast<std::uint64_t>(source.alpha)};
+      source.image.height,     source.image.channels,   static_cast<std::uint64_t>(source.alpha),
+      directions.width(),      directions.height(),     directions.known().size()};
   storage::Packer packer(sizeof head + source.bytes());
   packer.put(std::span<const std::uint64_t>(head));
   packer.put(all_of(source.positions));
   packer.put(all_of(source.triangles));
   packer.put(all_of(source.corners));
   packer.put(all_of(source.image.texels));
+  packer.put(directions.words());
+  packer.put(directions.known());
   return packer.take();
 }
 
 BakeSource decode_source(std::span<const std::byte> bytes) {
   storage::Unpacker unpacker(bytes);
-  const auto head = unpacker.get<std::uint64_t>(6);
+  const auto head = unpacker.get<std::uint64_t>(std::tuple_size_v<SourceHead>);
   BakeSource source;
   source.positions = unpacker.get<Vec3f>(head[0]);
   source.triangles = unpacker.get<TileTriangle>(head[1]);
@@ -71,6 +96,11 @@ BakeSource decode_source(std::span<const std::byte> bytes) {
   source.image.channels = static_cast<std::uint32_t>(head[4]);
   source.image.texels = unpacker.get<std::uint8_t>(head[2] * head[3] * head[4]);
   source.alpha = static_cast<AlphaMode>(head[5]);
+  const auto width = static_cast<std::uint32_t>(head[6]);
+  const auto height = static_cast<std::uint32_t>(head[7]);
+  auto words = unpacker.get<std::uint64_t>(texture::NormalTexels::word_count(width, height));
+  source.directions = {width, height, std::move(words),
+                       unpacker.get<texture::NormalTexel>(head[8])};
   unpacker.finish();
   return source;
 }
@@ -79,7 +109,8 @@ BakeSource decode_source(std::span<const std::byte> bytes) {
 
 std::uint64_t BakeSource::bytes() const {
   return positions.size() * sizeof(Vec3f) + triangles.size() * sizeof(TileTriangle) +
-         corners.size() * sizeof(texture::CornerTexcoords) + image.texels.size();
+         corners.size() * sizeof(texture::CornerTexcoords) + image.texels.size() +
+         directions.bytes() + normals.size() * sizeof(texture::CornerNormals);
 }
 
 TextureStore::TextureStore(const Tree& tree, storage::ScratchFile& scratch) {
@@ -102,6 +133,13 @@ TileTexture TextureStore::texture(NodeId node) const {
 }
 
 std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
+  return source(node, [&] {
+    return decode_source(levels_[raw(node.level)].sources.view(node.index).bytes());
+  });
+}
+
+std::shared_ptr<const BakeSource> TextureStore::source(
+    NodeId node, const std::function<BakeSource()>& make) const {
   const Key key{node.level, node.index};
   {
     const std::lock_guard lock(mutex_);
@@ -110,8 +148,7 @@ std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
       return found->second->source;
     }
   }
-  const auto source = std::make_shared<const BakeSource>(
-      decode_source(levels_[raw(node.level)].sources.view(node.index).bytes()));
+  const auto source = std::make_shared<const BakeSource>(make());
   const std::lock_guard lock(mutex_);
   if (found_.contains(key))
     return source;
@@ -126,17 +163,35 @@ std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
   return source;
 }
 
-std::uint64_t TextureStore::image_bytes() const {
-  std::uint64_t sum = 0;
+template <class Visit>
+void TextureStore::for_each_size(const Visit& visit) const {
   for (const LevelStore& level : levels_) {
     for (std::size_t i = 0; i < level.textures.count(); ++i) {
       if (level.textures.size(i) == 0)
-        continue;  // an early node
-      std::array<std::uint64_t, 6> head{};
+        continue;  // an early node, or a partition without a picture
+      TextureHead head{};
       level.textures.read(i, 0, std::as_writable_bytes(std::span(head)));
-      sum += head[4];
+      if (!visit(head[kImageBytes], head[kImageBytes + 1]))
+        return;
     }
   }
+}
+
+bool TextureStore::has_normal_maps() const {
+  bool has = false;
+  for_each_size([&](std::uint64_t, std::uint64_t map) {
+    has = map > 0;
+    return !has;
+  });
+  return has;
+}
+
+std::uint64_t TextureStore::image_bytes() const {
+  std::uint64_t sum = 0;
+  for_each_size([&](std::uint64_t picture, std::uint64_t map) {
+    sum += picture + map;
+    return true;
+  });
   return sum;
 }
 

@@ -8,10 +8,13 @@
 #include "storage/io/blob_store.h"
 #include "texture/bake.h"
 #include "texture/corners.h"
+#include "texture/normal_bake.h"
+#include "texture/normal_texels.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -35,17 +38,22 @@ constexpr std::uint64_t picture_cache_bytes(std::uint64_t work_bytes) {
 /// What a tile is published with. Its triangles are those that Forest::load() gives, interior ones
 /// first, of a partition once its vertices are ordered.
 struct TileTexture {
-  TileImage image;                                ///< empty if the tile has no triangles
-  std::vector<texture::CornerTexcoords> corners;  ///< one a triangle
+  TileImage image;                                  ///< empty if the tile has no triangles
+  std::vector<texture::CornerTexcoords> corners;    ///< one a triangle
+  TileImage normal_map{};                           ///< empty if the tile has none
+  std::vector<texture::CornerTangents> tangents{};  ///< with a normal map one a triangle
 };
 
-/// What the pictures of coarser tiles are made of: a tile with its picture, perhaps reduced.
+/// What the pictures and normal maps of coarser tiles are made of: a tile with its picture, perhaps
+/// reduced, or with its directions.
 struct BakeSource {
   std::vector<Vec3f> positions;  ///< of its places
   std::vector<TileTriangle> triangles;
   std::vector<texture::CornerTexcoords> corners;
   images::Image image;
   AlphaMode alpha = AlphaMode::opaque;
+  texture::NormalTexels directions{};
+  std::vector<texture::CornerNormals> normals{};  ///< of partitions in place of `directions`
 
   texture::TexturedSurface surface() const { return {positions, triangles, corners, &image}; }
   std::uint64_t bytes() const;
@@ -69,9 +77,14 @@ class TextureStore {
            const TexelSizes& texels);
   TileTexture texture(NodeId node) const;
   std::shared_ptr<const BakeSource> source(NodeId node) const;
+  /// The same of what was never put: makes it unless it is still in memory.
+  std::shared_ptr<const BakeSource> source(NodeId node,
+                                           const std::function<BakeSource()>& make) const;
   const TexelSizes& texels(NodeId node) const {
     return levels_[raw(node.level)].texels[node.index];
   }
+  /// Whether any tile has one. Requires that all tiles' are there.
+  bool has_normal_maps() const;
   /// Of all published pictures.
   std::uint64_t image_bytes() const;
   /// Of what the largest tile is published with.
@@ -92,6 +105,10 @@ class TextureStore {
     Key key;
     std::shared_ptr<const BakeSource> source;
   };
+
+  /// Calls visit(bytes of the picture, bytes of the normal map) of each tile, until it is false.
+  template <class Visit>
+  void for_each_size(const Visit& visit) const;
 
   std::vector<LevelStore> levels_;
   std::uint64_t cache_bytes_ = 0;

@@ -246,7 +246,10 @@ class _Reader:
     def texcoords(self) -> Optional[NDArray[np.float32]]:
         if self.tile.get("rawTexcoords", -1) >= 0:
             return self.spread(self.section("rawTexcoords", "<f4", 2 * self.unsplit).reshape(-1, 2))
-        return self.accessor(self.accessors["TEXCOORD_0"]).copy() if "TEXCOORD_0" in self.accessors else None
+        is_of_normal_map = self.tile.get("normalMapWidth", 0) > 0 and "TEXCOORD_1" not in self.accessors
+        if is_of_normal_map or "TEXCOORD_0" not in self.accessors:
+            return None
+        return self.accessor(self.accessors["TEXCOORD_0"]).copy()
 
     def values(self) -> dict[str, NDArray[Any]]:
         scalars = self.manifest.scalars

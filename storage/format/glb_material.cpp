@@ -35,6 +35,13 @@ Json material_json(std::size_t texture, AlphaMode alpha, bool unlit) {
   return material;
 }
 
+Json normal_texture_json(std::size_t texture, unsigned texcoord_set) {
+  Json normals = {{"index", texture}};
+  if (texcoord_set > 0)
+    normals["texCoord"] = texcoord_set;
+  return normals;
+}
+
 Json texture_json(std::size_t image, ImageFormat format) {
   Json texture = {{"sampler", 0}};
   if (format == ImageFormat::webp)

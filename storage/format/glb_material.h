@@ -24,6 +24,9 @@ nlohmann::ordered_json material_json();
 /// The same with a texture, by its number; if `unlit`, the document uses kUnlitExtension.
 nlohmann::ordered_json material_json(std::size_t texture, AlphaMode alpha, bool unlit);
 
+/// Of a texture that is a normal map, by its number, with the coordinates of that set.
+nlohmann::ordered_json normal_texture_json(std::size_t texture, unsigned texcoord_set);
+
 /// Of an image, by its number, with the sampler 0; of a WebP the document requires kWebpExtension.
 nlohmann::ordered_json texture_json(std::size_t image, ImageFormat format);
 /// Linear, with mipmaps, without repeats.

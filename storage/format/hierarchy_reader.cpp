@@ -30,10 +30,20 @@ Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory
 void check_shading(std::span<const TileRecord> records, const Manifest& manifest,
                    const std::string& name) {
   const auto has_splits = [](const TileRecord& record) { return record.split_count > 0; };
-  if (!manifest.computed_normals && !manifest.textures && std::ranges::any_of(records, has_splits))
-    throw Error(ErrorCode::corrupt, name + ": splits without computed normals or textures");
+  if (!manifest.computed_normals && !manifest.textures && !manifest.normal_maps &&
+      std::ranges::any_of(records, has_splits)) {
+    throw Error(ErrorCode::corrupt,
+                name + ": splits without computed normals, textures or normal maps");
+  }
+  if (manifest.normal_maps.has_value() !=
+      std::ranges::any_of(records, &TileRecord::has_normal_map)) {
+    throw Error(ErrorCode::corrupt,
+                name + ": normal maps are not where the manifest says that they are");
+  }
   for (const TileRecord& record : records) {
     const bool has_triangles = record.interior_count > 0 || record.border_count > 0;
+    if (record.has_normal_map)
+      continue;
     const bool has_image = record.image_width > 0;
     if (has_image != (manifest.textures && has_triangles)) {
       throw Error(
@@ -71,7 +81,9 @@ const char* difference(const PublishedTile& tile, const TileRecord& record) {
     return "interior triangles";
   if (mesh.border.size() != record.border_count)
     return "border triangles";
-  if (tile.image.width != record.image_width || tile.image.height != record.image_height)
+  const TileImage& image = record.has_normal_map ? tile.normal_map : tile.image;
+  if (tile.normal_map.empty() == record.has_normal_map || image.width != record.image_width ||
+      image.height != record.image_height)
     return "picture's sides";
   if (bounds_of(mesh.vertices.positions) != record.bounds)
     return "bounds";
@@ -92,6 +104,7 @@ TileFormat format_of(const Manifest& manifest) {
   format.computed_normals = manifest.computed_normals;
   format.textures = manifest.textures;
   format.screen_colours = manifest.screen_colours;
+  format.normal_maps = manifest.normal_maps;
   return format;
 }
 

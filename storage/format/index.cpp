@@ -19,7 +19,7 @@ namespace {
 //   header                                     record
 //   offset  bytes  what                        offset  bytes  what
 //        0      8  magic "MHTILES\n"                0      4  level
-//        8      4  version, 4                       4      4  index
+//        8      4  version, 4 or 5                  4      4  index
 //       12      4  bytes of a record, 120           8      4  own places
 //       16      8  number of records               12      4  boundary places
 //       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
@@ -38,14 +38,17 @@ namespace {
 //                                                  88      4  width of the picture
 //                                                  92      4  height of the picture
 //                                                  96      4  f32 texel
-//                                                 100      4  0
+//                                                 100      4  version 5: 1, the picture is a
+//                                                            normal map; else 0
 //                                                 104      8  bytes of the file
 //                                                 112      8  XXH3-64 of the file
 constexpr std::string_view kIndexMagic = "MHTILES\n";
-constexpr std::uint32_t kIndexVersion = 4;
+/// Of hierarchies with normal maps, and of others.
+constexpr std::uint32_t kIndexVersion = 5;
+constexpr std::uint32_t kNoMapsIndexVersion = 4;
 constexpr std::size_t kIndexHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
-constexpr std::size_t kPaddingOffset = 100;
+constexpr std::size_t kMapOffset = 100;
 constexpr std::size_t kRecordBytes = 120;
 
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
@@ -64,7 +67,7 @@ void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value : {record.split_count, record.image_width, record.image_height})
     append_little(bytes, value);
   append_little(bytes, record.texel);
-  append_little(bytes, std::uint32_t{0});
+  append_little(bytes, std::uint32_t{record.has_normal_map});
   append_little(bytes, record.file_bytes);
   append_little(bytes, record.checksum);
 }
@@ -100,6 +103,7 @@ TileRecord load_record(const std::byte* from) {
   record.image_width = count(88);
   record.image_height = count(92);
   record.texel = real(96);
+  record.has_normal_map = count(kMapOffset) != 0;
   record.file_bytes = load_little<std::uint64_t>(from + 104);
   record.checksum = load_little<std::uint64_t>(from + 112);
   return record;
@@ -116,6 +120,8 @@ const char* image_flaw_of(const TileRecord& record) {
     return "size of the picture";
   if (most > 0 && record.interior_count == 0 && record.border_count == 0)
     return "picture (of no triangle)";
+  if (most == 0 && record.has_normal_map)
+    return "normal map (without a size)";
   if (!is_measure(record.texel) || (most == 0 && record.texel > 0))
     return "texel";
   return nullptr;
@@ -180,8 +186,9 @@ class IndexReader {
       fail("does not start with MHTILES: not an index");
     }
     const auto version = load_little<std::uint32_t>(bytes_.data() + 8);
-    if (version != kIndexVersion) {
-      fail(fmt::format("version is {}, expected {}{}", version, kIndexVersion,
+    if (version != kIndexVersion && version != kNoMapsIndexVersion) {
+      fail(fmt::format("version is {}, expected {} or {}{}", version, kNoMapsIndexVersion,
+                       kIndexVersion,
                        version > kIndexVersion ? " (written by a newer meshhier)" : ""));
     }
     const auto record_bytes = load_little<std::uint32_t>(bytes_.data() + 12);
@@ -204,6 +211,10 @@ class IndexReader {
     }
   }
 
+  bool may_have_maps() const {
+    return load_little<std::uint32_t>(bytes_.data() + 8) == kIndexVersion;
+  }
+
   TileRecord read_record(std::size_t number, NodeId node) const {
     const std::byte* from = bytes_.data() + kIndexHeaderBytes + number * kRecordBytes;
     const auto level = load_little<std::uint32_t>(from);
@@ -212,7 +223,7 @@ class IndexReader {
       fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
                        raw(node.level), node.index));
     }
-    if (load_little<std::uint32_t>(from + kPaddingOffset) != 0)
+    if (load_little<std::uint32_t>(from + kMapOffset) > (may_have_maps() ? 1 : 0))
       fail(fmt::format("tile {}/{}: bytes that have to be 0 are not", level, index));
     const TileRecord record = load_record(from);
     if (const char* flaw = flaw_of(record, tree_)) {
@@ -250,11 +261,12 @@ std::uint64_t index_bytes(std::uint64_t records) {
 }
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
+  const bool has_maps = std::ranges::any_of(records, &TileRecord::has_normal_map);
   std::vector<std::byte> bytes;
   bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);
   const auto magic = std::as_bytes(std::span(kIndexMagic));
   bytes.insert(bytes.end(), magic.begin(), magic.end());
-  append_little(bytes, kIndexVersion);
+  append_little(bytes, has_maps ? kIndexVersion : kNoMapsIndexVersion);
   append_little(bytes, static_cast<std::uint32_t>(kRecordBytes));
   append_little(bytes, std::uint64_t{records.size()});
   append_little(bytes, std::uint64_t{0});

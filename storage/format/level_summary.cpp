@@ -151,12 +151,14 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.computed_normals = format.computed_normals;
     shape.textures = format.textures;
     shape.screen_colours = format.screen_colours;
-    shape.image.bytes = texel_count(record) * 3;
+    shape.normal_maps = format.normal_maps;
+    (record.has_normal_map ? shape.normal_map : shape.image).bytes = texel_count(record) * 3;
     shape.interior = record.interior_count;
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, format.attributes);
-    for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord,
-                            Part::interior, Part::border, Part::values, Part::image})
+    for (const Part part : {Part::position, Part::normal, Part::tangent, Part::colour,
+                            Part::texcoord, Part::map_texcoord, Part::interior, Part::border,
+                            Part::values, Part::image, Part::normal_map})
       sizes.raw_bytes += plan[part].bytes();
     sizes.bytes += record.file_bytes;
     sizes.vertices += record.own_count;

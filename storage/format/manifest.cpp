@@ -45,6 +45,11 @@ Json storage_json(const Manifest& manifest) {
   }
   if (manifest.computed_normals)
     storage["normals"] = kComputedNormals;
+  if (manifest.normal_maps) {
+    storage["normal_map"] = {
+        {"format", kImageFormatNames[static_cast<std::size_t>(manifest.normal_maps->format)]},
+        {"quality", manifest.normal_maps->quality}};
+  }
   if (manifest.textures)
     storage["texture"] = texture_storage_json(*manifest.textures);
   return storage;
@@ -182,6 +187,21 @@ std::optional<TextureFormat> read_textures(const JsonObject& object, const Sourc
     texture.wrong("quality", "at least 1");
   textures.unlit = texture.boolean("unlit");
   return textures;
+}
+
+std::optional<NormalMapFormat> read_normal_maps(const JsonObject& object,
+                                                const SourceSummary& source) {
+  if (!object.has("normal_map"))
+    return std::nullopt;
+  if (source.textures)
+    object.wrong("normal_map", "not to be there beside textures");
+  const JsonObject map = object.object("normal_map");
+  NormalMapFormat format;
+  format.format = read_choice<ImageFormat>(map, "format", kImageFormatNames);
+  format.quality = static_cast<int>(map.count("quality", 100));
+  if (format.quality == 0)
+    map.wrong("quality", "at least 1");
+  return format;
 }
 
 SourceTextures read_source_textures(const JsonObject& object) {
@@ -344,8 +364,9 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.first_view = read_view(object);
   const std::uint64_t version = object.count("format_version");
   manifest.screen_colours = version <= kScreenColoursFormatVersion;
-  if ((version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
-    object.wrong("format_version", "9 if and only if there are values");
+  if (version < kFormatVersion &&
+      (version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
+    object.wrong("format_version", "9 if and only if there are values, and no normal maps");
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =
@@ -361,6 +382,9 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.quantization = read_quantization(storage);
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);
+  manifest.normal_maps = read_normal_maps(storage, manifest.source);
+  if ((version == kFormatVersion) != manifest.normal_maps.has_value())
+    object.wrong("format_version", "10 if and only if there are normal maps");
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

@@ -17,8 +17,10 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 9;
-/// The same with tiles that have no values.
+inline constexpr int kFormatVersion = 10;
+/// The same without normal maps, of tiles with values.
+inline constexpr int kNoMapsFormatVersion = 9;
+/// The same with tiles that have no values either.
 inline constexpr int kNoValuesFormatVersion = 8;
 /// The one before: with tiles that hold colours as screens have them.
 inline constexpr int kScreenColoursFormatVersion = 7;
@@ -60,6 +62,7 @@ struct Manifest {
   bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
   std::optional<TextureFormat> textures;  ///< of tiles' pictures; if and only if the source has any
   bool screen_colours = false;            ///< as TileFormat's; of format versions up to 7
+  std::optional<NormalMapFormat> normal_maps{};  ///< some tiles have one
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
@@ -83,10 +86,11 @@ struct Manifest {
   }
 
   int format_version() const {
-    return !source.attributes.values.empty() ? kFormatVersion
-           : !screen_colours                 ? kNoValuesFormatVersion
-           : first_view                      ? kScreenColoursFormatVersion
-                                             : kOldestFormatVersion;
+    return normal_maps                         ? kFormatVersion
+           : !source.attributes.values.empty() ? kNoMapsFormatVersion
+           : !screen_colours                   ? kNoValuesFormatVersion
+           : first_view                        ? kScreenColoursFormatVersion
+                                               : kOldestFormatVersion;
   }
 };
 

@@ -106,7 +106,14 @@ class Writer {
     std::ranges::copy(std::as_bytes(normals), at(plan_[Part::normal]));
   }
 
+  void put_tangents(std::span<const TangentCode> tangents) {
+    std::ranges::copy(std::as_bytes(tangents), at(plan_[Part::tangent]));
+  }
+
+  /// In the tile's picture, or in its normal map.
   void put_texcoords(std::span<const Vec2f> texcoords) {
+    if (plan_.shape().has_normal_map())
+      return put_map_texcoords(texcoords);
     const Section& section = plan_[Part::texcoord];
     for (std::size_t v = 0; v < texcoords.size(); ++v) {
       put(section, v, 0, texcoords[v].u);
@@ -114,8 +121,8 @@ class Writer {
     }
   }
 
-  void put_image(std::span<const std::byte> bytes) {
-    std::ranges::copy(bytes, at(plan_[Part::image]));
+  void put_image(Part part, std::span<const std::byte> bytes) {
+    std::ranges::copy(bytes, at(plan_[part]));
   }
 
   void put_triangles(Part part, std::span<const TileTriangle> triangles) {
@@ -143,6 +150,14 @@ class Writer {
   template <Scalar T>
   void put(const Section& section, std::size_t element, std::size_t component, T value) {
     store_little(value, at(section) + element * section.stride + component * sizeof(T));
+  }
+
+  void put_map_texcoords(std::span<const Vec2f> texcoords) {
+    const Section& section = plan_[Part::map_texcoord];
+    for (std::size_t v = 0; v < texcoords.size(); ++v) {
+      put(section, v, 0, map_texcoord_number(texcoords[v].u));
+      put(section, v, 1, map_texcoord_number(texcoords[v].v));
+    }
   }
 
   static void put_stored(ValueType type, double value, std::byte* to) {
@@ -204,6 +219,10 @@ void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer)
   writer.put_triangles(Part::border, numbers.numbered(mesh.border, mesh.border_wedges));
 }
 
+bool has_map(const TileImage* normal_map) {
+  return normal_map != nullptr && !normal_map->empty();
+}
+
 /// Whether the tile has texture coordinates and a picture.
 [[maybe_unused]] bool is_textured(const TileMesh& mesh, const TileFormat& format) {
   return format.textures && !(mesh.interior.empty() && mesh.border.empty());
@@ -211,13 +230,14 @@ void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer)
 
 /// What Shading promises of its sizes.
 [[maybe_unused]] bool has_sound_size(const Shading& shading, const TileMesh& mesh,
-                                     const TileFormat& format) {
+                                     const TileFormat& format, bool has_map) {
   const std::size_t splits = shading.split_of.size();
   const std::size_t all = mesh.vertices.size() + mesh.copies.size() + splits;
   const bool split = splits > 0;
   return shading.normals.size() == (format.computed_normals ? all : 0) &&
-         shading.texcoords.size() == (is_textured(mesh, format) ? all : 0) &&
-         (!split || format.computed_normals || format.textures) &&
+         shading.texcoords.size() == (is_textured(mesh, format) || has_map ? all : 0) &&
+         shading.tangents.size() == (has_map ? all : 0) &&
+         (!split || format.computed_normals || format.textures || has_map) &&
          shading.interior.size() == (split ? mesh.interior.size() : 0) &&
          shading.border.size() == (split ? mesh.border.size() : 0);
 }
@@ -229,6 +249,15 @@ void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer)
   return image.format == stored_format(*format.textures, image.alpha) && !image.bytes.empty() &&
          std::min(image.width, image.height) >= 1 &&
          std::max(image.width, image.height) <= kMaxImageSide;
+}
+
+[[maybe_unused]] bool has_sound_map(const TileImage* map, const TileMesh& mesh,
+                                    const TileFormat& format) {
+  return !has_map(map) ||
+         (format.normal_maps && !format.textures && map->format == format.normal_maps->format &&
+          map->alpha == AlphaMode::opaque && !map->bytes.empty() &&
+          std::max(map->width, map->height) <= kMaxImageSide &&
+          !(mesh.interior.empty() && mesh.border.empty()));
 }
 
 [[maybe_unused]] bool has_sound_layout(const TileFormat& format) {
@@ -263,8 +292,14 @@ AlphaMode read_alpha(const Json& document) {
   return mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-/// Of a textured tile that has triangles.
-ImageShape read_image_shape(const Json& document, const Json& extension, const std::string& name) {
+/// Of the keys of a picture in the extension.
+struct ImageKeys {
+  const char *view, *width, *height;
+};
+
+/// Of a tile that has one.
+ImageShape read_image_shape(const Json& document, const Json& extension, const ImageKeys& keys,
+                            const std::string& name) {
   const auto count = [&](const Json& object, const char* key, std::uint64_t max) {
     const std::uint64_t found = require_count(object, key, max, name);
     if (found == 0)
@@ -274,10 +309,10 @@ ImageShape read_image_shape(const Json& document, const Json& extension, const s
   const auto side = [&](const char* key) {
     return static_cast<std::uint32_t>(count(extension, key, kMaxImageSide));
   };
-  const std::uint64_t number = count(extension, "image", kPartCount);
+  const std::uint64_t number = count(extension, keys.view, kPartCount);
   const Json::json_pointer place("/bufferViews/" + std::to_string(number));
   const Json view = document.contains(place) ? document[place] : Json();
-  return {count(view, "byteLength", UINT32_MAX), side("imageWidth"), side("imageHeight"),
+  return {count(view, "byteLength", UINT32_MAX), side(keys.width), side(keys.height),
           read_alpha(document)};
 }
 
@@ -285,7 +320,8 @@ ImageShape read_image_shape(const Json& document, const Json& extension, const s
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
   const Json& extension = require_extension(
-      document, kTileExtension, tile_version(format.attributes, format.screen_colours), name);
+      document, kTileExtension,
+      tile_version(format.attributes, format.screen_colours, format.normal_maps.has_value()), name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
@@ -302,10 +338,19 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
   shape.computed_normals = format.computed_normals;
   shape.textures = format.textures;
   shape.screen_colours = format.screen_colours;
+  shape.normal_maps = format.normal_maps;
   if (shape.is_shaded())
     shape.splits = count("splitCount");
   if (shape.textures && shape.interior + shape.border > 0)
-    shape.image = read_image_shape(document, extension, name);
+    shape.image =
+        read_image_shape(document, extension, {"image", "imageWidth", "imageHeight"}, name);
+  const char* map = key_of(Part::normal_map);
+  if (shape.normal_maps && extension.contains(map) && extension[map] != -1) {
+    shape.normal_map =
+        read_image_shape(document, extension, {map, "normalMapWidth", "normalMapHeight"}, name);
+    if (tree.is_partition(node) || shape.interior + shape.border == 0)
+      throw Error(ErrorCode::corrupt, name + ": a normal map of a partition, or of no triangle");
+  }
   if (node == tree.root())
     shape.first_view = read_first_view(document, name);
   if (shape.own == 0)
@@ -383,7 +428,8 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   assert(mesh.copies.vertices.size() == mesh.copies.size());
   const Shading& shading = tile.shading;
   assert(has_sound_layout(format));
-  assert(has_sound_size(shading, mesh, format));
+  assert(has_sound_size(shading, mesh, format, has_map(tile.normal_map)));
+  assert(has_sound_map(tile.normal_map, mesh, format));
   assert(has_sound_image(tile.image, mesh, format));
 
   const GhostGroups neighbours = group_ghosts(mesh.ghosts);
@@ -411,7 +457,11 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   format.textures,
                   {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha},
                   tile.first_view,
-                  format.screen_colours};
+                  format.screen_colours,
+                  format.normal_maps};
+  if (has_map(tile.normal_map))
+    shape.normal_map = {tile.normal_map->bytes.size(), tile.normal_map->width,
+                        tile.normal_map->height, AlphaMode::opaque};
   if (tree.is_partition(tile.node)) {
     const std::vector<float> read = colours.all_numbers(stored);
     for (std::size_t i = 0; i < groups.size(); ++i)
@@ -427,6 +477,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(vertices.positions);
   writer.put_normals(shading.normals);
+  writer.put_tangents(shading.tangents);
   writer.put_texcoords(shading.texcoords);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     writer.put_group(groups[i].part, groups[i], stored);
@@ -440,7 +491,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
   writer.put_vertices(Part::copy_of, mesh.copies.places);
   writer.put_vertices(Part::split_of, shading.split_of);
-  writer.put_image(tile.image.bytes);
+  writer.put_image(Part::image, tile.image.bytes);
+  if (has_map(tile.normal_map))
+    writer.put_image(Part::normal_map, tile.normal_map->bytes);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);
@@ -453,7 +506,7 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
   assert(tile.chains.size() == tile.mesh.ghosts.size());
   return encode_tile(
       {tile.node, tile.mesh, tile.shading, tile.image, bounds_of(tile.mesh.vertices.positions),
-       tile.parent_map, tile.chains.entries(), tile.first_view},
+       tile.parent_map, tile.chains.entries(), tile.first_view, &tile.normal_map},
       tree, format);
 }
 

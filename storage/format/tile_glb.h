@@ -60,6 +60,8 @@ struct TileFormat {
   std::optional<TextureFormat> textures{};
   /// Format versions up to 7: tiles hold colours as screens have them, else as TileColours says.
   bool screen_colours = false;
+  /// Tiles above the partitions may have a normal map; none has a picture then.
+  std::optional<NormalMapFormat> normal_maps{};
 };
 
 /// What a tile's file is made of.
@@ -72,6 +74,7 @@ struct TileView {
   std::span<const std::uint16_t> parent_map;  ///< as PublishedTile's
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
   std::optional<Standpoint> first_view{};     ///< as PublishedTile's
+  const TileImage* normal_map = nullptr;      ///< none, or null: it has none
 };
 
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on

@@ -16,9 +16,10 @@ constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
 constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION", "NORMAL",     "COLOR_0",    "TEXCOORD_0",   "interior",    "border",
-    "values",   "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",
-    "splitOf",  "rawNormals", "rawColours", "rawTexcoords", "rawValues",   "image"};
+    "POSITION",    "NORMAL", "TANGENT",  "COLOR_0",    "TEXCOORD_0", "TEXCOORD_0",
+    "interior",    "border", "values",   "parentMap",  "neighbours", "ghostStarts",
+    "ghostChains", "copyOf", "splitOf",  "rawNormals", "rawColours", "rawTexcoords",
+    "rawValues",   "image",  "normalMap"};
 
 std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
@@ -53,7 +54,7 @@ Json view_json(const Section& section, Part part, const Packing* packing) {
                       section.stride != component_bytes(section.component) * section.components;
   if (padded)
     view["byteStride"] = section.stride;
-  if (part <= Part::texcoord || part == Part::values)
+  if (part <= Part::map_texcoord || part == Part::values)
     view["target"] = kVertexTarget;
   if (part == Part::interior || part == Part::border)
     view["target"] = kIndexTarget;
@@ -81,7 +82,7 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
                    {"count", section.count},
                    {"type", kTypes[section.components]}};
   const bool is_number = section.component != kF32;
-  if (is_number && (part == Part::normal || part == Part::colour))
+  if (is_number && part != Part::position && part <= Part::map_texcoord)
     accessor["normalized"] = true;
   if (part == Part::position) {
     accessor["min"] = corner_json(plan, bounds.min);
@@ -90,9 +91,15 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
   return accessor;
 }
 
+/// The input's own coordinates come first.
+unsigned map_texcoord_set(const TilePlan& plan) {
+  return plan.layout().texcoords ? 1 : 0;
+}
+
 const char* attribute_name(const TilePlan& plan, Part part) {
-  return part == Part::colour ? colour_attribute(plan.layout(), plan.shape().textures.has_value())
-                              : key_of(part);
+  if (part == Part::colour)
+    return colour_attribute(plan.layout(), plan.shape().textures.has_value());
+  return part == Part::map_texcoord && map_texcoord_set(plan) == 1 ? "TEXCOORD_1" : key_of(part);
 }
 
 /// Of one value: all lie in one view.
@@ -109,7 +116,8 @@ Json value_accessor_json(const TilePlan& plan, std::size_t value) {
 /// last.
 Json primitives_json(const TilePlan& plan) {
   Json attributes = Json::object();
-  for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord}) {
+  for (const Part part : {Part::position, Part::normal, Part::tangent, Part::colour, Part::texcoord,
+                          Part::map_texcoord}) {
     if (plan[part].view >= 0)
       attributes[attribute_name(plan, part)] = plan[part].view;
   }
@@ -140,17 +148,24 @@ ImageFormat image_format(const TileShape& shape) {
   return stored_format(*shape.textures, shape.image.alpha);
 }
 
-Json material_of(const TileShape& shape) {
-  return shape.has_image() ? material_json(0, shape.image.alpha, shape.textures->unlit)
-                           : material_json();
+Json material_of(const TilePlan& plan) {
+  const TileShape& shape = plan.shape();
+  if (shape.has_image())
+    return material_json(0, shape.image.alpha, shape.textures->unlit);
+  Json material = material_json();
+  if (shape.has_normal_map())
+    material["normalTexture"] = normal_texture_json(0, map_texcoord_set(plan));
+  return material;
 }
 
-/// What leads from the material to the picture.
+/// What leads from the material to the picture, or the normal map.
 void add_image(const TilePlan& plan, Json& document) {
-  const ImageFormat format = image_format(plan.shape());
+  const bool is_map = plan.shape().has_normal_map();
+  const ImageFormat format = is_map ? plan.shape().normal_maps->format : image_format(plan.shape());
+  const Part part = is_map ? Part::normal_map : Part::image;
   document["textures"] = Json::array({texture_json(0, format)});
   document["samplers"] = Json::array({sampler_json()});
-  document["images"] = Json::array({image_json(plan[Part::image].view, format)});
+  document["images"] = Json::array({image_json(plan[part].view, format)});
 }
 
 /// Whether the extension has the key of a part.
@@ -160,6 +175,8 @@ bool is_told(Part part, const TilePlan& plan) {
     return !plan.layout().values.empty();
   if (part == Part::split_of)
     return shape.is_shaded();
+  if (part == Part::normal_map)
+    return shape.normal_maps.has_value();
   return part != Part::image || shape.textures;
 }
 
@@ -167,24 +184,29 @@ Json extension_json(const TilePlan& plan) {
   const TileShape& shape = plan.shape();
   const bool interior = shape.interior > 0;
   const bool border = shape.border > 0;
-  Json extension = {{"version", tile_version(plan.layout(), shape.screen_colours)},
-                    {"level", raw(shape.node.level)},
-                    {"index", shape.node.index},
-                    {"ownCount", shape.own},
-                    {"rimCount", shape.boundary},
-                    {"ghostCount", shape.ghosts},
-                    {"copyCount", shape.copies},
-                    {"neighbourCount", shape.neighbours},
-                    {"chainEntryCount", shape.chain_entries},
-                    {"interiorCount", shape.interior},
-                    {"borderCount", shape.border},
-                    {"interiorPrimitive", interior ? 0 : -1},
-                    {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
+  Json extension = {
+      {"version", tile_version(plan.layout(), shape.screen_colours, shape.normal_maps.has_value())},
+      {"level", raw(shape.node.level)},
+      {"index", shape.node.index},
+      {"ownCount", shape.own},
+      {"rimCount", shape.boundary},
+      {"ghostCount", shape.ghosts},
+      {"copyCount", shape.copies},
+      {"neighbourCount", shape.neighbours},
+      {"chainEntryCount", shape.chain_entries},
+      {"interiorCount", shape.interior},
+      {"borderCount", shape.border},
+      {"interiorPrimitive", interior ? 0 : -1},
+      {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
   if (shape.is_shaded())
     extension["splitCount"] = shape.splits;
   if (shape.textures) {
     extension["imageWidth"] = shape.image.width;
     extension["imageHeight"] = shape.image.height;
+  }
+  if (shape.normal_maps) {
+    extension["normalMapWidth"] = shape.normal_map.width;
+    extension["normalMapHeight"] = shape.normal_map.height;
   }
   for (std::size_t i = static_cast<std::size_t>(Part::values); i < kPartCount; ++i) {
     if (is_told(static_cast<Part>(i), plan))
@@ -213,9 +235,11 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
   Json names = Json::array();
   if (packing != nullptr)
     names.push_back(kMeshoptExtension);
-  if (plan.has_short_positions() || plan.shape().computed_normals)
+  const TileShape& shape = plan.shape();
+  if (plan.has_short_positions() || shape.computed_normals || shape.has_normal_map())
     names.push_back(kQuantizationExtension);
-  if (plan.shape().has_image() && image_format(plan.shape()) == ImageFormat::webp)
+  if ((shape.has_image() && image_format(shape) == ImageFormat::webp) ||
+      (shape.has_normal_map() && shape.normal_maps->format == ImageFormat::webp))
     names.push_back(kWebpExtension);
   return names;
 }
@@ -235,6 +259,7 @@ ViewMode mode_of(Part part) {
     case Part::neighbours:
     case Part::ghost_starts:
     case Part::image:
+    case Part::normal_map:
       return ViewMode::raw;
     default:
       return ViewMode::attributes;
@@ -277,11 +302,18 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.with_splits());
   if (shape.computed_normals)
     add(Part::normal, kI8, 3, shape.with_splits());
-  for (const ChannelGroup& group : groups) {
+  const auto add_group = [&](const ChannelGroup& group) {
     add(group.part, component_of(group), group.channels, shape.with_splits());
-  }
+  };
+  add_group(groups[0]);
+  if (shape.has_normal_map())
+    add(Part::tangent, kI8, 4, shape.with_splits());
+  add_group(groups[1]);
+  add_group(groups[2]);
   if (shape.has_image())
     add(Part::texcoord, kF32, 2, shape.with_splits());
+  if (shape.has_normal_map())
+    add(Part::map_texcoord, kU16, 2, shape.with_splits());
   add(Part::interior, index, 1, 3 * shape.interior);
   add(Part::border, index, 1, 3 * shape.border);
   add(Part::values, kF32, layout.values.size(), shape.with_splits());
@@ -297,6 +329,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   add(Part::raw_values, kF32, static_cast<std::size_t>(layout.value_channels()),
       shape.raw_values ? shape.vertices() : 0);
   add(Part::image, kU8, 1, shape.image.bytes);
+  add(Part::normal_map, kU8, 1, shape.normal_map.bytes);
 }
 
 unsigned TilePlan::component_of(const ChannelGroup& group) const {
@@ -348,8 +381,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["scenes"] = Json::array({scene});
   document["nodes"] = Json::array({node_json(*this, frame)});
   document["meshes"] = Json::array({mesh});
-  document["materials"] = Json::array({material_of(shape_)});
-  if (shape_.has_image())
+  document["materials"] = Json::array({material_of(*this)});
+  if (shape_.has_image() || shape_.has_normal_map())
     add_image(*this, document);
   document["accessors"] = std::move(accessors);
   document["bufferViews"] = std::move(views);

@@ -21,30 +21,35 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-/// Of tiles with values.
-inline constexpr unsigned kTileExtensionVersion = 5;
-/// The same without.
+/// Of hierarchies with normal maps.
+inline constexpr unsigned kTileExtensionVersion = 6;
+/// The same without, of tiles with values.
+inline constexpr unsigned kNoMapsVersion = 5;
+/// The same without values.
 inline constexpr unsigned kNoValuesVersion = 4;
 /// The one before: the same with colours as screens have them.
 inline constexpr unsigned kScreenColoursVersion = 3;
-inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours) {
-  return screen_colours          ? kScreenColoursVersion
+inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours, bool has_maps) {
+  return has_maps                ? kTileExtensionVersion
+         : screen_colours        ? kScreenColoursVersion
          : layout.values.empty() ? kNoValuesVersion
-                                 : kTileExtensionVersion;
+                                 : kNoMapsVersion;
 }
 inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
 // order, each starting at a multiple of 4. o, g: own places, ghosts; c: copies at either; n = o + g
-// + c: vertices, in this order; s: splits of vertices, which have computed normals and coordinates
-// in the tile's picture of their own; N = n + s; m: neighbours.
+// + c: vertices, in this order; s: splits of vertices, which have computed normals, and tangents
+// and coordinates in the tile's picture or normal map of their own; N = n + s; m: neighbours.
 //
 //   section        elements          of
 //   position       N                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
 //   normal         N                 3 f32; computed ones 3 i8, stride 4
+//   tangent        N or none         4 i8: of tiles with a normal map
 //   colour         N                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
 //   texcoord       N                 2 f32; of textured tiles those in their picture
+//   map_texcoord   N or none         2 u16: of tiles with a normal map
 //   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
 //   values         N                 4 bytes for each value, of which its component type may take
@@ -60,11 +65,14 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   raw_texcoords  n or none         2 f32
 //   raw_values     n or none         f32 or f64 for each value
 //   image          its bytes         u8, a picture as it is
+//   normal_map     its bytes         u8, the same
 enum class Part : std::size_t {
   position,
   normal,
+  tangent,
   colour,
   texcoord,
+  map_texcoord,
   interior,
   border,
   values,
@@ -78,12 +86,16 @@ enum class Part : std::size_t {
   raw_colours,
   raw_texcoords,
   raw_values,
-  image
+  image,
+  normal_map
 };
-inline constexpr std::size_t kPartCount = 18;
+inline constexpr std::size_t kPartCount = 21;
+
+/// What 1 is as a coordinate in a normal map.
+inline constexpr float kMaxMapTexcoord = 65535;
 
 /// The key of a part in the extension (from values on), or the name of its attribute (up to
-/// texcoord) where it is shown.
+/// map_texcoord) where it is shown.
 const char* key_of(Part part);
 
 /// The channels of one attribute within a vertex, and where they are written.
@@ -113,7 +125,7 @@ struct Packing {
 /// Normals, colours, texture coordinates; those the layout lacks have no channels.
 std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 
-/// The picture of a textured tile that has triangles.
+/// The picture of a textured tile that has triangles, or a normal map.
 struct ImageShape {
   std::uint64_t bytes = 0;  ///< 0: there is none
   std::uint32_t width = 0, height = 0;
@@ -131,12 +143,15 @@ struct TileShape {
   bool computed_normals = false;
   std::optional<TextureFormat> textures{};  ///< of the hierarchy
   ImageShape image{};
-  std::optional<Standpoint> first_view{};  ///< of the root
-  bool screen_colours = false;             ///< of the hierarchy, see TileFormat
+  std::optional<Standpoint> first_view{};        ///< of the root
+  bool screen_colours = false;                   ///< of the hierarchy, see TileFormat
+  std::optional<NormalMapFormat> normal_maps{};  ///< likewise
+  ImageShape normal_map{};
 
   /// Whether there can be splits.
-  bool is_shaded() const { return computed_normals || textures; }
+  bool is_shaded() const { return computed_normals || textures || normal_maps; }
   bool has_image() const { return image.bytes > 0; }
+  bool has_normal_map() const { return normal_map.bytes > 0; }
   std::uint64_t places() const { return own + ghosts; }
   std::uint64_t vertices() const { return places() + copies; }
   /// What corners of triangles are numbers of.
@@ -185,6 +200,14 @@ class TilePlan {
   std::uint64_t bytes_ = 0;
   int views_ = 0;
 };
+
+/// A coordinate in a normal map as a file has it, of 0 ... 1, and the inverse.
+inline std::uint16_t map_texcoord_number(float texcoord) {
+  return static_cast<std::uint16_t>(texcoord * kMaxMapTexcoord + 0.5f);
+}
+inline float map_texcoord(std::uint16_t number) {
+  return static_cast<float>(number) / kMaxMapTexcoord;
+}
 
 /// Of a vertex in a tile's file, beside its position.
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout);

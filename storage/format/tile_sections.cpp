@@ -116,7 +116,8 @@ class Reader {
     mesh.copies = take_copies(mesh.vertices, copy_places(mesh.vertices.positions));
     Shading& shading = tile.shading;
     shading.normals = normals();
-    shading.texcoords = texcoords();
+    shading.tangents = tangents();
+    shading.texcoords = plan_.shape().has_normal_map() ? map_texcoords() : texcoords();
     shading.split_of = splits();
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
     read_triangles(Part::interior, numbers, shading.split_of,
@@ -125,6 +126,7 @@ class Reader {
                    {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
     tile.image = image();
+    tile.normal_map = normal_map();
     tile.first_view = shape.first_view;
     read_ghosts(tile);
     return tile;
@@ -259,17 +261,48 @@ class Reader {
     return texcoords;
   }
 
+  /// For the normal map, of vertices and splits.
+  std::vector<TangentCode> tangents() const {
+    const Section& section = plan_[Part::tangent];
+    std::vector<TangentCode> tangents(section.count);
+    for (std::size_t v = 0; v < tangents.size(); ++v) {
+      for (std::size_t i = 0; i < 4; ++i)
+        tangents[v][i] = static_cast<std::int8_t>(get<std::uint8_t>(section, v, i));
+      if (!is_tangent_code(tangents[v])) {
+        fail(fmt::format(
+            "the tangent of vertex {} is ({}, {}, {}, {}), expected unit length and 127 or -127", v,
+            tangents[v][0], tangents[v][1], tangents[v][2], tangents[v][3]));
+      }
+    }
+    return tangents;
+  }
+
+  /// In the tile's normal map, likewise.
+  std::vector<Vec2f> map_texcoords() const {
+    const Section& section = plan_[Part::map_texcoord];
+    std::vector<Vec2f> texcoords(section.count);
+    for (std::size_t v = 0; v < texcoords.size(); ++v)
+      texcoords[v] = {map_texcoord(get<std::uint16_t>(section, v, 0)),
+                      map_texcoord(get<std::uint16_t>(section, v, 1))};
+    return texcoords;
+  }
+
   TileImage image() const {
     const TileShape& shape = plan_.shape();
-    if (!shape.has_image())
-      return {};
-    const Section& section = plan_[Part::image];
+    return shape.has_image()
+               ? image(Part::image, shape.image, stored_format(*shape.textures, shape.image.alpha))
+               : TileImage{};
+  }
+  TileImage normal_map() const {
+    const TileShape& shape = plan_.shape();
+    return shape.has_normal_map()
+               ? image(Part::normal_map, shape.normal_map, shape.normal_maps->format)
+               : TileImage{};
+  }
+  TileImage image(Part part, const ImageShape& shape, ImageFormat format) const {
+    const Section& section = plan_[part];
     const auto bytes = bin_.subspan(section.offset, section.bytes());
-    return {stored_format(*shape.textures, shape.image.alpha),
-            shape.image.alpha,
-            shape.image.width,
-            shape.image.height,
-            {bytes.begin(), bytes.end()}};
+    return {format, shape.alpha, shape.width, shape.height, {bytes.begin(), bytes.end()}};
   }
 
   /// What a split has as its vertex has it.

@@ -634,6 +634,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
       "storage": {"compression": "none", "normals": "smooth"},
+      "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
@@ -642,6 +643,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
       "storage": {"compression": "none", "normals": "smooth"},
+      "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y"})"));
 }

@@ -9,6 +9,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
+#include "tests/support/stopped_stage.h"
 #include "tests/support/textured_torus.h"
 #include "tests/support/warnings.h"
 
@@ -44,6 +45,7 @@ using testing::IsEmpty;
 using testing::Not;
 using tests::AtStage;
 using tests::kMiB;
+using tests::StoppedStage;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
 using tests::Warnings;
@@ -83,31 +85,6 @@ struct BuiltTile {
   TileRecord record;
   PublishedTile tile;
   Image image;
-};
-
-/// Cancels after so many steps.
-class StoppedStage final : public execution::Progress {
- public:
-  StoppedStage(execution::CancelToken& cancel, std::uint64_t after)
-      : cancel_(cancel), after_(after) {}
-
-  void stage(std::string_view name, std::uint64_t, std::string_view) override {
-    stage_name = name;
-    step();
-  }
-  void advance(std::uint64_t) override { step(); }
-  void finish(std::string_view) override {}
-
-  std::string stage_name;
-
- private:
-  void step() {
-    if (steps_++ >= after_)
-      cancel_.cancel();
-  }
-
-  execution::CancelToken& cancel_;
-  std::uint64_t after_, steps_ = 0;
 };
 
 class TexturesTest : public testing::Test {

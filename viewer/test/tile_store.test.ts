@@ -13,7 +13,9 @@ const RECORD: TileRecord = { own: 1, ghosts: 0, copies: 0, splits: 0, interior: 
 function tile({ level, index }: Node): Tile {
   const empty = { positions: new Float32Array(3), copyOf: new Uint16Array(0), normals: new Int16Array(4), normalsFrom: 'viewer' as const, splitOf: new Uint16Array(0), colours: null, values: null, coloursTint: false, texcoords: null, picture: null, indices: new Uint16Array(0) };
   const seams = { border: new Uint16Array(0), neighbours: new Uint32Array(0), ghostStarts: new Uint32Array(0), chains: new Uint16Array(0) };
-  return { level, index, own: 1, ghosts: 0, interiorCount: 0, cone: { axis: [0, 0, 1], cosine: -1 }, closed: false, insideOut: false, box: [0, 0, 0, 0, 0, 0], zUp: false, firstView: null, ...empty, ...seams };
+  return { level, index, own: 1, ghosts: 0, interiorCount: 0, cone: { axis: [0, 0, 1], cosine: -1 }, closed: false, insideOut: false, box: [0, 0, 0, 0, 0, 0], zUp: false, firstView: null,
+    normalMap: null,
+    tangents: null, ...empty, ...seams };
 }
 
 interface Call {

@@ -118,6 +118,11 @@ class TasksTest : public testing::Test {
     config_.texture.texels = 128;
     config_.texture.format.format = ImageFormat::png;
   }
+  void use_normal_maps() {
+    use_attributes();
+    config_.storage.normals = config::Normals::map_or_none;
+    config_.normal_map.texels = 128;
+  }
   void use_archive() {
     use_sphere();
     config_.output = file("mesh.3tz");
@@ -234,6 +239,11 @@ TEST_F(TasksTest, AnyCutMakesTheSameBytesWithAttributes) {
 
 TEST_F(TasksTest, AnyCutMakesTheSameBytesWithTextures) {
   use_texture();
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, AnyCutMakesTheSameBytesWithNormalMaps) {
+  use_normal_maps();
   expect_any_cut_makes_the_same();
 }
 

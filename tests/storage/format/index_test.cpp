@@ -252,14 +252,36 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
   EXPECT_THAT(failure(sealed(partition), tree), HasSubstr("not the partition's"));
 }
 
+TEST(Index, NormalMapsHaveTheirOwnVersion) {
+  const Tree tree(50, 5);
+  std::vector<TileRecord> records = make_records(tree);
+  const Bytes without = encode_index(records);
+  EXPECT_EQ(without[8], std::byte{4});
+  records[1].image_width = 64;
+  records[1].image_height = 60;
+  records[1].texel = 0.5F;
+  records[1].interior_count = std::max(records[1].interior_count, 1U);
+  records[1].has_normal_map = true;
+  const Bytes with = encode_index(records);
+  EXPECT_EQ(with[8], std::byte{5});
+  EXPECT_TRUE(decode_index(with, tree, "some/tiles.bin")[1].has_normal_map);
+  EXPECT_FALSE(decode_index(with, tree, "some/tiles.bin")[0].has_normal_map);
+  records[1].image_width = records[1].image_height = 0;
+  records[1].texel = 0;
+  EXPECT_THAT(failure(encode_index(records), tree), HasSubstr("impossible normal map"));
+  Bytes earlier = with;
+  earlier[8] = std::byte{4};
+  EXPECT_THAT(failure(sealed(earlier), tree), HasSubstr("bytes that have to be 0 are not"));
+}
+
 TEST(Index, OtherFilesAndVersionsAreRefused) {
   const Tree tree(50, 5);
   const Bytes good = encode_index(make_records(tree));
   Bytes bytes = good;
-  bytes[8] = std::byte{5};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 5, expected 4 (written by a newer"));
+  bytes[8] = std::byte{6};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 6, expected 4 or 5 (written by a newer"));
   bytes[8] = std::byte{3};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 4"));
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 4 or 5"));
   bytes = good;
   bytes[0] = std::byte{'P'};
   EXPECT_THAT(failure(bytes, tree), HasSubstr("not an index"));

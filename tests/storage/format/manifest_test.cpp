@@ -562,15 +562,34 @@ TEST(Manifest, EveryWrongValueIsNamed) {
   }
 }
 
+TEST(Manifest, NormalMapsAreOfVersionTenAlone) {
+  Manifest manifest = make_manifest();
+  manifest.source.textures.reset();
+  manifest.textures.reset();
+  manifest.normal_maps = NormalMapFormat{ImageFormat::webp, 40};
+  EXPECT_EQ(manifest.format_version(), 10);
+  const std::string text = to_json_text(manifest);
+  EXPECT_EQ(parse_manifest(text, "some/hierarchy.json").normal_maps, manifest.normal_maps);
+  Json changed = Json::parse(text);
+  changed["storage"].erase("normal_map");
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("10 if and only if there are normal maps"));
+  changed = Json::parse(text);
+  changed["format_version"] = manifest.source.attributes.values.empty() ? 8 : 9;
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("10 if and only if there are normal maps"));
+  changed = Json::parse(text);
+  changed["storage"]["normal_map"]["quality"] = 0;
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("at least 1"));
+}
+
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 10;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 10 is newer than 9"));
+  document["format_version"] = 11;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 11 is newer than 10"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 9: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 10: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

@@ -187,7 +187,10 @@ export class Seam {
     const colourTo: Distance = (vertex) => (givenColours && from.colours ? difference(givenColours, target - own, from.colours, vertex) : 0);
     const valuesTo: Distance = (vertex) => this.differingValues(target, from, vertex);
     const source = nearest(verticesAt(from, place), valuesTo, normalTo, colourTo);
-    copyValues(from.normals, source, normals, target, 4);
+    // Where one of both has a normal map, its vertices' normals are but a frame: ours is nearer to what is shown there.
+    const isFrame = this.tile.tangents !== null || from.tangents !== null;
+    if (isFrame && givenNormals) copyValues(givenNormals, target - own, normals, target, 4);
+    else copyValues(from.normals, source, normals, target, 4);
     const painter = normalsFrom === 'build' ? nearest(verticesAt(from, place), valuesTo, colourTo) : source;
     if (values && from.values) copyValues(from.values, painter, values, target, this.width);
     if (!colours || !givenColours) return;

@@ -27,7 +27,7 @@ export interface Gltf {
   bufferViews: BufferView[];
   /// Of a tile with a picture.
   images?: { mimeType?: unknown }[];
-  materials?: { alphaMode?: unknown; extensions?: Record<string, unknown> }[];
+  materials?: { alphaMode?: unknown; normalTexture?: { texCoord?: number }; extensions?: Record<string, unknown> }[];
   extensions: Record<string, Record<string, number>>;
   /// Of the root.
   extras?: unknown;

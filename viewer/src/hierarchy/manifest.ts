@@ -54,7 +54,7 @@ export interface NamedFile {
 }
 
 export const MANIFEST = 'hierarchy.json';
-const FORMAT_VERSION = 9; // 8: the same without values; 7: tiles hold colours as screens have them
+const FORMAT_VERSION = 10; // 9: the same without normal maps; 8: and without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
 export const MOST_MANIFEST_BYTES = 2 ** 20;
 const MOST_PREVIEW_BYTES = 40_000;

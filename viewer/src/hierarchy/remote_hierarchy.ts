@@ -26,9 +26,9 @@ export interface Directory {
 /// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
 function mostBytes(record: TileRecord, level: number): number {
   const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
-  const perVertex = 2 * (12 + 16 + 8) + 12;
+  const perVertex = 2 * (12 + 16 + 8) + 12 + 8;
   const perGhost = 2 * level + 8;
-  const perSplit = 12 + 12 + 16 + 8 + 4; // nothing raw
+  const perSplit = 12 + 12 + 16 + 8 + 8 + 4; // nothing raw
   const vertices = perVertex * (own + ghosts + copies) + 4 * copies + perSplit * splits;
   return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + mostPictureBytes({ width, height });
 }
@@ -85,7 +85,7 @@ export class RemoteHierarchy {
     await index.open();
     this.index = index;
     const record = index.record(ROOT);
-    if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== (root.picture?.width ?? 0))
+    if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== ((root.picture ?? root.normalMap)?.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
     return { manifest, tree, index };
   }

@@ -9,7 +9,7 @@ import { placeOf, toPlaces, unsplitOf, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
 import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
 import { readScalarValues } from './scalar_values.js';
-import { detached, readColours, readNormals, readPositions, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
+import { detached, readColours, readMapTexcoords, readNormals, readPositions, readTangents, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
 
 export type Indices = Uint16Array | Uint32Array;
 
@@ -32,9 +32,12 @@ export interface Tile extends Places {
   readonly coloursTint: boolean;
   /// All values of each vertex, in the manifest's order; or null.
   readonly values: Float32Array | null;
-  /// u, v of each vertex in the picture; both or none. Whoever drops the tile lets go of the picture: see letGo().
+  /// u, v of each vertex in the picture, or in the normal map; none without. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
+  /// What the tile is lit by, and how it lies: both or none.
+  readonly normalMap: Picture | null;
+  readonly tangents: Int8Array | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
   readonly indices: Indices;
   readonly interiorCount: number;
@@ -135,8 +138,16 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-/// All but the picture.
-function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'picture'> {
+/// Of the tile's picture or normal map.
+function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, isNormalMap }: Counts, vertices: number): Float32Array | null {
+  if (pictureWidth === 0) return null;
+  const set = isNormalMap ? (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0) : 0;
+  const accessor = attribute(`TEXCOORD_${set}`) ?? glb.fail('a picture without texture coordinates');
+  return isNormalMap ? readMapTexcoords(glb, accessor, vertices) : readTexcoords(glb, accessor, vertices);
+}
+
+/// All but the picture and the normal map.
+function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'picture' | 'normalMap'> {
   const { gltf } = glb;
   const primitive = gltf.meshes?.[0]?.primitives?.[0];
   if (primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
@@ -154,7 +165,8 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
   const colours = colour ? readColours(glb, colour, vertices, counts.screenColours) : null;
   const scalars = readScalarValues(glb, values.values, vertices);
   const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
-  const texcoords = counts.pictureWidth > 0 ? readTexcoords(glb, attribute('TEXCOORD_0') ?? glb.fail('a picture without texture coordinates'), vertices) : null;
+  const texcoords = texcoordsOf(glb, attribute, counts, vertices);
+  const tangents = counts.isNormalMap ? readTangents(glb, attribute('TANGENT') ?? glb.fail('a normal map without tangents'), vertices) : null;
   if (counts.splits > 0 && normalsFrom !== 'build' && !texcoords) glb.fail('splits without computed normals or a picture');
   checkSplits(glb, places, positions, 3);
   if (colours) checkSplits(glb, places, colours, 4);
@@ -172,8 +184,9 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
     normalsFrom,
     colours,
     values: scalars,
-    coloursTint: texcoords !== null && attribute('COLOR_0') !== undefined,
+    coloursTint: texcoords !== null && tangents === null && attribute('COLOR_0') !== undefined,
     texcoords,
+    tangents,
     indices: withRoom(interior, border),
     interiorCount: counts.interior,
     border,
@@ -195,8 +208,10 @@ async function readWhole(glb: Glb, expected: ExpectedCounts | null): Promise<Til
   const values = withAbsent(extension);
   const counts = readCounts(glb, values, expected);
   const tile = decode(glb, values, counts);
-  const stored = findPicture(glb, values.image, { width: counts.pictureWidth, height: counts.pictureHeight });
-  return { ...tile, picture: stored && (await decodePicture(glb, stored)) };
+  const { isNormalMap, pictureWidth: width, pictureHeight: height } = counts;
+  const stored = findPicture(glb, isNormalMap ? values.normalMap : values.image, { width, height });
+  const picture = stored && (await decodePicture(glb, stored));
+  return isNormalMap ? { ...tile, picture: null, normalMap: picture } : { ...tile, picture, normalMap: null };
 }
 
 /// A tile's file, out of its gzip; `expected`: null of a root of which nothing is known yet. Everything in it is checked, so that what is made of it can be used without.
@@ -214,13 +229,14 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
 
 /// What a tile holds, each once: what moves when it is handed over.
 export function partsOf(tile: Tile): Transferable[] {
-  const { copyOf, splitOf, positions, normals, colours, values, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
-  const arrays = [copyOf, splitOf, positions, normals, colours, values, texcoords, indices, border, neighbours, ghostStarts, chains];
+  const { copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
+  const arrays = [copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, indices, border, neighbours, ghostStarts, chains];
   const buffers = arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
-  return picture ? [...buffers, picture.bitmap] : buffers;
+  return [...buffers, ...[picture, normalMap].flatMap((each) => (each ? [each.bitmap] : []))];
 }
 
-/// Frees the picture of a tile that nothing draws any longer: collectors of garbage know little of its size.
-export function letGo({ picture }: Tile): void {
+/// Frees the pictures of a tile that nothing draws any longer: collectors of garbage know little of their size.
+export function letGo({ picture, normalMap }: Tile): void {
   picture?.bitmap.close();
+  normalMap?.bitmap.close();
 }

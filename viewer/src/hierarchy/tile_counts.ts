@@ -13,7 +13,7 @@ export interface ExpectedCounts {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// 0: there is no picture.
+  /// Of the picture or the normal map; 0: there is neither.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
 }
@@ -21,16 +21,19 @@ export interface ExpectedCounts {
 export interface Counts extends ExpectedCounts {
   /// Colours are values of a screen; else they are light, as glTF has it.
   readonly screenColours: boolean;
+  /// It is no picture.
+  readonly isNormalMap: boolean;
   readonly neighbours: number;
   readonly chains: number;
 }
 
-const VERSION = 5;
+const VERSION = 6;
+const NO_MAPS_VERSION = 5; // the same in hierarchies without normal maps
 const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
 const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
-/// What tiles without splits, pictures or values need not say.
-const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1 };
+/// What tiles without splits, pictures, values or normal maps need not say.
+const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1, normalMapWidth: 0, normalMapHeight: 0, normalMap: -1 };
 
 /// MESHHIER_tile.
 export type TileValues = Record<string, number>;
@@ -47,9 +50,12 @@ function count(glb: Glb, values: TileValues, key: string, least: number, most: n
 
 function parse(glb: Glb, values: TileValues): Counts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
-  if (values.version !== VERSION && values.version !== NO_VALUES_VERSION && !screenColours) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
+  const isKnown = [VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
+  if (!isKnown) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
+  const isNormalMap = values.normalMapWidth > 0;
   return {
     screenColours,
+    isNormalMap,
     level: count(glb, values, 'level', 0, 32),
     index: count(glb, values, 'index', 0, 2 ** 32 - 1),
     own: count(glb, values, 'ownCount', 1, MOST_OWN),
@@ -60,8 +66,8 @@ function parse(glb: Glb, values: TileValues): Counts {
     chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
     interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
     border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
-    pictureWidth: count(glb, values, 'imageWidth', 0, MOST_SIDE),
-    pictureHeight: count(glb, values, 'imageHeight', 0, MOST_SIDE),
+    pictureWidth: count(glb, values, isNormalMap ? 'normalMapWidth' : 'imageWidth', 0, MOST_SIDE),
+    pictureHeight: count(glb, values, isNormalMap ? 'normalMapHeight' : 'imageHeight', 0, MOST_SIDE),
   };
 }
 

@@ -16,7 +16,7 @@ export interface TileRecord {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// Of the tile's picture, texels; 0: there is none.
+  /// Of the tile's picture or normal map, texels; 0: there is none.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
   /// Estimated distance to the input, in its units, and no less than a texel that is coarser than the input's; 0 of partitions.
@@ -34,7 +34,7 @@ export type ReadRange = (first: number, end: number) => Promise<Uint8Array>;
 
 const FILE = 'tiles.bin';
 const MAGIC = 'MHTILES\n';
-const VERSION = 4;
+const VERSIONS = [4, 5]; // 5: some of the pictures are normal maps
 const HEADER_BYTES = 32;
 const RECORD_BYTES = 120;
 const PAGE_RECORDS = 545; // a page is just below 64 KiB
@@ -191,7 +191,7 @@ export class TileIndex {
     if (bytes.length < HEADER_BYTES || new TextDecoder('latin1').decode(bytes.subarray(0, 8)) !== MAGIC)
       throw new HierarchyProblem(FILE, 'not an index of tiles');
     const view = new DataView(bytes.buffer, bytes.byteOffset);
-    const known = view.getUint32(8, true) === VERSION && view.getUint32(12, true) === RECORD_BYTES;
+    const known = VERSIONS.includes(view.getUint32(8, true)) && view.getUint32(12, true) === RECORD_BYTES;
     if (!known || view.getBigUint64(16, true) !== BigInt(this.tree.tileCount))
       throw new HierarchyProblem(FILE, 'another version, or of another hierarchy');
   }

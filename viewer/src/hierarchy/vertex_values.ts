@@ -75,6 +75,19 @@ export function readTexcoords(glb: Glb, { bufferView, componentType, type }: Acc
   return texcoords;
 }
 
+/// Of a tile's normal map: numbers in parts of 65535.
+export function readMapTexcoords(glb: Glb, { bufferView, componentType, type }: Accessor, vertices: number): Float32Array {
+  if (componentType !== 5123 || type !== 'VEC2') glb.fail('texture coordinates of an unknown type');
+  const numbers = new Uint16Array(detached(glb.section(bufferView, 4 * vertices)));
+  return Float32Array.from(numbers, (number) => number / 65535);
+}
+
+/// x, y, z in parts of 127 of each vertex, then 127 or -127, as the bitangent is on the one side or the other.
+export function readTangents(glb: Glb, { bufferView, componentType, type }: Accessor, vertices: number): Int8Array {
+  if (componentType !== 5120 || type !== 'VEC4') glb.fail('tangents of an unknown type');
+  return new Int8Array(detached(glb.section(bufferView, 4 * vertices)));
+}
+
 /// Bytes of what a build computed.
 function codedNormals(glb: Glb, { bufferView, normalized, type }: Accessor, vertices: number): Int8Array {
   if (normalized !== true || type !== 'VEC3') glb.fail('normals of an unknown type');

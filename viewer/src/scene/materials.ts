@@ -31,6 +31,9 @@ if (outwards * faceDirection < 0.0) {
   float facing = dot(normal, eye);
   vec3 aside = normal - facing * eye;
   normal = normalize(mix(-aside, aside, smoothstep(0.6, 0.98, facing)) + max(facing, 0.001) * eye);
+#ifdef USE_NORMALMAP_TANGENTSPACE
+  tbn[2] = normal;
+#endif
 }
 #endif`;
 
@@ -87,6 +90,8 @@ export interface SharedMaterials {
   readonly upwards: { value: Vector3 };
   readonly heights: { value: Vector2 };
   readonly relief: { value: number };
+  /// The same for normal maps, along both of their axes.
+  readonly detail: Vector2;
   readonly matcap: Texture;
   /// The attribute that is shown.
   readonly values: AttributePaint;
@@ -101,6 +106,8 @@ export interface Painting {
   readonly picture: Picture | null;
   /// The picture's.
   readonly texture: Texture | null;
+  /// The normal map's.
+  readonly normals: Texture | null;
 }
 
 export type SurfaceMaterial = MeshStandardMaterial | MeshMatcapMaterial | MeshBasicMaterial;
@@ -147,12 +154,17 @@ function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean
   shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
 }
 
-function litMaterial(look: Look, { picture, texture, hasColours, hasValues, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
+/// Details of the surface are as many times steeper as it is. Facets are shown as they are.
+function lighting({ shading }: Look, normals: Texture | null, detail: Vector2): { normalMap?: Texture; normalScale?: Vector2 } {
+  return normals === null || shading === 'flat' ? {} : { normalMap: normals, normalScale: detail };
+}
+
+function litMaterial(look: Look, { picture, texture, normals, hasColours, hasValues, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
   const { colours, cavities, shading } = look;
   const vertexColors = colours === 'vertex' && hasColours && (texture === null || coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
   const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
-  const parameters = { ...own, ...standing(look), ...picturing(picture, texture) };
+  const parameters = { ...own, ...standing(look), ...picturing(picture, texture), ...lighting(look, normals, shared.detail) };
   const material = look.material === 'matcap'
     ? new MeshMatcapMaterial({ ...parameters, matcap: shared.matcap })
     : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
@@ -205,5 +217,5 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
 export function sharedMaterials(): SharedMaterials {
   const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) }, relief: { value: 1 } };
   const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
-  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), values: new AttributePaint(), ...uniforms };
+  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), detail: new Vector2(1, 1), values: new AttributePaint(), ...uniforms };
 }

@@ -13,13 +13,15 @@ import type { DrawnTile } from './surface.js';
 import { pictureMemory, tileTexture } from './tile_texture.js';
 
 const TEXCOORD_BYTES = 8;
+const TANGENT_BYTES = 4;
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need; of its picture one copy.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { level, copyOf, splitOf, positions, normals, colours, values, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
-  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + indices.byteLength;
+  const { level, copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
+  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + (tangents?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
-  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (picture ? pictureMemory(picture, level) : 0);
+  const shown = picture ?? normalMap;
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (shown ? pictureMemory(shown, level) : 0);
 }
 
 /// What is drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
@@ -43,7 +45,7 @@ export function mostMemory(
   const vertices = own + ghosts + copies + splits;
   const indexBytes = vertices > 65535 ? 4 : 2;
   const indices = 3 * (interior + border) * indexBytes;
-  const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES : 0)) + indices;
+  const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES + TANGENT_BYTES : 0)) + indices;
   // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
   return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, level);
@@ -59,9 +61,10 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-function paintingOf({ level, colours, values, coloursTint, picture }: Tile): Painting {
+function paintingOf({ level, colours, values, coloursTint, picture, normalMap }: Tile): Painting {
   const texture: Texture | null = picture && tileTexture(picture, level);
-  return { hasColours: colours !== null, hasValues: values !== null, coloursTint, picture, texture };
+  const normals: Texture | null = normalMap && tileTexture(normalMap, level, 'directions');
+  return { hasColours: colours !== null, hasValues: values !== null, coloursTint, picture, texture, normals };
 }
 
 export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
@@ -89,6 +92,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
     if (tile.colours) this.geometry.setAttribute('color', new BufferAttribute(tile.colours, 4, true));
     if (tile.texcoords) this.geometry.setAttribute('uv', new BufferAttribute(tile.texcoords, 2));
+    if (tile.tangents) this.geometry.setAttribute('tangent', new BufferAttribute(tile.tangents, 4, true));
     this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
     for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
     this.showValue();
@@ -240,6 +244,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.geometry.dispose();
     this.material.dispose();
     this.painting.texture?.dispose();
+    this.painting.normals?.dispose();
     this.removeFromParent();
   }
 }

@@ -55,6 +55,7 @@ export class TileScene extends Group {
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
     this.materials.relief.value = look.relief;
+    this.materials.detail.setScalar(look.relief);
     for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
     for (const resident of residents) this.join(resident, look);
     return true;

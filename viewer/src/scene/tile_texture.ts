@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The picture of a tile on the GPU.
-import { LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace, Texture } from 'three';
+import { LinearFilter, LinearMipmapLinearFilter, NoColorSpace, SRGBColorSpace, Texture } from 'three';
 import { bitmapBytes, type Picture } from '../hierarchy/picture.js';
 import type { Size } from '../hierarchy/picture_size.js';
 import type { Tile } from '../hierarchy/tile.js';
@@ -19,13 +19,14 @@ export function pictureMemory(size: Size, level: number): number {
 }
 
 /// Whether only the GPU has the tile's picture: it is lost with the device.
-export function isOnlyOnGpu({ picture }: Tile): boolean {
-  return picture !== null && picture.bitmap.width === 0;
+export function isOnlyOnGpu({ picture, normalMap }: Tile): boolean {
+  return [picture, normalMap].some((each) => each !== null && each.bitmap.width === 0);
 }
 
-export function tileTexture({ bitmap }: Picture, level: number): Texture {
+/// `content`: what its numbers are.
+export function tileTexture({ bitmap }: Picture, level: number, content: 'colours' | 'directions' = 'colours'): Texture {
   const texture = new Texture(bitmap);
-  texture.colorSpace = SRGBColorSpace;
+  texture.colorSpace = content === 'colours' ? SRGBColorSpace : NoColorSpace;
   texture.flipY = false;
   texture.magFilter = LinearFilter;
   texture.minFilter = LinearMipmapLinearFilter;

@@ -1,0 +1,275 @@
+#include "pipeline/normal_map_stage.h"
+
+#include "execution/memory_gate.h"
+#include "execution/parallel.h"
+#include "hierarchy/vertex_numbers.h"
+#include "images/image_codec.h"
+#include "pipeline/plan/share.h"
+#include "pipeline/tiles/finer_surfaces.h"
+#include "shading/tile_shading.h"
+#include "texture/normal_bake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// How many texels of a map an original vertex gets, unless that is more than a map may have.
+constexpr double kTexelsAVertex = 12;
+/// With `auto` a map is made where the tile's own shading is off by at least so many degrees, and
+/// by so many times those of the map. For a map's bytes a tile could have twice its triangles, with
+/// which it would be off by 0.7 times as many.
+constexpr double kLeastDegrees = 1;
+constexpr double kLeastGain = 2;
+
+/// The normals of all corners, interior triangles first, as the file has them.
+class CornerShading {
+ public:
+  CornerShading(const Forest& forest, NodeId node, const TileMesh& mesh)
+      : layout_(forest.layout(node.level)), mesh_(mesh) {
+    if (forest.computes_normals()) {
+      shading_ = shading::shade_tile(mesh, forest.normals(node), [&](std::uint32_t tile) {
+        return forest.boundary_normals({node.level, tile});
+      });
+    }
+    const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()),
+                                mesh.copies.places);
+    const bool split = !shading_.split_of.empty();
+    add(split ? shading_.interior : numbers.numbered(mesh.interior, mesh.interior_wedges));
+    add(split ? shading_.border : numbers.numbered(mesh.border, mesh.border_wedges));
+  }
+
+  std::vector<texture::CornerNormals> take() && { return std::move(normals_); }
+
+ private:
+  void add(std::span<const TileTriangle> triangles) {
+    for (const TileTriangle& triangle : triangles) {
+      texture::CornerNormals& corners = normals_.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = normal(raw(triangle[k]));
+    }
+  }
+
+  Vec3f normal(std::uint32_t number) const {
+    if (!shading_.normals.empty())
+      return normal_of(shading_.normals[number]);
+    const std::size_t places = mesh_.vertices.size();
+    const std::span<const float> attributes =
+        number < places ? mesh_.vertices.attributes_of(number)
+                        : mesh_.copies.vertices.attributes_of(number - places);
+    const auto at = static_cast<std::size_t>(layout_.normal_offset());
+    const Vec3f given{attributes[at], attributes[at + 1], attributes[at + 2]};
+    const bool is_finite =
+        std::isfinite(given.x) && std::isfinite(given.y) && std::isfinite(given.z);
+    return is_finite ? given : Vec3f{};
+  }
+
+  const AttributeLayout& layout_;
+  const TileMesh& mesh_;
+  Shading shading_;
+  std::vector<texture::CornerNormals> normals_;
+};
+
+BakeSource surface_of(const TileMesh& mesh) {
+  BakeSource source;
+  source.positions = mesh.vertices.positions;
+  source.triangles = mesh.interior;
+  source.triangles.insert(source.triangles.end(), mesh.border.begin(), mesh.border.end());
+  return source;
+}
+
+double area_of(const BakeSource& source) {
+  double area = 0;
+  for (const TileTriangle& t : source.triangles) {
+    const auto corner = [&](std::size_t k) { return to_double(source.positions[raw(t[k])]); };
+    area += length(cross(corner(1) - corner(0), corner(2) - corner(0))) / 2;
+  }
+  return area;
+}
+
+/// Of a triangle at work: as the stage `texture` has it, and its frames.
+constexpr std::uint64_t kFramedTriangleBytes = 600;
+
+/// A map at work, and the directions that it is made of.
+std::uint64_t map_bytes(std::uint32_t side) {
+  constexpr double kTexelBytes = 70;
+  constexpr double kSources = 16;
+  constexpr double kShown = 0.45;  // of a picture's texels
+  const double texels = double{1} * side * side;
+  return static_cast<std::uint64_t>(
+      texels * (kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel)));
+}
+
+class MapStage {
+ public:
+  MapStage(const Forest& forest, TextureStore& textures, const StageContext& context)
+      : forest_(forest),
+        textures_(textures),
+        config_(context.config),
+        side_(config_.normal_map.texels / texture::kBakeAlignment * texture::kBakeAlignment),
+        gate_(context.memory().work_bytes -
+              std::min(context.memory().work_bytes,
+                       2 * picture_cache_bytes(context.memory().work_bytes))) {}
+
+  void make(NodeId node) {
+    const TileMesh mesh = forest_.load(node).mesh;
+    BakeSource source = surface_of(mesh);
+    if (source.triangles.empty()) {
+      textures_.put(node, {}, source, {});
+      return;
+    }
+    const execution::MemoryGate::Share share = gate_.enter(map_bytes(side_));
+    const std::vector<FinerSurface> finer =
+        finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
+    std::vector<texture::NormalSurface> surfaces;
+    for (const FinerSurface& one : finer)
+      surfaces.push_back(one.normal_surface());
+    const auto normals = CornerShading(forest_, node, mesh).take();
+    texture::BakedNormalMap baked =
+        texture::bake_normals({source.positions, source.triangles, normals, {}, nullptr}, surfaces,
+                              {side_, least_texel(node, source)});
+    source.corners = baked.corners;
+    source.directions = std::move(baked.texels);
+    textures_.put(node, pays(baked) ? encoded(std::move(baked)) : TileTexture{}, source,
+                  {baked.texel, 0, 0});
+  }
+
+ private:
+  std::shared_ptr<const BakeSource> finer_source(NodeId tile) const {
+    if (!forest_.tree().is_partition(tile))
+      return textures_.source(tile);
+    return textures_.source(tile, [&] {
+      const TileMesh mesh = forest_.load(tile).mesh;
+      BakeSource source = surface_of(mesh);
+      source.normals = CornerShading(forest_, tile, mesh).take();
+      return source;
+    });
+  }
+
+  /// The original has no more to show than its vertices.
+  float least_texel(NodeId node, const BakeSource& source) const {
+    const auto vertices = static_cast<double>(forest_.tree().ranks(node).size());
+    return static_cast<float>(std::sqrt(area_of(source) / (kTexelsAVertex * vertices)));
+  }
+
+  bool pays(const texture::BakedNormalMap& baked) const {
+    return config_.storage.normals == config::Normals::map ||
+           (baked.own_degrees >= kLeastDegrees &&
+            baked.own_degrees >= kLeastGain * baked.map_degrees);
+  }
+
+  TileTexture encoded(texture::BakedNormalMap baked) const {
+    const NormalMapFormat& format = config_.normal_map.format;
+    TileTexture texture;
+    texture.normal_map = {format.format, AlphaMode::opaque, baked.map.width, baked.map.height,
+                          images::encode_normal_map(baked.map, format)};
+    texture.corners = std::move(baked.corners);
+    texture.tangents = std::move(baked.tangents);
+    return texture;
+  }
+
+  const Forest& forest_;
+  TextureStore& textures_;
+  const config::Config& config_;
+  const std::uint32_t side_;
+  execution::MemoryGate gate_;
+};
+
+std::vector<NodeId> maps_left(const Tree& tree, Level level, const Share& share,
+                              const BuildJournal& journal) {
+  const std::uint32_t count = tree.node_count(level);
+  std::vector<NodeId> left;
+  for (std::uint64_t i = share.begin(count); i < share.end(count); ++i) {
+    const NodeId node{level, static_cast<std::uint32_t>(i)};
+    if (!tree.is_early(node) && !journal.has_texture(node))
+      left.push_back(node);
+  }
+  return left;
+}
+
+/// Texels of all maps: three levels above the partitions have as many as the original's vertices
+/// ask for, about, the others as many as a map may have.
+double map_texels(const JobSize& job, const TilePopulation& tiles) {
+  const double side = job.normal_map_side;
+  const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);
+  constexpr double kShown = 0.4;
+  double texels = 0, left = tiles.simplified.count - tiles.early.count;
+  for (double below = 2; left > 0.5; below *= 2) {
+    const double on_level = std::min(left, std::ceil(left / 2));
+    texels += on_level * std::min(side * side, below * vertices * kTexelsAVertex / kShown);
+    left -= on_level;
+  }
+  return texels;
+}
+
+}  // namespace
+
+void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal& journal,
+                      const LevelRange& levels, const StageContext& context) {
+  const int end = std::min(levels.end, int{raw(context.tree().depth())});  // above the partitions
+  std::vector<std::vector<NodeId>> left;                                   // from levels.top on
+  std::uint64_t total = 0;
+  for (int l = levels.top; l < end; ++l) {
+    left.push_back(maps_left(context.tree(), static_cast<Level>(l), levels.share, journal));
+    total += left.back().size();
+  }
+  context.progress.stage("normal maps", total, "tiles");
+  textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
+  MapStage stage(forest, textures, context);
+  for (auto nodes = left.rbegin(); nodes != left.rend(); ++nodes) {
+    execution::ordered_for(
+        nodes->size(), context.plan.threads + 1, context.cancel,
+        [&](std::size_t i) {
+          stage.make((*nodes)[i]);
+          return (*nodes)[i];
+        },
+        [&](std::size_t, NodeId node) {
+          journal.note_texture(node);
+          context.progress.advance(1);
+        });
+  }
+}
+
+StageMemory normal_map_memory(const JobSize& job) {
+  if (job.normal_map_side == 0)
+    return {};
+  const std::uint64_t largest = map_bytes(job.normal_map_side);
+  const std::uint64_t waiting =
+      (job.threads + 1) * job.part_triangles(job.largest_tile) * kFramedTriangleBytes;
+  return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
+          2 * kMostPictureCache + waiting + (job.threads + 1) * largest};
+}
+
+double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
+  if (job.normal_map_side == 0)
+    return 0;
+  const double texel = job.normal_map_format == ImageFormat::jpeg ? 0.4 : 1.5;
+  constexpr double kVertex = sizeof(TangentCode) + 2 * sizeof(std::uint16_t);
+  return map_texels(job, tiles) * texel + tiles.simplified.vertices * kVertex;
+}
+
+StageTime normal_map_time(const JobSize& job, const TilePopulation& tiles) {
+  constexpr double kTileSeconds = 40e-3;
+  constexpr double kTexelSeconds = 220e-9;
+  return {"normal maps", "tiles",
+          static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
+          tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * kTexelSeconds};
+}
+
+DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles) {
+  if (job.normal_map_side == 0)
+    return {};
+  constexpr double kShown = 0.45;
+  const double directions = map_texels(job, tiles) * (kShown * sizeof(texture::NormalTexel) + 0.2);
+  constexpr double kTriangle =
+      sizeof(TileTriangle) + 2 * sizeof(texture::CornerTexcoords) + sizeof(texture::CornerTangents);
+  return {{directions + published_map_bytes(job, tiles) + tiles.simplified.triangles * kTriangle +
+               tiles.simplified.vertices * sizeof(Vec3f),
+           DiskMoment::simplify, DiskMoment::simplify}};
+}
+
+}  // namespace meshhier::pipeline

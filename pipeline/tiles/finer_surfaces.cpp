@@ -1,0 +1,135 @@
+#include "pipeline/tiles/finer_surfaces.h"
+
+#include "hierarchy/bounds.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <utility>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// The cells of a grid that the border triangles of a tile reach: what of the neighbours' surfaces
+/// may be near them.
+class BorderCells {
+ public:
+  explicit BorderCells(const TileMesh& mesh) {
+    for (const TileTriangle& t : mesh.border)
+      bounds_.add(bounds_of_triangle(mesh.vertices.positions, t));
+    const Vec3f size = bounds_.max - bounds_.min;
+    cell_ = std::max({size.x, size.y, size.z}) / kCells;
+    for (const TileTriangle& t : mesh.border)
+      for_each_cell(grown(bounds_of_triangle(mesh.vertices.positions, t)),
+                    [&](std::size_t cell) { reached_[cell] = true; });
+  }
+
+  bool reaches(std::span<const Vec3f> positions, const TileTriangle& triangle) const {
+    const Bounds box = bounds_of_triangle(positions, triangle);
+    if (!overlaps(box))
+      return false;
+    bool found = false;
+    for_each_cell(box, [&](std::size_t cell) { found = found || reached_[cell]; });
+    return found;
+  }
+
+ private:
+  static constexpr int kCells = 32;
+  static constexpr std::size_t kSide = kCells + 1;
+
+  static Bounds bounds_of_triangle(std::span<const Vec3f> positions, const TileTriangle& t) {
+    Bounds box;
+    for (const TileVertex corner : t)
+      box.add(positions[raw(corner)]);
+    return box;
+  }
+  Bounds grown(Bounds box) const {
+    const Vec3f step{cell_, cell_, cell_};
+    return {box.min - step, box.max + step};
+  }
+  bool overlaps(const Bounds& box) const {
+    const Bounds all = grown(bounds_);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box.max[axis] < all.min[axis] || box.min[axis] > all.max[axis])
+        return false;
+    }
+    return true;
+  }
+  std::size_t index(float value, int axis) const {
+    if (!(cell_ > 0))
+      return 0;
+    const float at = (value - bounds_.min[axis]) / cell_;
+    return static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(kCells)));
+  }
+  template <class Visit>
+  void for_each_cell(const Bounds& box, const Visit& visit) const {
+    for (std::size_t x = index(box.min.x, 0); x <= index(box.max.x, 0); ++x) {
+      for (std::size_t y = index(box.min.y, 1); y <= index(box.max.y, 1); ++y) {
+        for (std::size_t z = index(box.min.z, 2); z <= index(box.max.z, 2); ++z)
+          visit((x * kSide + y) * kSide + z);
+      }
+    }
+  }
+
+  Bounds bounds_;
+  float cell_ = 0;
+  std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
+};
+
+FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> source) {
+  FinerSurface part;
+  for (std::size_t t = 0; t < source->triangles.size(); ++t) {
+    if (!border.reaches(source->positions, source->triangles[t]))
+      continue;
+    part.triangles.push_back(source->triangles[t]);
+    if (!source->corners.empty())
+      part.corners.push_back(source->corners[t]);
+    if (!source->normals.empty())
+      part.normals.push_back(source->normals[t]);
+  }
+  if (!part.triangles.empty())
+    part.source = std::move(source);
+  return part;
+}
+
+}  // namespace
+
+texture::TexturedSurface FinerSurface::surface() const {
+  return triangles.empty()
+             ? source->surface()
+             : texture::TexturedSurface{source->positions, triangles, corners, &source->image};
+}
+
+texture::NormalSurface FinerSurface::normal_surface() const {
+  const bool is_whole = triangles.empty();
+  return {source->positions, is_whole ? source->triangles : triangles,
+          is_whole ? source->normals : normals, is_whole ? source->corners : corners,
+          &source->directions};
+}
+
+std::vector<FinerSurface> finer_surfaces(
+    const Forest& forest, NodeId node, const TileMesh& mesh,
+    const std::function<std::shared_ptr<const BakeSource>(NodeId tile)>& source) {
+  std::vector<FinerSurface> surfaces;
+  const Tree& tree = forest.tree();
+  const auto add = [&](NodeId parent, const auto& choose) {
+    const Tree::Children children = tree.children(parent);
+    for (const NodeId child : children.span()) {
+      FinerSurface one = choose(source(tree.tile_node(child)));
+      if (one.source && !one.source->triangles.empty())
+        surfaces.push_back(std::move(one));
+    }
+  };
+  add(node, [](auto whole) { return FinerSurface{std::move(whole)}; });
+  const BorderCells border(mesh);
+  std::set<std::uint32_t> neighbours;
+  for (const GhostRef& ghost : mesh.ghosts)
+    neighbours.insert(ghost.tile);
+  for (const std::uint32_t neighbour : neighbours)
+    add({node.level, neighbour}, [&](auto whole) { return near(border, std::move(whole)); });
+  return surfaces;
+}
+
+}  // namespace meshhier::pipeline

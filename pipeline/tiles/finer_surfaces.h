@@ -1,0 +1,33 @@
+// What a tile's picture and normal map are baked from.
+#pragma once
+
+#include "pipeline/tiles/forest.h"
+#include "pipeline/tiles/texture_store.h"
+#include "texture/bake.h"
+#include "texture/corners.h"
+#include "texture/normal_bake.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// A finer surface, or what of it lies near the border of the tile.
+struct FinerSurface {
+  std::shared_ptr<const BakeSource> source;
+  std::vector<TileTriangle> triangles{};  ///< empty: all
+  std::vector<texture::CornerTexcoords> corners{};
+  std::vector<texture::CornerNormals> normals{};
+
+  texture::TexturedSurface surface() const;
+  texture::NormalSurface normal_surface() const;
+};
+
+/// The node's children, then those of its neighbours, as far as they are near the border of its
+/// tile. `source`: of a tile's node. Those without triangles are left out.
+std::vector<FinerSurface> finer_surfaces(
+    const Forest& forest, NodeId node, const TileMesh& mesh,
+    const std::function<std::shared_ptr<const BakeSource>(NodeId tile)>& source);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,211 @@
+#include "texture/normal_bake.h"
+
+#include "tests/texture/random_numbers.h"
+#include "texture/chart_layout.h"
+#include "texture/normal_texels.h"
+#include "texture/tangent_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::texture {
+namespace {
+
+struct Sheet {
+  std::vector<Vec3f> positions;
+  std::vector<TileTriangle> triangles;
+  std::vector<CornerNormals> normals;
+
+  NormalSurface surface() const { return {positions, triangles, normals, {}, nullptr}; }
+};
+
+/// A square of n x n cells over [0, 1], waves of that height on it, with the waves' normals; flat
+/// where `height` is 0.
+Sheet make_sheet(std::uint32_t n, double height) {
+  constexpr double kWaves = 6 * 3.14159265358979;
+  Sheet sheet;
+  std::vector<Vec3f> normals;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      const double x = double(i) / n, y = double(j) / n;
+      sheet.positions.push_back(
+          to_float({x, y, height * std::sin(kWaves * x) * std::sin(kWaves * y)}));
+      normals.push_back(
+          to_float({-height * kWaves * std::cos(kWaves * x) * std::sin(kWaves * y),
+                    -height * kWaves * std::sin(kWaves * x) * std::cos(kWaves * y), 1}));
+    }
+  }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    sheet.triangles.push_back({TileVertex{a}, TileVertex{b}, TileVertex{c}});
+    sheet.normals.push_back({normals[a], normals[b], normals[c]});
+  };
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = j * (n + 1) + i;
+      add(a, a + 1, a + n + 2);
+      add(a, a + n + 2, a + n + 1);
+    }
+  }
+  return sheet;
+}
+
+TEST(NormalTexels, GiveBackWhatIsThere) {
+  std::vector<NormalTexel> all(7 * 30);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % 3 != 1)
+      all[i] = {static_cast<std::int16_t>(i), -5, static_cast<std::int16_t>(1000 - i)};
+  }
+  const NormalTexels texels(7, 30, all);
+  EXPECT_EQ(texels.known().size(), all.size() / 3 * 2);
+  for (std::uint32_t y = 0; y < 30; ++y) {
+    for (std::uint32_t x = 0; x < 7; ++x)
+      ASSERT_EQ(texels.at(x, y), all[y * 7 + x]);
+  }
+  const NormalTexels again(7, 30, {texels.words().begin(), texels.words().end()},
+                           {texels.known().begin(), texels.known().end()});
+  EXPECT_EQ(again.at(3, 20), texels.at(3, 20));
+}
+
+TEST(NormalTexels, BetweenThemIsASmoothFunction) {
+  std::vector<NormalTexel> all(16 * 16);
+  for (std::int16_t i = 0; i < 256; ++i)
+    all[static_cast<std::size_t>(i)] = {static_cast<std::int16_t>(100 * (i % 16)), 7, 9};
+  const NormalTexels texels(16, 16, all);
+  const Vec3d there = texels.direction_at({5.75, 8.1});
+  EXPECT_NEAR(there.x, 525, 1e-9) << "a slope stays one";
+  EXPECT_NEAR(there.y, 7, 1e-9);
+  EXPECT_NEAR(texels.direction_at({6.5, 3.5}).x, 600, 1e-9) << "at a texel it is that";
+}
+
+TEST(NormalTexels, WhatIsNotKnownIsLeftOut) {
+  std::vector<NormalTexel> all(8 * 8);
+  EXPECT_EQ(NormalTexels(8, 8, all).direction_at({4, 4}), Vec3d());
+  all[4 * 8 + 4] = {0, 0, 32767};
+  const Vec3d beside = NormalTexels(8, 8, all).direction_at({4.2, 4.2});
+  EXPECT_GT(beside.z, 0);
+  EXPECT_EQ(beside.x, 0);
+}
+
+TEST(TangentFrame, ReadsWhatIsWritten) {
+  RandomNumbers random(3);
+  const auto vector = [&] {
+    const auto number = [&] { return 2 * random.part() - 1; };
+    return Vec3d{number(), number(), number()};
+  };
+  for (int i = 0; i < 200; ++i) {
+    ChartPlane plane;
+    plane.normal = {0, 0, 1};
+    plane.x = {1, 0, 0};
+    plane.y = i % 2 == 0 ? Vec3d{0, 1, 0} : Vec3d{0, -1, 0};
+    std::array<TangentFrame, 3> corners;
+    for (TangentFrame& corner : corners) {
+      const Vec3f normal = to_float(vector() * 0.4 + Vec3d{0, 0, 1});
+      const TangentCode tangent = tangent_of(plane, normal);
+      EXPECT_TRUE(is_tangent_code(tangent));
+      EXPECT_EQ(tangent[3], i % 2 == 0 ? -127 : 127) << "a picture's v goes down";
+      corner = frame_of(normal, tangent);
+      EXPECT_NEAR(dot(corner.normal, corner.tangent), 0, 0.01);
+    }
+    const TangentFrame frame = interpolated(corners, {0.2, 0.5, 0.3});
+    const Vec3d direction = vector() + Vec3d{0, 0, 1.5};
+    const Vec3d back = frame.mixed(frame.coefficients_of(direction));
+    EXPECT_NEAR(dot(back, direction) / (length(back) * length(direction)), 1, 1e-12);
+    EXPECT_GT(frame.coefficients_of(frame.normal).z, 0);
+  }
+}
+
+TEST(TangentFrame, AVertexSeenFromTheSideHasOneToo) {
+  ChartPlane plane;
+  plane.normal = {0, 0, 1};
+  plane.x = {1, 0, 0};
+  plane.y = {0, 1, 0};
+  for (const Vec3f normal : {Vec3f{1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {}, {-1, 0, 0.01F}})
+    EXPECT_TRUE(is_tangent_code(tangent_of(plane, normal)));
+}
+
+TEST(NormalBake, AFlatTileShowsTheWavesOfTheOriginal) {
+  const Sheet original = make_sheet(160, 0.01), tile = make_sheet(8, 0);
+  const std::vector<NormalSurface> finer{original.surface()};
+  const BakedNormalMap baked = bake_normals(tile.surface(), finer, {256, 0});
+  EXPECT_GT(baked.own_degrees, 4);
+  EXPECT_LT(baked.map_degrees, baked.own_degrees / 10);
+}
+
+TEST(NormalBake, SomeLevelsLaterTheWavesAreStillThere) {
+  const Sheet original = make_sheet(160, 0.01), tile = make_sheet(8, 0);
+  BakedNormalMap baked = bake_normals(tile.surface(), std::vector{original.surface()}, {256, 0});
+  const double first = baked.map_degrees;
+  for (int level = 0; level < 4; ++level) {
+    const NormalSurface below{tile.positions, tile.triangles, {}, baked.corners, &baked.texels};
+    BakedNormalMap next = bake_normals(tile.surface(), std::vector{below}, {252, 0});
+    baked = std::move(next);
+  }
+  const NormalSurface last{tile.positions, tile.triangles, {}, baked.corners, &baked.texels};
+  double most = 0;
+  for (std::uint32_t y = 0; y < baked.texels.height(); ++y) {
+    for (std::uint32_t x = 0; x < baked.texels.width(); ++x)
+      most = std::max(most, std::abs(double(baked.texels.at(x, y)[0])) / 32767);
+  }
+  EXPECT_NEAR(most, 0.185, 0.01) << "the steepest slope";
+  EXPECT_LT(first, 0.6);
+}
+
+TEST(NormalBake, EqualTrianglesGetEqualCorners) {
+  const Sheet original = make_sheet(40, 0.01);
+  Sheet tile = make_sheet(4, 0);
+  tile.triangles.push_back(tile.triangles.front());
+  tile.normals.push_back(tile.normals.front());
+  const BakedNormalMap baked =
+      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  ASSERT_EQ(baked.corners.size(), tile.triangles.size());
+  EXPECT_EQ(baked.corners.back(), baked.corners.front());
+  EXPECT_EQ(baked.tangents.back(), baked.tangents.front());
+}
+
+TEST(NormalBake, BetweenChartsTheMapIsFlat) {
+  const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
+  const BakedNormalMap baked =
+      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  EXPECT_LE(baked.map.width, 128U);
+  std::size_t flat = 0;
+  for (std::uint32_t y = 0; y < baked.map.height; ++y) {
+    for (std::uint32_t x = 0; x < baked.map.width; ++x) {
+      if (baked.texels.at(x, y) != NormalTexel{})
+        continue;
+      const std::uint8_t* texel = baked.map.at(x, y);
+      ASSERT_THAT((std::array{texel[0], texel[1], texel[2]}), testing::ElementsAre(128, 128, 255));
+      ++flat;
+    }
+  }
+  EXPECT_GT(flat, 0U);
+}
+
+TEST(NormalBake, CoordinatesAreThoseOfTheFile) {
+  const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
+  const BakedNormalMap baked =
+      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  for (const CornerTexcoords& corners : baked.corners) {
+    for (const Vec2f& corner : corners) {
+      const double steps = double{corner.u} * 65535;
+      ASSERT_NEAR(steps, std::round(steps), 0.01);
+    }
+  }
+}
+
+TEST(NormalBake, NoTexelIsSmallerThanAsked) {
+  const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
+  const BakedNormalMap baked =
+      bake_normals(tile.surface(), std::vector{original.surface()}, {256, 1.0F / 64});
+  EXPECT_GE(baked.texel, 1.0F / 64);
+  EXPECT_LT(baked.map.width, 128U);
+}
+
+}  // namespace
+}  // namespace meshhier::texture

@@ -1,0 +1,57 @@
+// Triangles, each once.
+#pragma once
+
+#include "hierarchy/tile_mesh.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+/// In the order of their first appearance.
+class DistinctTriangles {
+ public:
+  explicit DistinctTriangles(std::span<const TileTriangle> all) : number_(all.size()) {
+    std::vector<std::uint32_t> order(all.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return all[a] != all[b] ? all[a] < all[b] : a < b;
+    });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const bool again = i > 0 && all[order[i]] == all[order[i - 1]];
+      number_[order[i]] = again ? number_[order[i - 1]] : order[i];
+    }
+    for (std::uint32_t t = 0; t < all.size(); ++t) {
+      if (number_[t] == t) {
+        number_[t] = static_cast<std::uint32_t>(triangles_.size());
+        firsts_.push_back(t);
+        triangles_.push_back(all[t]);
+      } else {
+        number_[t] = number_[number_[t]];  // of the first, which came before
+      }
+    }
+  }
+  std::span<const TileTriangle> triangles() const { return triangles_; }
+  /// Of each of them its number among all, where it comes first.
+  std::span<const std::uint32_t> firsts() const { return firsts_; }
+  /// Of all triangles, from one entry for each distinct one.
+  template <class T>
+  std::vector<T> expanded(const std::vector<T>& of_distinct) const {
+    std::vector<T> all;
+    all.reserve(number_.size());
+    for (const std::uint32_t number : number_)
+      all.push_back(of_distinct[number]);
+    return all;
+  }
+
+ private:
+  std::vector<std::uint32_t> number_;  ///< in triangles_, of each triangle
+  std::vector<std::uint32_t> firsts_;
+  std::vector<TileTriangle> triangles_;
+};
+
+}  // namespace meshhier::texture

@@ -1,0 +1,324 @@
+#include "texture/normal_bake.h"
+
+#include "hierarchy/angle.h"
+#include "hierarchy/bounds.h"
+#include "texture/distinct_triangles.h"
+#include "texture/nearest_triangle.h"
+#include "texture/sample_blocks.h"
+#include "texture/tangent_frame.h"
+#include "texture/texel_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace meshhier::texture {
+namespace {
+
+/// Of a triangle's corners at a point of it.
+using CornerWeights = std::array<double, 3>;
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  constexpr double kDegrees = 57.29577951308232;
+  return kDegrees * angle_of(dot(a, b), length(cross(a, b)));
+}
+
+// ---- the finer surfaces --------------------------------------------------------------------
+
+/// The triangles of several surfaces, numbered through.
+class FinerNormals {
+ public:
+  FinerNormals(std::span<const NormalSurface> surfaces, std::span<const Vec3f> tile)
+      : surfaces_(surfaces), nearest_(joined(surfaces, tile)) {
+    std::uint32_t begin = 0;
+    for (const NormalSurface& surface : surfaces) {
+      begins_.push_back(begin);
+      begin += static_cast<std::uint32_t>(surface.triangles.size());
+    }
+  }
+
+  NearestTriangle& nearest() { return nearest_; }
+
+  /// At the nearest point, of length 1; `facing` if there is nothing.
+  Vec3d direction(const Vec3d& point, const Vec3d& facing, double reach) {
+    const NearestTriangle::Found found = nearest_(point, facing, reach);
+    if (found.triangle == NearestTriangle::kNone)
+      return facing;
+    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), found.triangle);
+    const auto number = static_cast<std::size_t>(behind - begins_.begin()) - 1;
+    const CornerWeights weights{1 - found.on_b - found.on_c, found.on_b, found.on_c};
+    const Vec3d there =
+        direction_of(shown_at(surfaces_[number], found.triangle - begins_[number], weights));
+    return there == Vec3d{} ? facing : there;
+  }
+
+ private:
+  static NearestTriangle joined(std::span<const NormalSurface> surfaces,
+                                std::span<const Vec3f> tile) {
+    std::vector<NearestTriangle::Corners> triangles;
+    for (const NormalSurface& surface : surfaces) {
+      for (const TileTriangle& t : surface.triangles)
+        triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
+                             surface.positions[raw(t[2])]});
+    }
+    const Bounds box = bounds_of(tile);
+    const Vec3d low = to_double(box.min), high = to_double(box.max);
+    const double size = length(high - low);
+    return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
+  }
+
+  static Vec3d shown_at(const NormalSurface& surface, std::uint32_t t,
+                        const CornerWeights& weights) {
+    if (!surface.normals.empty()) {
+      Vec3d sum;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum = sum + to_double(surface.normals[t][k]) * weights[k];
+      return sum;
+    }
+    TexelPoint at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at.x += double{surface.corners[t][k].u} * weights[k];
+      at.y += double{surface.corners[t][k].v} * weights[k];
+    }
+    return surface.texels->direction_at(
+        {at.x * surface.texels->width(), at.y * surface.texels->height()});
+  }
+
+  std::span<const NormalSurface> surfaces_;
+  std::vector<std::uint32_t> begins_;  ///< of each surface its first triangle
+  NearestTriangle nearest_;
+};
+
+// ---- the map -------------------------------------------------------------------------------
+
+/// glTF: 0 to 255 are -1 to 1.
+std::uint8_t value_of(double part) {
+  return static_cast<std::uint8_t>(
+      std::clamp(std::floor((part * 0.5 + 0.5) * 255 + 0.5), 0., 255.));
+}
+double part_of(std::uint8_t value) {
+  return value / 127.5 - 1;
+}
+
+/// Makes the map of one tile, whose triangles are distinct.
+class MapMaker {
+ public:
+  MapMaker(const NormalSurface& tile, FinerNormals& finer, const BakeSize& size)
+      : tile_(tile),
+        surface_{tile.positions, tile.triangles, {}, nullptr},
+        samples_(surface_, size),
+        finer_(finer),
+        texel_(1 / samples_.layout().density) {}
+
+  BakedNormalMap operator()() {
+    BakedNormalMap baked;
+    baked.corners = samples_.texcoords();
+    for (CornerTexcoords& corners : baked.corners) {
+      for (Vec2f& corner : corners)
+        corner = {on_grid(corner.u), on_grid(corner.v)};
+    }
+    baked.tangents = find_frames();
+    baked.texels = find_directions();
+    baked.map = drawn(baked.texels);
+    baked.texel = static_cast<float>(texel_);
+    compare(baked);
+    return baked;
+  }
+
+ private:
+  static float on_grid(float part) {
+    constexpr float kMost = 65535;
+    return std::floor(part * kMost + 0.5f) / kMost;
+  }
+
+  std::vector<CornerTangents> find_frames() {
+    std::vector<CornerTangents> tangents(tile_.triangles.size());
+    frames_.resize(tile_.triangles.size());
+    for (std::size_t c = 0; c < samples_.layout().planes.size(); ++c) {
+      for (const std::uint32_t t : samples_.triangles_of(c)) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          tangents[t][k] = tangent_of(samples_.layout().planes[c], tile_.normals[t][k]);
+          frames_[t][k] = frame_of(tile_.normals[t][k], tangents[t][k]);
+        }
+      }
+    }
+    return tangents;
+  }
+
+  NormalTexels find_directions() {
+    const ChartLayout& layout = samples_.layout();
+    std::vector<NormalTexel> texels(samples_count());
+    for (const ChartPlane& plane : layout.planes) {
+      for_each_sample(samples_, plane, finer_.nearest(),
+                      [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
+                        NormalTexel& texel = texels[index(x, y)];
+                        if (texel == NormalTexel{})
+                          texel = normal_texel(direction(plane, sample, sample.point));
+                      });
+    }
+    return {layout.width, layout.height, texels};
+  }
+
+  Vec3d direction(const ChartPlane& plane, const TexelSample& sample, const Vec3d& point) {
+    return finer_.direction(point, samples_.facing(plane, sample), kFacingReach * texel_);
+  }
+
+  /// Of the nearest point of a triangle to one in its plane.
+  CornerWeights weights_at(std::uint32_t t, const Vec3d& point) const {
+    const auto corner = [&](std::size_t k) {
+      return to_double(tile_.positions[raw(tile_.triangles[t][k])]);
+    };
+    const Vec3d a = corner(0), to_b = corner(1) - a, to_c = corner(2) - a, to_point = point - a;
+    const double bb = dot(to_b, to_b), bc = dot(to_b, to_c), cc = dot(to_c, to_c);
+    const double pb = dot(to_point, to_b), pc = dot(to_point, to_c);
+    const double whole = bb * cc - bc * bc;
+    if (!(whole > 0))
+      return {1, 0, 0};
+    CornerWeights weights{0, (pb * cc - pc * bc) / whole, (pc * bb - pb * bc) / whole};
+    weights[0] = 1 - weights[1] - weights[2];
+    double sum = 0;
+    for (double& weight : weights)
+      sum += weight = std::max(weight, 0.0);
+    for (double& weight : weights)
+      weight /= sum;
+    return weights;
+  }
+
+  TangentFrame frame_at(const TexelSample& sample, const Vec3d& point) const {
+    return interpolated(frames_[sample.triangle], weights_at(sample.triangle, point));
+  }
+
+  /// Of unit length; what looks away from the tile's own normal is turned to its side.
+  static Vec3d in_front(Vec3d coefficients) {
+    constexpr double kLeast = 0.05;
+    coefficients = direction_of(coefficients);
+    coefficients.z = std::max(coefficients.z, kLeast);
+    return direction_of(coefficients);
+  }
+
+  images::Image drawn(const NormalTexels& directions) {
+    coefficients_.assign(samples_count(), {});
+    const ChartLayout& layout = samples_.layout();
+    for (std::uint32_t y = 0; y < layout.height; ++y) {
+      for (std::uint32_t x = 0; x < layout.width; ++x) {
+        const TexelSample& sample = samples_.at(x, y);
+        if (sample.triangle == kNoFace)
+          continue;
+        const NormalTexel to = directions.at(x, y);
+        const Vec3d direction{double(to[0]), double(to[1]), double(to[2])};
+        coefficients_[index(x, y)] =
+            to_float(in_front(frame_at(sample, sample.point).coefficients_of(direction)));
+      }
+    }
+    images::Image map(layout.width, layout.height, 3);
+    const Vec3d flat{0, 0, 1};
+    for (std::size_t i = 0; i < coefficients_.size(); ++i)
+      store(flat, map.texels.data() + 3 * i);
+    for (const ChartPlane& plane : layout.planes) {
+      for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
+        for (std::uint32_t x = plane.left; x < plane.right; ++x) {
+          if (is_known(x, y))
+            store(in_front(sharpened(plane, x, y)), map.at(x, y));
+        }
+      }
+    }
+    return map;
+  }
+
+  std::size_t samples_count() const {
+    return std::size_t{samples_.layout().width} * samples_.layout().height;
+  }
+  std::size_t index(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{y} * samples_.layout().width + x;
+  }
+  bool is_known(std::uint32_t x, std::uint32_t y) const {
+    return coefficients_[index(x, y)].z != 0;
+  }
+  static void store(const Vec3d& coefficients, std::uint8_t* texel) {
+    texel[0] = value_of(coefficients.x);
+    texel[1] = value_of(coefficients.y);
+    texel[2] = value_of(coefficients.z);
+  }
+
+  /// Viewers mix four texels, which blurs: away from the mean of its surroundings by half of what
+  /// it differs from that, a texel comes nearer to the surface.
+  Vec3d sharpened(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) const {
+    constexpr double kMore = 0.5;
+    constexpr double kMiddle = 6;  // of it in a mean along an axis, to one of each neighbour
+    const Vec3d own = to_double(coefficients_[index(x, y)]);
+    Vec3d sum;
+    double whole = 0;
+    for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
+      for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right);
+           ++i) {
+        if (!is_known(i, j))
+          continue;
+        const double weight = (i == x ? kMiddle : 1) * (j == y ? kMiddle : 1);
+        sum = sum + to_double(coefficients_[index(i, j)]) * weight;
+        whole += weight;
+      }
+    }
+    return own + (own - sum * (1 / whole)) * kMore;
+  }
+
+  /// Amid four texels of the map, one in so many along each side.
+  void compare(BakedNormalMap& baked) {
+    constexpr std::uint32_t kStep = 4;
+    std::size_t count = 0;
+    for (const ChartPlane& plane : samples_.layout().planes) {
+      for (std::uint32_t y = plane.top + kBakeGutter; y + 1 < plane.bottom; y += kStep) {
+        for (std::uint32_t x = plane.left + kBakeGutter; x + 1 < plane.right; x += kStep)
+          count += compare(plane, x, y, baked) ? 1 : 0;
+      }
+    }
+    if (count > 0) {
+      baked.own_degrees /= static_cast<double>(count);
+      baked.map_degrees /= static_cast<double>(count);
+    }
+  }
+
+  bool compare(const ChartPlane& plane, std::uint32_t x, std::uint32_t y, BakedNormalMap& baked) {
+    Vec3d point, shown;
+    for (const auto& [i, j] : {std::pair(x, y), {x + 1, y}, {x, y + 1}, {x + 1, y + 1}}) {
+      if (!samples_.at(i, j).is_inside())
+        return false;
+      point = point + samples_.at(i, j).point * 0.25;
+      const std::uint8_t* texel = baked.map.at(i, j);
+      shown = shown + Vec3d{part_of(texel[0]), part_of(texel[1]), part_of(texel[2])};
+    }
+    const TexelSample& sample = samples_.at(x, y);
+    const TangentFrame frame = frame_at(sample, point);
+    const Vec3d original = direction(plane, sample, point);
+    baked.own_degrees += degrees_between(frame.normal, original);
+    baked.map_degrees += degrees_between(direction_of(frame.mixed(shown)), original);
+    return true;
+  }
+
+  const NormalSurface& tile_;
+  const TexturedSurface surface_;
+  const TexelSamples samples_;
+  FinerNormals& finer_;
+  double texel_;
+  std::vector<std::array<TangentFrame, 3>> frames_;  ///< of triangles
+  std::vector<Vec3f> coefficients_;                  ///< of texels, in their frames; 0: not known
+};
+
+}  // namespace
+
+BakedNormalMap bake_normals(const NormalSurface& tile, std::span<const NormalSurface> finer,
+                            const BakeSize& size) {
+  const DistinctTriangles distinct(tile.triangles);
+  std::vector<CornerNormals> normals;
+  for (const std::uint32_t t : distinct.firsts())
+    normals.push_back(tile.normals[t]);
+  FinerNormals directions(finer, tile.positions);
+  const NormalSurface surface{tile.positions, distinct.triangles(), normals, {}, nullptr};
+  BakedNormalMap baked = MapMaker(surface, directions, size)();
+  baked.corners = distinct.expanded(baked.corners);
+  baked.tangents = distinct.expanded(baked.tangents);
+  return baked;
+}
+
+}  // namespace meshhier::texture

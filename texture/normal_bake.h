@@ -1,0 +1,52 @@
+// The normal map of a simplified tile: what its triangles are too few to show of the shading of the
+// original surface (Cohen, Olano & Manocha, Appearance-preserving simplification, 1998).
+//
+// Charts are those of a picture (bake.h). Each texel has the original's direction at the nearest
+// point that faces alike, found level by level: a tile passes on what its texels have, and the
+// lookup between them does not blur (normal_texels.h). Then the map is written for the tile's own
+// frame, a little sharper than it is, as viewers filter texels once more.
+#pragma once
+
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/vec.h"
+#include "images/image.h"
+#include "texture/bake.h"
+#include "texture/corners.h"
+#include "texture/normal_texels.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+/// Of a triangle's corners, of any length; 0: it has no direction there.
+using CornerNormals = std::array<Vec3f, 3>;
+
+/// A surface whose directions are known: at its corners, or on texels.
+struct NormalSurface {
+  std::span<const Vec3f> positions;
+  std::span<const TileTriangle> triangles;   ///< numbers of positions
+  std::span<const CornerNormals> normals;    ///< one a triangle; empty: it has texels
+  std::span<const CornerTexcoords> corners;  ///< likewise, in `texels`
+  const NormalTexels* texels = nullptr;
+};
+
+struct BakedNormalMap {
+  images::Image map;                     ///< 3 channels, as glTF has it; flat between charts
+  std::vector<CornerTexcoords> corners;  ///< one a triangle; multiples of 1 / 65535
+  std::vector<CornerTangents> tangents;  ///< one a triangle
+  NormalTexels texels;                   ///< for the next coarser tile
+  float texel = 0;                       ///< size of a texel on the surface
+  double own_degrees = 0;  ///< mean angle between the tile's own shading and the original's
+  double map_degrees = 0;  ///< the same with the map, before it is encoded
+};
+
+/// Pure, deterministic, single-threaded. `tile`: the coarse tile with its normals at corners.
+/// `finer`: what it was made of and what lies around it, in a fixed order. Equal triangles get
+/// equal corners. O(t log t + texels log t). Requires a triangle.
+BakedNormalMap bake_normals(const NormalSurface& tile, std::span<const NormalSurface> finer,
+                            const BakeSize& size);
+
+}  // namespace meshhier::texture

@@ -1,0 +1,112 @@
+#include "texture/normal_texels.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace meshhier::texture {
+namespace {
+
+constexpr double kStepsOfUnit = 32767;
+constexpr std::size_t kWordBits = 64;
+
+bool shows(const NormalTexel& texel) {
+  return texel != NormalTexel{};
+}
+
+Vec3d wide_of(const NormalTexel& texel) {
+  return {static_cast<double>(texel[0]), static_cast<double>(texel[1]),
+          static_cast<double>(texel[2])};
+}
+
+/// Along one axis: the first of four texels around a place, and what each counts.
+struct CubicTaps {
+  std::int64_t first = 0;
+  std::array<double, 4> cubic{};
+  std::array<double, 2> linear{};  ///< of the second and the third
+
+  explicit CubicTaps(double at) {
+    const double before = std::floor(at - 0.5);
+    const double t = at - 0.5 - before;
+    first = static_cast<std::int64_t>(before) - 1;
+    cubic = {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1,
+             ((-1.5 * t + 2) * t + 0.5) * t, (0.5 * t - 0.5) * t * t};
+    linear = {1 - t, t};
+  }
+};
+
+}  // namespace
+
+NormalTexels::NormalTexels(std::uint32_t width, std::uint32_t height,
+                           std::span<const NormalTexel> all)
+    : width_(width), height_(height), words_(word_count(width, height)) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!shows(all[i]))
+      continue;
+    words_[i / kWordBits] |= std::uint64_t{1} << i % kWordBits;
+    known_.push_back(all[i]);
+  }
+  count();
+}
+
+NormalTexels::NormalTexels(std::uint32_t width, std::uint32_t height,
+                           std::vector<std::uint64_t> words, std::vector<NormalTexel> known)
+    : width_(width), height_(height), words_(std::move(words)), known_(std::move(known)) {
+  count();
+}
+
+void NormalTexels::count() {
+  std::uint32_t sum = 0;
+  for (const std::uint64_t word : words_) {
+    before_.push_back(sum);
+    sum += static_cast<std::uint32_t>(std::popcount(word));
+  }
+}
+
+NormalTexel NormalTexels::at(std::uint32_t x, std::uint32_t y) const {
+  const std::size_t i = std::size_t{y} * width_ + x;
+  const std::uint64_t word = words_[i / kWordBits];
+  const std::uint64_t bit = std::uint64_t{1} << i % kWordBits;
+  if ((word & bit) == 0)
+    return {};
+  return known_[before_[i / kWordBits] + static_cast<std::size_t>(std::popcount(word & (bit - 1)))];
+}
+
+Vec3d NormalTexels::direction_at(const TexelPoint& at) const {
+  const CubicTaps columns(std::clamp(at.x, 0.0, double(width_)));
+  const CubicTaps rows(std::clamp(at.y, 0.0, double(height_)));
+  const auto texel = [&](std::int64_t column, std::int64_t row) {
+    const auto x = std::clamp<std::int64_t>(columns.first + column, 0, width_ - 1);
+    const auto y = std::clamp<std::int64_t>(rows.first + row, 0, height_ - 1);
+    return this->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+  };
+  Vec3d sum;
+  bool is_whole = true;
+  for (std::size_t j = 0; j < 4 && is_whole; ++j) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const NormalTexel one = texel(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j));
+      is_whole = is_whole && shows(one);
+      sum = sum + wide_of(one) * (columns.cubic[i] * rows.cubic[j]);
+    }
+  }
+  if (is_whole)
+    return sum;
+  sum = {};
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (std::size_t i = 0; i < 2; ++i)
+      sum =
+          sum + wide_of(texel(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(j) + 1)) *
+                    (columns.linear[i] * rows.linear[j]);
+  }
+  return sum;
+}
+
+NormalTexel normal_texel(const Vec3d& direction) {
+  const auto rounded = [](double value) {
+    return static_cast<std::int16_t>(std::floor(std::clamp(value, -1.0, 1.0) * kStepsOfUnit + 0.5));
+  };
+  return {rounded(direction.x), rounded(direction.y), rounded(direction.z)};
+}
+
+}  // namespace meshhier::texture

@@ -1,0 +1,61 @@
+// Directions of a surface on the texels of a picture, as exact as the next coarser one needs them.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "texture/texel_raster.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+/// 32767 times a direction of length 1, rounded; all 0 of a texel that shows nothing.
+using NormalTexel = std::array<std::int16_t, 3>;
+
+/// Of a direction of length 1.
+NormalTexel normal_texel(const Vec3d& direction);
+
+/// A picture of them that holds only what is shown: charts leave half of it free. Immutable.
+class NormalTexels {
+ public:
+  NormalTexels() = default;
+  /// `all`: row by row from the top.
+  NormalTexels(std::uint32_t width, std::uint32_t height, std::span<const NormalTexel> all);
+  /// As words() and known() gave them. Requires as many bits as there are known ones.
+  NormalTexels(std::uint32_t width, std::uint32_t height, std::vector<std::uint64_t> words,
+               std::vector<NormalTexel> known);
+
+  std::uint32_t width() const { return width_; }
+  std::uint32_t height() const { return height_; }
+  /// A bit for each texel, row by row, the lowest first.
+  std::span<const std::uint64_t> words() const& { return words_; }
+  std::span<const NormalTexel> known() const& { return known_; }
+  std::uint64_t bytes() const {
+    return words_.size() * (sizeof(std::uint64_t) + sizeof(std::uint32_t)) +
+           known_.size() * sizeof(NormalTexel);
+  }
+  static std::size_t word_count(std::uint32_t width, std::uint32_t height) {
+    return (std::size_t{width} * height + 63) / 64;
+  }
+
+  NormalTexel at(std::uint32_t x, std::uint32_t y) const;
+
+  /// The direction at a place of the picture, in texels, of any length; 0 if no texel around it is
+  /// known. Texels are points of a smooth function (Catmull & Rom 1974, over 16 texels): means of
+  /// four would be blurred again on each level. Where not all 16 are known, it is the mean of those
+  /// of the four nearest that are.
+  Vec3d direction_at(const TexelPoint& at) const;
+
+ private:
+  void count();
+
+  std::uint32_t width_ = 0, height_ = 0;
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> before_;  ///< of each word: known ones before it
+  std::vector<NormalTexel> known_;
+};
+
+}  // namespace meshhier::texture

@@ -1,0 +1,37 @@
+// In what frame a viewer reads a normal map.
+//
+// glTF viewers with tangents interpolate a vertex's normal, tangent and bitangent, bring each of
+// them to unit length, and add them up by red, green and blue. A map is exact only if it was
+// written for that frame, with the vertices' numbers as they are rounded in the file.
+#pragma once
+
+#include "hierarchy/tangent_code.h"
+#include "hierarchy/vec.h"
+#include "texture/chart_layout.h"
+
+#include <array>
+
+namespace meshhier::texture {
+
+struct TangentFrame {
+  Vec3d tangent, bitangent, normal;
+
+  Vec3d mixed(const Vec3d& coefficients) const {
+    return tangent * coefficients.x + bitangent * coefficients.y + normal * coefficients.z;
+  }
+  /// The inverse, of any length.
+  Vec3d coefficients_of(const Vec3d& direction) const;
+};
+
+/// The tangent of a vertex: where on a surface with its normal the picture's u grows, as a
+/// projection along the chart's normal has it. Nearly that of MikkTSpace, which some programs
+/// compute whatever a file has.
+TangentCode tangent_of(const ChartPlane& plane, const Vec3f& normal);
+
+TangentFrame frame_of(const Vec3f& normal, const TangentCode& tangent);
+
+/// At a point of a triangle, from its corners.
+TangentFrame interpolated(const std::array<TangentFrame, 3>& corners,
+                          const std::array<double, 3>& weights);
+
+}  // namespace meshhier::texture
