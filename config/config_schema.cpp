@@ -420,8 +420,8 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
                       "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
                       "they are. `map`: simplified tiles get a normal map of the original surface "
-                      "besides; `auto`: those where it halves the difference, of a degree or "
-                      "more. Meshes with pictures have no maps"},
+                      "besides; `auto`: those where its bytes are worth more than triangles. "
+                      "Meshes with pictures have no maps"},
           kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
       deciding(number(
           {.path = "normal_map.texels",

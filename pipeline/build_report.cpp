@@ -177,6 +177,9 @@ std::string notes_text(const storage::HierarchyReader& made, const config::Confi
     text += fmt::format("kept {} that no triangle uses\n",
                         counted(source.unreferenced_vertices, "vertices"));
   }
+  if (config.storage.normals == config::Normals::map_or_none && !made.manifest().normal_maps &&
+      !source.textures)
+    text += "no tile has a normal map: none would pay\n";
   return text + warning_text(source, has_area) + placement_text(made.manifest(), config) +
          storage::forced_collapses_text(
              storage::summarize_forced_collapses(made.records(), source.places));

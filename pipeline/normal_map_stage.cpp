@@ -7,6 +7,7 @@
 #include "pipeline/plan/share.h"
 #include "pipeline/tiles/finer_surfaces.h"
 #include "shading/tile_shading.h"
+#include "storage/format/tile_plan.h"
 #include "texture/normal_bake.h"
 
 #include <algorithm>
@@ -18,13 +19,17 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// How many texels of a map an original vertex gets, unless that is more than a map may have.
-constexpr double kTexelsAVertex = 12;
+/// How many texels of a map an original vertex gets, unless that is more than a map may have. The
+/// most are for originals of few triangles and sharp edges: of a map that is off by more than
+/// `kGoodDegrees` with fewer.
+constexpr double kFewTexelsAVertex = 3;
+constexpr double kMostTexelsAVertex = 12;
+constexpr double kGoodDegrees = 0.6;
 /// With `auto` a map is made where the tile's own shading is off by at least so many degrees, and
-/// by so many times those of the map. For a map's bytes a tile could have twice its triangles, with
-/// which it would be off by 0.7 times as many.
+/// the map by no more than this part of what as many bytes of triangles would leave: with n times
+/// its triangles a tile is off by 1 / sqrt(n) as much, about.
 constexpr double kLeastDegrees = 1;
-constexpr double kLeastGain = 2;
+constexpr double kMostOfTriangles = 0.75;
 
 /// The normals of all corners, interior triangles first, as the file has them.
 class CornerShading {
@@ -110,6 +115,7 @@ class MapStage {
       : forest_(forest),
         textures_(textures),
         config_(context.config),
+        job_(context.plan.job),
         side_(config_.normal_map.texels / texture::kBakeAlignment * texture::kBakeAlignment),
         gate_(context.memory().work_bytes -
               std::min(context.memory().work_bytes,
@@ -129,13 +135,15 @@ class MapStage {
     for (const FinerSurface& one : finer)
       surfaces.push_back(one.normal_surface());
     const auto normals = CornerShading(forest_, node, mesh).take();
-    texture::BakedNormalMap baked =
-        texture::bake_normals({source.positions, source.triangles, normals, {}, nullptr}, surfaces,
-                              {side_, least_texel(node, source)});
+    const texture::NormalSurface tile{source.positions, source.triangles, normals, {}, nullptr};
+    texture::BakedNormalMap baked = bake(tile, surfaces, least_texels(node, source));
     source.corners = baked.corners;
     source.directions = std::move(baked.texels);
-    textures_.put(node, pays(baked) ? encoded(std::move(baked)) : TileTexture{}, source,
-                  {baked.texel, 0, 0});
+    const TexelSizes texels{baked.texel, 0, 0};
+    const Gain gain{baked.own_degrees, baked.map_degrees,
+                    baked.vertices - std::min<std::size_t>(baked.vertices, mesh.vertices.size())};
+    TileTexture texture = encoded(std::move(baked));
+    textures_.put(node, pays(gain, mesh, texture) ? texture : TileTexture{}, source, texels);
   }
 
  private:
@@ -150,16 +158,61 @@ class MapStage {
     });
   }
 
-  /// The original has no more to show than its vertices.
-  float least_texel(NodeId node, const BakeSource& source) const {
+  /// Sizes of a texel, if a vertex of the original gets few or as many as it may.
+  struct LeastTexels {
+    float of_few = 0, of_most = 0;
+  };
+
+  LeastTexels least_texels(NodeId node, const BakeSource& source) const {
+    const double area = area_of(source);
     const auto vertices = static_cast<double>(forest_.tree().ranks(node).size());
-    return static_cast<float>(std::sqrt(area_of(source) / (kTexelsAVertex * vertices)));
+    const auto texel = [&](double a_vertex) {
+      return static_cast<float>(std::sqrt(area / (a_vertex * vertices)));
+    };
+    return {texel(kFewTexelsAVertex), texel(kMostTexelsAVertex)};
   }
 
-  bool pays(const texture::BakedNormalMap& baked) const {
-    return config_.storage.normals == config::Normals::map ||
-           (baked.own_degrees >= kLeastDegrees &&
-            baked.own_degrees >= kLeastGain * baked.map_degrees);
+  /// With more texels if a map of few is not good. Differences shrink as texels do, about.
+  texture::BakedNormalMap bake(const texture::NormalSurface& tile,
+                               std::span<const texture::NormalSurface> finer,
+                               const LeastTexels& least) const {
+    texture::BakedNormalMap baked = texture::bake_normals(tile, finer, {side_, least.of_few});
+    const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
+    if (is_largest || baked.map_degrees <= kGoodDegrees)
+      return baked;
+    const auto wanted = static_cast<float>(least.of_few * kGoodDegrees / baked.map_degrees);
+    return texture::bake_normals(tile, finer, {side_, std::max(wanted, least.of_most)});
+  }
+
+  /// What a map is good for, and the splits that it takes.
+  struct Gain {
+    double own_degrees = 0, map_degrees = 0;
+    std::size_t splits = 0;
+  };
+
+  bool pays(const Gain& gain, const TileMesh& mesh, const TileTexture& texture) const {
+    if (config_.storage.normals == config::Normals::map)
+      return true;
+    const double without = plain_bytes(mesh);
+    const double growth = 1 + map_bytes_of(gain, mesh, texture) / without;
+    return gain.own_degrees >= kLeastDegrees &&
+           gain.map_degrees * std::sqrt(growth) <= kMostOfTriangles * gain.own_degrees;
+  }
+
+  double vertex_bytes() const {
+    return storage::expected_split_bytes(job_.published_attribute_bytes) * job_.published_ratio;
+  }
+  double plain_bytes(const TileMesh& mesh) const {
+    constexpr double kTriangle = 3 * sizeof(std::uint16_t);
+    const auto triangles = static_cast<double>(mesh.interior.size() + mesh.border.size());
+    return static_cast<double>(mesh.vertices.size()) * vertex_bytes() +
+           triangles * kTriangle * job_.published_ratio;
+  }
+  double map_bytes_of(const Gain& gain, const TileMesh& mesh, const TileTexture& texture) const {
+    constexpr double kMapped = sizeof(TangentCode) + 2 * sizeof(std::uint16_t);
+    const auto splits = static_cast<double>(gain.splits);
+    return static_cast<double>(texture.normal_map.bytes.size()) + splits * vertex_bytes() +
+           (static_cast<double>(mesh.vertices.size()) + splits) * kMapped * job_.published_ratio;
   }
 
   TileTexture encoded(texture::BakedNormalMap baked) const {
@@ -175,6 +228,7 @@ class MapStage {
   const Forest& forest_;
   TextureStore& textures_;
   const config::Config& config_;
+  const JobSize& job_;
   const std::uint32_t side_;
   execution::MemoryGate gate_;
 };
@@ -196,11 +250,11 @@ std::vector<NodeId> maps_left(const Tree& tree, Level level, const Share& share,
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
   const double side = job.normal_map_side;
   const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);
-  constexpr double kShown = 0.4;
+  constexpr double kShown = 0.4, kUsualTexelsAVertex = 6;
   double texels = 0, left = tiles.simplified.count - tiles.early.count;
   for (double below = 2; left > 0.5; below *= 2) {
     const double on_level = std::min(left, std::ceil(left / 2));
-    texels += on_level * std::min(side * side, below * vertices * kTexelsAVertex / kShown);
+    texels += on_level * std::min(side * side, below * vertices * kUsualTexelsAVertex / kShown);
     left -= on_level;
   }
   return texels;

@@ -123,6 +123,7 @@ class MapMaker {
     baked.texels = find_directions();
     baked.map = drawn(baked.texels);
     baked.texel = static_cast<float>(texel_);
+    baked.vertices = count_vertices();
     compare(baked);
     return baked;
   }
@@ -131,6 +132,20 @@ class MapMaker {
   static float on_grid(float part) {
     constexpr float kMost = 65535;
     return std::floor(part * kMost + 0.5f) / kMost;
+  }
+
+  std::uint32_t count_vertices() const {
+    std::vector<std::size_t> last_chart(tile_.positions.size(), ~std::size_t{0});
+    std::uint32_t count = 0;
+    for (std::size_t c = 0; c < samples_.layout().planes.size(); ++c) {
+      for (const std::uint32_t t : samples_.triangles_of(c)) {
+        for (const TileVertex corner : tile_.triangles[t]) {
+          count += last_chart[raw(corner)] != c ? 1 : 0;
+          last_chart[raw(corner)] = c;
+        }
+      }
+    }
+    return count;
   }
 
   std::vector<CornerTangents> find_frames() {
@@ -154,7 +169,7 @@ class MapMaker {
       for_each_sample(samples_, plane, finer_.nearest(),
                       [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
                         NormalTexel& texel = texels[index(x, y)];
-                        if (texel == NormalTexel{})
+                        if ((texel[0] | texel[1] | texel[2]) == 0)
                           texel = normal_texel(direction(plane, sample, sample.point));
                       });
     }

@@ -39,8 +39,9 @@ struct BakedNormalMap {
   std::vector<CornerTangents> tangents;  ///< one a triangle
   NormalTexels texels;                   ///< for the next coarser tile
   float texel = 0;                       ///< size of a texel on the surface
-  double own_degrees = 0;  ///< mean angle between the tile's own shading and the original's
-  double map_degrees = 0;  ///< the same with the map, before it is encoded
+  std::uint32_t vertices = 0;  ///< of all charts: a vertex counts once for each that it is in
+  double own_degrees = 0;      ///< mean angle between the tile's own shading and the original's
+  double map_degrees = 0;      ///< the same with the map, before it is encoded
 };
 
 /// Pure, deterministic, single-threaded. `tile`: the coarse tile with its normals at corners.

@@ -12,7 +12,7 @@ constexpr double kStepsOfUnit = 32767;
 constexpr std::size_t kWordBits = 64;
 
 bool shows(const NormalTexel& texel) {
-  return texel != NormalTexel{};
+  return (texel[0] | texel[1] | texel[2]) != 0;
 }
 
 Vec3d wide_of(const NormalTexel& texel) {
@@ -20,8 +20,10 @@ Vec3d wide_of(const NormalTexel& texel) {
           static_cast<double>(texel[2])};
 }
 
+}  // namespace
+
 /// Along one axis: the first of four texels around a place, and what each counts.
-struct CubicTaps {
+struct NormalTexels::CubicTaps {
   std::int64_t first = 0;
   std::array<double, 4> cubic{};
   std::array<double, 2> linear{};  ///< of the second and the third
@@ -35,8 +37,6 @@ struct CubicTaps {
     linear = {1 - t, t};
   }
 };
-
-}  // namespace
 
 NormalTexels::NormalTexels(std::uint32_t width, std::uint32_t height,
                            std::span<const NormalTexel> all)
@@ -70,29 +70,52 @@ NormalTexel NormalTexels::at(std::uint32_t x, std::uint32_t y) const {
   const std::uint64_t bit = std::uint64_t{1} << i % kWordBits;
   if ((word & bit) == 0)
     return {};
-  return known_[before_[i / kWordBits] + static_cast<std::size_t>(std::popcount(word & (bit - 1)))];
+  return known_[rank(i)];
+}
+
+/// The number of the texel among the known ones, if it is one of them.
+std::size_t NormalTexels::rank(std::size_t texel) const {
+  const std::uint64_t below =
+      words_[texel / kWordBits] & ((std::uint64_t{1} << texel % kWordBits) - 1);
+  return before_[texel / kWordBits] + static_cast<std::size_t>(std::popcount(below));
+}
+
+const NormalTexel* NormalTexels::four_at(std::size_t texel) const {
+  constexpr std::uint64_t kFour = 15;
+  const std::size_t bit = texel % kWordBits;
+  std::uint64_t bits = words_[texel / kWordBits] >> bit;
+  if (bit > kWordBits - 4)
+    bits |= words_[texel / kWordBits + 1] << (kWordBits - bit);
+  return (bits & kFour) == kFour ? known_.data() + rank(texel) : nullptr;
+}
+
+bool NormalTexels::add_cubic(const CubicTaps& columns, const CubicTaps& rows, Vec3d& sum) const {
+  if (columns.first < 0 || columns.first + 4 > width_ || rows.first < 0 || rows.first + 4 > height_)
+    return false;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const NormalTexel* four = four_at((static_cast<std::size_t>(rows.first) + j) * width_ +
+                                      static_cast<std::size_t>(columns.first));
+    if (four == nullptr)
+      return false;
+    Vec3d row;
+    for (std::size_t i = 0; i < 4; ++i)
+      row = row + wide_of(four[i]) * columns.cubic[i];
+    sum = sum + row * rows.cubic[j];
+  }
+  return true;
 }
 
 Vec3d NormalTexels::direction_at(const TexelPoint& at) const {
   const CubicTaps columns(std::clamp(at.x, 0.0, double(width_)));
   const CubicTaps rows(std::clamp(at.y, 0.0, double(height_)));
+  if (Vec3d sum; add_cubic(columns, rows, sum))
+    return sum;
   const auto texel = [&](std::int64_t column, std::int64_t row) {
     const auto x = std::clamp<std::int64_t>(columns.first + column, 0, width_ - 1);
     const auto y = std::clamp<std::int64_t>(rows.first + row, 0, height_ - 1);
     return this->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
   };
   Vec3d sum;
-  bool is_whole = true;
-  for (std::size_t j = 0; j < 4 && is_whole; ++j) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const NormalTexel one = texel(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j));
-      is_whole = is_whole && shows(one);
-      sum = sum + wide_of(one) * (columns.cubic[i] * rows.cubic[j]);
-    }
-  }
-  if (is_whole)
-    return sum;
-  sum = {};
   for (std::size_t j = 0; j < 2; ++j) {
     for (std::size_t i = 0; i < 2; ++i)
       sum =

@@ -50,7 +50,13 @@ class NormalTexels {
   Vec3d direction_at(const TexelPoint& at) const;
 
  private:
+  struct CubicTaps;
   void count();
+  std::size_t rank(std::size_t texel) const;
+  /// Four in a row from there on, if all are known.
+  const NormalTexel* four_at(std::size_t texel) const;
+  /// False if not all are known.
+  bool add_cubic(const CubicTaps& columns, const CubicTaps& rows, Vec3d& sum) const;
 
   std::uint32_t width_ = 0, height_ = 0;
   std::vector<std::uint64_t> words_;
