@@ -8,7 +8,7 @@
 //                         2 without 1 and colours: computed normals; 1 and 2 without colours: a
 //                         textured tile, of which one more byte tells:
 //   u8  textures          1, 2: the pictures' format; 4 unlit, 8 colours; 16 normals, computed with
-//                         32
+//                         32; 64: normal maps instead
 //
 // and then a GLB (put into a gzip stream where one is wanted), or a gzip stream, or, if it begins
 // like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
@@ -18,7 +18,8 @@
 //       there are computed normals or textures
 //   u8  which attributes have raw values: 1, 2, 4, 8
 //   u16 bytes of the picture, u8 width, u8 height, u8 alpha, all one less and modulo what they can
-//       be: only of a textured tile with triangles
+//       be: only of a textured tile with triangles; of a hierarchy with normal maps a u8 first,
+//       whose 1 says that the tile has one
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
@@ -56,6 +57,10 @@ void take_textures(Take& take, TileFormat& format) {
   format.textures = TextureFormat{static_cast<ImageFormat>((bits & 3) % 3), 90, (bits & 4) != 0};
   format.attributes = {(bits & 48) == 16, (bits & 8) != 0 ? ColourType::u8 : ColourType::none};
   format.computed_normals = computed;
+  if ((bits & 64) != 0) {
+    format.normal_maps = NormalMapFormat{format.textures->format, 90};
+    format.textures.reset();
+  }
 }
 
 Place take_place(Take& take) {
@@ -136,6 +141,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
     *field = count();
   shape.computed_normals = place.format.computed_normals;
   shape.textures = place.format.textures;
+  shape.normal_maps = place.format.normal_maps;
   if (shape.is_shaded())
     shape.splits = count();
   const auto raw_bits = take.number<std::uint8_t>();
@@ -145,6 +151,8 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   shape.raw_values = !place.format.attributes.values.empty() && (raw_bits & 8) != 0;
   if (shape.textures && shape.interior + shape.border > 0)
     shape.image = take_image(take);
+  if (shape.normal_maps && (take.number<std::uint8_t>() & 1) != 0)
+    shape.normal_map = take_image(take);
   const storage::TilePlan plan(shape, place.format.attributes, place.format.lattice);
   if (plan.bytes() > kMostBytes)
     return {};
@@ -169,7 +177,7 @@ bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
          a.mesh.copies.places == b.mesh.copies.places &&
          a.mesh.interior_wedges == b.mesh.interior_wedges &&
          a.mesh.border_wedges == b.mesh.border_wedges && a.shading == b.shading &&
-         a.image == b.image;
+         a.image == b.image && a.normal_map == b.normal_map;
 }
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {

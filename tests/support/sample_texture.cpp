@@ -1,6 +1,8 @@
 #include "support/sample_texture.h"
 
 #include "hierarchy/shown_corners.h"
+#include "hierarchy/tangent_code.h"
+#include "storage/format/tile_plan.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>
@@ -214,6 +216,21 @@ void add_texture(PublishedTile& tile, const TileImage& image) {
     return;
   tile.shading = with_sample_texcoords(tile);
   tile.image = image;
+}
+
+void add_normal_map(PublishedTile& tile, const TileImage& map) {
+  if (tile.mesh.interior.empty() && tile.mesh.border.empty())
+    return;
+  tile.shading = with_sample_texcoords(tile);
+  const auto on_grid = [](float part) {
+    return storage::map_texcoord(storage::map_texcoord_number(part));
+  };
+  for (Vec2f& at : tile.shading.texcoords) {
+    at = {on_grid(at.u), on_grid(at.v)};
+    const bool is_odd = tile.shading.tangents.size() % 2 == 1;
+    tile.shading.tangents.push_back(tangent_code({at.u, is_odd ? -1.0 : 0.5, at.v}, is_odd));
+  }
+  tile.normal_map = map;
 }
 
 void add_textures(Sample& sample, const TextureFormat& format, AlphaMode alpha) {

@@ -24,8 +24,12 @@ Shading with_sample_texcoords(const PublishedTile& tile);
 /// Such coordinates, and a picture of `image`'s kind.
 void add_texture(PublishedTile& tile, const TileImage& image);
 
-/// Gives all tiles of a sample one, and says so in its records and its manifest. Requires a layout
-/// without texture coordinates. Comes last: a tile's coordinates follow from its mesh and normals.
+/// The same for a normal map, with coordinates as files have them, and tangents of both hands.
+void add_normal_map(PublishedTile& tile, const TileImage& map);
+
+/// Gives all tiles of a sample a picture, and says so in its records and its manifest. Requires a
+/// layout without texture coordinates. Comes last: a tile's coordinates follow from its mesh and
+/// normals.
 void add_textures(Sample& sample, const TextureFormat& format = {},
                   AlphaMode alpha = AlphaMode::opaque);
 

@@ -122,7 +122,7 @@ function split(known: Fetch, times: number): Fetch {
     const arrays = { copyOf: [...tile.copyOf], border: whole(tile.border), neighbours: [...tile.neighbours], ghostStarts: [...tile.ghostStarts], chains: [...tile.chains] };
     const positions = at.flatMap((vertex) => [...tile.positions.subarray(3 * vertex, 3 * vertex + 3)]);
     const interior = whole(tile.indices.subarray(0, 3 * tile.interiorCount));
-    return new Response(tileBytes({ ...tile, ...arrays, interior, splitOf, positions, codes: at.flatMap(() => [0, 0, 127]), colours: undefined, normals: undefined, picture: undefined }) as Uint8Array<ArrayBuffer>);
+    return new Response(tileBytes({ ...tile, ...arrays, interior, splitOf, positions, codes: at.flatMap(() => [0, 0, 127]), colours: undefined, normals: undefined, picture: undefined, normalMap: undefined, tangents: undefined }) as Uint8Array<ArrayBuffer>);
   };
 }
 

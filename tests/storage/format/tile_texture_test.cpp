@@ -91,6 +91,72 @@ TEST(TileTextures, ComeBackHoweverTilesArePacked) {
   EXPECT_GT(splits, 10000U);
 }
 
+/// The same with normal maps instead of pictures, of all tiles above the partitions.
+SampleHierarchy mapped(SampleHierarchy sample, ImageFormat format) {
+  sample.format.normal_maps = NormalMapFormat{format, 80};
+  for (PublishedTile& tile : sample.tiles) {
+    if (!sample.tree.is_partition(tile.node))
+      add_normal_map(tile, sample_image(format));
+  }
+  return sample;
+}
+
+std::vector<SampleHierarchy> mapped_samples() {
+  std::vector<SampleHierarchy> samples;
+  for (const AttributeLayout& layout : sample_layouts()) {
+    const SampleHierarchy sample = with_copies(make_sample(torus(150, 0.05F), 5, {layout, {}}));
+    samples.push_back(mapped(sample, ImageFormat::jpeg));
+    if (!layout.normals)
+      samples.push_back(mapped(shaded(sample), ImageFormat::png));
+  }
+  samples.push_back(
+      mapped(quantized(shaded(make_sample(open_grid(9, 9), 5)), 12), ImageFormat::webp));
+  samples.push_back(mapped(shaded(make_sample(points(40), 3)), ImageFormat::jpeg));
+  return samples;
+}
+
+TEST(TileNormalMaps, ComeBackHoweverTilesArePacked) {
+  std::size_t maps = 0;
+  for (SampleHierarchy& sample : mapped_samples()) {
+    for (const Compression compression : {Compression::none, Compression::meshopt_zlib}) {
+      sample.format.compression = compression;
+      for (const PublishedTile& tile : sample.tiles) {
+        const auto bytes = encode_tile(tile, sample.tree, sample.format);
+        const PublishedTile back = read_textured(bytes, tile.node, sample);
+        expect_same_mesh(tile, back);
+        EXPECT_EQ(back.normal_map, tile.normal_map);
+        EXPECT_EQ(back.shading.tangents.size(), tile.shading.tangents.size());
+        EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
+        maps += back.normal_map.empty() ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(maps, 50U);
+}
+
+TEST(TileNormalMaps, ATangentThatIsNoneIsRefused) {
+  const SampleHierarchy sample =
+      mapped(shaded(make_sample(torus(200, 0.05F), 5)), ImageFormat::jpeg);
+  const PublishedTile& root = sample.tiles.front();
+  for (const TangentCode wrong :
+       {TangentCode{0, 0, 0, 127}, {127, 127, 0, 127}, {127, 0, 0, 0}, {127, 0, 0, -128}}) {
+    PublishedTile tile = root;
+    tile.shading.tangents[3] = wrong;
+    const auto bytes = encode_tile(tile, sample.tree, sample.format);
+    EXPECT_THAT(decode_failure(bytes, tile.node, sample), HasSubstr("the tangent of vertex"));
+  }
+}
+
+TEST(TileNormalMaps, APartitionHasNone) {
+  SampleHierarchy sample = mapped(shaded(make_sample(torus(200, 0.05F), 5)), ImageFormat::jpeg);
+  const PublishedTile& partition = sample.tiles.back();
+  ASSERT_TRUE(sample.tree.is_partition(partition.node));
+  PublishedTile tile = partition;
+  add_normal_map(tile, sample_image(ImageFormat::jpeg));
+  const auto bytes = encode_tile(tile, sample.tree, sample.format);
+  EXPECT_THAT(decode_failure(bytes, tile.node, sample), HasSubstr("a normal map of a partition"));
+}
+
 TEST(TileTextures, DoNotChangeTheMesh) {
   for (const SampleHierarchy& sample : textured_samples()) {
     SampleHierarchy plain = sample;

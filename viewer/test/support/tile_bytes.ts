@@ -27,6 +27,9 @@ export interface TileParts {
   /// u, v of each vertex, and what they are in.
   readonly texcoords?: readonly number[] | Float32Array | null;
   readonly picture?: PictureParts;
+  /// Instead: then coordinates are stored in parts of 65535; and tangents, in parts of 127.
+  readonly normalMap?: PictureParts;
+  readonly tangents?: readonly number[];
   readonly interior: readonly number[];
   readonly border?: readonly number[];
   readonly copyOf?: readonly number[];
@@ -98,7 +101,9 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
   if (normals) attribute('NORMAL', Float32Array.from(normals), { componentType: 5126, type: 'VEC3' });
   if (codes) attribute('NORMAL', coded(codes), { componentType: 5120, normalized: true, type: 'VEC3', ...parts.codeAccessor });
   if (colours) attribute(parts.picture && !parts.coloursTint ? '_COLOR_0' : 'COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
-  if (parts.texcoords) attribute('TEXCOORD_0', Float32Array.from(parts.texcoords), { componentType: 5126, type: 'VEC2' });
+  if (parts.tangents) attribute('TANGENT', Int8Array.from(parts.tangents), { componentType: 5120, normalized: true, type: 'VEC4' });
+  if (parts.texcoords && parts.normalMap) attribute('TEXCOORD_0', Uint16Array.from(parts.texcoords, (part) => Math.round(65535 * part)), { componentType: 5123, normalized: true, type: 'VEC2' });
+  else if (parts.texcoords) attribute('TEXCOORD_0', Float32Array.from(parts.texcoords), { componentType: 5126, type: 'VEC2' });
   const numbers = (values: readonly number[]): number => section(Uint16Array.from(values), { stride: 2, mode: 'INDICES' });
   const primitives: object[] = [];
   const primitive = (corners: readonly number[]): number => {
@@ -107,18 +112,22 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
     return primitives.push({ attributes, indices, mode: 4 }) - 1;
   };
   const extension = {
-    version: 3, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length, splitCount: splitOf.length,
+    version: parts.normalMap ? 6 : 3, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length, splitCount: splitOf.length,
     neighbourCount: neighbours.length, chainEntryCount: chains.length, interiorCount: interior.length / 3, borderCount: border.length / 3,
     interiorPrimitive: primitive(interior), borderPrimitive: primitive(border), neighbours: section(Uint32Array.from(neighbours)),
     ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf),
-    ...pictured(parts.picture, section), ...change,
+    ...pictured(parts.picture, section), ...mapped(parts.normalMap, section), ...change,
   };
-  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts.picture), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
+  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts.picture ?? parts.normalMap), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
   return container(text.padEnd(Math.ceil(text.length / 4) * 4), chunks, end);
 }
 
 function pictured(picture: PictureParts | undefined, section: (bytes: Uint8Array) => number): object {
   return picture ? { imageWidth: picture.width, imageHeight: picture.height, image: section(picture.file) } : {};
+}
+
+function mapped(map: PictureParts | undefined, section: (bytes: Uint8Array) => number): object {
+  return map ? { normalMapWidth: map.width, normalMapHeight: map.height, normalMap: section(map.file) } : {};
 }
 
 function materialOf(picture: PictureParts | undefined): object {

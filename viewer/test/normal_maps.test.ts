@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Tiles with normal maps.
+import { MeshMatcapMaterial, MeshStandardMaterial, NoColorSpace, type Texture } from 'three';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Seam } from '../src/cut/seam.js';
+import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { letGo, partsOf, readTile, type Tile } from '../src/hierarchy/tile.js';
+import { Tree, keyOf } from '../src/hierarchy/tree.js';
+import { sharedMaterials } from '../src/scene/materials.js';
+import { DEFAULT_LOOK, type Look } from '../src/scene/settings.js';
+import { TileObject, memoryOf, mostMemory, vertexBytesOf } from '../src/scene/tile_object.js';
+import { FakeBitmap, jpeg } from './support/pictures.js';
+import { packedTileBytes, tileBytes, type TileParts } from './support/tile_bytes.js';
+
+const MAP = { file: jpeg(64, 32), mimeType: 'image/jpeg', width: 64, height: 32 };
+const UP = [0, 0, 127];
+const ASIDE = [90, 0, 90];
+const TANGENT = [127, 0, 0, -127];
+
+function of(count: number, values: readonly number[]): number[] {
+  return Array.from({ length: count }, () => values).flat();
+}
+
+const ROOT: TileParts = {
+  own: 3,
+  splitOf: [0],
+  positions: [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0],
+  codes: of(4, UP),
+  tangents: of(4, TANGENT),
+  texcoords: [0, 0, 1, 0, 0, 1, 0.2, 0.4],
+  colours: of(4, [255, 0, 0, 255]),
+  normalMap: MAP,
+  interior: [0, 1, 2, 3, 2, 1],
+};
+
+/// Two boundary vertices, two ghosts of tile 2/1.
+const FINE: TileParts = {
+  level: 2, index: 2, own: 2, ghosts: 2,
+  positions: [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0],
+  codes: of(4, UP),
+  interior: [], border: [0, 1, 2, 1, 3, 2],
+  neighbours: [1], ghostStarts: [0, 2], chains: [0, 1, 1, 0],
+};
+const COARSE: TileParts = { level: 1, index: 0, own: 3, positions: [1, 2, 0, 0, 2, 0, 5, 5, 5], codes: of(3, ASIDE), interior: [0, 1, 2] };
+const mapped = (parts: TileParts): TileParts => {
+  const vertices = parts.positions.length / 3;
+  return { ...parts, normalMap: MAP, tangents: of(vertices, TANGENT), texcoords: of(vertices, [0.5, 0.5]) };
+};
+
+async function read(parts: TileParts, change: Record<string, number> = {}): Promise<Tile> {
+  return readTile(tileBytes(parts, change), 'tile.glb', null);
+}
+
+beforeEach(() => {
+  FakeBitmap.open = 0;
+  vi.stubGlobal('createImageBitmap', async () => Promise.resolve(new FakeBitmap(64, 32)));
+});
+afterEach(() => {
+  vi.unstubAllGlobals();
+});
+
+describe('readTile', () => {
+  it('reads the map, its coordinates and tangents, packed or not', async () => {
+    const tile = await read(ROOT);
+    expect(tile.picture).toBeNull();
+    expect(tile.normalMap).toMatchObject({ width: 64, height: 32 });
+    ROOT.texcoords!.forEach((part, i) => { expect(tile.texcoords![i]).toBeCloseTo(part, 4); });
+    expect([...tile.tangents!]).toEqual(ROOT.tangents);
+    expect(tile.coloursTint).toBe(false);
+    expect(await readTile(await packedTileBytes(ROOT), 'tile.glb', null)).toEqual(tile);
+  });
+
+  it('hands the map over, and lets go of it', async () => {
+    const tile = await read(ROOT);
+    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.normalMap!.bitmap, tile.tangents!.buffer]));
+    letGo(tile);
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it.each<[string, Partial<TileParts>, Record<string, number>, string]>([
+    ['a map without tangents', { tangents: undefined }, {}, 'a normal map without tangents'],
+    ['a map without coordinates', { texcoords: undefined }, {}, 'without texture coordinates'],
+    ['fewer tangents than vertices', { tangents: of(3, TANGENT) }, {}, 'has not the 16 bytes'],
+    ['a map of one side', {}, { normalMapHeight: 0 }, 'one side only'],
+    ['a map larger than any', {}, { normalMapWidth: 8193 }, 'is not from 0 to 8192'],
+    ['a map that is not there', {}, { normalMap: -1 }, 'is no file'],
+    ['a map of another size', { normalMap: { ...MAP, file: jpeg(64, 33) } }, {}, 'has another size'],
+    ['a newer version', {}, { version: 7 }, 'version 7 of MESHHIER_tile is not known'],
+  ])('refuses %s', async (_, parts, change, problem) => {
+    const refused = read({ ...ROOT, ...parts }, change);
+    await expect(refused).rejects.toBeInstanceOf(HierarchyProblem);
+    await expect(refused).rejects.toThrow(problem);
+  });
+});
+
+describe('Seam', () => {
+  const ghostNormal = async (fineParts: TileParts, coarseParts: TileParts): Promise<number[]> => {
+    const [fine, coarse] = [await read(fineParts), await read(coarseParts)];
+    const seam = new Seam(fine, new Tree(4));
+    seam.look(new Map([fine, coarse].map((tile) => [keyOf(tile.level, tile.index), tile])));
+    seam.resolve();
+    expect([...fine.positions.subarray(6, 9)]).toEqual([0, 2, 0]);
+    return [...fine.normals.subarray(8, 11)];
+  };
+
+  it('gives a ghost the normal of the coarser tile', async () => {
+    expect(await ghostNormal(FINE, COARSE)).toEqual(ASIDE);
+  });
+
+  it.each([[mapped(FINE), COARSE], [FINE, mapped(COARSE)], [mapped(FINE), mapped(COARSE)]])('leaves it its own where one of them has a map', async (fine, coarse) => {
+    expect(await ghostNormal(fine, coarse)).toEqual(UP);
+  });
+});
+
+describe('TileObject', () => {
+  const made = async (parts: TileParts, look: Partial<Look> = {}): Promise<TileObject> => {
+    const tile = await read(parts);
+    const resident = { node: tile, key: keyOf(tile.level, tile.index), tile, seam: new Seam(tile, new Tree(4)) };
+    return new TileObject(resident, { ...DEFAULT_LOOK, ...look }, sharedMaterials());
+  };
+
+  it('is lit by the map, as numbers, beside the colours', async () => {
+    const { material, geometry } = await made(ROOT);
+    expect(material).toBeInstanceOf(MeshStandardMaterial);
+    expect((material as MeshStandardMaterial).normalMap).toMatchObject({ colorSpace: NoColorSpace, flipY: false });
+    expect(material).toMatchObject({ map: null, vertexColors: true });
+    expect(geometry.attributes.tangent).toMatchObject({ itemSize: 4, normalized: true });
+  });
+
+  it('is lit so as clay too, but shows facets as they are', async () => {
+    const clay = await made(ROOT, { material: 'matcap' });
+    expect(clay.material).toBeInstanceOf(MeshMatcapMaterial);
+    expect((clay.material as MeshMatcapMaterial).normalMap).not.toBeNull();
+    expect(((await made(ROOT, { shading: 'flat' })).material as MeshStandardMaterial).normalMap).toBeNull();
+  });
+
+  it('frees the map with itself', async () => {
+    const object = await made(ROOT);
+    const freed = vi.fn();
+    ((object.material as MeshStandardMaterial).normalMap as Texture).addEventListener('dispose', freed);
+    object.dispose();
+    expect(freed).toHaveBeenCalledOnce();
+  });
+
+  it('takes no more memory than the index says', async () => {
+    const tile = await read(ROOT);
+    const counts = { own: 3, ghosts: 0, copies: 0, splits: 1, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32 };
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false });
+    const bytes = memoryOf(tile, new Seam(tile, new Tree(4)), false);
+    expect(bytes).toBeLessThanOrEqual(most);
+    expect(bytes).toBeGreaterThan(4 * 64 * 32);
+  });
+});
