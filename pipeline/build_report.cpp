@@ -167,6 +167,17 @@ bool has_area(const storage::HierarchyReader& made, const execution::CancelToken
   });
 }
 
+namespace {
+
+const char* why_no_maps(const SourceSummary& source, const config::Config& config) {
+  if (source.textures)
+    return "the mesh has pictures";
+  return config.storage.normals == config::Normals::map ? "no simplified tile has triangles"
+                                                        : "none would pay";
+}
+
+}  // namespace
+
 std::string notes_text(const storage::HierarchyReader& made, const config::Config& config,
                        bool has_area) {
   const SourceSummary& source = made.manifest().source;
@@ -177,9 +188,8 @@ std::string notes_text(const storage::HierarchyReader& made, const config::Confi
     text += fmt::format("kept {} that no triangle uses\n",
                         counted(source.unreferenced_vertices, "vertices"));
   }
-  if (config.storage.normals == config::Normals::map_or_none && !made.manifest().normal_maps &&
-      !source.textures)
-    text += "no tile has a normal map: none would pay\n";
+  if (config::makes_maps(config.storage.normals) && !made.manifest().normal_maps)
+    text += std::string("no tile has a normal map: ") + why_no_maps(source, config) + '\n';
   return text + warning_text(source, has_area) + placement_text(made.manifest(), config) +
          storage::forced_collapses_text(
              storage::summarize_forced_collapses(made.records(), source.places));

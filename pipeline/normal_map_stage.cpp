@@ -24,7 +24,7 @@ namespace {
 /// `kGoodDegrees` with fewer.
 constexpr double kFewTexelsAVertex = 3;
 constexpr double kMostTexelsAVertex = 12;
-constexpr double kGoodDegrees = 0.6;
+constexpr double kGoodDegrees = 0.5;
 /// With `auto` a map is made where the tile's own shading is off by at least so many degrees, and
 /// the map by no more than this part of what as many bytes of triangles would leave: with n times
 /// its triangles a tile is off by 1 / sqrt(n) as much, about.
@@ -136,7 +136,8 @@ class MapStage {
       surfaces.push_back(one.normal_surface());
     const auto normals = CornerShading(forest_, node, mesh).take();
     const texture::NormalSurface tile{source.positions, source.triangles, normals, {}, nullptr};
-    texture::BakedNormalMap baked = bake(tile, surfaces, least_texels(node, source));
+    texture::NormalBaker baker(tile, surfaces, side_);
+    texture::BakedNormalMap baked = bake(baker, least_texels(node, source));
     source.corners = baked.corners;
     source.directions = std::move(baked.texels);
     const TexelSizes texels{baked.texel, 0, 0};
@@ -173,15 +174,13 @@ class MapStage {
   }
 
   /// With more texels if a map of few is not good. Differences shrink as texels do, about.
-  texture::BakedNormalMap bake(const texture::NormalSurface& tile,
-                               std::span<const texture::NormalSurface> finer,
-                               const LeastTexels& least) const {
-    texture::BakedNormalMap baked = texture::bake_normals(tile, finer, {side_, least.of_few});
+  static texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least) {
+    texture::BakedNormalMap baked = baker.bake(least.of_few);
     const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
     if (is_largest || baked.map_degrees <= kGoodDegrees)
       return baked;
     const auto wanted = static_cast<float>(least.of_few * kGoodDegrees / baked.map_degrees);
-    return texture::bake_normals(tile, finer, {side_, std::max(wanted, least.of_most)});
+    return baker.bake(std::max(wanted, least.of_most));
   }
 
   /// What a map is good for, and the splits that it takes.

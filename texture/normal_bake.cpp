@@ -2,7 +2,9 @@
 
 #include "hierarchy/angle.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/four_floats.h"
 #include "texture/distinct_triangles.h"
+#include "texture/finer_normals.h"
 #include "texture/nearest_triangle.h"
 #include "texture/sample_blocks.h"
 #include "texture/tangent_frame.h"
@@ -12,84 +14,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace meshhier::texture {
 namespace {
 
-/// Of a triangle's corners at a point of it.
-using CornerWeights = std::array<double, 3>;
-
 double degrees_between(const Vec3d& a, const Vec3d& b) {
   constexpr double kDegrees = 57.29577951308232;
   return kDegrees * angle_of(dot(a, b), length(cross(a, b)));
 }
-
-// ---- the finer surfaces --------------------------------------------------------------------
-
-/// The triangles of several surfaces, numbered through.
-class FinerNormals {
- public:
-  FinerNormals(std::span<const NormalSurface> surfaces, std::span<const Vec3f> tile)
-      : surfaces_(surfaces), nearest_(joined(surfaces, tile)) {
-    std::uint32_t begin = 0;
-    for (const NormalSurface& surface : surfaces) {
-      begins_.push_back(begin);
-      begin += static_cast<std::uint32_t>(surface.triangles.size());
-    }
-  }
-
-  NearestTriangle& nearest() { return nearest_; }
-
-  /// At the nearest point, of length 1; `facing` if there is nothing.
-  Vec3d direction(const Vec3d& point, const Vec3d& facing, double reach) {
-    const NearestTriangle::Found found = nearest_(point, facing, reach);
-    if (found.triangle == NearestTriangle::kNone)
-      return facing;
-    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), found.triangle);
-    const auto number = static_cast<std::size_t>(behind - begins_.begin()) - 1;
-    const CornerWeights weights{1 - found.on_b - found.on_c, found.on_b, found.on_c};
-    const Vec3d there =
-        direction_of(shown_at(surfaces_[number], found.triangle - begins_[number], weights));
-    return there == Vec3d{} ? facing : there;
-  }
-
- private:
-  static NearestTriangle joined(std::span<const NormalSurface> surfaces,
-                                std::span<const Vec3f> tile) {
-    std::vector<NearestTriangle::Corners> triangles;
-    for (const NormalSurface& surface : surfaces) {
-      for (const TileTriangle& t : surface.triangles)
-        triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
-                             surface.positions[raw(t[2])]});
-    }
-    const Bounds box = bounds_of(tile);
-    const Vec3d low = to_double(box.min), high = to_double(box.max);
-    const double size = length(high - low);
-    return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
-  }
-
-  static Vec3d shown_at(const NormalSurface& surface, std::uint32_t t,
-                        const CornerWeights& weights) {
-    if (!surface.normals.empty()) {
-      Vec3d sum;
-      for (std::size_t k = 0; k < 3; ++k)
-        sum = sum + to_double(surface.normals[t][k]) * weights[k];
-      return sum;
-    }
-    TexelPoint at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      at.x += double{surface.corners[t][k].u} * weights[k];
-      at.y += double{surface.corners[t][k].v} * weights[k];
-    }
-    return surface.texels->direction_at(
-        {at.x * surface.texels->width(), at.y * surface.texels->height()});
-  }
-
-  std::span<const NormalSurface> surfaces_;
-  std::vector<std::uint32_t> begins_;  ///< of each surface its first triangle
-  NearestTriangle nearest_;
-};
 
 // ---- the map -------------------------------------------------------------------------------
 
@@ -98,6 +32,8 @@ std::uint8_t value_of(double part) {
   return static_cast<std::uint8_t>(
       std::clamp(std::floor((part * 0.5 + 0.5) * 255 + 0.5), 0., 255.));
 }
+/// Along the normal.
+constexpr std::array<std::uint8_t, 3> kFlat{128, 128, 255};
 double part_of(std::uint8_t value) {
   return value / 127.5 - 1;
 }
@@ -105,12 +41,8 @@ double part_of(std::uint8_t value) {
 /// Makes the map of one tile, whose triangles are distinct.
 class MapMaker {
  public:
-  MapMaker(const NormalSurface& tile, FinerNormals& finer, const BakeSize& size)
-      : tile_(tile),
-        surface_{tile.positions, tile.triangles, {}, nullptr},
-        samples_(surface_, size),
-        finer_(finer),
-        texel_(1 / samples_.layout().density) {}
+  MapMaker(const NormalSurface& tile, FinerNormals& finer, const TexelSamples& samples)
+      : tile_(tile), samples_(samples), finer_(finer), texel_(1 / samples_.layout().density) {}
 
   BakedNormalMap operator()() {
     BakedNormalMap baked;
@@ -209,28 +141,18 @@ class MapMaker {
   static Vec3d in_front(Vec3d coefficients) {
     constexpr double kLeast = 0.05;
     coefficients = direction_of(coefficients);
-    coefficients.z = std::max(coefficients.z, kLeast);
+    if (coefficients.z >= kLeast)
+      return coefficients;
+    coefficients.z = kLeast;
     return direction_of(coefficients);
   }
 
   images::Image drawn(const NormalTexels& directions) {
-    coefficients_.assign(samples_count(), {});
+    find_coefficients(directions);
     const ChartLayout& layout = samples_.layout();
-    for (std::uint32_t y = 0; y < layout.height; ++y) {
-      for (std::uint32_t x = 0; x < layout.width; ++x) {
-        const TexelSample& sample = samples_.at(x, y);
-        if (sample.triangle == kNoFace)
-          continue;
-        const NormalTexel to = directions.at(x, y);
-        const Vec3d direction{double(to[0]), double(to[1]), double(to[2])};
-        coefficients_[index(x, y)] =
-            to_float(in_front(frame_at(sample, sample.point).coefficients_of(direction)));
-      }
-    }
     images::Image map(layout.width, layout.height, 3);
-    const Vec3d flat{0, 0, 1};
-    for (std::size_t i = 0; i < coefficients_.size(); ++i)
-      store(flat, map.texels.data() + 3 * i);
+    for (std::size_t i = 0; i < map.texels.size(); i += 3)
+      std::ranges::copy(kFlat, map.texels.begin() + static_cast<std::ptrdiff_t>(i));
     for (const ChartPlane& plane : layout.planes) {
       for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
         for (std::uint32_t x = plane.left; x < plane.right; ++x) {
@@ -242,6 +164,23 @@ class MapMaker {
     return map;
   }
 
+  void find_coefficients(const NormalTexels& directions) {
+    coefficients_.assign(samples_count(), FourFloats{});
+    const ChartLayout& layout = samples_.layout();
+    for (std::uint32_t y = 0; y < layout.height; ++y) {
+      for (std::uint32_t x = 0; x < layout.width; ++x) {
+        const TexelSample& sample = samples_.at(x, y);
+        if (sample.triangle == kNoFace)
+          continue;
+        const NormalTexel to = directions.at(x, y);
+        const Vec3d direction{double(to[0]), double(to[1]), double(to[2])};
+        const Vec3f found =
+            to_float(in_front(frame_at(sample, sample.point).coefficients_of(direction)));
+        coefficients_[index(x, y)] = FourFloats{found.x, found.y, found.z, 1};
+      }
+    }
+  }
+
   std::size_t samples_count() const {
     return std::size_t{samples_.layout().width} * samples_.layout().height;
   }
@@ -249,7 +188,7 @@ class MapMaker {
     return std::size_t{y} * samples_.layout().width + x;
   }
   bool is_known(std::uint32_t x, std::uint32_t y) const {
-    return coefficients_[index(x, y)].z != 0;
+    return coefficients_[index(x, y)][3] != 0;
   }
   static void store(const Vec3d& coefficients, std::uint8_t* texel) {
     texel[0] = value_of(coefficients.x);
@@ -260,27 +199,21 @@ class MapMaker {
   /// Viewers mix four texels, which blurs: away from the mean of its surroundings by half of what
   /// it differs from that, a texel comes nearer to the surface.
   Vec3d sharpened(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) const {
-    constexpr double kMore = 0.5;
-    constexpr double kMiddle = 6;  // of it in a mean along an axis, to one of each neighbour
-    const Vec3d own = to_double(coefficients_[index(x, y)]);
-    Vec3d sum;
-    double whole = 0;
+    constexpr float kMore = 0.5;
+    constexpr float kMiddle = 6;  // of it in a mean along an axis, to one of each neighbour
+    FourFloats sum{};             // of what is known, and how much that is
     for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
-      for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right);
-           ++i) {
-        if (!is_known(i, j))
-          continue;
-        const double weight = (i == x ? kMiddle : 1) * (j == y ? kMiddle : 1);
-        sum = sum + to_double(coefficients_[index(i, j)]) * weight;
-        whole += weight;
-      }
+      for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right); ++i)
+        sum += coefficients_[index(i, j)] * ((i == x ? kMiddle : 1) * (j == y ? kMiddle : 1));
     }
-    return own + (own - sum * (1 / whole)) * kMore;
+    const FourFloats own = coefficients_[index(x, y)];
+    const FourFloats more = own + (own - sum / sum[3]) * kMore;
+    return {double{more[0]}, double{more[1]}, double{more[2]}};
   }
 
   /// Amid four texels of the map, one in so many along each side.
   void compare(BakedNormalMap& baked) {
-    constexpr std::uint32_t kStep = 4;
+    constexpr std::uint32_t kStep = 8;
     std::size_t count = 0;
     for (const ChartPlane& plane : samples_.layout().planes) {
       for (std::uint32_t y = plane.top + kBakeGutter; y + 1 < plane.bottom; y += kStep) {
@@ -312,27 +245,46 @@ class MapMaker {
   }
 
   const NormalSurface& tile_;
-  const TexturedSurface surface_;
-  const TexelSamples samples_;
+  const TexelSamples& samples_;
   FinerNormals& finer_;
   double texel_;
   std::vector<std::array<TangentFrame, 3>> frames_;  ///< of triangles
-  std::vector<Vec3f> coefficients_;                  ///< of texels, in their frames; 0: not known
+  /// Of texels, in their frames, and 1; all 0 of what is not known.
+  std::vector<FourFloats> coefficients_;
 };
 
 }  // namespace
 
-BakedNormalMap bake_normals(const NormalSurface& tile, std::span<const NormalSurface> finer,
-                            const BakeSize& size) {
-  const DistinctTriangles distinct(tile.triangles);
+struct NormalBaker::Work {
+  Work(const NormalSurface& tile, std::span<const NormalSurface> finer, std::uint32_t longest)
+      : distinct(tile.triangles), side(longest), directions(finer, tile.positions) {
+    for (const std::uint32_t t : distinct.firsts())
+      normals.push_back(tile.normals[t]);
+    surface = {tile.positions, distinct.triangles(), normals, {}, nullptr};
+    bare = {tile.positions, distinct.triangles(), {}, nullptr};
+  }
+
+  const DistinctTriangles distinct;
+  const std::uint32_t side;
+  FinerNormals directions;
   std::vector<CornerNormals> normals;
-  for (const std::uint32_t t : distinct.firsts())
-    normals.push_back(tile.normals[t]);
-  FinerNormals directions(finer, tile.positions);
-  const NormalSurface surface{tile.positions, distinct.triangles(), normals, {}, nullptr};
-  BakedNormalMap baked = MapMaker(surface, directions, size)();
-  baked.corners = distinct.expanded(baked.corners);
-  baked.tangents = distinct.expanded(baked.tangents);
+  NormalSurface surface;
+  TexturedSurface bare;  ///< without its normals
+  std::unique_ptr<const TexelSamples> samples;
+};
+
+NormalBaker::NormalBaker(const NormalSurface& tile, std::span<const NormalSurface> finer,
+                         std::uint32_t side)
+    : work_(std::make_unique<Work>(tile, finer, side)) {}
+NormalBaker::~NormalBaker() = default;
+
+BakedNormalMap NormalBaker::bake(float least_texel) {
+  const BakeSize size{work_->side, least_texel};
+  work_->samples = work_->samples ? std::make_unique<const TexelSamples>(*work_->samples, size)
+                                  : std::make_unique<const TexelSamples>(work_->bare, size);
+  BakedNormalMap baked = MapMaker(work_->surface, work_->directions, *work_->samples)();
+  baked.corners = work_->distinct.expanded(baked.corners);
+  baked.tangents = work_->distinct.expanded(baked.tangents);
   return baked;
 }
 

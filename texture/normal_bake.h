@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,10 +45,24 @@ struct BakedNormalMap {
   double map_degrees = 0;      ///< the same with the map, before it is encoded
 };
 
-/// Pure, deterministic, single-threaded. `tile`: the coarse tile with its normals at corners.
-/// `finer`: what it was made of and what lies around it, in a fixed order. Equal triangles get
-/// equal corners. O(t log t + texels log t). Requires a triangle.
-BakedNormalMap bake_normals(const NormalSurface& tile, std::span<const NormalSurface> finer,
-                            const BakeSize& size);
+/// Bakes the map of a tile, with larger texels or smaller ones. Deterministic, single-threaded.
+class NormalBaker {
+ public:
+  /// `tile`: the coarse tile with its normals at corners, and a triangle. `finer`: what it was made
+  /// of and what lies around it, in a fixed order. All of them must outlive it. `side`: of a map,
+  /// texels at most, as BakeSize has it. O(t log t).
+  NormalBaker(const NormalSurface& tile, std::span<const NormalSurface> finer, std::uint32_t side);
+  ~NormalBaker();
+  NormalBaker(const NormalBaker&) = delete;
+  NormalBaker& operator=(const NormalBaker&) = delete;
+
+  /// No texel is smaller than `least_texel`. Equal triangles get equal corners. Does not depend on
+  /// what was baked before. O(t + texels log t).
+  BakedNormalMap bake(float least_texel);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 }  // namespace meshhier::texture

@@ -13,7 +13,28 @@ TexelSamples::TexelSamples(const TexturedSurface& tile, const BakeSize& size)
     : tile_(tile),
       faces_(faces_of(tile.positions, tile.triangles)),
       corners_(tile.triangles.size()) {
-  place(size);
+  PlaneCharts refined_charts =
+      refined(tile_.positions, tile_.triangles, faces_, grow_charts(faces_), size.side);
+  charts_ = std::move(refined_charts.charts);
+  planes_ = std::move(refined_charts.planes);
+  fill(size);
+}
+
+TexelSamples::TexelSamples(const TexelSamples& charts, const BakeSize& size)
+    : tile_(charts.tile_),
+      faces_(charts.faces_),
+      charts_(charts.charts_),
+      planes_(charts.planes_),
+      corners_(charts.corners_.size()) {
+  fill(size);
+}
+
+void TexelSamples::fill(const BakeSize& size) {
+  layout_ = lay_out(planes_, size);
+  for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      corners_[t][k] = layout_.texel_of(plane, position(t, k));
+  });
   cover();
   for_each_triangle([&](const ChartPlane&, std::uint32_t t) { mark_middle(t); });
   cover_borders();
@@ -27,17 +48,6 @@ std::vector<CornerTexcoords> TexelSamples::texcoords() const {
                          static_cast<float>(corners_[t][k].y / layout_.height)};
   }
   return texcoords;
-}
-
-void TexelSamples::place(const BakeSize& size) {
-  PlaneCharts refined_charts =
-      refined(tile_.positions, tile_.triangles, faces_, grow_charts(faces_), size.side);
-  charts_ = std::move(refined_charts.charts);
-  layout_ = lay_out(std::move(refined_charts.planes), size);
-  for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) {
-    for (std::size_t k = 0; k < 3; ++k)
-      corners_[t][k] = layout_.texel_of(plane, position(t, k));
-  });
 }
 
 /// Gives the texels within triangles their samples.

@@ -30,6 +30,8 @@ class TexelSamples {
  public:
   /// `tile` must outlive it: positions and triangles of it are used, no triangle is there twice.
   TexelSamples(const TexturedSurface& tile, const BakeSize& size);
+  /// Of the same charts with other texels; `size` has the same side.
+  TexelSamples(const TexelSamples& charts, const BakeSize& size);
 
   const ChartLayout& layout() const { return layout_; }
   const TexelSample& at(std::uint32_t x, std::uint32_t y) const { return samples_[index(x, y)]; }
@@ -61,7 +63,7 @@ class TexelSamples {
     return std::size_t{y} * layout_.width + x;
   }
 
-  void place(const BakeSize& size);
+  void fill(const BakeSize& size);
   void cover();
   void mark_middle(std::uint32_t t);
   void cover_borders();
@@ -71,6 +73,7 @@ class TexelSamples {
   const TexturedSurface& tile_;
   Faces faces_;
   SurfaceCharts charts_;
+  std::vector<ChartPlane> planes_;  ///< of the charts, before they are laid out
   ChartLayout layout_;
   std::vector<std::array<TexelPoint, 3>> corners_;  ///< of triangles, texels
   std::vector<TexelSample> samples_;                ///< of texels

@@ -56,6 +56,12 @@ Sheet make_sheet(std::uint32_t n, double height) {
   return sheet;
 }
 
+BakedNormalMap map_of(const Sheet& tile, const NormalSurface& finer, std::uint32_t side,
+                      float least_texel = 0) {
+  const std::vector<NormalSurface> surfaces{finer};
+  return NormalBaker(tile.surface(), surfaces, side).bake(least_texel);
+}
+
 TEST(NormalTexels, GiveBackWhatIsThere) {
   std::vector<NormalTexel> all(7 * 30);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -133,18 +139,18 @@ TEST(TangentFrame, AVertexSeenFromTheSideHasOneToo) {
 TEST(NormalBake, AFlatTileShowsTheWavesOfTheOriginal) {
   const Sheet original = make_sheet(160, 0.01), tile = make_sheet(8, 0);
   const std::vector<NormalSurface> finer{original.surface()};
-  const BakedNormalMap baked = bake_normals(tile.surface(), finer, {256, 0});
+  const BakedNormalMap baked = NormalBaker(tile.surface(), finer, 256).bake(0);
   EXPECT_GT(baked.own_degrees, 4);
   EXPECT_LT(baked.map_degrees, baked.own_degrees / 10);
 }
 
 TEST(NormalBake, SomeLevelsLaterTheWavesAreStillThere) {
   const Sheet original = make_sheet(160, 0.01), tile = make_sheet(8, 0);
-  BakedNormalMap baked = bake_normals(tile.surface(), std::vector{original.surface()}, {256, 0});
+  BakedNormalMap baked = map_of(tile, original.surface(), 256);
   const double first = baked.map_degrees;
   for (int level = 0; level < 4; ++level) {
     const NormalSurface below{tile.positions, tile.triangles, {}, baked.corners, &baked.texels};
-    BakedNormalMap next = bake_normals(tile.surface(), std::vector{below}, {252, 0});
+    BakedNormalMap next = map_of(tile, below, 252);
     baked = std::move(next);
   }
   const NormalSurface last{tile.positions, tile.triangles, {}, baked.corners, &baked.texels};
@@ -162,8 +168,7 @@ TEST(NormalBake, EqualTrianglesGetEqualCorners) {
   Sheet tile = make_sheet(4, 0);
   tile.triangles.push_back(tile.triangles.front());
   tile.normals.push_back(tile.normals.front());
-  const BakedNormalMap baked =
-      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  const BakedNormalMap baked = map_of(tile, original.surface(), 128);
   ASSERT_EQ(baked.corners.size(), tile.triangles.size());
   EXPECT_EQ(baked.corners.back(), baked.corners.front());
   EXPECT_EQ(baked.tangents.back(), baked.tangents.front());
@@ -171,8 +176,7 @@ TEST(NormalBake, EqualTrianglesGetEqualCorners) {
 
 TEST(NormalBake, BetweenChartsTheMapIsFlat) {
   const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
-  const BakedNormalMap baked =
-      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  const BakedNormalMap baked = map_of(tile, original.surface(), 128);
   EXPECT_LE(baked.map.width, 128U);
   std::size_t flat = 0;
   for (std::uint32_t y = 0; y < baked.map.height; ++y) {
@@ -189,8 +193,7 @@ TEST(NormalBake, BetweenChartsTheMapIsFlat) {
 
 TEST(NormalBake, CoordinatesAreThoseOfTheFile) {
   const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
-  const BakedNormalMap baked =
-      bake_normals(tile.surface(), std::vector{original.surface()}, {128, 0});
+  const BakedNormalMap baked = map_of(tile, original.surface(), 128);
   for (const CornerTexcoords& corners : baked.corners) {
     for (const Vec2f& corner : corners) {
       const double steps = double{corner.u} * 65535;
@@ -199,10 +202,20 @@ TEST(NormalBake, CoordinatesAreThoseOfTheFile) {
   }
 }
 
+TEST(NormalBake, WhatWasBakedBeforeDecidesNothing) {
+  const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
+  const std::vector<NormalSurface> finer{original.surface()};
+  const NormalSurface surface = tile.surface();
+  NormalBaker baker(surface, finer, 256);
+  const BakedNormalMap coarse = baker.bake(1.0F / 64), fine = baker.bake(1.0F / 128);
+  EXPECT_GT(fine.map.width, coarse.map.width);
+  EXPECT_EQ(fine.map, map_of(tile, original.surface(), 256, 1.0F / 128).map);
+  EXPECT_EQ(baker.bake(1.0F / 64).map, coarse.map);
+}
+
 TEST(NormalBake, NoTexelIsSmallerThanAsked) {
   const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
-  const BakedNormalMap baked =
-      bake_normals(tile.surface(), std::vector{original.surface()}, {256, 1.0F / 64});
+  const BakedNormalMap baked = map_of(tile, original.surface(), 256, 1.0F / 64);
   EXPECT_GE(baked.texel, 1.0F / 64);
   EXPECT_LT(baked.map.width, 128U);
 }

@@ -4,7 +4,7 @@
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
 // partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES.
-// CHECK: one of the tools, memory, narrow, or examples; all without any, or an eighth in a share. Exit code 2: wrong use; else see browser.mjs.
+// CHECK: one of the tools, cards, memory, narrow, or examples; all without any, or an eighth in a share. Exit code 2: wrong use; else see browser.mjs.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -122,6 +122,35 @@ async function checkPick(visitor) {
   await page.keyboard.press('Escape');
   visitor.check('Escape leads out of the tools', (await until(page, async () => !(await page.locator('.tools').isVisible()))) && page.url().includes('#models'), page.url());
   await visitor.close(page, 'pick');
+}
+
+function overlap(a, b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// Cards beside each other, and the way out of them.
+async function checkCards(visitor) {
+  const page = await visitor.open({ viewport: { width: 1280, height: 800 } });
+  const figures = page.locator('.sheet-figures');
+  await page.keyboard.press('s');
+  await figures.waitFor();
+  for (const [tool, title] of [['m', 'Measure'], ['x', 'Cut open'], ['n', 'Notes']]) {
+    await page.keyboard.press(tool);
+    await page.locator('.tool-card', { hasText: title }).waitFor();
+    const boxes = await Promise.all([figures.boundingBox(), page.locator('.tool-card').boundingBox()]);
+    visitor.check(`figures beside the card of ${tool}`, !overlap(...boxes), JSON.stringify(boxes));
+  }
+  const open = async () => [await page.locator('.tool-card').isVisible(), await page.locator('.tool-bar').isVisible(), await figures.isVisible()].map(Number).join('');
+  const steps = [await open()];
+  for (let i = 0; i < 3; ++i) {
+    await page.keyboard.press('Escape');
+    steps.push(await open());
+  }
+  const stays = page.url().includes('#models');
+  visitor.check('Escape closes card, tools and figures', steps.join(' ') === '111 011 001 000' && stays, `${steps.join(' ')}, ${stays ? 'in the model' : 'out of the model'}`);
+  await page.keyboard.press('Escape');
+  visitor.check('then it leads out', await until(page, () => !page.url().includes('#models')), page.url());
+  await visitor.close(page, 'cards');
 }
 
 async function checkMeasure(visitor) {
@@ -451,7 +480,7 @@ async function checkExamples(visitor, directory) {
 }
 
 const CHECKS = {
-  pick: checkPick, measure: checkMeasure, clip: checkClip, notes: checkNotes, camera: checkCamera, memory: checkMemory, narrow: checkNarrow, examples: checkExamples,
+  pick: checkPick, cards: checkCards, measure: checkMeasure, clip: checkClip, notes: checkNotes, camera: checkCamera, memory: checkMemory, narrow: checkNarrow, examples: checkExamples,
 };
 
 async function checkAll(browser, report, { pictures, hierarchy, origin, checks }) {

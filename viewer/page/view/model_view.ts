@@ -434,7 +434,7 @@ export class ModelView {
       nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back()) this.back(); },
+      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back() && !this.chrome.sheets.closeOne()) this.back(); },
       tool: (name) => void this.tools.use(name),
       colours: (number) => { this.choose({ look: { colours: COLOURS[number] } }); },
       toggle: (what) => { this.toggle(what); },

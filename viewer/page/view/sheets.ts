@@ -84,6 +84,13 @@ export class Sheets {
     return open !== undefined;
   }
 
+  /// Any of them. False: none is open.
+  closeOne(): boolean {
+    const open = this.all.find(({ isOpen }) => isOpen);
+    open?.close();
+    return open !== undefined;
+  }
+
   private makeRoom(opened: Sheet): void {
     const others = narrow.matches ? this.all : this.aside.includes(opened) ? this.aside : [];
     for (const sheet of others) if (sheet !== opened) sheet.close();
