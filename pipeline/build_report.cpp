@@ -172,8 +172,9 @@ namespace {
 const char* why_no_maps(const SourceSummary& source, const config::Config& config) {
   if (source.textures)
     return "the mesh has pictures";
-  return config.storage.normals == config::Normals::map ? "no simplified tile has triangles"
-                                                        : "none would pay";
+  return config.storage.normals == config::Normals::map
+             ? "none lies above the partitions, or none of these has triangles"
+             : "none would pay";
 }
 
 }  // namespace

@@ -249,7 +249,7 @@ std::vector<NodeId> maps_left(const Tree& tree, Level level, const Share& share,
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
   const double side = job.normal_map_side;
   const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);
-  constexpr double kShown = 0.4, kUsualTexelsAVertex = 6;
+  constexpr double kShown = 0.4, kUsualTexelsAVertex = kMostTexelsAVertex;
   double texels = 0, left = tiles.simplified.count - tiles.early.count;
   for (double below = 2; left > 0.5; below *= 2) {
     const double on_level = std::min(left, std::ceil(left / 2));

@@ -64,6 +64,33 @@ void NormalTexels::count() {
   }
 }
 
+NormalTexels NormalTexels::around(std::span<const CornerTexcoords> triangles) const {
+  constexpr double kTaps = 2;  // of a lookup on each side
+  std::vector<std::uint64_t> words(words_.size());
+  const auto first = [](double at) {
+    return static_cast<std::uint32_t>(std::max(at - kTaps, 0.0));
+  };
+  for (const CornerTexcoords& corners : triangles) {
+    const auto [left, right] = std::minmax({corners[0].u, corners[1].u, corners[2].u});
+    const auto [top, bottom] = std::minmax({corners[0].v, corners[1].v, corners[2].v});
+    const double end_x = std::min(double{right} * width_ + kTaps + 1, double(width_));
+    const double end_y = std::min(double{bottom} * height_ + kTaps + 1, double(height_));
+    for (std::uint32_t y = first(double{top} * height_); y < end_y; ++y) {
+      for (std::uint32_t x = first(double{left} * width_); x < end_x; ++x) {
+        const std::size_t i = std::size_t{y} * width_ + x;
+        words[i / kWordBits] |= words_[i / kWordBits] & std::uint64_t{1} << i % kWordBits;
+      }
+    }
+  }
+  std::vector<NormalTexel> known;
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    for (std::uint64_t left = words[w]; left != 0; left &= left - 1)
+      known.push_back(
+          known_[rank(w * kWordBits + static_cast<std::size_t>(std::countr_zero(left)))]);
+  }
+  return {width_, height_, std::move(words), std::move(known)};
+}
+
 NormalTexel NormalTexels::at(std::uint32_t x, std::uint32_t y) const {
   const std::size_t i = std::size_t{y} * width_ + x;
   const std::uint64_t word = words_[i / kWordBits];

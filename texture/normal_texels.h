@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/vec.h"
+#include "texture/corners.h"
 #include "texture/texel_raster.h"
 
 #include <array>
@@ -42,6 +43,9 @@ class NormalTexels {
   }
 
   NormalTexel at(std::uint32_t x, std::uint32_t y) const;
+
+  /// Those that triangles of these corners look up, alone.
+  NormalTexels around(std::span<const CornerTexcoords> triangles) const;
 
   /// The direction at a place of the picture, in texels, of any length; 0 if no texel around it is
   /// known. Texels are points of a smooth function (Catmull & Rom 1974, over 16 texels): means of

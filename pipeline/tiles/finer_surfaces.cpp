@@ -78,6 +78,18 @@ class BorderCells {
   std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
 };
 
+/// A part without the rest of its directions: there may be many neighbours.
+FinerSurface alone(FinerSurface part, const BakeSource& whole) {
+  BakeSource source;
+  source.positions = whole.positions;
+  source.triangles = std::move(part.triangles);
+  source.corners = std::move(part.corners);
+  source.normals = std::move(part.normals);
+  if (!source.corners.empty())
+    source.directions = whole.directions.around(source.corners);
+  return {std::make_shared<const BakeSource>(std::move(source))};
+}
+
 FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> source) {
   FinerSurface part;
   for (std::size_t t = 0; t < source->triangles.size(); ++t) {
@@ -89,8 +101,11 @@ FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> s
     if (!source->normals.empty())
       part.normals.push_back(source->normals[t]);
   }
-  if (!part.triangles.empty())
-    part.source = std::move(source);
+  if (part.triangles.empty())
+    return {};
+  if (source->image.texels.empty())
+    return alone(std::move(part), *source);
+  part.source = std::move(source);
   return part;
 }
 

@@ -90,6 +90,28 @@ TEST(NormalTexels, BetweenThemIsASmoothFunction) {
   EXPECT_NEAR(texels.direction_at({6.5, 3.5}).x, 600, 1e-9) << "at a texel it is that";
 }
 
+TEST(NormalTexels, APartIsLookedUpAsTheWhole) {
+  std::vector<NormalTexel> all(100 * 40);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = {static_cast<std::int16_t>(i * 7919 % 30000), 1, static_cast<std::int16_t>(i)};
+  const NormalTexels whole(100, 40, all);
+  const std::vector<CornerTexcoords> triangles{{Vec2f{0.2F, 0.1F}, {0.3F, 0.2F}, {0.25F, 0.4F}},
+                                               {Vec2f{0.99F, 0.9F}, {1, 1}, {0.9F, 1}}};
+  const NormalTexels part = whole.around(triangles);
+  EXPECT_LT(part.known().size(), all.size() / 5);
+  for (const CornerTexcoords& t : triangles) {
+    for (double b = 0; b <= 1; b += 0.125) {
+      for (double c = 0; b + c <= 1; c += 0.125) {
+        const auto mixed = [&](float Vec2f::*axis) {
+          return double{t[0].*axis} * (1 - b - c) + double{t[1].*axis} * b + double{t[2].*axis} * c;
+        };
+        const TexelPoint at{mixed(&Vec2f::u) * 100, mixed(&Vec2f::v) * 40};
+        ASSERT_EQ(part.direction_at(at), whole.direction_at(at));
+      }
+    }
+  }
+}
+
 TEST(NormalTexels, WhatIsNotKnownIsLeftOut) {
   std::vector<NormalTexel> all(8 * 8);
   EXPECT_EQ(NormalTexels(8, 8, all).direction_at({4, 4}), Vec3d());
