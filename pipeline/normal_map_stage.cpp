@@ -1,9 +1,9 @@
 #include "pipeline/normal_map_stage.h"
 
 #include "execution/memory_gate.h"
-#include "execution/parallel.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
+#include "pipeline/picture_levels.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/tiles/finer_surfaces.h"
 #include "shading/tile_shading.h"
@@ -232,18 +232,6 @@ class MapStage {
   execution::MemoryGate gate_;
 };
 
-std::vector<NodeId> maps_left(const Tree& tree, Level level, const Share& share,
-                              const BuildJournal& journal) {
-  const std::uint32_t count = tree.node_count(level);
-  std::vector<NodeId> left;
-  for (std::uint64_t i = share.begin(count); i < share.end(count); ++i) {
-    const NodeId node{level, static_cast<std::uint32_t>(i)};
-    if (!tree.is_early(node) && !journal.has_texture(node))
-      left.push_back(node);
-  }
-  return left;
-}
-
 /// Texels of all maps: three levels above the partitions have as many as the original's vertices
 /// ask for, about, the others as many as a map may have.
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
@@ -264,27 +252,9 @@ double map_texels(const JobSize& job, const TilePopulation& tiles) {
 void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal& journal,
                       const LevelRange& levels, const StageContext& context) {
   const int end = std::min(levels.end, int{raw(context.tree().depth())});  // above the partitions
-  std::vector<std::vector<NodeId>> left;                                   // from levels.top on
-  std::uint64_t total = 0;
-  for (int l = levels.top; l < end; ++l) {
-    left.push_back(maps_left(context.tree(), static_cast<Level>(l), levels.share, journal));
-    total += left.back().size();
-  }
-  context.progress.stage("normal maps", total, "tiles");
-  textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
   MapStage stage(forest, textures, context);
-  for (auto nodes = left.rbegin(); nodes != left.rend(); ++nodes) {
-    execution::ordered_for(
-        nodes->size(), context.plan.threads + 1, context.cancel,
-        [&](std::size_t i) {
-          stage.make((*nodes)[i]);
-          return (*nodes)[i];
-        },
-        [&](std::size_t, NodeId node) {
-          journal.note_texture(node);
-          context.progress.advance(1);
-        });
-  }
+  make_level_by_level("normal maps", {levels.top, end, levels.share}, textures, journal, context,
+                      [&](NodeId node) { stage.make(node); });
 }
 
 StageMemory normal_map_memory(const JobSize& job) {

@@ -1,11 +1,11 @@
 #include "pipeline/texture_stage.h"
 
 #include "execution/memory_gate.h"
-#include "execution/parallel.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
 #include "images/row_writer.h"
+#include "pipeline/picture_levels.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/finer_surfaces.h"
 #include "pipeline/tiles/vertex_order.h"
@@ -319,43 +319,13 @@ class TextureMaker {
   std::atomic<std::uint32_t> coarsest_level_ = 0;
 };
 
-std::vector<NodeId> textures_left(const Tree& tree, Level level, const Share& share,
-                                  const BuildJournal& journal) {
-  const std::uint32_t count = tree.node_count(level);
-  std::vector<NodeId> left;
-  for (std::uint64_t i = share.begin(count); i < share.end(count); ++i) {
-    const NodeId node{level, static_cast<std::uint32_t>(i)};
-    if (!tree.is_early(node) && !journal.has_texture(node))
-      left.push_back(node);
-  }
-  return left;
-}
-
 }  // namespace
 
 void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
                    BuildJournal& journal, const LevelRange& levels, const StageContext& context) {
-  std::vector<std::vector<NodeId>> left;  // from levels.top on
-  std::uint64_t total = 0;
-  for (int l = levels.top; l < levels.end; ++l) {
-    left.push_back(textures_left(context.tree(), static_cast<Level>(l), levels.share, journal));
-    total += left.back().size();
-  }
-  context.progress.stage("texture", total, "tiles");
-  textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
   TextureMaker maker(forest, input, textures, context);
-  for (auto nodes = left.rbegin(); nodes != left.rend(); ++nodes) {
-    execution::ordered_for(
-        nodes->size(), context.plan.threads + 1, context.cancel,
-        [&](std::size_t i) {
-          maker.make((*nodes)[i]);
-          return (*nodes)[i];
-        },
-        [&](std::size_t, NodeId node) {
-          journal.note_texture(node);
-          context.progress.advance(1);
-        });
-  }
+  make_level_by_level("texture", levels, textures, journal, context,
+                      [&](NodeId node) { maker.make(node); });
   if (const std::string warning = maker.warning(); !warning.empty())
     context.progress.warn(warning);
 }

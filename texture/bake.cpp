@@ -19,20 +19,6 @@
 namespace meshhier::texture {
 namespace {
 
-/// The triangles of several surfaces, numbered through.
-NearestTriangle joined(std::span<const TexturedSurface> surfaces, std::span<const Vec3f> tile) {
-  std::vector<NearestTriangle::Corners> triangles;
-  for (const TexturedSurface& surface : surfaces) {
-    for (const TileTriangle& t : surface.triangles)
-      triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
-                           surface.positions[raw(t[2])]});
-  }
-  const Bounds box = bounds_of(tile);
-  const Vec3d low = to_double(box.min), high = to_double(box.max);
-  const double size = length(high - low);
-  return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
-}
-
 std::uint32_t channels_of(std::span<const TexturedSurface> surfaces) {
   std::uint32_t channels = 3;
   for (const TexturedSurface& surface : surfaces) {
@@ -49,7 +35,7 @@ class Painter {
           std::span<const Vec3f> tile)
       : samples_(samples),
         texel_(1 / samples.layout().density),
-        nearest_(joined(finer, tile)),
+        nearest_(nearest_among(finer, tile)),
         sampler_(finer, texel_),
         channels_(channels_of(finer)) {}
 

@@ -1,12 +1,12 @@
 // The directions of the surfaces that a tile was made of.
 #pragma once
 
-#include "hierarchy/bounds.h"
 #include "hierarchy/vec.h"
 #include "texture/faces.h"
 #include "texture/nearest_triangle.h"
 #include "texture/normal_bake.h"
 #include "texture/normal_texels.h"
+#include "texture/sample_blocks.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ using CornerWeights = std::array<double, 3>;
 class FinerNormals {
  public:
   FinerNormals(std::span<const NormalSurface> surfaces, std::span<const Vec3f> tile)
-      : surfaces_(surfaces), nearest_(joined(surfaces, tile)) {
+      : surfaces_(surfaces), nearest_(nearest_among(surfaces, tile)) {
     std::uint32_t begin = 0;
     for (const NormalSurface& surface : surfaces) {
       begins_.push_back(begin);
@@ -48,20 +48,6 @@ class FinerNormals {
   }
 
  private:
-  static NearestTriangle joined(std::span<const NormalSurface> surfaces,
-                                std::span<const Vec3f> tile) {
-    std::vector<NearestTriangle::Corners> triangles;
-    for (const NormalSurface& surface : surfaces) {
-      for (const TileTriangle& t : surface.triangles)
-        triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
-                             surface.positions[raw(t[2])]});
-    }
-    const Bounds box = bounds_of(tile);
-    const Vec3d low = to_double(box.min), high = to_double(box.max);
-    const double size = length(high - low);
-    return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
-  }
-
   static Vec3d shown_at(const NormalSurface& surface, std::uint32_t t,
                         const CornerWeights& weights) {
     if (!surface.normals.empty()) {

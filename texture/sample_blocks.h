@@ -1,7 +1,10 @@
-// The texels of a chart in an order in which the nearest triangles are found quickly.
+// The nearest triangles of finer surfaces, and the texels of a chart in an order in which they are
+// found quickly.
 #pragma once
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/vec.h"
 #include "texture/chart_layout.h"
 #include "texture/nearest_triangle.h"
 #include "texture/texel_samples.h"
@@ -9,12 +12,30 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace meshhier::texture {
 
 /// How far a surface that faces alike may be, in texels, so that it is taken before a nearer one
 /// that does not.
 inline constexpr double kFacingReach = 32;
+
+/// The triangles of several surfaces, numbered through. `tile`: the positions around which is
+/// asked.
+template <class Surface>
+NearestTriangle nearest_among(std::span<const Surface> surfaces, std::span<const Vec3f> tile) {
+  std::vector<NearestTriangle::Corners> triangles;
+  for (const Surface& surface : surfaces) {
+    for (const TileTriangle& t : surface.triangles)
+      triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
+                           surface.positions[raw(t[2])]});
+  }
+  const Bounds box = bounds_of(tile);
+  const Vec3d low = to_double(box.min), high = to_double(box.max);
+  const double size = length(high - low);
+  return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
+}
 
 /// Tells `nearest` what it will be asked for next.
 inline void look_around(const TexelSamples& samples, const TexelRange& block,

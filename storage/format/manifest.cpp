@@ -173,6 +173,17 @@ bool read_computed_normals(const JsonObject& object, const AttributeLayout& sour
   return true;
 }
 
+/// How pictures or normal maps are stored.
+template <class Format>
+Format read_picture_format(const JsonObject& object) {
+  Format format;
+  format.format = read_choice<ImageFormat>(object, "format", kImageFormatNames);
+  format.quality = static_cast<int>(object.count("quality", 100));
+  if (format.quality == 0)
+    object.wrong("quality", "at least 1");
+  return format;
+}
+
 /// `source`: what the input has.
 std::optional<TextureFormat> read_textures(const JsonObject& object, const SourceSummary& source) {
   if (object.has("texture") != source.textures.has_value())
@@ -180,11 +191,7 @@ std::optional<TextureFormat> read_textures(const JsonObject& object, const Sourc
   if (!source.textures)
     return std::nullopt;
   const JsonObject texture = object.object("texture");
-  TextureFormat textures;
-  textures.format = read_choice<ImageFormat>(texture, "format", kImageFormatNames);
-  textures.quality = static_cast<int>(texture.count("quality", 100));
-  if (textures.quality == 0)
-    texture.wrong("quality", "at least 1");
+  auto textures = read_picture_format<TextureFormat>(texture);
   textures.unlit = texture.boolean("unlit");
   return textures;
 }
@@ -195,13 +202,7 @@ std::optional<NormalMapFormat> read_normal_maps(const JsonObject& object,
     return std::nullopt;
   if (source.textures)
     object.wrong("normal_map", "not to be there beside textures");
-  const JsonObject map = object.object("normal_map");
-  NormalMapFormat format;
-  format.format = read_choice<ImageFormat>(map, "format", kImageFormatNames);
-  format.quality = static_cast<int>(map.count("quality", 100));
-  if (format.quality == 0)
-    map.wrong("quality", "at least 1");
-  return format;
+  return read_picture_format<NormalMapFormat>(object.object("normal_map"));
 }
 
 SourceTextures read_source_textures(const JsonObject& object) {

@@ -7,6 +7,7 @@
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
+#include "tests/support/files_of.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
@@ -16,8 +17,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -30,6 +29,7 @@ namespace meshhier::pipeline {
 namespace {
 
 using config::Normals;
+using tests::files_of;
 using tests::kMiB;
 
 /// A torus with relief: what a coarse tile has too few triangles for.
@@ -61,18 +61,6 @@ class NormalMapsTest : public testing::Test {
     BuildOptions options;
     options.force = true;
     build_hierarchy(job, options, {*files_, progress, execution::CancelToken()});
-  }
-
-  std::map<std::string, std::string> files_of(const std::filesystem::path& directory) {
-    std::map<std::string, std::string> contents;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
-      if (!entry.is_regular_file())
-        continue;
-      std::ifstream stream(entry.path(), std::ios::binary);
-      contents[std::filesystem::relative(entry.path(), directory).string()] =
-          std::string(std::istreambuf_iterator<char>(stream), {});
-    }
-    return contents;
   }
 
   std::vector<std::string> problems(const config::Config& job) {

@@ -6,6 +6,7 @@
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
+#include "tests/support/files_of.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
@@ -44,6 +45,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using tests::AtStage;
+using tests::files_of;
 using tests::kMiB;
 using tests::StoppedStage;
 using tests::TexturedTorus;
@@ -366,18 +368,6 @@ TEST_F(TexturesTest, ErrorsAreNoSmallerThanTexels) {
     }
   }
   EXPECT_GT(coarse, 0U);
-}
-
-std::map<std::string, std::string> files_of(const std::filesystem::path& directory) {
-  std::map<std::string, std::string> contents;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
-    if (entry.is_regular_file()) {
-      std::ifstream stream(entry.path(), std::ios::binary);
-      contents[entry.path().lexically_relative(directory).string()] =
-          std::string(std::istreambuf_iterator<char>(stream), {});
-    }
-  }
-  return contents;
 }
 
 TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
