@@ -79,14 +79,6 @@ class CornerShading {
   std::vector<texture::CornerNormals> normals_;
 };
 
-BakeSource surface_of(const TileMesh& mesh) {
-  BakeSource source;
-  source.positions = mesh.vertices.positions;
-  source.triangles = mesh.interior;
-  source.triangles.insert(source.triangles.end(), mesh.border.begin(), mesh.border.end());
-  return source;
-}
-
 double area_of(const BakeSource& source) {
   double area = 0;
   for (const TileTriangle& t : source.triangles) {
@@ -117,13 +109,11 @@ class MapStage {
         config_(context.config),
         job_(context.plan.job),
         side_(config_.normal_map.texels / texture::kBakeAlignment * texture::kBakeAlignment),
-        gate_(context.memory().work_bytes -
-              std::min(context.memory().work_bytes,
-                       2 * picture_cache_bytes(context.memory().work_bytes))) {}
+        gate_(picture_room_bytes(context.memory().work_bytes)) {}
 
   void make(NodeId node) {
     const TileMesh mesh = forest_.load(node).mesh;
-    BakeSource source = surface_of(mesh);
+    BakeSource source = bare_source(mesh);
     if (source.triangles.empty()) {
       textures_.put(node, {}, source, {});
       return;
@@ -153,7 +143,7 @@ class MapStage {
       return textures_.source(tile);
     return textures_.source(tile, [&] {
       const TileMesh mesh = forest_.load(tile).mesh;
-      BakeSource source = surface_of(mesh);
+      BakeSource source = bare_source(mesh);
       source.normals = CornerShading(forest_, tile, mesh).take();
       return source;
     });

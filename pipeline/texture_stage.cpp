@@ -157,7 +157,7 @@ class TextureMaker {
         textures_(textures),
         format_(context.config.texture.format),
         side_(context.config.texture.texels / texture::kBakeAlignment * texture::kBakeAlignment),
-        gate_(gate_bytes(context.memory().work_bytes)) {}
+        gate_(picture_room_bytes(context.memory().work_bytes)) {}
 
   void make(NodeId node) {
     if (forest_.tree().is_partition(node))
@@ -189,9 +189,8 @@ class TextureMaker {
     texture::LeafAtlas atlas = texture::plan_leaf_atlas(
         {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, kLeafSide);
     note_reduced(atlas);
-    BakeSource source;
+    BakeSource source = bare_source(mesh);
     source.corners = std::move(atlas.corners);
-    add_triangles(mesh, source);
     if (atlas.pieces.empty()) {
       textures_.put(node, {}, source, {});
       return;
@@ -238,8 +237,7 @@ class TextureMaker {
 
   void bake(NodeId node) {
     const TileMesh mesh = forest_.load(node).mesh;
-    BakeSource source;
-    add_triangles(mesh, source);
+    BakeSource source = bare_source(mesh);
     TexelSizes texels = texels_below(node);
     const execution::MemoryGate::Share share = gate_.enter(bake_bytes(side_));
     if (!source.triangles.empty()) {
@@ -258,15 +256,6 @@ class TextureMaker {
     }
     texels.own = texel_of(source);
     textures_.put(node, encoded(source), source, texels);
-  }
-
-  static std::uint64_t gate_bytes(std::uint64_t work_bytes) {
-    return work_bytes - std::min(work_bytes, 2 * picture_cache_bytes(work_bytes));
-  }
-
-  static void add_triangles(const TileMesh& mesh, BakeSource& source) {
-    source.positions = mesh.vertices.positions;
-    source.triangles = joined(mesh.interior, std::span<const TileTriangle>(mesh.border));
   }
 
   images::WrittenImage written_as(AlphaMode alpha, std::uint32_t width,

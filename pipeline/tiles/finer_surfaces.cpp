@@ -111,6 +111,14 @@ FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> s
 
 }  // namespace
 
+BakeSource bare_source(const TileMesh& mesh) {
+  BakeSource source;
+  source.positions = mesh.vertices.positions;
+  source.triangles = mesh.interior;
+  source.triangles.insert(source.triangles.end(), mesh.border.begin(), mesh.border.end());
+  return source;
+}
+
 texture::TexturedSurface FinerSurface::surface() const {
   return triangles.empty()
              ? source->surface()

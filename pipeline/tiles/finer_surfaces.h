@@ -13,6 +13,9 @@
 
 namespace meshhier::pipeline {
 
+/// A tile's places and triangles, interior ones first, with nothing to be baked from yet.
+BakeSource bare_source(const TileMesh& mesh);
+
 /// A finer surface, or what of it lies near the border of the tile.
 struct FinerSurface {
   std::shared_ptr<const BakeSource> source;

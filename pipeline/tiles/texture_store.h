@@ -35,6 +35,11 @@ constexpr std::uint64_t picture_cache_bytes(std::uint64_t work_bytes) {
   return std::clamp(work_bytes / 16, kLeastPictureCache, kMostPictureCache);
 }
 
+/// Of the same, what is left for pictures and normal maps at work.
+constexpr std::uint64_t picture_room_bytes(std::uint64_t work_bytes) {
+  return work_bytes - std::min(work_bytes, 2 * picture_cache_bytes(work_bytes));
+}
+
 /// What a tile is published with. Its triangles are those that Forest::load() gives, interior ones
 /// first, of a partition once its vertices are ordered.
 struct TileTexture {
