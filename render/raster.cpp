@@ -55,6 +55,34 @@ double threshold_at(std::int64_t column, std::int64_t row, std::uint32_t samples
   return (static_cast<double>(place * kStride % count) + 0.5) / static_cast<double>(count);
 }
 
+/// What a normal map is relative to, as the camera sees it: from behind turned round.
+class MapFrames {
+ public:
+  MapFrames(const Camera& camera, const Skin& skin, const Three& normals, const Places& places,
+            bool is_behind)
+      : skin_(skin), level_(level_of(skin, *skin.normal_map, places)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d tangent = to_double(camera.turned(unit_or_zero(skin.tangents[i])));
+      bitangents_[i] = cross(normals[i], tangent) * (skin.is_mirrored ? -1.0 : 1.0);
+      tangents_[i] = is_behind ? tangent * -1 : tangent;
+    }
+  }
+
+  Vec3f normal(const Weights& w, Vec2f texcoord, Vec3f unmapped) const {
+    const Vec3f numbers = skin_.normal_map->light_at(texcoord, level_) * 2.0F;
+    const Vec3f tangent = unit_or_zero(blend(w, tangents_));
+    const Vec3f bitangent = unit_or_zero(blend(w, bitangents_));
+    const Vec3f mixed = unit_or_zero(tangent * (numbers.x - 1) + bitangent * (numbers.y - 1) +
+                                     unmapped * (numbers.z - 1));
+    return mixed == Vec3f{} ? unmapped : mixed;
+  }
+
+ private:
+  const Skin& skin_;
+  double level_;
+  Three tangents_, bitangents_;
+};
+
 /// What a facet shows of itself, as the camera sees it.
 class SeenSurface {
  public:
@@ -73,14 +101,14 @@ class SeenSurface {
     if (skin.texture != nullptr)
       level_ = level_of(skin, *skin.texture, places);
     if (skin.normal_map != nullptr)
-      set_frames(camera, places);
+      frames_.emplace(camera, skin, normals_, places, is_behind);
   }
 
   Vec3f normal(const Weights& w) const {
     const Vec3f unit = unit_or_zero(blend(w, normals_));
     if (unit == Vec3f{})
       return flat_;
-    return skin_.normal_map == nullptr ? unit : mapped_normal(w, unit);
+    return frames_ ? frames_->normal(w, texcoord(w), unit) : unit;
   }
   Vec3f colour(const Weights& w) const {
     if (skin_.texture == nullptr)
@@ -97,28 +125,6 @@ class SeenSurface {
   }
 
  private:
-  /// From the side that is seen: all of a frame is turned round with the normals.
-  void set_frames(const Camera& camera, const Places& places) {
-    map_level_ = level_of(skin_, *skin_.normal_map, places);
-    for (std::size_t i = 0; i < 3; ++i) {
-      tangents_[i] = to_double(camera.turned(unit_or_zero(skin_.tangents[i])));
-      bitangents_[i] = cross(normals_[i], tangents_[i]) * (skin_.is_mirrored ? -1.0 : 1.0);
-    }
-    if (flat_normal(places).z < 0) {
-      for (std::size_t i = 0; i < 3; ++i)
-        tangents_[i] = tangents_[i] * -1;
-    }
-  }
-
-  Vec3f mapped_normal(const Weights& w, Vec3f normal) const {
-    const Vec3f numbers = skin_.normal_map->light_at(texcoord(w), map_level_) * 2.0F;
-    const Vec3f tangent = unit_or_zero(blend(w, tangents_));
-    const Vec3f bitangent = unit_or_zero(blend(w, bitangents_));
-    const Vec3f mixed = unit_or_zero(tangent * (numbers.x - 1) + bitangent * (numbers.y - 1) +
-                                     normal * (numbers.z - 1));
-    return mixed == Vec3f{} ? normal : mixed;
-  }
-
   Vec3f corner_colour(const Weights& w) const {
     // The sum of weights is 1 but for the last bits of a double: a float's blend with itself is
     // that float.
@@ -130,14 +136,13 @@ class SeenSurface {
             static_cast<float>(a.v * w[0] + b.v * w[1] + c.v * w[2])};
   }
 
-  Skin skin_;
+  const Skin& skin_;
   Vec3f flat_;  ///< the facet's own normal
   Three normals_, colours_;
-  Three tangents_, bitangents_;  ///< with a normal map
-  Vec3f colour_;                 ///< of the first corner
+  Vec3f colour_;  ///< of the first corner
   bool is_one_colour_ = false;
-  double level_ = 0;      ///< of its texture
-  double map_level_ = 0;  ///< of its normal map
+  double level_ = 0;                 ///< of its texture
+  std::optional<MapFrames> frames_;  ///< with a normal map
 };
 
 /// Nothing if one of them is not finite.
@@ -224,6 +229,7 @@ void Raster::draw(std::span<const Facet> facets, const DistinctPlaces& distinct)
     const Vec3d place = camera_.on_grid(position);
     all.push_back(is_finite(place) ? OnGrid{place, in_rows(place), true} : OnGrid{});
   }
+  const Skin plain;
   for (std::size_t i = 0; i < facets.size(); ++i) {
     const auto& [p, q, r] = distinct.corners[i];
     const OnGrid &a = all[p], &b = all[q], &c = all[r];
@@ -232,7 +238,7 @@ void Raster::draw(std::span<const Facet> facets, const DistinctPlaces& distinct)
     const std::array<GridPoint, 3> corners{a.point, b.point, c.point};
     const SampleBox box = box_of(corners, columns(), rows());
     if (!box.empty())
-      draw(facets[i], Skin{}, {a.place, b.place, c.place}, corners, box);
+      draw(facets[i], plain, {a.place, b.place, c.place}, corners, box);
   }
 }
 
