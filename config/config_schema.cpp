@@ -430,7 +430,9 @@ std::vector<ConfigKey> make_config_keys() {
           kTexels, [](auto& c) -> auto& { return c.normal_map.texels; })),
       deciding(choice(
           {.path = "normal_map.format",
-           .meaning = "how normal maps are stored; `png` and `webp` lose nothing"},
+           .meaning =
+               "how normal maps are stored; `png` and `webp` lose nothing, `ktx2` (UASTC) stays "
+               "compressed in the memory of graphics devices"},
           kImageFormats, [](auto& c) -> auto& { return c.normal_map.format.format; })),
       deciding(number(
           {.path = "normal_map.quality", .meaning = "of `jpeg`"}, {1, kBestQuality},
@@ -450,11 +452,13 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "texture.format",
            .meaning =
                "how pictures of tiles are stored; with `jpeg`, those with transparent texels "
-               "are PNG"},
+               "are PNG; `ktx2` stays compressed in the memory of graphics devices, where others "
+               "take four to eight times as much, and wants Node.js where it is built"},
           kImageFormats, [](auto& c) -> auto& { return c.texture.format.format; })),
       deciding(number(
           {.path = "texture.quality",
-           .meaning = "of `jpeg` and `webp`; WebP with 100 loses nothing, PNG never does"},
+           .meaning = "of `jpeg`, `webp` and `ktx2`; with 100 WebP loses nothing and KTX2 is UASTC "
+                      "instead of ETC1S; PNG never loses anything"},
           {1, kBestQuality}, [](auto& c) -> auto& { return c.texture.format.quality; })),
       deciding(boolean(
           {.path = "texture.unlit",

@@ -25,13 +25,13 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 inline constexpr std::array<std::string_view, 3> kAlphaModeNames{"opaque", "mask", "blend"};
 
 /// How pictures of tiles are stored.
-enum class ImageFormat : std::uint8_t { jpeg, png, webp };
-inline constexpr std::array<std::string_view, 3> kImageFormatNames{"jpeg", "png", "webp"};
+enum class ImageFormat : std::uint8_t { jpeg, png, webp, ktx2 };
+inline constexpr std::array<std::string_view, 4> kImageFormatNames{"jpeg", "png", "webp", "ktx2"};
 
 /// The picture of a tile, as its file has it.
 struct TileImage {
   ImageFormat format = ImageFormat::jpeg;
-  AlphaMode alpha = AlphaMode::opaque;  ///< other than opaque: `format` is png or webp
+  AlphaMode alpha = AlphaMode::opaque;  ///< other than opaque: `format` is not jpeg
   std::uint32_t width = 0, height = 0;  ///< texels, 1 ... kMaxImageSide; 0: there is none
   std::vector<std::byte> bytes;         ///< encoded
 
@@ -43,16 +43,16 @@ inline constexpr std::uint32_t kMaxImageSide = 8192;
 
 /// What a hierarchy says of all its tiles' pictures.
 struct TextureFormat {
-  ImageFormat format = ImageFormat::jpeg;  ///< of opaque ones; others are png unless it is webp
-  int quality = 90;                        ///< 1 ... 100, of jpeg and webp; 100 of webp: lossless
-  bool unlit = true;                       ///< colours have their light already
+  ImageFormat format = ImageFormat::jpeg;  ///< of opaque ones; others are png where it is jpeg
+  int quality = 90;   ///< 1 ... 100, not of png; 100: lossless of webp, UASTC of ktx2
+  bool unlit = true;  ///< colours have their light already
   friend constexpr bool operator==(const TextureFormat&, const TextureFormat&) = default;
 };
 
 /// What a hierarchy says of all its tiles' normal maps.
 struct NormalMapFormat {
   ImageFormat format = ImageFormat::jpeg;  ///< jpeg: of red, green and blue as they are
-  int quality = 85;                        ///< 1 ... 100, of jpeg; webp loses nothing
+  int quality = 85;  ///< 1 ... 100, of jpeg; ktx2 is UASTC, others lose nothing
   friend constexpr bool operator==(const NormalMapFormat&, const NormalMapFormat&) = default;
 };
 

@@ -15,6 +15,7 @@ namespace meshhier::images {
 std::unique_ptr<ImageReader> open_jpeg(ByteSource source, const std::string& name);
 std::unique_ptr<ImageReader> open_png(ByteSource source, const std::string& name);
 std::unique_ptr<ImageReader> open_webp(ByteSource source, const std::string& name);
+std::unique_ptr<ImageReader> open_ktx2(ByteSource source, const std::string& name);
 
 /// The best codes for a picture are known after its last row: all of its coefficients wait for
 /// them.

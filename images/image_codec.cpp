@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "images/formats.h"
+#include "images/ktx2_coder.h"
 #include "images/source_buffer.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@ namespace meshhier::images {
 namespace {
 
 constexpr std::size_t kMarkBytes = 12;
+constexpr int kBestQuality = 100;
 
 std::string read_mark(const ByteSource& source) {
   std::array<std::byte, kMarkBytes> mark{};
@@ -35,6 +37,8 @@ std::optional<ImageFormat> format_of(std::string_view mark) {
     return ImageFormat::png;
   if (mark.size() == kMarkBytes && mark.starts_with("RIFF") && mark.ends_with("WEBP"))
     return ImageFormat::webp;
+  if (mark == std::string_view("\xabKTX 20\xbb\r\n\x1a\n"))
+    return ImageFormat::ktx2;
   return {};
 }
 
@@ -58,6 +62,8 @@ std::unique_ptr<ImageReader> open_image(ByteSource source, const std::string& na
       return open_jpeg(std::move(source), name);
     case ImageFormat::png:
       return open_png(std::move(source), name);
+    case ImageFormat::ktx2:
+      return open_ktx2(std::move(source), name);
     case ImageFormat::webp:
       break;
   }
@@ -86,6 +92,9 @@ std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int 
       return encode_jpeg(image, quality);
     case ImageFormat::png:
       return encode_png(image);
+    case ImageFormat::ktx2:
+      return encode_ktx2(image, quality == kBestQuality ? Ktx2Content::uastc : Ktx2Content::etc1s,
+                         quality);
     case ImageFormat::webp:
       break;
   }
@@ -94,9 +103,16 @@ std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int 
 
 std::vector<std::byte> encode_normal_map(const Image& image, const NormalMapFormat& format) {
   assert(image.channels == 3);
-  constexpr int kLossless = 100;
-  return format.format == ImageFormat::jpeg ? encode_normal_jpeg(image, format.quality)
-                                            : encode_image(image, format.format, kLossless);
+  switch (format.format) {
+    case ImageFormat::jpeg:
+      return encode_normal_jpeg(image, format.quality);
+    case ImageFormat::ktx2:
+      return encode_ktx2(image, Ktx2Content::directions, kBestQuality);
+    case ImageFormat::png:
+    case ImageFormat::webp:
+      break;
+  }
+  return encode_image(image, format.format, kBestQuality);
 }
 
 }  // namespace meshhier::images

@@ -1,4 +1,5 @@
-// Pictures in the formats of files: JPEG (libjpeg-turbo), PNG (libpng), WebP (libwebp).
+// Pictures in the formats of files: JPEG (libjpeg-turbo), PNG (libpng), WebP (libwebp), KTX2 of
+// Basis Universal (ktx2_coder.h).
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -28,7 +29,7 @@ struct ImageInfo {
   std::uint32_t channels = 3;           ///< that come out: 3, or 4 if it may have alpha
   /// What decoding holds at once, besides the rows that are read: little if the format gives its
   /// rows one by one (baseline JPEG, PNG without interlace), else the whole picture or all of its
-  /// coefficients (progressive JPEG, interlaced PNG, WebP).
+  /// coefficients (progressive JPEG, interlaced PNG, WebP, KTX2).
   std::uint64_t decoder_bytes = 0;
   friend bool operator==(const ImageInfo&, const ImageInfo&) = default;
 };
@@ -56,15 +57,16 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
                    std::uint64_t most_texels);
 
 /// Deterministic for one version of the library. `quality`: 1 ... 100, of jpeg (4:4:4 from 90 on,
-/// below it 4:2:0) and webp (lossless at 100); without effect on png. Requires sides that
-/// open_image() reads, and no alpha for jpeg. Besides the picture it holds the encoded bytes, and a
-/// texel takes up to 6 bytes of jpeg (all coefficients), 4 of webp, 21 of lossless webp.
+/// below it 4:2:0), webp (lossless at 100) and ktx2 (ETC1S, at 100 UASTC); without effect on png.
+/// Requires sides that open_image() reads, or encode_ktx2() takes, and no alpha for jpeg. Besides
+/// the picture it holds the encoded bytes, and a texel takes up to 6 bytes of jpeg (all
+/// coefficients), 4 of webp, 21 of lossless webp; of ktx2 see ktx2_coder_bytes().
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 
 /// Of directions instead of colours: a jpeg keeps red and green, which say nearly all, as exactly
 /// as `quality` has it and with all of their texels, and blue as it is worth; a viewer decodes it
-/// as any RGB picture. `quality` has no effect on png and webp, which lose nothing. Requires 3
-/// channels.
+/// as any RGB picture. `quality` has no effect on png and webp, which lose nothing, and on ktx2,
+/// which is UASTC. Requires 3 channels.
 std::vector<std::byte> encode_normal_map(const Image& image, const NormalMapFormat& format);
 
 }  // namespace meshhier::images

@@ -2,6 +2,7 @@
 
 #include "images/formats.h"
 #include "images/image_codec.h"
+#include "images/ktx2_coder.h"
 
 #include <algorithm>
 #include <cassert>
@@ -19,7 +20,7 @@ std::uint64_t texels_of(const WrittenImage& image) {
 }
 
 bool is_held(const WrittenImage& image) {
-  return image.format == ImageFormat::webp ||
+  return image.format == ImageFormat::webp || image.format == ImageFormat::ktx2 ||
          (image.format == ImageFormat::jpeg && texels_of(image) <= kMostHeldTexels);
 }
 
@@ -51,10 +52,12 @@ std::unique_ptr<RowWriter> open_picture_writer(const WrittenImage& image, ByteSi
 }
 
 std::uint64_t held_bytes(const WrittenImage& image) {
-  constexpr std::uint64_t kJpeg = 6, kWebp = 4, kLosslessWebp = 21,
+  constexpr std::uint64_t kJpeg = 6, kWebp = 4, kLosslessWebp = 21, kRgba = 4,
                           kBuffers = std::uint64_t{1} << 20;
   if (!is_held(image))
     return kBuffers;
+  if (image.format == ImageFormat::ktx2)
+    return texels_of(image) * (image.channels + 2 * kRgba) + ktx2_coder_bytes(texels_of(image));
   const std::uint64_t encoder = image.format == ImageFormat::jpeg ? kJpeg
                                 : image.quality == 100            ? kLosslessWebp
                                                                   : kWebp;
@@ -62,7 +65,7 @@ std::uint64_t held_bytes(const WrittenImage& image) {
 }
 
 std::unique_ptr<RowWriter> open_row_writer(const WrittenImage& image, ByteSink sink) {
-  assert(image.format != ImageFormat::webp);
+  assert(image.format == ImageFormat::png || image.format == ImageFormat::jpeg);
   return image.format == ImageFormat::png
              ? open_png_writer(image, std::move(sink))
              : open_jpeg_writer(image, JpegCodes::standard, std::move(sink));

@@ -16,10 +16,10 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 
 /// What is written, as encode_image() has it.
 struct WrittenImage {
-  ImageFormat format = ImageFormat::jpeg;  ///< jpeg or png: webp has no rows
+  ImageFormat format = ImageFormat::jpeg;  ///< jpeg or png: others have no rows
   int quality = 90;
   std::uint32_t width = 0, height = 0;  ///< 1 ... 65500 each: more a JPEG cannot have
-  std::uint32_t channels = 3;           ///< 3; png: or 4
+  std::uint32_t channels = 3;           ///< 3; not jpeg: or 4
 };
 
 class RowWriter {

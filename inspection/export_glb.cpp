@@ -150,13 +150,14 @@ class GlbText {
   bool has_pictures() const { return format_.textures.has_value(); }
 
   void add_extensions(Json& document) const {
-    const bool webp = has_pictures() && format_.textures->format == ImageFormat::webp;
+    const char* const required =
+        has_pictures() ? storage::required_extension(format_.textures->format) : nullptr;
     Json used = Json::array();
     if (has_pictures() && format_.textures->unlit)
       used.push_back(storage::kUnlitExtension);
-    if (webp) {
-      used.push_back(storage::kWebpExtension);
-      document["extensionsRequired"] = Json::array({storage::kWebpExtension});
+    if (required != nullptr) {
+      used.push_back(required);
+      document["extensionsRequired"] = Json::array({required});
     }
     if (!used.empty())
       document["extensionsUsed"] = used;

@@ -72,10 +72,10 @@ class ObjPictures {
 
   void add(NodeId node, const TileImage& image) {
     const std::string name = file_name_of(node);
-    const bool is_webp = image.format == ImageFormat::webp;
+    const bool is_read = image.format == ImageFormat::jpeg || image.format == ImageFormat::png;
     const std::string picture =
         fmt::format("{}.{}", name, image.format == ImageFormat::jpeg ? "jpg" : "png");
-    storage::write_file(files_, unfinished_ / picture, is_webp ? as_png(image) : image.bytes);
+    storage::write_file(files_, unfinished_ / picture, is_read ? image.bytes : as_png(image));
     text_.put(fmt::format("newmtl {}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum {}\nmap_Kd {}/{}\n", name,
                           unlit_ ? 0 : 1, folder_.filename().string(), picture));
     if (image.alpha != AlphaMode::opaque)

@@ -253,14 +253,35 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
          "forced: without care for the surface, to reach the count\n";
 }
 
+/// Of a texel in the memory of a graphics device that knows blocks, with smaller and smaller
+/// copies.
+double gpu_bytes(ImageFormat format, bool is_best) {
+  constexpr double kCopies = 4.0 / 3, kPlain = 4, kUastc = 1, kEtc1s = 0.5;
+  return kCopies * (format != ImageFormat::ktx2 ? kPlain : is_best ? kUastc : kEtc1s);
+}
+
+double gpu_bytes(const TextureFormat& format) {
+  return gpu_bytes(format.format, format.quality == 100);
+}
+
+double gpu_bytes(const NormalMapFormat& format) {
+  return gpu_bytes(format.format, true);
+}
+
+std::string gpu_text(double texel, const storage::PictureSummary& pictures) {
+  return fmt::format(
+      "{} of graphics memory each",
+      execution::rounded_size_text(static_cast<std::uint64_t>(texel * pictures.texels_mean())));
+}
+
 /// Those of all tiles.
 std::string pictures_text(const TextureFormat& format, const storage::PictureSummary& pictures) {
   const bool has_quality = format.format != ImageFormat::png;
-  return fmt::format("pictures     {}{}, {}: {} of {:.0f} x {:.0f} texels on average\n",
+  return fmt::format("pictures     {}{}, {}: {} of {:.0f} x {:.0f} texels on average, {}\n",
                      kImageFormatNames[static_cast<std::size_t>(format.format)],
                      has_quality ? fmt::format(" of quality {}", format.quality) : "",
                      format.unlit ? "unlit" : "lit", grouped(pictures.tiles), pictures.width,
-                     pictures.height);
+                     pictures.height, gpu_text(gpu_bytes(format), pictures));
 }
 
 /// Of the tiles that have one.
@@ -270,10 +291,11 @@ std::string normal_maps_text(const NormalMapFormat& format,
   const auto simplified = static_cast<std::uint64_t>(
       std::ranges::count_if(records, [](const TileRecord& r) { return r.error > 0; }));
   return fmt::format(
-      "normal maps  {}{}: {} of {} simplified tiles, {:.0f} x {:.0f} on average\n",
+      "normal maps  {}{}: {} of {} simplified tiles, {:.0f} x {:.0f} on average, {}\n",
       kImageFormatNames[static_cast<std::size_t>(format.format)],
       format.format == ImageFormat::jpeg ? fmt::format(" of quality {}", format.quality) : "",
-      grouped(maps.tiles), grouped(simplified), maps.width, maps.height);
+      grouped(maps.tiles), grouped(simplified), maps.width, maps.height,
+      gpu_text(gpu_bytes(format), maps));
 }
 
 std::string tile_sizes_text(const storage::CountRange& bytes) {
@@ -426,12 +448,14 @@ Json storage_json(const storage::Manifest& manifest) {
                {"texture", nullptr}};
   if (const auto& maps = manifest.normal_maps) {
     json["normal_map"] = {{"format", kImageFormatNames[static_cast<std::size_t>(maps->format)]},
-                          {"quality", maps->quality}};
+                          {"quality", maps->quality},
+                          {"gpu_bytes_a_texel", gpu_bytes(*maps)}};
   }
   if (const auto& textures = manifest.textures) {
     json["texture"] = {{"format", kImageFormatNames[static_cast<std::size_t>(textures->format)]},
                        {"quality", textures->quality},
-                       {"unlit", textures->unlit}};
+                       {"unlit", textures->unlit},
+                       {"gpu_bytes_a_texel", gpu_bytes(*textures)}};
   }
   if (const auto& q = manifest.quantization) {
     json["positions"] = {{"bits", q->lattice.bits},

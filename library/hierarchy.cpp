@@ -3,6 +3,7 @@
 #include "inspection/cut_by_error.h"
 #include "inspection/cut_part.h"
 #include "library/errors.h"
+#include "storage/format/glb_material.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/file.h"
 
@@ -34,12 +35,6 @@ TileFacts facts_of(const TileRecord& record, const Vec3d& origin) {
   facts.triangles = record.interior_count + record.border_count;
   facts.file_bytes = record.file_bytes;
   return facts;
-}
-
-std::string type_of(ImageFormat format) {
-  return format == ImageFormat::jpeg  ? "image/jpeg"
-         : format == ImageFormat::png ? "image/png"
-                                      : "image/webp";
 }
 
 }  // namespace
@@ -220,7 +215,7 @@ Part Cut::load(std::size_t position) {
     part.places = std::move(loaded.places);
     part.triangles.assign(loaded.triangles.begin(), loaded.triangles.end());
     if (!loaded.image.empty()) {
-      part.image_type = type_of(loaded.image.format);
+      part.image_type = storage::mime_type(loaded.image.format);
       part.image = std::move(loaded.image.bytes);
     }
     return part;

@@ -68,10 +68,12 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   const storage::Output output(config.output, config.storage.container);
   storage::check_output(files, output, options.force);
   storage::check_place(files, config.output);
-  if (plan)
+  if (plan) {
+    check_coders(plan->job);
     check_disk(plan->disk, config.output, files);
-  else
+  } else {
     check_import_disk(import_disk(input, config), config.output, files);
+  }
 
   storage::WorkDirectory work(files, output, options.force);
   if (options.restart)

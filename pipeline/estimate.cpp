@@ -130,6 +130,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
     describe_import(input.files(), importing::plan_import(memory_budget(config)), estimate);
   input.drop();
   storage::check_output(files, {config.output, config.storage.container}, force);
+  check_coders(estimate.plan.job);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(expected_tiles(estimate.plan.job));
   estimate.time = estimate_time(config, estimate.plan, estimate.mesh.file_bytes);

@@ -153,6 +153,7 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   };
   BuildPlan plan = make_plan();
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
+  check_coders(plan.job);
   check_disk(plan.disk, config.output, environment.files);
   return plan;
 }

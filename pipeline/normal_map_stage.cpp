@@ -3,6 +3,7 @@
 #include "execution/memory_gate.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
+#include "images/ktx2_coder.h"
 #include "pipeline/picture_levels.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/tiles/finer_surfaces.h"
@@ -92,13 +93,16 @@ double area_of(const BakeSource& source) {
 constexpr std::uint64_t kFramedTriangleBytes = 600;
 
 /// A map at work, and the directions that it is made of.
-std::uint64_t map_bytes(std::uint32_t side) {
+std::uint64_t map_bytes(ImageFormat format, std::uint32_t side) {
   constexpr double kTexelBytes = 70;
   constexpr double kSources = 16;
   constexpr double kShown = 0.45;  // of a picture's texels
   const double texels = double{1} * side * side;
-  return static_cast<std::uint64_t>(
-      texels * (kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel)));
+  const std::uint64_t coder = format == ImageFormat::ktx2
+                                  ? images::ktx2_coder_bytes(static_cast<std::uint64_t>(texels))
+                                  : 0;
+  return coder + static_cast<std::uint64_t>(
+                     texels * (kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel)));
 }
 
 class MapStage {
@@ -118,7 +122,8 @@ class MapStage {
       textures_.put(node, {}, source, {});
       return;
     }
-    const execution::MemoryGate::Share share = gate_.enter(map_bytes(side_));
+    const execution::MemoryGate::Share share =
+        gate_.enter(map_bytes(job_.normal_map_format, side_));
     const std::vector<FinerSurface> finer =
         finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
     std::vector<texture::NormalSurface> surfaces;
@@ -250,7 +255,7 @@ void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal
 StageMemory normal_map_memory(const JobSize& job) {
   if (job.normal_map_side == 0)
     return {};
-  const std::uint64_t largest = map_bytes(job.normal_map_side);
+  const std::uint64_t largest = map_bytes(job.normal_map_format, job.normal_map_side);
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kFramedTriangleBytes;
   return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
@@ -267,10 +272,10 @@ double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
 
 StageTime normal_map_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTileSeconds = 40e-3;
-  constexpr double kTexelSeconds = 220e-9;
+  const double texel = job.normal_map_format == ImageFormat::ktx2 ? 3000e-9 : 220e-9;
   return {"normal maps", "tiles",
           static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
-          tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * kTexelSeconds};
+          tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel};
 }
 
 DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles) {

@@ -1,6 +1,7 @@
 #include "pipeline/picture_levels.h"
 
 #include "execution/parallel.h"
+#include "images/ktx2_coder.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,14 @@ std::vector<NodeId> nodes_left(const Tree& tree, Level level, const Share& share
   return left;
 }
 
+/// What they hold is the next stage's.
+struct EndOfCoders {
+  EndOfCoders() = default;
+  EndOfCoders(const EndOfCoders&) = delete;
+  EndOfCoders& operator=(const EndOfCoders&) = delete;
+  ~EndOfCoders() { images::end_ktx2_coders(); }
+};
+
 }  // namespace
 
 void make_level_by_level(const char* name, const LevelRange& levels, TextureStore& textures,
@@ -33,6 +42,7 @@ void make_level_by_level(const char* name, const LevelRange& levels, TextureStor
     total += left.back().size();
   }
   context.progress.stage(name, total, "tiles");
+  const EndOfCoders end;
   textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
   for (auto nodes = left.rbegin(); nodes != left.rend(); ++nodes) {
     execution::ordered_for(

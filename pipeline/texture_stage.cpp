@@ -136,11 +136,13 @@ std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side)
 }
 
 /// A simplified tile's picture, and the finer ones that it is baked from.
-std::uint64_t bake_bytes(std::uint32_t side) {
+std::uint64_t bake_bytes(ImageFormat format, std::uint32_t side) {
   constexpr std::uint64_t kBakedBytes = 64;
   constexpr std::uint64_t kSources = 16;
   constexpr std::uint64_t kSourceTexels = 2;
-  return std::uint64_t{side} * side * (kBakedBytes + kSources * kSourceTexels * 3);
+  const std::uint64_t texels = std::uint64_t{side} * side;
+  const std::uint64_t coder = format == ImageFormat::ktx2 ? images::ktx2_coder_bytes(texels) : 0;
+  return texels * (kBakedBytes + kSources * kSourceTexels * 3) + coder;
 }
 
 float root_of_squares(double a, double b) {
@@ -176,7 +178,8 @@ class TextureMaker {
         "input has: their pictures are larger than those of partitions may be ({} a side), or "
         "repeat many times over few triangles; smaller partitions (\"partition.vertices\") lose "
         "less, unless a single triangle shows so much",
-        counted(reduced_, "triangles"), std::uint64_t{1} << coarsest_level_, kLeafSide);
+        counted(reduced_, "triangles"), std::uint64_t{1} << coarsest_level_,
+        leaf_side(format_.format));
   }
 
  private:
@@ -187,7 +190,7 @@ class TextureMaker {
     order_inner_vertices(mesh, parent_map);
     const LeafCorners leaf = corners_of(mesh, forest_.layout(node.level));
     texture::LeafAtlas atlas = texture::plan_leaf_atlas(
-        {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, kLeafSide);
+        {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, leaf_side(format_.format));
     note_reduced(atlas);
     BakeSource source = bare_source(mesh);
     source.corners = std::move(atlas.corners);
@@ -239,7 +242,7 @@ class TextureMaker {
     const TileMesh mesh = forest_.load(node).mesh;
     BakeSource source = bare_source(mesh);
     TexelSizes texels = texels_below(node);
-    const execution::MemoryGate::Share share = gate_.enter(bake_bytes(side_));
+    const execution::MemoryGate::Share share = gate_.enter(bake_bytes(format_.format, side_));
     if (!source.triangles.empty()) {
       const std::vector<FinerSurface> finer = finer_surfaces(
           forest_, node, mesh, [&](NodeId child) { return textures_.source(child); });
@@ -340,9 +343,10 @@ StageMemory texture_memory(const JobSize& job) {
   if (!job.textured)
     return {};
   const images::WrittenImage leaf{stored_format(job.pictures, job.alpha), job.pictures.quality,
-                                  kLeafSide, kLeafSide, 4};
-  const std::uint64_t largest =
-      std::max(cut_bytes(leaf, job.picture_side), bake_bytes(job.picture_side));
+                                  leaf_side(job.pictures.format), leaf_side(job.pictures.format),
+                                  4};
+  const std::uint64_t largest = std::max(cut_bytes(leaf, job.picture_side),
+                                         bake_bytes(job.pictures.format, job.picture_side));
   // Geometry of the items that wait for room: read, ordered, cut into charts.
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;
@@ -352,13 +356,16 @@ StageMemory texture_memory(const JobSize& job) {
 
 StageTime texture_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTexelSeconds = 60e-9;
-  constexpr double kBakedSeconds = 500e-9;
+  constexpr double kBakedSeconds = 500e-9, kEtc1sSeconds = 2500e-9, kUastcSeconds = 700e-9;
   const double side = job.picture_side;
+  const double coded = job.pictures.format != ImageFormat::ktx2 ? 0
+                       : job.pictures.quality == 100            ? kUastcSeconds
+                                                                : kEtc1sSeconds;
   return {"texture", "tiles",
           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
                                      tiles.early.count),
-          static_cast<double>(job.source_texels) * kTexelSeconds +
-              tiles.simplified.count * side * side * kBakedSeconds};
+          static_cast<double>(job.source_texels) * (kTexelSeconds + coded) +
+              tiles.simplified.count * side * side * (kBakedSeconds + coded)};
 }
 
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) {
@@ -366,9 +373,12 @@ double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) 
     return 0;
   // Of a texel, with a quality of 90; most of an atlas is covered, and little of the input's
   // pictures is not.
+  const bool is_best = job.pictures.quality == 100;
   const double texel = job.pictures.format == ImageFormat::png    ? 1.5
                        : job.pictures.format == ImageFormat::jpeg ? 0.4
-                                                                  : 0.3;
+                       : job.pictures.format == ImageFormat::webp ? 0.3
+                       : is_best                                  ? 1.4
+                                                                  : 0.4;
   const double baked = (tiles.simplified.count - tiles.early.count) *
                        static_cast<double>(job.picture_side) * job.picture_side;
   return (static_cast<double>(job.source_texels) * 0.8 + baked) * texel;

@@ -4,6 +4,8 @@
 // that they and their neighbours were made of.
 #pragma once
 
+#include "hierarchy/texture.h"
+#include "images/ktx2_coder.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
@@ -19,9 +21,12 @@
 namespace meshhier::pipeline {
 
 /// The largest side of a partition's picture: one of the input of 4,096 texels with the gutter
-/// around it. Where the input has more texels, as of pictures that repeat, a coarser level of them
-/// is shown, with a warning.
-inline constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
+/// around it; of KTX2 half of that. Where the input has more texels, as of pictures that repeat, a
+/// coarser level of them is shown, with a warning.
+constexpr std::uint32_t leaf_side(ImageFormat format) {
+  constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
+  return format == ImageFormat::ktx2 ? images::kMostKtx2Side : kLeafSide;
+}
 
 /// Items are tiles, with their pictures. None if the mesh has no textures.
 StageMemory texture_memory(const JobSize& job);

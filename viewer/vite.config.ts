@@ -18,6 +18,15 @@ export function packedCopies(): Plugin {
   };
 }
 
+/// In a script that does not transcode KTX2 itself.
+export function withoutTranscoder(): Plugin {
+  return {
+    name: 'without-transcoder',
+    enforce: 'pre',
+    resolveId: (source) => (source.endsWith('/basis_transcoder.js') ? path.resolve('page/no_transcoder.ts') : null),
+  };
+}
+
 export default defineConfig({
   root: 'page',
   base: './',

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 import { defineConfig } from 'vite';
-import { packedCopies } from './vite.config.js';
+import { packedCopies, withoutTranscoder } from './vite.config.js';
 
-/// dist/page/meshhier-viewer.js, beside the page.
+/// dist/page/meshhier-viewer.js, beside the page. The transcoder of KTX2 is a script beside it, for pages with such pictures alone.
 export default defineConfig({
-  plugins: [packedCopies()],
+  plugins: [withoutTranscoder(), packedCopies()],
   build: {
     outDir: 'dist/page',
     emptyOutDir: false,
@@ -13,5 +13,5 @@ export default defineConfig({
     modulePreload: false,
     rollupOptions: { input: 'page/element.ts', output: { entryFileNames: 'meshhier-viewer.js', inlineDynamicImports: true } },
   },
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [withoutTranscoder()], rollupOptions: { output: { inlineDynamicImports: true } } },
 });

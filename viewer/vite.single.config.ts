@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vite';
+import { withoutTranscoder } from './vite.config.js';
 
 /// Workers as part of the script: a page that was opened from a disk may load none.
 function inlineWorkers(): Plugin {
@@ -45,7 +46,7 @@ function singleFile(): Plugin {
 export default defineConfig({
   root: 'page',
   base: './',
-  plugins: [inlineWorkers(), singleFile()],
+  plugins: [inlineWorkers(), withoutTranscoder(), singleFile()], // the worker alone has it
   build: {
     outDir: '../dist/page',
     emptyOutDir: false,
@@ -56,5 +57,5 @@ export default defineConfig({
     assetsInlineLimit: 2 ** 24,
     rollupOptions: { output: { inlineDynamicImports: true } },
   },
-  worker: { format: 'es' },
+  worker: { format: 'iife', rollupOptions: { output: { inlineDynamicImports: true } } }, // from a disk Chromium loads no modules as workers
 });

@@ -5,6 +5,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/normal_code.h"
 #include "hierarchy/plain_text.h"
+#include "images/ktx2_coder.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
@@ -135,6 +136,21 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                             "files",
                             directory.string(), execution::rounded_size_text(free),
                             execution::rounded_size_text(bytes)));
+  }
+}
+
+void check_coders(const JobSize& job) {
+  const bool codes = (job.textured && job.pictures.format == ImageFormat::ktx2) ||
+                     (job.normal_map_side > 0 && job.normal_map_format == ImageFormat::ktx2);
+  if (!codes)
+    return;
+  if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
+    throw Error(ErrorCode::usage, missing);
+  const std::uint32_t side = std::max(job.textured ? job.picture_side : 0, job.normal_map_side);
+  if (side > images::kMostKtx2Side) {
+    throw Error(ErrorCode::usage,
+                fmt::format("texels is {}: pictures in KTX2 have at most {} a side", side,
+                            images::kMostKtx2Side));
   }
 }
 

@@ -59,6 +59,9 @@ void check_apart(const importing::Companions& companions, const config::Config& 
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files);
 
+/// Throws Error(usage) if pictures are to be stored as this machine cannot, with what to install.
+void check_coders(const JobSize& job);
+
 /// Throws Error(budget) if the disk that will hold `output` has too little room.
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files);

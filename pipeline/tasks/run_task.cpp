@@ -137,6 +137,7 @@ void Task::read() {
           ? read_and_plan(input, attempt_.directory(), pool_, config, environment)
           : plan_build(config, input.description());
   check_apart(input.files().companions(), config, {}, files());
+  check_coders(plan.job);
   check_disk(plan.disk, config.output, files());
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
   meter_.expect(wall_times(config, plan));
@@ -165,6 +166,7 @@ void Task::go_on() {
   const BuildPlan plan =
       plan_build(config, mesh, 0, plan_textures(source.materials, config.missing_images, files()));
   check_pictures(source.input, files());
+  check_coders(plan.job);
   if (plan.tree.partition_count() != source.decides_result.value("partitions", std::uint64_t{0})) {
     throw Error(ErrorCode::input,
                 "pictures of the mesh were changed since the stage read: plan the build again");

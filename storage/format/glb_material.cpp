@@ -10,7 +10,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// In the order of ImageFormat and AlphaMode.
-constexpr std::array<const char*, 3> kMimeTypes{"image/jpeg", "image/png", "image/webp"};
+constexpr std::array<const char*, 4> kMimeTypes{"image/jpeg", "image/png", "image/webp",
+                                                "image/ktx2"};
+constexpr std::array<const char*, 4> kImageExtensions{nullptr, nullptr, "EXT_texture_webp",
+                                                      "KHR_texture_basisu"};
 constexpr std::array<const char*, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
 
 // Filters and wrap modes of the glTF 2.0 specification.
@@ -42,10 +45,18 @@ Json normal_texture_json(std::size_t texture, unsigned texcoord_set) {
   return normals;
 }
 
+const char* required_extension(ImageFormat format) {
+  return kImageExtensions[static_cast<std::size_t>(format)];
+}
+
+const char* mime_type(ImageFormat format) {
+  return kMimeTypes[static_cast<std::size_t>(format)];
+}
+
 Json texture_json(std::size_t image, ImageFormat format) {
   Json texture = {{"sampler", 0}};
-  if (format == ImageFormat::webp)
-    texture["extensions"][kWebpExtension] = {{"source", image}};
+  if (const char* const extension = required_extension(format))
+    texture["extensions"][extension] = {{"source", image}};
   else
     texture["source"] = image;
   return texture;
@@ -59,7 +70,7 @@ Json sampler_json() {
 }
 
 Json image_json(std::size_t view, ImageFormat format) {
-  return {{"bufferView", view}, {"mimeType", kMimeTypes[static_cast<std::size_t>(format)]}};
+  return {{"bufferView", view}, {"mimeType", mime_type(format)}};
 }
 
 }  // namespace meshhier::storage

@@ -16,7 +16,6 @@ constexpr const char* colour_attribute(const AttributeLayout& layout, bool is_te
   return is_textured && !layout.tints ? "_COLOR_0" : "COLOR_0";
 }
 
-inline constexpr const char* kWebpExtension = "EXT_texture_webp";
 inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";
 
 /// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
@@ -27,7 +26,12 @@ nlohmann::ordered_json material_json(std::size_t texture, AlphaMode alpha, bool 
 /// Of a texture that is a normal map, by its number, with the coordinates of that set.
 nlohmann::ordered_json normal_texture_json(std::size_t texture, unsigned texcoord_set);
 
-/// Of an image, by its number, with the sampler 0; of a WebP the document requires kWebpExtension.
+/// What a document requires to show pictures of that format; null: nothing.
+const char* required_extension(ImageFormat format);
+/// As it is in files and on the web.
+const char* mime_type(ImageFormat format);
+
+/// Of an image, by its number, with the sampler 0; the document has required_extension().
 nlohmann::ordered_json texture_json(std::size_t image, ImageFormat format);
 /// Linear, with mipmaps, without repeats.
 nlohmann::ordered_json sampler_json();

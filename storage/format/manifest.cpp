@@ -365,9 +365,9 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.first_view = read_view(object);
   const std::uint64_t version = object.count("format_version");
   manifest.screen_colours = version <= kScreenColoursFormatVersion;
-  if (version < kFormatVersion &&
+  if (version < kNoKtx2FormatVersion &&
       (version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
-    object.wrong("format_version", "9 if and only if there are values, and no normal maps");
+    object.wrong("format_version", "9 if and only if there are values, no normal maps and no KTX2");
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =
@@ -384,8 +384,11 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);
   manifest.normal_maps = read_normal_maps(storage, manifest.source);
-  if ((version == kFormatVersion) != manifest.normal_maps.has_value())
-    object.wrong("format_version", "10 if and only if there are normal maps");
+  if ((version == kFormatVersion) != manifest.has_ktx2())
+    object.wrong("format_version", "11 if and only if pictures or normal maps are KTX2");
+  if (version < kFormatVersion &&
+      (version == kNoKtx2FormatVersion) != manifest.normal_maps.has_value())
+    object.wrong("format_version", "10 if and only if there are normal maps, none of them KTX2");
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

@@ -17,7 +17,9 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 10;
+inline constexpr int kFormatVersion = 11;
+/// The same without pictures or normal maps in KTX2, of tiles with normal maps.
+inline constexpr int kNoKtx2FormatVersion = 10;
 /// The same without normal maps, of tiles with values.
 inline constexpr int kNoMapsFormatVersion = 9;
 /// The same with tiles that have no values either.
@@ -85,8 +87,15 @@ struct Manifest {
     return scaled(kIdentity, metres_of(*units));
   }
 
+  /// Whether graphics devices keep its pictures or normal maps compressed.
+  bool has_ktx2() const {
+    return (textures && textures->format == ImageFormat::ktx2) ||
+           (normal_maps && normal_maps->format == ImageFormat::ktx2);
+  }
+
   int format_version() const {
-    return normal_maps                         ? kFormatVersion
+    return has_ktx2()                          ? kFormatVersion
+           : normal_maps                       ? kNoKtx2FormatVersion
            : !source.attributes.values.empty() ? kNoMapsFormatVersion
            : !screen_colours                   ? kNoValuesFormatVersion
            : first_view                        ? kScreenColoursFormatVersion

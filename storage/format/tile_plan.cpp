@@ -238,9 +238,12 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
   const TileShape& shape = plan.shape();
   if (plan.has_short_positions() || shape.computed_normals || shape.has_normal_map())
     names.push_back(kQuantizationExtension);
-  if ((shape.has_image() && image_format(shape) == ImageFormat::webp) ||
-      (shape.has_normal_map() && shape.normal_maps->format == ImageFormat::webp))
-    names.push_back(kWebpExtension);
+  const char* const extension = shape.has_image() ? required_extension(image_format(shape))
+                                : shape.has_normal_map()
+                                    ? required_extension(shape.normal_maps->format)
+                                    : nullptr;
+  if (extension != nullptr)
+    names.push_back(extension);
   return names;
 }
 

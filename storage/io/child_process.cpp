@@ -5,12 +5,17 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,15 +44,23 @@ void close_end(int end) {
     ::close(end);
 }
 
+Pipe make_sockets() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    fail("cannot make a pair of sockets", errno);
+  return {ends[0], ends[1]};
+}
+
 /// Between fork and exec: only what may be called there. Ends the process if it fails. `errors`: -1
-/// if they are dropped.
-[[noreturn]] void become(char* const* words, int errors, pid_t parent) {
+/// if they are dropped; `socket`: -1 if it is not spoken with.
+[[noreturn]] void become(char* const* words, int errors, int socket, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = ::open("/dev/null", O_RDWR);
   const int said = errors < 0 ? nothing : errors;
+  const int spoken = socket < 0 ? nothing : socket;
   const bool is_ready = ::getppid() == parent && nothing >= 0 &&
-                        ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
+                        ::dup2(spoken, STDIN_FILENO) >= 0 && ::dup2(spoken, STDOUT_FILENO) >= 0 &&
                         ::dup2(said, STDERR_FILENO) >= 0 &&
                         ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0;
   if (is_ready)
@@ -61,21 +74,25 @@ int exit_code(int status) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words, Errors errors) {
+ChildProcess::ChildProcess(const std::vector<std::string>& words, Errors errors, Speech speech) {
   std::vector<char*> arguments;
   for (const std::string& word : words)
     arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  const Pipe sockets = speech == Speech::socket ? make_sockets() : Pipe();
   const Pipe pipe = errors == Errors::heard ? make_pipe() : Pipe();
   const pid_t parent = ::getpid();
   process_ = ::fork();
   const int error = errno;
   if (process_ == 0)
-    become(arguments.data(), pipe.writer, parent);
+    become(arguments.data(), pipe.writer, sockets.writer, parent);
   close_end(pipe.writer);
+  close_end(sockets.writer);
   errors_ = pipe.reader;
+  socket_ = sockets.reader;
   if (process_ < 0) {
     close_end(errors_);
+    close_end(socket_);
     fail("cannot start " + words[0], error);
   }
 }
@@ -86,6 +103,7 @@ ChildProcess::~ChildProcess() {
     wait();
   }
   close_end(errors_);
+  close_end(socket_);
 }
 
 bool ChildProcess::hear(std::string& text, std::chrono::milliseconds longest) {
@@ -106,6 +124,34 @@ bool ChildProcess::hear(std::string& text, std::chrono::milliseconds longest) {
   return bytes != 0;
 }
 
+bool ChildProcess::send(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR)
+      continue;
+    if (count < 0 && (errno == EPIPE || errno == ECONNRESET))
+      return false;
+    if (count < 0)
+      fail("cannot speak with a child process", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+bool ChildProcess::receive(std::span<std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
+    if (count < 0 && errno == EINTR)
+      continue;
+    if (count == 0 || (count < 0 && errno == ECONNRESET))
+      return false;
+    if (count < 0)
+      fail("cannot hear a child process", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
 void ChildProcess::ask_to_stop() {
   if (process_ > 0)
     ::kill(process_, SIGTERM);
@@ -119,6 +165,19 @@ int ChildProcess::wait() {
   }
   process_ = -1;
   return exit_code(status);
+}
+
+std::optional<std::string> find_program(std::string_view name) {
+  const char* const places = std::getenv("PATH");
+  std::istringstream left(places == nullptr ? "" : places);
+  for (std::string place; std::getline(left, place, ':');) {
+    std::string path = std::filesystem::path(place) / name;
+    std::error_code error;
+    if (!place.empty() && std::filesystem::is_regular_file(path, error) &&
+        ::access(path.c_str(), X_OK) == 0)
+      return path;
+  }
+  return std::nullopt;
 }
 
 }  // namespace meshhier::storage

@@ -274,7 +274,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"server/connection_queue.cpp", {"poll.h", "sys/eventfd.h", "unistd.h"}},
       {"server/http_server.cpp", {"sys/socket.h", "unistd.h"}},
       {"storage/io/child_process.cpp",
-       {"csignal", "fcntl.h", "poll.h", "sys/prctl.h", "sys/wait.h", "unistd.h"}},
+       {"csignal", "fcntl.h", "poll.h", "sys/prctl.h", "sys/socket.h", "sys/wait.h", "unistd.h"}},
       {"storage/io/descriptor.h", {"unistd.h"}},
       {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/link_free_paths.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},

@@ -2,6 +2,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
+#include "images/ktx2_coder.h"
 #include "inspection/export.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/glb.h"
@@ -15,6 +16,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -306,7 +308,8 @@ std::vector<Facet> textured_interior(const PublishedTile& tile) {
 }
 
 TEST_F(ExportPartsTest, EachTileHasItsPictureAndItsTexcoordsInAGlb) {
-  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+  for (const ImageFormat format :
+       {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp, ImageFormat::ktx2}) {
     tests::Sample sample = publish_textured({format, 90, false});
     EXPECT_THAT(run(mixed_cut(), "a.glb"), HasSubstr("cut: 4 tiles, "));
     const Glb glb = Glb::read(at("a.glb"));
@@ -325,6 +328,11 @@ TEST_F(ExportPartsTest, EachTileHasItsPictureAndItsTexcoordsInAGlb) {
       EXPECT_EQ(glb.json["bufferViews"][view]["byteLength"], tile.image.bytes.size());
       EXPECT_TRUE(std::equal(tile.image.bytes.begin(), tile.image.bytes.end(), glb.at(view)));
     }
+    const bool is_plain = format == ImageFormat::jpeg || format == ImageFormat::png;
+    EXPECT_EQ(glb.json.value("extensionsRequired", Json::array()).dump(),
+              is_plain                      ? "[]"
+              : format == ImageFormat::webp ? R"(["EXT_texture_webp"])"
+                                            : R"(["KHR_texture_basisu"])");
   }
 }
 
@@ -356,15 +364,25 @@ TEST_F(ExportPartsTest, EachTileHasItsPictureAndItsTexcoordsInAnObj) {
   }
 }
 
-TEST_F(ExportPartsTest, AnObjHasPngsInsteadOfWebps) {
-  publish_textured({ImageFormat::webp, 90, true});
-  run(Level{0}, "a.obj");
-  const std::string bytes = text_of(at("a_textures/00_000000.png"));
-  const images::Image image =
-      images::decode_image(std::as_bytes(std::span(bytes)), "a picture", 1000);
-  EXPECT_EQ(image.width, 16U);
-  EXPECT_EQ(image.height, 8U);
-  EXPECT_EQ(image.at(3, 3)[0], 200);
+TEST_F(ExportPartsTest, AnObjHasPngsInsteadOfOthers) {
+  for (const ImageFormat format : {ImageFormat::webp, ImageFormat::ktx2}) {
+    if (const std::string missing = images::missing_for_ktx2();
+        format == ImageFormat::ktx2 && !missing.empty()) {
+      std::cout << "KTX2 is skipped: " << missing << '\n';
+      continue;
+    }
+    publish_textured({format, 90, true});
+    run(Level{0}, "a.obj");
+    const std::string bytes = text_of(at("a_textures/00_000000.png"));
+    const images::Image image =
+        images::decode_image(std::as_bytes(std::span(bytes)), "a picture", 1000);
+    EXPECT_EQ(image.width, 16U);
+    EXPECT_EQ(image.height, 8U);
+    EXPECT_NEAR(image.at(3, 3)[0], 200, format == ImageFormat::ktx2 ? 4 : 0);
+    std::filesystem::remove(at("a.obj"));
+    std::filesystem::remove(at("a.mtl"));
+    std::filesystem::remove_all(at("a_textures"));
+  }
 }
 
 TEST_F(ExportPartsTest, TheEndingCountsHoweverItIsWritten) {

@@ -174,12 +174,13 @@ TEST_F(VerifyTextureTest, InspectTellsOfTextures) {
   EXPECT_THAT(text, HasSubstr("textures     12 materials, 5 pictures (1 missing), 123,456,789 "
                               "texels\n"));
   EXPECT_THAT(text, HasSubstr("pictures     webp of quality 75, unlit: 7 of 16 x 8 texels on "
-                              "average\n"));
+                              "average, 682 B of graphics memory each\n"));
   EXPECT_THAT(inspect_text(*files_, hierarchy(), {.level = {}, .node = node(2, 1)}),
               HasSubstr("; a picture of 16 x 8 texels of 0.25; "));
   const auto json = inspect_json(*files_, hierarchy(), {});
   EXPECT_EQ(json["source"]["textures"]["missing_images"], 1);
   EXPECT_EQ(json["storage"]["texture"]["format"], "webp");
+  EXPECT_DOUBLE_EQ(json["storage"]["texture"]["gpu_bytes_a_texel"], 16.0 / 3);
   EXPECT_EQ(json["pictures"]["tiles"], 7);
   EXPECT_EQ(json["pictures"]["texels"], 7 * 128);
   EXPECT_EQ(json["pictures"]["texel_mean"], 0.25);

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
+#include "images/ktx2_coder.h"
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
@@ -384,6 +385,26 @@ TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
       EXPECT_EQ(files_of(job.output), expected) << threads;
     }
   }
+}
+
+TEST_F(TexturesTest, Ktx2IsTheSameWhateverBuildsIt) {
+  if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
+    GTEST_SKIP() << missing;
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  job.texture.format = {ImageFormat::ktx2, 100, true};
+  build(job);
+  const auto expected = files_of(job.output);
+  for (const BuiltTile& built : tiles(job)) {
+    EXPECT_EQ(built.tile.image.format, ImageFormat::ktx2);
+    EXPECT_EQ(built.tile.image.width % 4 + built.tile.image.height % 4, 0U);
+  }
+  EXPECT_THAT(problems(job), testing::IsEmpty());
+  job.threads = 3;
+  job.memory_budget = 4096 * kMiB;
+  build(job);
+  EXPECT_EQ(files_of(job.output), expected);
+  job.texture.texels = 4096;
+  EXPECT_THROW(build(job), Error);
 }
 
 // Their pictures are painted, reduced and encoded in several bands.

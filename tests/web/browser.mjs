@@ -58,6 +58,7 @@ export function readHierarchy(directory) {
     triangles: manifest.source.triangles,
     bytes: manifest.total_bytes,
     isTextured: manifest.source.textures !== undefined,
+    pictureFormat: manifest.storage.texture?.format,
     lastLevel: manifest.levels.length - 1,
   };
 }

@@ -1,10 +1,10 @@
 // Draws hierarchies beside the textured files they were made from, which three.js reads with its own loaders: both without light, in
 // headless Chromium.
 //
-//   node textured_inputs.mjs PICTURES HIERARCHY=INPUT[=DECIBELS[=COPY]]...
+//   node textured_inputs.mjs PICTURES HIERARCHY=INPUT[=DECIBELS]...
 //
-// INPUT: OBJ or glTF; its folder has its pictures. DECIBELS: the least at full resolution, if not 32. COPY: a directory of the same tileset in
-// another form, which is drawn instead. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// INPUT: OBJ or glTF; its folder has its pictures. DECIBELS: the least at full resolution, if not 32. Pictures go
+// to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { call, inChromium, readHierarchy, SIZE, withPage } from './browser.mjs';
 
@@ -40,17 +40,16 @@ async function show(page, { name, up, input, decibels }, pictures, report) {
 }
 
 async function showAll(browser, report, pictures, given) {
-  for (const [directory, input, decibels = LEAST, copy = directory] of given) {
-    const name = path.basename(copy).replace(/\.hier$/, '');
-    const hierarchy = { ...readHierarchy(directory), name, input: path.resolve(input), decibels: Number(decibels) };
-    const directories = { '/hierarchy': path.resolve(copy), '/input': path.dirname(hierarchy.input) };
+  for (const [directory, input, decibels = LEAST] of given) {
+    const hierarchy = { ...readHierarchy(directory), input: path.resolve(input), decibels: Number(decibels) };
+    const directories = { '/hierarchy': path.resolve(directory), '/input': path.dirname(hierarchy.input) };
     await withPage(browser, report, { viewer: 'three', name: hierarchy.name, directories }, (page) => show(page, hierarchy, pictures, report));
   }
 }
 
 const [pictures, ...given] = process.argv.slice(2).map((argument, i) => (i > 0 ? argument.split('=') : argument));
 if (given.length === 0 || given.some(({ length }) => length < 2)) {
-  console.log('usage: node textured_inputs.mjs PICTURES HIERARCHY=INPUT[=DECIBELS[=COPY]]...');
+  console.log('usage: node textured_inputs.mjs PICTURES HIERARCHY=INPUT[=DECIBELS]...');
   process.exit(2);
 }
 process.exit(await inChromium(pictures, (browser, report) => showAll(browser, report, pictures, given)));

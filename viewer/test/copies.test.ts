@@ -155,7 +155,7 @@ describe('Seam', () => {
     const each = (values: readonly number[]): number[] => [0, ...copies].flatMap(() => values);
     const tile = await read({ own: 1, copyOf: copies, positions: each([0, 0, 0]), normals: each(UP), colours: each([9, 9, 9, 255]), interior: [0, 1, 2] });
     const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0, pictureWidth: 0, pictureHeight: 0 };
-    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false });
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: 4 });
     expect(memoryOf(tile, new Seam(tile, new Tree(1)), false)).toBeLessThanOrEqual(most);
   });
 
@@ -163,7 +163,7 @@ describe('Seam', () => {
     const fine = await read(FINE);
     const seam = new Seam(fine, tree);
     const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 };
-    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true }));
+    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: 4 }));
     expect(memoryOf(fine, seam, true)).toBeGreaterThan(memoryOf(await read({ ...FINE, copyOf: [], border: [0, 1, 2, 0, 3, 2], positions: FINE.positions.slice(0, 12), normals: FINE.normals!.slice(0, 12) }), seam, true));
   });
 });

@@ -72,7 +72,7 @@ describe('readTile', () => {
 
   it('hands the map over, and lets go of it', async () => {
     const tile = await read(ROOT);
-    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.normalMap!.bitmap, tile.tangents!.buffer]));
+    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.normalMap!.texels, tile.tangents!.buffer]));
     letGo(tile);
     expect(FakeBitmap.open).toBe(0);
   });
@@ -145,7 +145,7 @@ describe('TileObject', () => {
   it('takes no more memory than the index says', async () => {
     const tile = await read(ROOT);
     const counts = { own: 3, ghosts: 0, copies: 0, splits: 1, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32 };
-    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false });
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: 4 });
     const bytes = memoryOf(tile, new Seam(tile, new Tree(4)), false);
     expect(bytes).toBeLessThanOrEqual(most);
     expect(bytes).toBeGreaterThan(4 * 64 * 32);

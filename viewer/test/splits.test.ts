@@ -223,7 +223,7 @@ describe('Seam', () => {
     const [fine, given] = [await read(FINE), await read({ ...FINE, splitOf: [], codes: undefined, copyOf: [0, 2, 2, 2, 3], border: [0, 1, 2, 4, 8, 7], normals: FINE.codes!.map((value) => value / 127) })];
     const bytes = memoryOf(fine, new Seam(fine, tree), true);
     const most = (splits: number): number =>
-      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true });
+      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: 4 });
     expect(vertexBytesOf(fine)).toBe(20);
     expect(bytes).toBeLessThanOrEqual(most(4));
     expect(most(4) - most(3)).toBeGreaterThanOrEqual(2 * 20);

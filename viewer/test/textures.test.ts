@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tiles with pictures.
+import { dropPicture } from '../src/hierarchy/picture.js';
 import { MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, SRGBColorSpace, type Texture } from 'three';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
@@ -66,7 +67,7 @@ describe('readTile', () => {
   it('reads texture coordinates, of splits too, and decodes the picture as it is', async () => {
     const tile = await read(SQUARE);
     expect([...tile.texcoords!]).toEqual(SQUARE.texcoords);
-    expect(tile.picture).toMatchObject({ alpha: 'OPAQUE', unlit: true, bitmap: { width: 64, height: 32 } });
+    expect(tile.picture).toMatchObject({ alpha: 'OPAQUE', unlit: true, texels: { width: 64, height: 32 } });
     const [file, options] = decode.mock.calls[0];
     expect(new Uint8Array(await file.arrayBuffer())).toEqual(PICTURE.file);
     expect(file.type).toBe('image/jpeg');
@@ -95,7 +96,7 @@ describe('readTile', () => {
 
   it('hands the bitmap over with the arrays', async () => {
     const tile = await read(SQUARE);
-    expect(partsOf(tile)).toContain(tile.picture!.bitmap);
+    expect(partsOf(tile)).toContain(tile.picture!.texels);
     expect(partsOf(tile)).toContain(tile.texcoords!.buffer);
   });
 
@@ -110,9 +111,9 @@ describe('readTile', () => {
     ['a picture of one side', {}, { imageHeight: 0 }, 'one side only'],
     ['a picture larger than any', {}, { imageWidth: 8193 }, '"imageWidth" is not from 0 to 8192'],
     ['a picture that is not there', {}, { image: -1 }, 'section -1 is no file'],
-    ['a picture of another section', {}, { image: 0 }, 'its picture is no JPEG, PNG or WebP'],
-    ['a picture of another type than it says', { picture: { ...PICTURE, mimeType: 'image/png' } }, {}, 'its picture is no JPEG, PNG or WebP'],
-    ['a picture of another kind', { picture: { ...PICTURE, mimeType: 'image/svg+xml' } }, {}, 'its picture is no JPEG, PNG or WebP'],
+    ['a picture of another section', {}, { image: 0 }, 'its picture is no JPEG, PNG, WebP or KTX2'],
+    ['a picture of another type than it says', { picture: { ...PICTURE, mimeType: 'image/png' } }, {}, 'its picture is no JPEG, PNG, WebP or KTX2'],
+    ['a picture of another kind', { picture: { ...PICTURE, mimeType: 'image/svg+xml' } }, {}, 'its picture is no JPEG, PNG, WebP or KTX2'],
     ['a picture of another size', { picture: { ...PICTURE, file: jpeg(64, 33) } }, {}, 'has another size'],
     ['an unknown alpha mode', { picture: { ...PICTURE, alphaMode: 'GLOW' } }, {}, 'alpha mode that is not known'],
   ])('refuses %s, before it is decoded', async (_, parts, change, problem) => {
@@ -257,7 +258,7 @@ describe('TileObject', () => {
     const ofPicture = (one: Tile): number => memoryOf(one, new Seam(one, new Tree(4)), false) - memoryOf({ ...one, picture: null }, new Seam(one, new Tree(4)), false);
     const onGpu = Math.ceil((4 / 3) * 4 * 64 * 32);
     expect(ofPicture(tile)).toBe(onGpu);
-    tile.picture!.bitmap.close();
+    dropPicture(tile.picture!);
     expect(ofPicture(tile)).toBe(onGpu);
     expect(ofPicture(root)).toBe(onGpu + 4 * 64 * 32);
   });
@@ -266,7 +267,7 @@ describe('TileObject', () => {
     const tile = await read(FINE);
     const [bare, tree] = [{ ...tile, picture: null, texcoords: null }, new Tree(4)];
     const most = (pictureWidth: number, pictureHeight: number): number =>
-      mostMemory({ own: 2, ghosts: 2, copies: 0, splits: 1, interior: 0, border: 2, pictureWidth, pictureHeight }, { level: 2, vertexBytes: vertexBytesOf(tile), wires: true });
+      mostMemory({ own: 2, ghosts: 2, copies: 0, splits: 1, interior: 0, border: 2, pictureWidth, pictureHeight }, { level: 2, vertexBytes: vertexBytesOf(tile), wires: true, texelBytes: 4 });
     const bytes = memoryOf(tile, new Seam(tile, tree), true);
     const picture = Math.ceil((4 / 3) * 4 * 64 * 32); // on the GPU with what is made smaller of it
     expect(bytes - memoryOf(bare, new Seam(bare, tree), true)).toBe(picture + 2 * 8 * 5);

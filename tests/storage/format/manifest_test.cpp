@@ -323,13 +323,14 @@ Manifest make_textured() {
 
 TEST(Manifest, TellsOfTextures) {
   Manifest manifest = make_textured();
-  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+  for (const ImageFormat format :
+       {ImageFormat::jpeg, ImageFormat::png, ImageFormat::ktx2, ImageFormat::webp}) {
     manifest.textures->format = format;
     manifest.textures->unlit = !manifest.textures->unlit;
     expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
   }
   const Json json = Json::parse(to_json_text(manifest));
-  EXPECT_EQ(json["storage"]["texture"].dump(), R"({"format":"webp","quality":75,"unlit":true})");
+  EXPECT_EQ(json["storage"]["texture"].dump(), R"({"format":"webp","quality":75,"unlit":false})");
   EXPECT_EQ(json["source"]["textures"].dump(),
             R"({"materials":5,"images":4,"missing_images":1,"texels":1099511627776})");
   EXPECT_FALSE(Json::parse(to_json_text(make_manifest()))["storage"].contains("texture"));
@@ -346,7 +347,7 @@ TEST(Manifest, UnsoundTexturesAreRefused) {
   EXPECT_EQ(with("/storage/texture/quality", 1), "");
   EXPECT_THAT(with("/storage/texture/quality", 0), HasSubstr("\"storage.texture.quality\""));
   EXPECT_THAT(with("/storage/texture/quality", 101), HasSubstr("\"storage.texture.quality\""));
-  EXPECT_THAT(with("/storage/texture/format", "gif"), HasSubstr("one of jpeg, png, webp"));
+  EXPECT_THAT(with("/storage/texture/format", "gif"), HasSubstr("one of jpeg, png, webp, ktx2"));
   EXPECT_THAT(with("/storage/texture/unlit", 1), HasSubstr("\"storage.texture.unlit\""));
   EXPECT_THAT(with("/storage/texture", nullptr), HasSubstr("\"storage.texture\" is wrong"));
   EXPECT_THAT(with("/source/textures", nullptr), HasSubstr("\"source.textures\" is wrong"));
@@ -581,15 +582,36 @@ TEST(Manifest, NormalMapsAreOfVersionTenAlone) {
   EXPECT_THAT(failure(sealed(changed)), HasSubstr("at least 1"));
 }
 
+TEST(Manifest, Ktx2IsOfVersionElevenAlone) {
+  Manifest textured = make_textured();
+  textured.textures->format = ImageFormat::ktx2;
+  Manifest mapped = make_manifest();
+  mapped.source.textures.reset();
+  mapped.textures.reset();
+  mapped.normal_maps = NormalMapFormat{ImageFormat::ktx2, 40};
+  for (const Manifest& manifest : {textured, mapped}) {
+    EXPECT_EQ(manifest.format_version(), 11);
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+    for (const int version : {8, 9, 10}) {
+      Json changed = Json::parse(to_json_text(manifest));
+      changed["format_version"] = version;
+      EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"format_version\" is wrong")) << version;
+    }
+  }
+  Json changed = Json::parse(to_json_text(textured));
+  changed["storage"]["texture"]["format"] = "png";
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("11 if and only if pictures or normal maps"));
+}
+
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 11;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 11 is newer than 10"));
+  document["format_version"] = 12;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 12 is newer than 11"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 10: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 11: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

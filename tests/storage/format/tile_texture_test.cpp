@@ -39,7 +39,8 @@ struct PictureKind {
 
 std::vector<PictureKind> picture_kinds() {
   std::vector<PictureKind> kinds;
-  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+  for (const ImageFormat format :
+       {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp, ImageFormat::ktx2}) {
     for (const AlphaMode alpha : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend})
       kinds.push_back({{format, 80, alpha != AlphaMode::mask}, alpha});
   }
@@ -111,6 +112,7 @@ std::vector<SampleHierarchy> mapped_samples() {
   }
   samples.push_back(
       mapped(quantized(shaded(make_sample(open_grid(9, 9), 5)), 12), ImageFormat::webp));
+  samples.push_back(mapped(shaded(make_sample(open_grid(9, 9), 5)), ImageFormat::ktx2));
   samples.push_back(mapped(shaded(make_sample(points(40), 3)), ImageFormat::jpeg));
   return samples;
 }
@@ -208,16 +210,20 @@ TEST(TileTextures, TheMaterialShowsThePicture) {
               (std::array{"OPAQUE", "MASK", "BLEND"})[static_cast<std::size_t>(kind.alpha)]);
     EXPECT_EQ(material.contains("extensions"), kind.format.unlit);
     const bool webp = kind.format.format == ImageFormat::webp;
+    const bool ktx2 = kind.format.format == ImageFormat::ktx2;
     EXPECT_EQ(glb.json["textures"][0].dump(),
-              webp ? R"({"sampler":0,"extensions":{"EXT_texture_webp":{"source":0}}})"
-                   : R"({"sampler":0,"source":0})");
+              webp   ? R"({"sampler":0,"extensions":{"EXT_texture_webp":{"source":0}}})"
+              : ktx2 ? R"({"sampler":0,"extensions":{"KHR_texture_basisu":{"source":0}}})"
+                     : R"({"sampler":0,"source":0})");
+    EXPECT_EQ(glb.json["images"][0]["mimeType"] == "image/ktx2", ktx2);
     EXPECT_EQ(glb.json["samplers"][0].dump(),
               R"({"magFilter":9729,"minFilter":9987,"wrapS":33071,"wrapT":33071})");
     const auto used = glb.json["extensionsUsed"];
     EXPECT_EQ(used.back(), "MESHHIER_tile");
     EXPECT_EQ(std::ranges::count(used, "KHR_materials_unlit"), kind.format.unlit ? 1 : 0);
     EXPECT_EQ(std::ranges::count(used, "EXT_texture_webp"), webp ? 1 : 0);
-    EXPECT_EQ(glb.json.contains("extensionsRequired"), webp);
+    EXPECT_EQ(std::ranges::count(used, "KHR_texture_basisu"), ktx2 ? 1 : 0);
+    EXPECT_EQ(glb.json.contains("extensionsRequired"), webp || ktx2);
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -33,6 +35,34 @@ TEST(ChildProcessTest, ItsWordsAndItsCodeAreHeard) {
   ChildProcess child(shell("echo result; echo one >&2; echo two >&2; exit 7"));
   EXPECT_EQ(all_of(child), "one\ntwo\n");
   EXPECT_EQ(child.wait(), 7);
+}
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+TEST(ChildProcessTest, OneIsSpokenWith) {
+  ChildProcess child({"/bin/cat"}, ChildProcess::Errors::dropped, ChildProcess::Speech::socket);
+  for (const std::string said : {"one", "and two"}) {
+    ASSERT_TRUE(child.send(bytes_of(said)));
+    std::string heard(said.size(), ' ');
+    ASSERT_TRUE(child.receive(std::as_writable_bytes(std::span(heard))));
+    EXPECT_EQ(heard, said);
+  }
+}
+
+TEST(ChildProcessTest, OneThatHasEndedIsNotHeard) {
+  ChildProcess child(shell("echo half; exit 3"), ChildProcess::Errors::dropped,
+                     ChildProcess::Speech::socket);
+  std::string heard(6, ' ');
+  EXPECT_FALSE(child.receive(std::as_writable_bytes(std::span(heard))));
+  EXPECT_FALSE(child.send(bytes_of("anybody?")));
+  EXPECT_EQ(child.wait(), 3);
+}
+
+TEST(ChildProcessTest, ProgramsAreFoundByName) {
+  EXPECT_TRUE(find_program("sh"));
+  EXPECT_FALSE(find_program("no program has this name"));
 }
 
 TEST(ChildProcessTest, WhatNobodyHearsHoldsNothingUp) {

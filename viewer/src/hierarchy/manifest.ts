@@ -54,7 +54,7 @@ export interface NamedFile {
 }
 
 export const MANIFEST = 'hierarchy.json';
-const FORMAT_VERSION = 10; // 9: the same without normal maps; 8: and without values; 7: tiles hold colours as screens have them
+const FORMAT_VERSION = 11; // 10: the same without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
 export const MOST_MANIFEST_BYTES = 2 ** 20;
 const MOST_PREVIEW_BYTES = 40_000;
@@ -73,7 +73,7 @@ function readTransform(value: JsonValue): readonly number[] | null {
 /// With how they are stored, which is there if and only if they are.
 function readTextures(source: JsonValue, storage: JsonValue): Manifest['source']['textures'] {
   if (!source.has('textures') && !storage.has('texture')) return null;
-  storage.at('texture').at('format').oneOf('jpeg', 'png', 'webp');
+  storage.at('texture').at('format').oneOf('jpeg', 'png', 'webp', 'ktx2');
   const textures = source.at('textures');
   const images = textures.at('images').count();
   return { images, missingImages: textures.at('missing_images').count(0, images) };

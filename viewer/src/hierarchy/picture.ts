@@ -1,29 +1,52 @@
 // SPDX-License-Identifier: MIT
 // The picture of a tile (docs/file_format.md, section 4.10).
 import type { Glb } from './glb.js';
-import { pictureSize, type Size } from './picture_size.js';
+import { texelBytes, transcode, type CompressedTexels } from './basis.js';
+import { KTX2, pictureSize, type Size } from './picture_size.js';
 
 export type Alpha = 'OPAQUE' | 'MASK' | 'BLEND';
 
 export interface Picture extends Size {
-  /// Its upper left corner is (0, 0) of the tile's texture coordinates; sRGB, alpha not multiplied in. Closed, and without a size of
-  /// its own, as soon as it is on the GPU: see tile_texture.ts.
-  readonly bitmap: ImageBitmap;
+  /// Its upper left corner is (0, 0) of the tile's texture coordinates; sRGB, alpha not multiplied in. As soon as it is on the GPU,
+  /// a bitmap is closed and has no size of its own, and compressed texels are let go: see tile_texture.ts.
+  readonly texels: ImageBitmap | CompressedTexels;
   readonly alpha: Alpha;
   /// The colours have their light already.
   readonly unlit: boolean;
 }
 
 /// As it is in the file.
-interface StoredPicture extends Omit<Picture, 'bitmap'> {
-  readonly file: Blob;
+interface StoredPicture extends Omit<Picture, 'texels'> {
+  readonly type: string;
+  readonly bytes: Uint8Array;
 }
 
+export const BITMAP_TEXEL_BYTES = 4;
 const ALPHAS: readonly Alpha[] = ['OPAQUE', 'MASK', 'BLEND'];
 
-/// Bytes of a decoded picture, four channels.
-export function bitmapBytes({ width, height }: Size): number {
-  return 4 * width * height;
+export function isCompressed(texels: Picture['texels']): texels is CompressedTexels {
+  return 'levels' in texels;
+}
+
+/// Bytes of a texel on the GPU.
+export function bytesOfTexel({ texels }: Picture): number {
+  return isCompressed(texels) ? texelBytes(texels.format) : BITMAP_TEXEL_BYTES;
+}
+
+/// What a picture holds besides the GPU's copy.
+export function partsOfPicture({ texels }: Picture): Transferable[] {
+  return isCompressed(texels) ? texels.levels.map(({ data }) => data.buffer) : [texels];
+}
+
+/// Lets go of that.
+export function dropPicture({ texels }: Picture): void {
+  if (isCompressed(texels)) texels.levels.length = 0;
+  else texels.close();
+}
+
+/// Whether it was let go.
+export function isDropped({ texels }: Picture): boolean {
+  return isCompressed(texels) ? texels.levels.length === 0 : texels.width === 0;
 }
 
 /// Bytes of its file, at the most: no coder makes more of noise than a little above what it is.
@@ -38,24 +61,31 @@ export function findPicture(glb: Glb, number: number, size: Size): StoredPicture
   const material = glb.gltf.materials?.[0];
   const bytes = glb.file(number);
   const found = pictureSize(bytes, type);
-  if (found === null) glb.fail('its picture is no JPEG, PNG or WebP');
+  if (found === null) glb.fail('its picture is no JPEG, PNG, WebP or KTX2');
   if (found.width !== size.width || found.height !== size.height) glb.fail('its picture has another size than it says');
   const alpha = ALPHAS.find((each) => each === (material?.alphaMode ?? 'OPAQUE')) ?? glb.fail('its picture has an alpha mode that is not known');
   const unlit = material?.extensions?.KHR_materials_unlit !== undefined;
-  return { ...size, file: new Blob([bytes.slice()], { type }), alpha, unlit };
+  return { ...size, type, bytes, alpha, unlit };
 }
 
 export const NOT_DECODED = 'its picture cannot be decoded';
 
+async function decodeBitmap({ type, bytes, width, height }: StoredPicture): Promise<ImageBitmap | null> {
+  const bitmap = await createImageBitmap(new Blob([bytes.slice()], { type }), { imageOrientation: 'none', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+  if (bitmap.width === width && bitmap.height === height) return bitmap;
+  bitmap.close();
+  return null;
+}
+
 /// Where this is called: it takes a while.
-export async function decodePicture(glb: Glb, { file, alpha, unlit, width, height }: StoredPicture): Promise<Picture> {
-  let bitmap: ImageBitmap;
+export async function decodePicture(glb: Glb, stored: StoredPicture): Promise<Picture> {
+  const { alpha, unlit, width, height } = stored;
+  let texels: Picture['texels'] | null;
   try {
-    bitmap = await createImageBitmap(file, { imageOrientation: 'none', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+    texels = await (stored.type === KTX2 ? transcode(stored.bytes, stored) : decodeBitmap(stored));
   } catch {
     return glb.fail(NOT_DECODED);
   }
-  if (bitmap.width === width && bitmap.height === height) return { width, height, bitmap, alpha, unlit };
-  bitmap.close();
-  return glb.fail('its picture has another size than it says');
+  if (texels === null) return glb.fail(stored.type === KTX2 ? 'its picture is broken' : 'its picture has another size than it says');
+  return { width, height, texels, alpha, unlit };
 }

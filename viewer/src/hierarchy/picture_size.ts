@@ -49,7 +49,18 @@ function ofWebp(bytes: DataView): Size | null {
   return chunk === EXTENDED ? { width: 1 + u24(24), height: 1 + u24(27) } : null;
 }
 
-const READERS: ReadonlyMap<string, Read> = new Map([['image/png', ofPng], ['image/jpeg', ofJpeg], ['image/webp', ofWebp]]);
+export const KTX2 = 'image/ktx2';
+const KTX2_BYTES = 28;
+const KTX2_MARK = [0xab4b5458, 0x203230bb, 0x0d0a1a0a];
+
+/// Of blocks of 4 x 4 texels.
+function ofKtx2(bytes: DataView): Size | null {
+  if (bytes.byteLength < KTX2_BYTES || KTX2_MARK.some((word, i) => bytes.getUint32(4 * i) !== word)) return null;
+  const size = { width: bytes.getUint32(20, true), height: bytes.getUint32(24, true) };
+  return size.width % 4 === 0 && size.height % 4 === 0 ? size : null;
+}
+
+const READERS: ReadonlyMap<string, Read> = new Map([['image/png', ofPng], ['image/jpeg', ofJpeg], ['image/webp', ofWebp], [KTX2, ofKtx2]]);
 
 /// Null of what is no picture of that type.
 export function pictureSize(bytes: Uint8Array, type: string): Size | null {

@@ -4,7 +4,7 @@ import { readFirstView, type FirstView } from './first_view.js';
 import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
-import { decodePicture, findPicture, type Picture } from './picture.js';
+import { decodePicture, dropPicture, findPicture, partsOfPicture, type Picture } from './picture.js';
 import { placeOf, toPlaces, unsplitOf, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
 import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
@@ -232,11 +232,11 @@ export function partsOf(tile: Tile): Transferable[] {
   const { copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
   const arrays = [copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, indices, border, neighbours, ghostStarts, chains];
   const buffers = arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
-  return [...buffers, ...[picture, normalMap].flatMap((each) => (each ? [each.bitmap] : []))];
+  return [...buffers, ...[picture, normalMap].flatMap((each) => (each ? partsOfPicture(each) : []))];
 }
 
 /// Frees the pictures of a tile that nothing draws any longer: collectors of garbage know little of their size.
 export function letGo({ picture, normalMap }: Tile): void {
-  picture?.bitmap.close();
-  normalMap?.bitmap.close();
+  if (picture) dropPicture(picture);
+  if (normalMap) dropPicture(normalMap);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tiles out of their files, in workers if there are any, else where it is called.
+import { transcoderUrl } from './basis.js';
 import { NOT_DECODED } from './picture.js';
 import { HierarchyProblem } from './problem.js';
 import { readTile, type Tile } from './tile.js';
@@ -45,7 +46,7 @@ export class TileDecoder {
     const worker = this.workers[id % this.workers.length];
     return new Promise((resolve, reject) => {
       this.tasks.set(id, { worker, bytes, name, expected, resolve, reject });
-      worker.postMessage({ id, bytes, name, expected });
+      worker.postMessage({ id, bytes, name, expected, transcoder: transcoderUrl() });
     });
   }
 

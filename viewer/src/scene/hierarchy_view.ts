@@ -25,7 +25,7 @@ import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { changedStanding, DEFAULT_STANDING, upwards, type Standing } from './standing.js';
 import { terrainOf, type Terrain } from './terrain.js';
-import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
+import { memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from './tile_object.js';
 import type { DrawnTile, TileSource } from './surface.js';
 import { TileScene } from './tile_scene.js';
 import { isOnlyOnGpu } from './tile_texture.js';
@@ -291,9 +291,9 @@ export class HierarchyView extends Group<ViewEvents> {
     const corner = (from: readonly number[]): number[] => from.map((x, axis) => x - manifest.origin[axis] - manifest.place[axis]);
     this.corners = [...corner(manifest.source.min), ...corner(manifest.source.max)];
     this.setBox();
-    const vertexBytes = vertexBytesOf(root);
+    const [vertexBytes, texelBytes] = [vertexBytesOf(root), texelBytesOf(root)];
     this.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
-      mostMemory(record, { level, vertexBytes, wires: this.look.wires }));
+      mostMemory(record, { level, vertexBytes, wires: this.look.wires, texelBytes }));
     this.refinement.showsInside = this.isCutOpen;
     this.account.fetched(index.record(ROOT)!.bytes);
     this.showOutline();

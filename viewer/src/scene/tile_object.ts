@@ -3,6 +3,7 @@
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
 import type { Intersection, Material, Raycaster, Texture } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
+import { BITMAP_TEXEL_BYTES, bytesOfTexel } from '../hierarchy/picture.js';
 import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
@@ -10,7 +11,7 @@ import type { Seam } from '../cut/seam.js';
 import { surfaceKey, surfaceMaterial, type Painting, type SharedMaterials, type SurfaceMaterial } from './materials.js';
 import type { Look } from './settings.js';
 import type { DrawnTile } from './surface.js';
-import { pictureMemory, tileTexture } from './tile_texture.js';
+import { memoryOfPicture, pictureMemory, tileTexture } from './tile_texture.js';
 
 const TEXCOORD_BYTES = 8;
 const TANGENT_BYTES = 4;
@@ -21,7 +22,7 @@ export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + (tangents?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
   const shown = picture ?? normalMap;
-  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (shown ? pictureMemory(shown, level) : 0);
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (shown ? memoryOfPicture(shown, level) : 0);
 }
 
 /// What is drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
@@ -29,17 +30,25 @@ export function vertexBytesOf(tile: Tile): number {
   return 12 + 4 * tile.normals.BYTES_PER_ELEMENT + (tile.colours ? 4 : 0) + 4 * valueWidth(tile);
 }
 
+/// Bytes of a texel as the root has them: all tiles' pictures are stored alike.
+export function texelBytesOf({ picture, normalMap }: Tile): number {
+  const shown = picture ?? normalMap;
+  return shown ? bytesOfTexel(shown) : BITMAP_TEXEL_BYTES;
+}
+
 /// What a tile's record does not tell.
 export interface Extent {
   readonly level: number;
   readonly vertexBytes: number;
   readonly wires: boolean;
+  /// Of its picture or normal map, on the GPU.
+  readonly texelBytes: number;
 }
 
 /// The same from counts alone; not less.
 export function mostMemory(
   record: Omit<TileRecord, 'error' | 'min' | 'max' | 'bytes'>,
-  { level, vertexBytes, wires }: Extent,
+  { level, vertexBytes, wires, texelBytes }: Extent,
 ): number {
   const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
   const vertices = own + ghosts + copies + splits;
@@ -48,7 +57,7 @@ export function mostMemory(
   const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES + TANGENT_BYTES : 0)) + indices;
   // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
-  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, level);
+  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, texelBytes, level);
 }
 
 function edgesOf(triangles: Indices, corners: number): Indices {

@@ -1,0 +1,178 @@
+#include "hierarchy/error.h"
+#include "images/image_codec.h"
+#include "images/ktx2_coder.h"
+#include "images/row_writer.h"
+#include "tests/images/samples.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::images {
+namespace {
+
+using testing::HasSubstr;
+
+/// Of all channels of all texels.
+double rms(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i)
+    sum += std::pow(double{1} * a.texels[i] - b.texels[i], 2);
+  return std::sqrt(sum / static_cast<double>(a.texels.size()));
+}
+
+/// What a photograph is like to a coder: every texel is near its neighbours.
+Image smooth(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  Image image(width, height, channels);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      for (std::uint32_t k = 0; k < channels; ++k)
+        image.at(x, y)[k] = static_cast<std::uint8_t>(128 + 100 * std::sin(0.05 * x * (k + 1)) *
+                                                                std::cos(0.04 * y + k));
+    }
+  }
+  return image;
+}
+
+class Ktx2Test : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_for_ktx2(); !missing.empty())
+      GTEST_SKIP() << missing;
+  }
+  void TearDown() override { end_ktx2_coders(); }
+};
+
+TEST_F(Ktx2Test, PicturesComeBackNearly) {
+  for (const std::uint32_t channels : {3U, 4U}) {
+    const Image image = smooth(96, 60, channels);
+    for (const auto [quality, most] : {std::pair(90, 8.0), std::pair(100, 2.5)}) {
+      const Bytes file = encode_image(image, ImageFormat::ktx2, quality);
+      const ImageInfo info = open_image(source_of(file), "sample")->info();
+      EXPECT_EQ(info.format, ImageFormat::ktx2);
+      EXPECT_EQ(info.channels, channels);
+      const Image read = decoded(file);
+      ASSERT_EQ(read.channels, channels);
+      EXPECT_LE(rms(read, image), most) << channels << " channels, quality " << quality;
+    }
+  }
+}
+
+TEST_F(Ktx2Test, MoreQualityIsNearerAndLarger) {
+  const Image image = smooth(128, 128, 3);
+  const Bytes low = encode_image(image, ImageFormat::ktx2, 5),
+              high = encode_image(image, ImageFormat::ktx2, 99);
+  EXPECT_LT(low.size(), high.size());
+  EXPECT_GT(rms(decoded(low), image), rms(decoded(high), image));
+}
+
+TEST_F(Ktx2Test, DirectionsStayWithinADegree) {
+  Image image(64, 64, 3);
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    for (std::uint32_t x = 0; x < 64; ++x) {
+      const double u = 0.5 * std::sin(0.1 * x), v = 0.4 * std::cos(0.13 * y);
+      const std::array normal{u, v, std::sqrt(1 - u * u - v * v)};
+      for (std::size_t k = 0; k < 3; ++k)
+        image.at(x, y)[k] = static_cast<std::uint8_t>(std::lround(127.5 * (normal[k] + 1)));
+    }
+  }
+  const Bytes file = encode_normal_map(image, {ImageFormat::ktx2, 50});
+  EXPECT_LE(rms(decoded(file), image), 2.2);  // 127.5 times the sine of a degree
+  EXPECT_EQ(file, encode_normal_map(image, {ImageFormat::ktx2, 100}));
+}
+
+TEST_F(Ktx2Test, AllThreadsWriteTheSameBytes) {
+  const Image image = smooth(64, 64, 3);
+  const Bytes first = encode_image(image, ImageFormat::ktx2, 90);
+  std::vector<Bytes> files(6);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    threads.emplace_back([&, i] {
+      if (i % 2 == 0)  // what a coder had before decides nothing
+        encode_image(smooth(32, 64, 4), ImageFormat::ktx2, 30);
+      files[i] = encode_image(image, ImageFormat::ktx2, 90);
+    });
+  for (std::thread& thread : threads)
+    thread.join();
+  EXPECT_THAT(files, testing::Each(first));
+}
+
+TEST_F(Ktx2Test, RowsMakeTheSameFile) {
+  const Image image = smooth(32, 48, 4);
+  const WrittenImage written{ImageFormat::ktx2, 90, 32, 48, 4};
+  Bytes bytes;
+  const auto writer = open_picture_writer(written, [&](std::span<const std::byte> more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  });
+  for (std::uint32_t y = 0; y < 48; ++y)
+    writer->write_row(image.at(0, y));
+  writer->finish();
+  EXPECT_EQ(bytes, encode_image(image, ImageFormat::ktx2, 90));
+  EXPECT_GT(held_bytes(written), ktx2_coder_bytes(32 * 48));
+}
+
+/// Whatever is wrong, the next picture is coded.
+TEST_F(Ktx2Test, BrokenOnesAreRefused) {
+  const Image image = smooth(64, 64, 3);
+  for (const int quality : {90, 100}) {
+    const Bytes file = encode_image(image, ImageFormat::ktx2, quality);
+    for (std::size_t length = 12; length < file.size(); length += 1 + file.size() / 40) {
+      const Bytes part(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(length));
+      EXPECT_THAT(refusal([&] { decoded(part); }), HasSubstr("ends early")) << length;
+    }
+    int refused = 0;
+    for (std::size_t at = 12; at < file.size(); at += 1 + file.size() / 12) {
+      Bytes other = file;
+      other[at] ^= std::byte{0x55};
+      refused += refusal([&] { decoded(other); }).empty() ? 0 : 1;
+    }
+    EXPECT_GT(refused, 2);
+    EXPECT_EQ(encode_image(image, ImageFormat::ktx2, quality), file);
+  }
+}
+
+TEST_F(Ktx2Test, SizesThatCannotBeAreRefusedBeforeAnythingIsMade) {
+  Bytes file = encode_image(smooth(64, 64, 3), ImageFormat::ktx2, 100);
+  const auto with = [&](std::size_t at, std::uint8_t value) {
+    Bytes other = file;
+    other[at] = std::byte{value};
+    return refusal([&] { open_image(source_of(other), "tile"); });
+  };
+  EXPECT_THAT(with(23, 1), HasSubstr("tile: the picture is broken: a side has no texels"));
+  EXPECT_THAT(with(28, 2), HasSubstr("single pictures"));
+  EXPECT_THAT(with(40, 99), HasSubstr("single pictures"));
+  EXPECT_THAT(with(80 + 15, 9), HasSubstr("larger than any picture of its size"));
+  EXPECT_THAT(with(55, 200), HasSubstr("impossible size"));
+}
+
+/// Nothing of this needs Node.js.
+TEST(Ktx2MissingTest, WhatIsMissingIsSaid) {
+  const char* const path = std::getenv("PATH");
+  const std::string before = path == nullptr ? "" : path;
+  ASSERT_EQ(::setenv("PATH", "/nowhere", 1), 0);
+  EXPECT_THAT(missing_for_ktx2(), HasSubstr("Node.js 18 or later, which is not in PATH"));
+  try {
+    encode_image(smooth(4, 4, 3), ImageFormat::ktx2, 90);
+    ADD_FAILURE() << "a picture was coded by nobody";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io);
+    EXPECT_EQ(error.what(), missing_for_ktx2());
+  }
+  ASSERT_EQ(::setenv("PATH", before.c_str(), 1), 0);
+}
+
+TEST(Ktx2MissingTest, AnotherPlaceOfTheCoderIsTaken) {
+  if (missing_for_ktx2().find("Node.js 18 or later, which") != std::string::npos)
+    GTEST_SKIP() << missing_for_ktx2();
+  ASSERT_EQ(::setenv("MESHHIER_KTX2", "/nowhere", 1), 0);
+  EXPECT_THAT(missing_for_ktx2(), HasSubstr("is not in /nowhere"));
+  ASSERT_EQ(::unsetenv("MESHHIER_KTX2"), 0);
+}
+
+}  // namespace
+}  // namespace meshhier::images
