@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Moves a camera that looks at a target, upright. Nothing here keeps what it is given.
 import { Vector3, type Box3 } from 'three';
+import { axesOf, frameShape } from '../../src/scene/framing.js';
 import type { Pose } from '../address.js';
 
 /// Radians, from the lower to the upper edge of the picture.
@@ -9,7 +10,6 @@ export const VIEW_ANGLE = Math.PI / 4;
 const STEEPEST = 0.01; // radians from straight up or down
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 const MARGIN = 1.08;
-const UP = new Vector3(0, 1, 0);
 
 export class CameraPose {
   constructor(
@@ -38,19 +38,6 @@ export class CameraPose {
   equals(other: CameraPose): boolean {
     return this.position.equals(other.position) && this.target.equals(other.target);
   }
-}
-
-interface Axes {
-  right: Vector3;
-  up: Vector3;
-  forward: Vector3;
-}
-
-function axesOf(forward: Vector3): Axes {
-  const right = forward.clone().cross(UP);
-  if (right.lengthSq() < 1e-12) right.set(1, 0, 0);
-  right.normalize();
-  return { right, up: right.clone().cross(forward), forward };
 }
 
 /// Around the target; radians to the right and up.
@@ -87,25 +74,13 @@ export function depthOf(pose: CameraPose, point: Vector3): number {
   return point.clone().sub(pose.position).dot(pose.forward);
 }
 
-function cornersOf({ min, max }: Box3): Vector3[] {
-  return [0, 1, 2, 3, 4, 5, 6, 7].map(
-    (bits) => new Vector3((bits & 1 ? max : min).x, (bits & 2 ? max : min).y, (bits & 4 ? max : min).z),
-  );
-}
-
-/// All of the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
-export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null): CameraPose {
-  const centre = box.getCenter(new Vector3());
+/// All of a shape within the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
+/// `points`: of the shape; none: the box's corners.
+export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = []): CameraPose {
   const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
-  const { right, up, forward } = axesOf(back.clone().negate());
-  const slope = Math.tan(VIEW_ANGLE / 2);
-  let distance = 0;
-  for (const corner of cornersOf(box)) {
-    corner.sub(centre);
-    const across = Math.max(Math.abs(corner.dot(right)) / aspect, Math.abs(corner.dot(up)));
-    distance = Math.max(distance, across / slope - corner.dot(forward));
-  }
-  return new CameraPose(back.clone().multiplyScalar((distance || 1) * MARGIN).add(centre), centre);
+  const slope = Math.tan(VIEW_ANGLE / 2) / MARGIN;
+  const { position, target } = frameShape(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
+  return new CameraPose(position, target);
 }
 
 /// Near and far plane that hold the box, and whatever is near the target.

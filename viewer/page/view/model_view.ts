@@ -220,7 +220,7 @@ export class ModelView {
 
   private reframe(): void {
     this.framed.copy(this.view.box);
-    this.navigation.frame(this.framed, this.stage.aspect, this.approach ?? this.view.firstDirection);
+    this.navigation.frame(this.framed, this.stage.aspect, this.approach ?? this.view.firstDirection, this.view.shape());
   }
 
   private arrive(): void {

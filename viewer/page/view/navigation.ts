@@ -44,11 +44,11 @@ export class Navigation {
   }
 
   /// The model's box, the picture's aspect, and from where the whole is seen, as wholeView() has it; what shows the whole goes on showing the whole.
-  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2]): void {
+  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2], points: Iterable<Vector3> = []): void {
     const follow = this.atHome;
     this.box = box.clone();
     this.aspect = aspect;
-    this.home = wholeView(this.box, aspect, direction);
+    this.home = wholeView(this.box, aspect, direction, points);
     if (follow) this.jump(this.home);
   }
 

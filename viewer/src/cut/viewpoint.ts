@@ -31,13 +31,11 @@ export function isInView({ planes }: Viewpoint, { min, max }: Box): boolean {
   });
 }
 
-/// Whether all of the box is in view.
-export function isWhollyInView({ planes }: Viewpoint, { min, max }: Box): boolean {
+/// Whether all points are in view; `points`: x, y, z of each.
+export function areInView({ planes }: Viewpoint, points: ArrayLike<number>): boolean {
   return planes.every(([a, b, c, d]) => {
-    const x = a > 0 ? min[0] : max[0];
-    const y = b > 0 ? min[1] : max[1];
-    const z = c > 0 ? min[2] : max[2];
-    return a * x + b * y + c * z + d >= 0;
+    for (let i = 0; i < points.length; i += 3) if (a * points[i] + b * points[i + 1] + c * points[i + 2] + d < 0) return false;
+    return true;
   });
 }
 

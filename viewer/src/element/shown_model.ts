@@ -2,6 +2,7 @@
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
 import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { axesOf, frameShape } from '../scene/framing.js';
 import { HierarchyView, type ViewOptions } from '../scene/hierarchy_view.js';
 import type { CameraPlace } from './camera_attribute.js';
 import { moveByKey } from './keyboard.js';
@@ -9,6 +10,7 @@ import { moveByKey } from './keyboard.js';
 const ANGLE = 45; // degrees
 const MOST_RATIO = 2;
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
+const MARGIN = 1.08;
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 
 export interface Happenings {
@@ -167,11 +169,12 @@ export class ShownModel {
       this.camera.position.set(...this.place.position);
       this.controls.target.set(...this.place.target);
     } else if (!this.whole.isEmpty()) {
-      const { center, radius } = this.whole.getBoundingSphere(new Sphere());
-      const slope = Math.sin((ANGLE * Math.PI) / 360) * Math.min(this.camera.aspect, 1);
-      this.controls.target.copy(center);
       const { firstDirection } = this.view;
-      this.camera.position.copy(firstDirection === null ? FIRST_DIRECTION : new Vector3(...firstDirection)).multiplyScalar(radius / slope).add(center);
+      const back = firstDirection === null ? FIRST_DIRECTION : new Vector3(...firstDirection);
+      const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
+      const { position, target } = frameShape(this.view.shape(), this.whole, axesOf(back.clone().negate()), { across: slope * this.camera.aspect, upwards: slope });
+      this.controls.target.copy(target);
+      this.camera.position.copy(position);
     }
     this.controls.update();
   }

@@ -24,6 +24,7 @@ import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { changedStanding, DEFAULT_STANDING, upwards, type Standing } from './standing.js';
+import { silhouetteOf } from './silhouette.js';
 import { terrainOf, type Terrain } from './terrain.js';
 import { memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from './tile_object.js';
 import type { DrawnTile, TileSource } from './surface.js';
@@ -104,6 +105,8 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly alarm = new Alarm(() => { this.wake(); });
   private readonly ending = new AbortController();
   private root: Tile | null = null;
+  /// x, y, z of points of its outline, in the tiles' coordinates.
+  private silhouette: Float32Array = new Float32Array(0);
   /// Nothing else will come.
   private isRootAll = false;
   private isFirstFrame = true;
@@ -171,6 +174,12 @@ export class HierarchyView extends Group<ViewEvents> {
     return up === 'file' || up === (root.zUp ? 'z' : 'y') ? directionOf(root.firstView) : null;
   }
 
+  /// Points of the root's outline from all sides, as they stand in this group, in one and the same vector. None: not known yet.
+  *shape(): Iterable<Vector3> {
+    const point = new Vector3();
+    for (let i = 0; i < this.silhouette.length; i += 3) yield point.fromArray(this.silhouette, i).applyMatrix4(this.tiles.matrix);
+  }
+
   /// Whether the mesh has colours or pictures of its own; those that are white everywhere say nothing. Null: not known yet.
   get hasColours(): boolean | null {
     return this.root && (this.root.picture !== null || saysColour(this.root));
@@ -230,6 +239,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const root = await this.persist('root', () => this.remote.root());
     this.ending.signal.throwIfAborted();
     this.root = root;
+    this.silhouette = silhouetteOf(root);
     this.tiles.insideOut = root.insideOut;
     this.corners = root.box;
     this.stand(root);
@@ -466,8 +476,7 @@ export class HierarchyView extends Group<ViewEvents> {
 
   private mode(shown: readonly ChosenNode[]): Mode {
     if (this.viewpoint === null || this.directory === null) return 'CWV';
-    const { min, max } = this.box.clone().applyMatrix4(this.tiles.matrix.clone().invert());
-    return modeOf(shown, { min: min.toArray(), max: max.toArray() }, this.directory.tree.lastLevel, this.viewpoint, this.pixels);
+    return modeOf(shown, this.silhouette, this.directory.tree.lastLevel, this.viewpoint, this.pixels);
   }
 
   stats(): Stats {

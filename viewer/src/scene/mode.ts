@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a view is called (Kim & Lee).
 import type { ChosenNode } from '../cut/choose_cut.js';
-import { distance, isWhollyInView, pixelsOf, type Box, type Viewpoint } from '../cut/viewpoint.js';
+import { areInView, distance, pixelsOf, type Viewpoint } from '../cut/viewpoint.js';
 import type { Mode } from './settings.js';
 
 /// Part of the picture that a tile covers, at most.
@@ -21,9 +21,9 @@ function foremost(shown: readonly ChosenNode[], view: Viewpoint, pixels: number)
   });
 }
 
-/// `shown`: the tiles in view, `whole`: the model, `pixels`: of the picture.
-export function modeOf(shown: readonly ChosenNode[], whole: Box, lastLevel: number, view: Viewpoint, pixels: number): Mode {
-  if (isWhollyInView(view, whole)) return 'CWV';
+/// `shown`: the tiles in view, `silhouette`: x, y, z of points of the model's outline, `pixels`: of the picture.
+export function modeOf(shown: readonly ChosenNode[], silhouette: ArrayLike<number>, lastLevel: number, view: Viewpoint, pixels: number): Mode {
+  if (areInView(view, silhouette)) return 'CWV';
   const front = foremost(shown, view, pixels);
   return front.length > 0 && front.every(({ node }) => node.level === lastLevel) ? 'DZM' : 'ZSV';
 }

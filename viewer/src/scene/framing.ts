@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// From where all of a shape fills a picture.
+import { Vector3, type Box3 } from 'three';
+
+/// Right, up and forward, of length 1 and at right angles to each other.
+export interface Axes {
+  readonly right: Vector3;
+  readonly up: Vector3;
+  readonly forward: Vector3;
+}
+
+/// Slopes of the picture's borders against its middle: half its width and height at a distance of 1.
+export interface Slopes {
+  readonly across: number;
+  readonly upwards: number;
+}
+
+export interface Framed {
+  readonly position: Vector3;
+  /// Straight ahead, as far away as the middle of the box.
+  readonly target: Vector3;
+}
+
+const LEAST_DISTANCE = 0.01; // of the box's diagonal
+const WORLD_UP = new Vector3(0, 1, 0);
+
+export function axesOf(forward: Vector3): Axes {
+  const right = forward.clone().cross(WORLD_UP);
+  if (right.lengthSq() < 1e-12) right.set(1, 0, 0);
+  right.normalize();
+  return { right, up: right.clone().cross(forward), forward };
+}
+
+export function cornersOf({ min, max }: Box3): Vector3[] {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (bits) => new Vector3((bits & 1 ? max : min).x, (bits & 2 ? max : min).y, (bits & 4 ? max : min).z),
+  );
+}
+
+/// What touches the two borders of the picture that face each other along an axis, `most` on either side: places along the axis, each less or
+/// plus its depth times the slope. They say where the camera is on that axis, and how far forward it may go.
+class Pair {
+  private readonly most: [number, number] = [-Infinity, -Infinity];
+
+  constructor(private readonly slope: number) {}
+
+  add(place: number, depth: number): void {
+    this.most[0] = Math.max(this.most[0], place - this.slope * depth);
+    this.most[1] = Math.max(this.most[1], -place - this.slope * depth);
+  }
+
+  get middle(): number {
+    return (this.most[0] - this.most[1]) / 2;
+  }
+
+  get depth(): number {
+    return -(this.most[0] + this.most[1]) / (2 * this.slope);
+  }
+}
+
+/// The nearest place that looks along `axes` with all points in the picture; between its borders they leave as much room on the one side as on
+/// the other. `points`: of a shape within `box`; none: the box's corners. O(points).
+export function frameShape(points: Iterable<Vector3>, box: Box3, { right, up, forward }: Axes, { across, upwards }: Slopes): Framed {
+  const centre = box.getCenter(new Vector3());
+  const [sides, ends] = [new Pair(across), new Pair(upwards)];
+  let count = 0;
+  const add = (point: Vector3): void => {
+    const [x, y, z] = [point.x - centre.x, point.y - centre.y, point.z - centre.z];
+    const depth = x * forward.x + y * forward.y + z * forward.z;
+    sides.add(x * right.x + y * right.y + z * right.z, depth);
+    ends.add(x * up.x + y * up.y + z * up.z, depth);
+    ++count;
+  };
+  for (const point of points) add(point);
+  if (count === 0) cornersOf(box).forEach(add);
+  const away = Math.max(-Math.min(sides.depth, ends.depth), LEAST_DISTANCE * box.getSize(new Vector3()).length()) || 1;
+  const target = centre.addScaledVector(right, sides.middle).addScaledVector(up, ends.middle);
+  return { position: target.clone().addScaledVector(forward, -away), target };
+}
