@@ -164,6 +164,7 @@ async function checkMeasure(visitor) {
   const number = (text) => Number.parseFloat(text);
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
   visitor.check('measure', figures.Points === '3' && length >= straight && straight > 0, JSON.stringify(figures));
+  visitor.check('measure angle and area', /^\d+\.\d\d°/.test(figures['Last angle']) && number(figures.Area) > 0 && figures['Area in plan'] !== undefined, `${figures['Last angle']}, ${figures.Area}`);
   visitor.check('measure marks', (await shows(page, '.tool-overlay line', 4)) && (await shows(page, '.tool-overlay text', 2)), 'two parts');
   await page.getByLabel('The model is in').selectOption('m');
   await page.getByLabel('Show').selectOption('mm');

@@ -249,7 +249,7 @@ describe('RemoteHierarchy', () => {
     const remote = new RemoteHierarchy(remoteFiles('here', fetch), new TileDecoder(undefined, 0), signal);
     await remote.root();
     const record = ({ own, copyOf = [], splitOf = [], interior }: TileParts): TileRecord =>
-      ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });
+      ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });
     await expect(remote.tile({ level: 1, index: 0 }, record(computed), signal)).resolves.toBeDefined();
     await expect(remote.tile({ level: 1, index: 1 }, record(none), signal)).rejects.toThrow('tiles/01/000001.glb: its normals are not of the kind that the root has');
   });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Distances along points of the surface.
-import { measuresOf, type Measures } from '../../src/tools/measure.js';
+// Distances, angles and areas along points of the surface.
+import { boundsOf, measuresOf, type Measures } from '../../src/tools/measure.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';
+import { within } from '../../src/tools/units.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
@@ -13,6 +14,11 @@ import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const MOST_POINTS = 500;
+const ANGLE_DIGITS = 2;
+
+function degrees(radians: number): number {
+  return (radians * 180) / Math.PI;
+}
 
 export class MeasureTool implements Tool {
   readonly root: HTMLElement;
@@ -54,7 +60,8 @@ export class MeasureTool implements Tool {
   marks(): readonly Mark[] {
     const scale = this.shop.scale();
     const { parts } = this.measures();
-    const lines = this.points.slice(1).map(({ local }, i) => ({ at: this.points[i].local, to: local, text: scale.format(parts[i]) }));
+    const bounds = this.bounds();
+    const lines = this.points.slice(1).map(({ local }, i) => ({ at: this.points[i].local, to: local, text: scale.formatWithin(parts[i], bounds.parts[i]) }));
     return [...lines, ...this.points.map(({ local }) => ({ at: local }))];
   }
 
@@ -72,6 +79,11 @@ export class MeasureTool implements Tool {
     return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.upwards);
   }
 
+  /// Smaller as points of the original come.
+  private bounds(): Measures {
+    return boundsOf(this.points.map(({ point }) => point), this.points.map(({ bound }) => bound));
+  }
+
   private drop(from: number): void {
     this.points = this.points.slice(0, from);
     this.show();
@@ -83,12 +95,13 @@ export class MeasureTool implements Tool {
   }
 
   private show(): void {
-    const { length, level, straight, rise } = this.measures();
+    const [is, off] = [this.measures(), this.bounds()];
     const scale = this.shop.scale();
     const { measure } = words;
-    const rows = [[measure.points, String(this.points.length)], [measure.length, scale.format(length)], [measure.level, scale.format(level)],
-      [measure.straight, scale.format(straight)], [measure.rise, scale.format(rise)]] as const;
-    this.list.replaceChildren(...figures(rows));
+    const lengths = (['length', 'level', 'straight', 'rise'] as const).map((name) => [measure[name], scale.formatWithin(is[name], off[name])] as const);
+    const areas = (['area', 'areaLevel'] as const).flatMap((name) => (is[name] === null ? [] : [[measure[name], scale.formatAreaWithin(is[name], off[name] ?? Infinity)] as const]));
+    const angle = is.angle === null ? [] : [[measure.angle, within(`${degrees(is.angle).toFixed(ANGLE_DIGITS)}°`, degrees(off.angle ?? Infinity))] as const];
+    this.list.replaceChildren(...figures([[measure.points, String(this.points.length)], ...lengths, ...angle, ...areas]));
     this.shop.bench.redraw();
   }
 }

@@ -21,6 +21,8 @@ export interface TileRecord {
   readonly pictureHeight: number;
   /// Estimated distance to the input, in its units, and no less than a texel that is coarser than the input's; 0 of partitions.
   readonly error: number;
+  /// No point of its surface is farther from the input's, and none of the input's from it: certain; of partitions what rounding did.
+  readonly bound: number;
   /// Box of all of the input that the tile stands for, in the coordinates of decoded tiles: that of its vertices, larger by
   /// its bound.
   readonly min: Triple;
@@ -75,6 +77,7 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
     pictureWidth: u32(88),
     pictureHeight: u32(92),
     error: f32(48),
+    bound,
     min: corner(60, -bound),
     max: corner(72, bound),
     bytes: bytesAt(view, at),
@@ -83,10 +86,10 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
 
 /// No more than the format allows: sizes are computed from these.
 function isSound(record: TileRecord): boolean {
-  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight, min, max, error } = record;
+  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight, min, max, error, bound } = record;
   const counts = own >= 1 && own <= MOST_OWN && [ghosts, copies, interior, border].every((count) => count <= MOST_ELEMENTS);
   const picture = pictureWidth <= MOST_SIDE && pictureHeight <= MOST_SIDE && (pictureWidth === 0) === (pictureHeight === 0);
-  return counts && picture && splits <= mostSplits({ interior, border }) && error >= 0 && [...min, ...max, error].every(Number.isFinite);
+  return counts && picture && splits <= mostSplits({ interior, border }) && error >= 0 && bound >= 0 && [...min, ...max, error, bound].every(Number.isFinite);
 }
 
 /// Of a page that is not there: on its way, or when to ask for it again.

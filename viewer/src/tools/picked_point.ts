@@ -22,6 +22,8 @@ export interface PickedPoint {
   readonly isOriginal: boolean;
   /// The vertex is one of the input, and these are its coordinates to the bit.
   readonly isExact: boolean;
+  /// No more is it from the input's surface; Infinity: not known.
+  readonly bound: number;
   readonly globe: GlobePlace | null;
   /// What the point has besides, in the order of the manifest: of labels that of the nearest vertex. Null: no value. `label`: its name, or ''.
   readonly values: readonly { readonly name: string; readonly value: number | null; readonly label: string }[];
@@ -37,8 +39,15 @@ function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribu
 
 type Stored = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform' | 'worstRounding' | 'partitions'> & { readonly source: Pick<Manifest['source'], 'doublePrecision'> & Partial<Pick<Manifest['source'], 'values'>> };
 
-/// `snaps`: to the nearest corner of the triangle.
-export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean): PickedPoint {
+/// What storing coordinates did to a point of a partition.
+function storedBound(local: Vector, { worstRounding, source, place }: Stored): number {
+  const HALF_STEP = 2 ** -24; // of a float, in parts of it
+  const largest = Math.max(...local.map((value, axis) => Math.abs(value + place[axis])));
+  return worstRounding + (source.doublePrecision ? Math.sqrt(3) * HALF_STEP * largest : 0);
+}
+
+/// `snaps`: to the nearest corner of the triangle. `bound`: of the tile, where it is no partition.
+export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean, bound = Infinity): PickedPoint {
   const coordinates = new Coordinates(manifest);
   const local = snaps ? hit.corner : hit.point;
   const point = coordinates.toInput(local);
@@ -52,6 +61,7 @@ export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean): PickedP
     isVertex: snaps,
     isOriginal,
     isExact: snaps && isOriginal && manifest.worstRounding === 0 && !manifest.source.doublePrecision,
+    bound: isOriginal ? storedBound(local, manifest) : bound,
     globe: coordinates.toGlobe(point),
     values: valuesOf(hit, manifest.source.values ?? [], snaps),
   };

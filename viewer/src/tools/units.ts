@@ -41,6 +41,17 @@ export function unitOfModel(manifest: Manifest): UnitName | null {
   return unitOfMetres(new Coordinates(manifest).metresPerUnit);
 }
 
+/// Two digits, not less.
+function roundedUp(bound: number): number {
+  const step = 10 ** (Math.floor(Math.log10(bound)) - 1);
+  return Number((Math.ceil(bound / step - 1e-9) * step).toPrecision(2));
+}
+
+/// `text`: a number, then its unit.
+export function within(text: string, bound: number): string {
+  return bound > 0 && bound < Infinity ? text.replace(/(?<=[\d.])(?= |°)/, ` ± ${roundedUp(bound)}`) : text;
+}
+
 /// How lengths of a model are told: in which unit they are, and in which one they are shown.
 export class LengthScale {
   /// What a length of the model is multiplied by.
@@ -66,5 +77,14 @@ export class LengthScale {
 
   formatArea(area: number): string {
     return `${Number((area * this.factor ** 2).toPrecision(DIGITS))} ${this.sign}²`;
+  }
+
+  /// 12.3457 ± 0.03 m, the bound rounded up; without one that is 0, or not known.
+  formatWithin(length: number, bound: number): string {
+    return within(this.format(length), bound * this.factor);
+  }
+
+  formatAreaWithin(area: number, bound: number): string {
+    return within(this.formatArea(area), bound * this.factor ** 2);
   }
 }

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { measuresOf } from '../../src/tools/measure.js';
+import { boundsOf, measuresOf } from '../../src/tools/measure.js';
 import { roundLength, scaleBar, unitsPerPixel } from '../../src/tools/scale_bar.js';
-import { isUnitName, LengthScale, unitOfMetres } from '../../src/tools/units.js';
+import { isUnitName, LengthScale, unitOfMetres, within } from '../../src/tools/units.js';
 import type { Vector } from '../../src/tools/vectors.js';
+
+/// Spread over a sphere.
+const DIRECTIONS = Array.from({ length: 400 }, (_, i): Vector => {
+  const z = 1 - (2 * i + 1) / 400;
+  return [Math.sqrt(1 - z * z) * Math.cos(2.4 * i), Math.sqrt(1 - z * z) * Math.sin(2.4 * i), z];
+});
 
 describe('measuresOf', () => {
   const steps: Vector[] = [[0, 0, 0], [3, 0, 4], [3, 12, 4], [3, 12, 0]];
 
   it('adds the parts up, in space and in plan, by the axis that is up', () => {
-    expect(measuresOf(steps, [0, 1, 0])).toEqual({ parts: [5, 12, 4], length: 21, level: 9, straight: Math.hypot(3, 12), straightLevel: 3, rise: 12 });
+    expect(measuresOf(steps, [0, 1, 0])).toEqual({ parts: [5, 12, 4], length: 21, level: 9, straight: Math.hypot(3, 12), straightLevel: 3, rise: 12, angle: Math.PI / 2, area: Math.hypot(48, 6, 18), areaLevel: 6 });
     expect(measuresOf(steps, [0, 0, 1])).toMatchObject({ length: 21, level: 3 + 12, rise: 0, straightLevel: Math.hypot(3, 12) });
     expect(measuresOf(steps, [0, -1, 0])).toMatchObject({ length: 21, level: 9, rise: -12 });
   });
 
   it('of one point, and of none, are 0', () => {
     for (const points of [[], steps.slice(1, 2)])
-      expect(measuresOf(points, [0, 1, 0])).toEqual({ parts: [], length: 0, level: 0, straight: 0, straightLevel: 0, rise: 0 });
+      expect(measuresOf(points, [0, 1, 0])).toEqual({ parts: [], length: 0, level: 0, straight: 0, straightLevel: 0, rise: 0, angle: null, area: null, areaLevel: null });
   });
 
   it('keeps small lengths far from the origin', () => {
@@ -25,7 +31,63 @@ describe('measuresOf', () => {
   });
 });
 
+describe('areas and angles', () => {
+  it('are those of the polygon, far from the origin too', () => {
+    const court: Vector[] = [[0, 0, 0], [30, 0, 0], [30, 0, 20], [0, 0, 20]].map(([x, y, z]) => [x + 691000, y + 500, z + 5335000]);
+    expect(measuresOf(court, [0, 1, 0])).toMatchObject({ area: 600, areaLevel: 600, angle: Math.PI / 2 });
+    expect(measuresOf([...court].reverse(), [0, 1, 0])).toMatchObject({ area: 600, areaLevel: 600 });
+    const slope = court.map(([x, y, z]): Vector => [x, y + (x - 691000), z]);
+    expect(measuresOf(slope, [0, 1, 0]).area).toBeCloseTo(600 * Math.SQRT2, 6);
+    expect(measuresOf(slope, [0, 1, 0]).areaLevel).toBeCloseTo(600, 6);
+    expect(measuresOf([[0, 0, 0], [1, 0, 0], [1, 1e-3, 0]], [0, 1, 0]).angle).toBeCloseTo(Math.PI / 2, 12);
+    expect(measuresOf([[0, 0, 0], [0, 0, 0], [1, 0, 0]], [0, 1, 0]).angle).toBeNull();
+  });
+});
+
+describe('boundsOf', () => {
+  it('of points that are exact is nothing', () => {
+    expect(boundsOf([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [0, 0, 0])).toEqual({ parts: [0, 0], length: 0, level: 0, straight: 0, straightLevel: 0, rise: 0, angle: 0, area: 0, areaLevel: 0 });
+    expect(boundsOf([], [])).toMatchObject({ length: 0, angle: null, area: null });
+  });
+
+  it('is never less than what points do that are off', () => {
+    let state = 1;
+    const random = (): number => (state = (state * 16807) % 2147483647) / 2147483647;
+    const direction = (): Vector => {
+      const z = 2 * random() - 1;
+      const turn = 2 * Math.PI * random();
+      return [Math.sqrt(1 - z * z) * Math.cos(turn), Math.sqrt(1 - z * z) * Math.sin(turn), z];
+    };
+    let closest = 0;
+    for (let round = 0; round < 2000; ++round) {
+      const count = 2 + Math.floor(5 * random());
+      const points = Array.from({ length: count }, (): Vector => [random(), random(), random()]);
+      const errors = points.map(() => 0.2 * random() ** 3);
+      const moved = points.map((point, i): Vector => point.map((value, axis) => value + errors[i] * 0.999999 * DIRECTIONS[(round + 7 * i) % DIRECTIONS.length][axis]) as unknown as Vector);
+      const up = direction();
+      const [is, was, most] = [measuresOf(points, up), measuresOf(moved, up), boundsOf(points, errors)];
+      for (const key of ['length', 'level', 'straight', 'straightLevel', 'rise', 'angle', 'area', 'areaLevel'] as const) {
+        const off = Math.abs((is[key] ?? 0) - (was[key] ?? 0));
+        expect(off).toBeLessThanOrEqual((most[key] ?? 0) + 1e-12);
+        if (key === 'area' && (most[key] ?? 0) > 0) closest = Math.max(closest, off / most[key]!);
+      }
+      is.parts.forEach((part, i) => { expect(Math.abs(part - was.parts[i])).toBeLessThanOrEqual(most.parts[i]); });
+    }
+    expect(closest).toBeGreaterThan(0.5); // and not much more
+  });
+});
+
 describe('LengthScale', () => {
+  it('tells bounds rounded up, and none that is 0 or not known', () => {
+    const scale = new LengthScale('m', 'cm');
+    expect(scale.formatWithin(1.234567, 0.01011)).toBe('123.457 ± 1.1 cm');
+    expect(scale.formatWithin(1, 0.1)).toBe('100 ± 10 cm');
+    expect(scale.formatWithin(1, 0)).toBe('100 cm');
+    expect(scale.formatWithin(1, Infinity)).toBe('100 cm');
+    expect(scale.formatAreaWithin(2, 0.5)).toBe('20000 ± 5000 cm²');
+    expect(within('90.00°', 1.234)).toBe('90.00 ± 1.3°');
+  });
+
   it('converts where both units are known', () => {
     expect(new LengthScale('m', 'ft').format(0.3048)).toBe('1 ft');
     expect(new LengthScale('mm', 'm').format(1234567)).toBe('1234.57 m');

@@ -2,7 +2,7 @@
 // Picking on real hierarchies: on what is drawn, and on the original.
 import { readdirSync } from 'node:fs';
 import path from 'node:path';
-import { PerspectiveCamera, Vector3 } from 'three';
+import { BufferAttribute, PerspectiveCamera, Triangle, Vector3 } from 'three';
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Fetch } from '../../src/hierarchy/bytes.js';
 import { Places } from '../../page/tools/places.js';
@@ -13,6 +13,7 @@ import { pickOriginal } from '../../src/tools/original.js';
 import { Picker, rayThrough } from '../../src/tools/pick.js';
 import { pickedPoint } from '../../src/tools/picked_point.js';
 import { RayProbe, type Ray } from '../../src/tools/ray.js';
+import { shownBound } from '../../src/tools/shown_bound.js';
 import { add, distanceOf, subtract, type Vector } from '../../src/tools/vectors.js';
 import { fetchFrom, hasProgram, Workshop } from '../support/meshhier.js';
 import { readPly, type PlyMesh } from '../support/ply.js';
@@ -42,6 +43,18 @@ function nearest(mesh: PlyMesh, ray: Ray): number {
   let least = Infinity;
   for (let i = 0; i < mesh.corners.length; i += 3)
     least = Math.min(least, probe.hits(mesh.positions, mesh.corners[i], mesh.corners[i + 1], mesh.corners[i + 2]));
+  return least;
+}
+
+/// From a point to all of a mesh's surface.
+function distanceToMesh({ positions, corners }: PlyMesh, point: Vector): number {
+  const [at, closest] = [new Vector3(...point), new Vector3()];
+  const triangle = new Triangle();
+  let least = Infinity;
+  for (let i = 0; i < corners.length; i += 3) {
+    triangle.setFromAttributeAndIndices(new BufferAttribute(positions, 3), corners[i], corners[i + 1], corners[i + 2]);
+    least = Math.min(least, triangle.closestPointToPoint(at, closest).distanceTo(at));
+  }
   return least;
 }
 
@@ -83,7 +96,7 @@ describe.skipIf(!hasProgram)('picking', () => {
       expect(picked).toMatchObject({ isOriginal: true, isExact: true, isVertex: true, globe: null });
       expect(known.has(bitsOf(picked.point))).toBe(true);
       expect(distanceOf(picked.normal, [0, 0, 0])).toBeCloseTo(1, 12);
-      expect(pickedPoint(hit, view.manifest!, false)).toMatchObject({ isExact: false, isVertex: false });
+      expect(pickedPoint(hit, view.manifest!, false)).toMatchObject({ isExact: false, isVertex: false, bound: 0 });
     }
     expect(hits).toBeGreaterThan(10);
     view.dispose();
@@ -162,6 +175,30 @@ describe.skipIf(!hasProgram)('picking', () => {
     view.dispose();
   });
 
+  it('knows a bound of how far what is shown is from the original, where levels meet too', async () => {
+    const { view, camera } = await settledView(fetchFrom(torus()), [1.5, 0.3, 0.2], { threshold: 2 });
+    expect(new Set(view.surface.map(({ node }) => node.level)).size).toBeGreaterThan(1);
+    const mesh = meshOf('torus_y');
+    const { index } = view.source!;
+    const picker = new Picker();
+    let [coarse, largest] = [0, 0];
+    for (const [right, up] of places(80, 9)) {
+      const hit = picker.pick(view.surface, rayThrough(camera, right, up, view.surfaceMatrix));
+      if (hit === null) continue;
+      const bound = shownBound(hit.node, view.surface, (node) => index.record(node)!.bound);
+      const picked = pickedPoint(hit, view.manifest!, false, bound);
+      if (picked.isOriginal) continue;
+      ++coarse;
+      const off = distanceToMesh(mesh, picked.point);
+      expect(off).toBeLessThanOrEqual(picked.bound);
+      largest = Math.max(largest, off / picked.bound);
+    }
+    expect(coarse).toBeGreaterThan(20);
+    expect(largest).toBeGreaterThan(0.01); // it is a bound of something
+    expect(shownBound({ level: 0, index: 0 }, view.surface, () => 0)).toBe(Infinity);
+    view.dispose();
+  });
+
   it('tells coordinates of doubles as near as they are stored, and does not call them exact', async () => {
     const directory = workshop.build('far', ['surface', '--triangles', '6000', '--double', '--offset', '691000.1', '5335000.2', '500.3'], PARTITIONS);
     const { view, camera } = await settledView(fetchFrom(directory), [0, 0, 4]);
@@ -172,6 +209,8 @@ describe.skipIf(!hasProgram)('picking', () => {
     let least = Infinity;
     for (let v = 0; v < mesh.positions.length; v += 3) least = Math.min(least, distanceOf(picked.point, [mesh.positions[v], mesh.positions[v + 1], mesh.positions[v + 2]]));
     expect(least).toBeLessThan(1e-6);
+    expect(picked.bound).toBeGreaterThan(0);
+    expect(least).toBeLessThanOrEqual(picked.bound);
     view.dispose();
   });
 

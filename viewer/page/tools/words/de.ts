@@ -26,13 +26,16 @@ export const de: ToolWords = {
     notThere: 'Das Original ließ sich nicht holen; dies ist die Oberfläche, wie sie gezeigt wird.',
   },
   measure: {
-    hint: 'Klicken oder tippen Sie auf Punkte der Oberfläche. Die Rücktaste nimmt den letzten zurück.',
+    hint: 'Klicken oder tippen Sie auf Punkte der Oberfläche. Die Rücktaste nimmt den letzten zurück. ± sagt, wie falsch eine Länge sein kann, solange das Original unterwegs ist.',
     clear: 'Leeren',
     length: 'Länge',
     level: 'Im Grundriss',
     straight: 'Luftlinie',
     rise: 'Höhe',
     points: 'Punkte',
+    angle: 'Letzter Winkel',
+    area: 'Fläche',
+    areaLevel: 'Fläche im Grundriss',
   },
   notes: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche, um dort etwas zu notieren.',

@@ -25,13 +25,16 @@ export const en = {
     notThere: 'The original could not be fetched; this is the surface as it is shown.',
   },
   measure: {
-    hint: 'Click or tap points of the surface. Backspace takes the last one back.',
+    hint: 'Click or tap points of the surface. Backspace takes the last one back. ± says how far off a length may be while the original is on its way.',
     clear: 'Clear',
     length: 'Length',
     level: 'In plan',
     straight: 'Straight',
     rise: 'Height',
     points: 'Points',
+    angle: 'Last angle',
+    area: 'Area',
+    areaLevel: 'Area in plan',
   },
   notes: {
     hint: 'Click or tap the surface to put a note there.',

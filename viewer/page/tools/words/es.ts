@@ -26,13 +26,16 @@ export const es: ToolWords = {
     notThere: 'No se pudo obtener el original; esta es la superficie tal como se muestra.',
   },
   measure: {
-    hint: 'Haga clic o toque puntos de la superficie. Retroceso quita el último.',
+    hint: 'Haga clic o toque puntos de la superficie. Retroceso quita el último. ± dice cuánto puede errar una longitud mientras llega el original.',
     clear: 'Vaciar',
     length: 'Longitud',
     level: 'En planta',
     straight: 'En línea recta',
     rise: 'Altura',
     points: 'Puntos',
+    angle: 'Último ángulo',
+    area: 'Área',
+    areaLevel: 'Área en planta',
   },
   notes: {
     hint: 'Haga clic o toque la superficie para poner una nota.',
