@@ -12,7 +12,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -146,11 +145,6 @@ std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::vector<std::byte> bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 IdleCoders& idle_coders() {
   static IdleCoders coders;
   return coders;
@@ -166,23 +160,23 @@ std::unique_ptr<Coder> new_coder() {
   return coder;
 }
 
-/// A process ends with the thread that started it: one that waited may have ended. A
-/// picture at which a new one ends is none.
-Coder::Result ask(const Request& request, std::span<const std::byte> bytes) {
-  if (std::unique_ptr<Coder> coder = idle_coders().take()) {
+/// A process ends with the thread that started it, and when somebody kills it: others go on.
+/// Nothing of a picture at which new ones end.
+std::optional<Coder::Result> ask(const Request& request, std::span<const std::byte> bytes) {
+  constexpr int kNewOnes = 2;
+  for (int tried = 0; tried < kNewOnes;) {
+    std::unique_ptr<Coder> coder = idle_coders().take();
+    if (!coder) {
+      coder = new_coder();
+      ++tried;
+    }
     if (std::optional<Coder::Result> result = coder->ask(request, bytes)) {
       if (result->is_good)
         idle_coders().give(std::move(coder));
-      return *std::move(result);
+      return result;
     }
   }
-  std::unique_ptr<Coder> coder = new_coder();
-  std::optional<Coder::Result> result = coder->ask(request, bytes);
-  if (!result)
-    return {false, bytes_of("the program that codes it ended")};
-  if (result->is_good)
-    idle_coders().give(std::move(coder));
-  return *std::move(result);
+  return std::nullopt;
 }
 
 /// Red, green, blue, alpha.
@@ -206,27 +200,36 @@ std::vector<std::byte> encode_ktx2(const Image& image, Ktx2Content content, int 
   assert(image.width % 4 == 0 && image.height % 4 == 0);
   assert(std::max(image.width, image.height) <= kMostKtx2Side);
   const std::vector<std::byte> texels = with_alpha(image);
-  Coder::Result result =
+  std::optional<Coder::Result> result =
       ask({static_cast<std::uint32_t>(content), image.width, image.height,
            static_cast<std::uint32_t>(quality), static_cast<std::uint32_t>(texels.size())},
           texels);
-  if (!result.is_good)
-    throw Error(ErrorCode::internal, "ktx2-encoder: " + text_of(result.bytes));
-  return std::move(result.bytes);
+  if (!result) {
+    throw Error(ErrorCode::io,
+                "the programs that code KTX2 are ended while they have a picture: if memory is "
+                "short, fewer \"threads\" need less");
+  }
+  if (!result->is_good)
+    throw Error(ErrorCode::internal, "ktx2-encoder: " + text_of(result->bytes));
+  return std::move(result->bytes);
 }
 
 Image decode_ktx2(std::span<const std::byte> file, const Image& shape, const std::string& name) {
-  const Coder::Result result =
+  const std::optional<Coder::Result> result =
       ask({kDecode, shape.width, shape.height, 0, static_cast<std::uint32_t>(file.size())}, file);
-  if (!result.is_good)
-    throw Error(ErrorCode::input, name + ": the picture is broken: " + text_of(result.bytes));
+  if (!result || !result->is_good) {
+    throw Error(ErrorCode::input,
+                name + ": the picture is broken: " +
+                    (result ? text_of(result->bytes) : "no program that decodes it survives it"));
+  }
   Image image(shape.width, shape.height, shape.channels);
   const std::size_t texels = std::size_t{image.width} * image.height;
-  if (result.bytes.size() != 4 * texels)
+  if (result->bytes.size() != 4 * texels)
     throw Error(ErrorCode::internal, "ktx2-encoder gave another picture than it was asked for");
   for (std::size_t i = 0; i < texels; ++i) {
     for (std::size_t k = 0; k < image.channels; ++k)
-      image.texels[i * image.channels + k] = std::to_integer<std::uint8_t>(result.bytes[4 * i + k]);
+      image.texels[i * image.channels + k] =
+          std::to_integer<std::uint8_t>(result->bytes[4 * i + k]);
   }
   return image;
 }

@@ -12,7 +12,7 @@ build_program() {
 
 # Whether nothing in viewer/ is newer than what its build makes last.
 page_is_new() {
-  local last=$page/meshhier-viewer.js.gz
+  local last=$page/meshhier-ktx2.js.gz
   [[ -s $page/index.html && -s $last ]] &&
     [[ -z $(find viewer -mindepth 1 \( -path viewer/dist -o -path viewer/node_modules -o -path viewer/test \) -prune -o -newer "$last" -print -quit) ]]
 }

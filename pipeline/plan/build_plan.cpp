@@ -146,11 +146,11 @@ void check_coders(const JobSize& job) {
     return;
   if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
     throw Error(ErrorCode::usage, missing);
-  const std::uint32_t side = std::max(job.textured ? job.picture_side : 0, job.normal_map_side);
+  const std::uint32_t side = job.textured ? job.picture_side : job.normal_map_side;
   if (side > images::kMostKtx2Side) {
     throw Error(ErrorCode::usage,
-                fmt::format("texels is {}: pictures in KTX2 have at most {} a side", side,
-                            images::kMostKtx2Side));
+                fmt::format("{}.texels is {}: in KTX2 there are at most {} a side",
+                            job.textured ? "texture" : "normal_map", side, images::kMostKtx2Side));
   }
 }
 

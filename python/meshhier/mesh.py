@@ -26,7 +26,7 @@ class Mesh:
         attributes: name -> (n,): quality, label, ... in the input's types.
         tiles: the tiles that the triangles come from.
         triangle_tiles: (m,) int64, for each triangle the number of its tile in `tiles`.
-        images: of a textured mesh the file of the picture of each tile (JPEG, PNG or WebP); else empty.
+        images: of a textured mesh the file of the picture of each tile (JPEG, PNG, WebP or KTX2); else empty.
     """
 
     positions: NDArray[np.float64]

@@ -92,6 +92,8 @@ class Tile:
 
 def decode_image(data: bytes) -> NDArray[np.uint8]:
     """A JPEG, PNG or WebP as (height, width, 3 or 4) uint8. Needs Pillow."""
+    if data[:7] == b"\xabKTX 20":
+        raise Error("the picture is KTX2, which Pillow does not read: meshhier export NAME.obj writes it as PNG")
     try:
         from PIL import Image
     except ImportError as error:

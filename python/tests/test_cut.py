@@ -12,6 +12,7 @@ import pytest
 from ply import read_ply, triangle_set
 
 import meshhier
+from meshhier.tile import decode_image
 
 FORMS = {
     "plain.hier": {},
@@ -131,3 +132,8 @@ def test_pictures_come_with_their_tiles(tmp_path: Path) -> None:
         assert np.abs(picture[picture.shape[0] // 2, picture.shape[1] // 2].astype(int) - [200, 100, 50]).max() < 12
     places = np.unique(mesh.positions, axis=0)
     assert len(places) < len(mesh.positions), "tiles have vertices of their own, at common places"
+
+
+def test_ktx2_is_told_to_be_none_that_pillow_reads() -> None:
+    with pytest.raises(meshhier.Error, match="KTX2"):
+        decode_image(b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(100))

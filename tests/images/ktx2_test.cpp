@@ -2,10 +2,14 @@
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"
 #include "images/row_writer.h"
+#include "storage/io/own_program.h"
+#include "storage/io/process.h"
 #include "tests/images/samples.h"
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -172,6 +176,90 @@ TEST(Ktx2MissingTest, AnotherPlaceOfTheCoderIsTaken) {
   ASSERT_EQ(::setenv("MESHHIER_KTX2", "/nowhere", 1), 0);
   EXPECT_THAT(missing_for_ktx2(), HasSubstr("is not in /nowhere"));
   ASSERT_EQ(::unsetenv("MESHHIER_KTX2"), 0);
+}
+
+/// A folder with a coder of the test's own.
+class OwnCoder {
+ public:
+  explicit OwnCoder(const std::string& script) {
+    const std::filesystem::path library = directory_ / "node_modules/ktx2-encoder/dist/basis";
+    std::filesystem::create_directories(library);
+    std::ofstream(library / "basis_encoder.js") << "";
+    std::ofstream(directory_ / "package.json") << R"({"type": "module"})";
+    std::ofstream(directory_ / "coder.mjs") << script;
+    ::setenv("MESHHIER_KTX2", directory_.c_str(), 1);
+  }
+  OwnCoder(const OwnCoder&) = delete;
+  OwnCoder& operator=(const OwnCoder&) = delete;
+  ~OwnCoder() {
+    ::unsetenv("MESHHIER_KTX2");
+    end_ktx2_coders();
+    std::filesystem::remove_all(directory_);
+  }
+  const std::filesystem::path& path() const { return directory_; }
+
+ private:
+  const std::filesystem::path directory_ = storage::make_temporary_directory();
+};
+
+std::string coding_failure() {
+  try {
+    encode_image(smooth(4, 4, 3), ImageFormat::ktx2, 90);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io);
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(Ktx2Test, ACoderThatIsKilledIsReplaced) {
+  // The first one ends when it has a picture, the next one is the real one.
+  const OwnCoder coder(R"(
+    import { existsSync, readSync, writeFileSync, writeSync } from 'node:fs';
+    const mark = new URL('mark', import.meta.url);
+    if (existsSync(mark)) {
+      await import(process.env.MESHHIER_REAL_CODER);
+    } else {
+      writeFileSync(mark, '');
+      writeSync(1, Buffer.from([1, 0, 0, 0]));
+      readSync(0, Buffer.alloc(20));
+    }
+  )");
+  const std::filesystem::path real =
+      (std::filesystem::path(storage::own_directory()) / "../../images/ktx2/coder.mjs")
+          .lexically_normal();
+  ::setenv("MESHHIER_REAL_CODER", real.c_str(), 1);
+  const Bytes file = encode_image(smooth(16, 16, 3), ImageFormat::ktx2, 90);
+  EXPECT_TRUE(std::filesystem::exists(coder.path() / "mark"));
+  ::unsetenv("MESHHIER_REAL_CODER");
+  EXPECT_EQ(open_image(source_of(file), "sample")->info().width, 16U);
+}
+
+TEST_F(Ktx2Test, CodersThatAlwaysEndAreGivenUp) {
+  const OwnCoder coder("process.stdout.write(Buffer.from([1, 0, 0, 0]));");
+  EXPECT_THAT(coding_failure(), HasSubstr("are ended while they have a picture"));
+}
+
+TEST_F(Ktx2Test, ACoderOfAnotherKindIsNotSpokenWith) {
+  for (const char* script : {"process.exit(3);", "process.stdout.write('hello');"}) {
+    const OwnCoder coder(script);
+    EXPECT_THAT(coding_failure(), HasSubstr("does not start"));
+  }
+}
+
+TEST_F(Ktx2Test, WhatTheCoderSaysIsWrongIsTold) {
+  const OwnCoder coder(R"(
+    process.stdout.write(Buffer.from([1, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0]));
+    process.stdout.write('why');
+    process.stdin.resume();
+  )");
+  try {
+    encode_image(smooth(4, 4, 3), ImageFormat::ktx2, 90);
+    ADD_FAILURE() << "a picture was coded";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::internal);
+    EXPECT_STREQ(error.what(), "ktx2-encoder: why");
+  }
 }
 
 }  // namespace

@@ -165,6 +165,11 @@ async function checkMeasure(visitor) {
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
   visitor.check('measure', figures.Points === '3' && length >= straight && straight > 0, JSON.stringify(figures));
   visitor.check('measure angle and area', /^\d+\.\d\d°/.test(figures['Last angle']) && number(figures.Area) > 0 && figures['Area in plan'] !== undefined, `${figures['Last angle']}, ${figures.Area}`);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Profile as CSV' }).click()]);
+  const [head, ...rows] = readFileSync(await file.path(), 'utf8').trimEnd().split('\r\n');
+  const distances = rows.map((row) => Number(row.split(',')[1]));
+  const plan = number(figures['In plan']);
+  visitor.check('measure profile', head === 'profile,distance,height,x,y,z' && rows.length > 4 && Math.min(...distances) >= 0 && Math.max(...distances) <= plan * 1.00001 && Math.max(...distances) > 0.9 * plan, `${rows.length} rows, to ${Math.max(...distances)} of ${plan}`);
   visitor.check('measure marks', (await shows(page, '.tool-overlay line', 4)) && (await shows(page, '.tool-overlay text', 2)), 'two parts');
   await page.getByLabel('The model is in').selectOption('m');
   await page.getByLabel('Show').selectOption('mm');

@@ -2,9 +2,14 @@
 // Distances, angles and areas along points of the surface.
 import { boundsOf, measuresOf, type Measures } from '../../src/tools/measure.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';
+import { Coordinates } from '../../src/tools/coordinates.js';
+import { PROFILE_AXES, profileCsv, profileLines, profileOf } from '../../src/tools/profile.js';
+import { sectionSvg } from '../../src/tools/section_svg.js';
 import { within } from '../../src/tools/units.js';
+import type { Vector } from '../../src/tools/vectors.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
+import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
 import type { Mark } from './overlay.js';
@@ -24,6 +29,8 @@ export class MeasureTool implements Tool {
   readonly root: HTMLElement;
   private readonly list = figureList();
   private readonly clear = textButton(words.measure.clear, () => { this.drop(0); });
+  private readonly saves = (['svg', 'csv'] as const).map((kind) => textButton(words.measure.profileAs[kind], () => { this.saveProfile(kind); }));
+  private readonly note = element('p', { class: 'tool-note', role: 'status' });
   private readonly snap = checkbox(words.pick.snap, INNER_KEYS.snap, (on) => { this.setSnap(on); });
   private points: PickedPoint[] = [];
   private readonly ending = new AbortController();
@@ -31,7 +38,7 @@ export class MeasureTool implements Tool {
   constructor(private readonly shop: Workshop) {
     const units = unitsForm(shop, () => { this.show(); });
     this.snap.show(shop.settings.snaps);
-    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list, units, this.snap.root, this.clear);
+    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list, units, this.snap.root, ...this.saves, this.clear, this.note);
     this.show();
   }
 
@@ -94,7 +101,27 @@ export class MeasureTool implements Tool {
     this.show();
   }
 
+  /// Of what is drawn.
+  private saveProfile(kind: 'svg' | 'csv'): void {
+    const { bench, settings } = this.shop;
+    const { view } = bench;
+    const { upwards } = view;
+    const coordinates = new Coordinates(view.manifest!);
+    const toInput = (point: Vector): Vector => coordinates.toInput(point);
+    const profiles = profileOf(view.surface, this.points.map(({ local }) => local), upwards);
+    this.note.textContent = profiles.length === 0 ? words.measure.noProfile : '';
+    if (profiles.length === 0) return;
+    const bound = Math.max(...view.surface.map(({ node }) => view.source?.index.record(node)?.bound ?? Infinity));
+    const scale = this.shop.scale();
+    const off = bound > 0 && bound < Infinity ? `; ± ${scale.format(bound)}` : '';
+    const title = `${words.measure.profile(bench.name, scale.format(this.measures().level))}${off}`;
+    const text = kind === 'csv' ? profileCsv(profiles, toInput, upwards) : sectionSvg(profileLines(profiles, toInput, upwards), { axes: PROFILE_AXES, unit: settings.modelUnit, title });
+    download(new Blob([text], { type: kind === 'csv' ? 'text/csv' : 'image/svg+xml' }), `${bench.name}-profile.${kind}`);
+    this.note.textContent = title;
+  }
+
   private show(): void {
+    for (const save of this.saves) save.hidden = this.points.length < 2;
     const [is, off] = [this.measures(), this.bounds()];
     const scale = this.shop.scale();
     const { measure } = words;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// While L is held, a drag turns the light; L alone opens the settings.
+// While L is held, or once it is chosen, a drag turns the light; L alone opens the settings.
 import type { Angles } from './lighting.js';
 
 const KEY = 'l';
 
 export class LightDrag {
+  /// As if L were held: for those who have no keys.
+  isChosen = false;
   private held = false;
   private used = false;
 
@@ -26,7 +28,7 @@ export class LightDrag {
 
   /// Radians of a drag. False: it is none of the light.
   drag(right: number, up: number): boolean {
-    if (!this.held) return false;
+    if (!this.held && !this.isChosen) return false;
     this.used = true;
     this.turn({ right, up });
     return true;

@@ -3,12 +3,14 @@
 import type { Standing, Up } from '../../src/index.js';
 import { MOST_STRETCH, UPS } from '../../src/index.js';
 import { LIGHTS, type Light, type LightName } from '../appearance.js';
-import { choice, slider, type Control } from '../parts/controls.js';
+import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 import type { Angles } from './lighting.js';
 
 export interface LightChoices {
+  /// Whether a drag turns the light from now on, instead of the model.
+  dragsLight: (does: boolean) => void;
   light: (change: Partial<Light>) => void;
   standing: (change: Partial<Standing>) => void;
 }
@@ -35,7 +37,7 @@ export class LightForm {
   private readonly stretch: Control<number>;
   private key: Angles = { right: 0, up: 0 };
 
-  constructor({ light, standing }: LightChoices) {
+  constructor({ dragsLight, light, standing }: LightChoices) {
     const text = words.light;
     const turn = (change: Partial<Angles>): void => {
       const { right, up } = { ...this.key, ...change };
@@ -46,7 +48,8 @@ export class LightForm {
     this.above = slider(text.above, '°', ABOVE, (degrees) => { turn({ up: degrees * DEGREE }); });
     this.up = upSelect((up) => { standing({ up }); });
     this.stretch = slider(text.stretch, '×', STRETCHES, (stretch) => { standing({ stretch }); });
-    const parts = [this.name, this.around, this.above, this.up, this.stretch];
+    const drag = checkbox(text.drag, null, dragsLight);
+    const parts = [this.name, drag, this.around, this.above, this.up, this.stretch];
     this.root = element('div', { class: 'settings' }, ...parts.map(({ root }) => root));
   }
 

@@ -18,7 +18,6 @@ import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
 import { Gestures } from './gestures.js';
 import { LightDrag } from './light_drag.js';
-import type { Angles } from './lighting.js';
 import { listenToKeys, type Commands } from './keys.js';
 import { Navigation } from './navigation.js';
 import { nextLight, Presentation } from './presentation.js';
@@ -72,6 +71,7 @@ export class ModelView {
   private readonly loop = new FrameLoop((now) => this.frame(now));
   private readonly chrome: Chrome;
   private readonly ending = new AbortController();
+  private readonly light = new LightDrag((by) => { this.choose({ light: this.presentation.turnedLight(by) }); }, () => { this.chrome.settings.toggle(); }, this.ending.signal);
   private readonly sharpness = new Sharpness();
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
   private dirty = true;
@@ -103,9 +103,8 @@ export class ModelView {
     const surface = this.makeSurface();
     this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
-    const light = this.lightDrag();
-    new Gestures(surface, this.navigation, (right, up) => this.tools.tapped(right, up), (right, up) => light.drag(right, up));
-    listenToKeys(this.commands(light), this.ending.signal);
+    new Gestures(surface, this.navigation, (right, up) => this.tools.tapped(right, up), (right, up) => this.light.drag(right, up));
+    listenToKeys(this.commands(), this.ending.signal);
     this.listen();
   }
 
@@ -334,11 +333,6 @@ export class ModelView {
     this.chrome.tellTerrain(this.view.terrain === null ? null : shown);
   }
 
-  private lightDrag(): LightDrag {
-    const turn = (by: Angles): void => { this.choose({ light: this.presentation.turnedLight(by) }); };
-    return new LightDrag(turn, () => { this.chrome.settings.toggle(); }, this.ending.signal);
-  }
-
   private setSettings(change: Partial<Settings>): void {
     this.view.setSettings(change);
     Object.assign(this.around.preferences.settings, change);
@@ -375,6 +369,7 @@ export class ModelView {
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
       light: (light) => { this.choose({ light }); },
+      dragsLight: (does) => { this.light.isChosen = does; },
       standing: (standing) => { this.choose({ standing }); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
@@ -428,9 +423,9 @@ export class ModelView {
     this.navigation.move({ zoom: logarithm });
   }
 
-  private commands(light: LightDrag): Commands {
+  private commands(): Commands {
     return {
-      light: () => { light.hold(); },
+      light: () => { this.light.hold(); },
       nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },

@@ -39,7 +39,7 @@ export class SettingsForm {
   private readonly finer: Control<boolean>;
   private readonly sliders: Record<Exclude<keyof Settings, 'restDetail'>, Control<number>>;
 
-  constructor({ look, settings, theme, language, light, standing }: Choices) {
+  constructor({ look, settings, theme, language, dragsLight, light, standing }: Choices) {
     const text = words.settings;
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { look({ colours }); });
     this.colours.offer('attribute', false);
@@ -61,7 +61,7 @@ export class SettingsForm {
       threshold: slider(text.threshold, text.pixels, RANGES.threshold, (threshold) => { settings({ threshold }); }),
       memoryBudget: slider(text.memory, text.megabytes, RANGES.memoryBudget, (megabytes) => { settings({ memoryBudget: megabytes * MEGABYTE }); }),
     };
-    this.light = new LightForm({ light, standing });
+    this.light = new LightForm({ dragsLight, light, standing });
     const toggles = element('div', { class: 'checks' }, ...Object.values(this.toggles).map(({ root }) => root));
     const sliders = Object.values(this.sliders).map(({ root }) => root);
     const numbers = element('details', { class: 'numbers' }, element('summary', {}, text.numbers), ...sliders, this.finer.root);

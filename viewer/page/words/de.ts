@@ -182,6 +182,7 @@ export const de: Words = {
   light: {
     light: 'Licht',
     names: { auto: 'Auto', studio: 'Studio', raking: 'Streif', flat: 'Flach', sun: 'Sonne', matcap: 'Ton' },
+    drag: 'Ziehen dreht das Licht',
     around: 'Licht von der Seite',
     above: 'Licht von oben',
     up: 'Oben',

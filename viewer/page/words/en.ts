@@ -187,6 +187,7 @@ export const en = {
   light: {
     light: 'Light',
     names: { auto: 'Auto', studio: 'Studio', raking: 'Raking', flat: 'Flat', sun: 'Sun', matcap: 'Clay' },
+    drag: 'A drag turns the light',
     around: 'Light from the side',
     above: 'Light from above',
     up: 'Up',

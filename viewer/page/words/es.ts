@@ -182,6 +182,7 @@ export const es: Words = {
   light: {
     light: 'Luz',
     names: { auto: 'Auto', studio: 'Estudio', raking: 'Rasante', flat: 'Plana', sun: 'Sol', matcap: 'Arcilla' },
+    drag: 'Arrastrar gira la luz',
     around: 'Luz desde el lado',
     above: 'Luz desde arriba',
     up: 'Arriba',

@@ -35,6 +35,17 @@ describe('L', () => {
     expect(tapped).not.toHaveBeenCalled();
   });
 
+  it('is not needed once it is chosen that drags turn the light', () => {
+    const { drag, turn, tapped } = made();
+    drag.isChosen = true;
+    expect(drag.drag(0.3, 0)).toBe(true);
+    lift('l');
+    expect(turn).toHaveBeenCalledExactlyOnceWith({ right: 0.3, up: 0 });
+    drag.isChosen = false;
+    expect(drag.drag(0.3, 0)).toBe(false);
+    expect(tapped).not.toHaveBeenCalled();
+  });
+
   it('leaves drags alone when it is up, or went up elsewhere', () => {
     const { drag, turn, tapped } = made();
     expect(drag.drag(1, 1)).toBe(false);

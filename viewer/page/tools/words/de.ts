@@ -36,6 +36,9 @@ export const de: ToolWords = {
     angle: 'Letzter Winkel',
     area: 'Fläche',
     areaLevel: 'Fläche im Grundriss',
+    profileAs: { svg: 'Profil als SVG', csv: 'Profil als CSV' },
+    noProfile: 'Die Linie geht an allem vorbei.',
+    profile: (model, length) => `${model}: Profil, im Grundriss ${length}`,
   },
   notes: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche, um dort etwas zu notieren.',

@@ -35,6 +35,9 @@ export const en = {
     angle: 'Last angle',
     area: 'Area',
     areaLevel: 'Area in plan',
+    profileAs: { svg: 'Profile as SVG', csv: 'Profile as CSV' },
+    noProfile: 'The line passes nothing that is drawn.',
+    profile: (model: string, length: string) => `${model}: profile, ${length} in plan`,
   },
   notes: {
     hint: 'Click or tap the surface to put a note there.',

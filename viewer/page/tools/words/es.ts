@@ -36,6 +36,9 @@ export const es: ToolWords = {
     angle: 'Último ángulo',
     area: 'Área',
     areaLevel: 'Área en planta',
+    profileAs: { svg: 'Perfil en SVG', csv: 'Perfil en CSV' },
+    noProfile: 'La línea no pasa por nada dibujado.',
+    profile: (model, length) => `${model}: perfil, ${length} en planta`,
   },
   notes: {
     hint: 'Haga clic o toque la superficie para poner una nota.',
