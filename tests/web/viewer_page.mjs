@@ -583,6 +583,31 @@ async function checkCamera(visitor, [name]) {
   await visitor.close(page, 'camera');
 }
 
+/// Without keys: a drag turns the light, and the link has it; then the camera again.
+async function checkLight(visitor, [name]) {
+  const page = await visitor.open(anchor(name), WIDE);
+  await settle(page);
+  await page.getByRole('button', { name: 'Look and settings', exact: true }).click();
+  const drag = async () => {
+    await page.mouse.move(100, 500);
+    await page.mouse.down();
+    await page.mouse.move(180, 440, { steps: 4 });
+    await page.mouse.up();
+  };
+  const choice = page.getByRole('checkbox', { name: 'A drag turns the light' });
+  const camera = () => page.evaluate(() => JSON.stringify(window.meshhier.camera()));
+  const before = await camera();
+  await choice.check();
+  await drag();
+  const isTurned = await until(page, () => /&light=auto,-?[\d.]+,-?[\d.]+$/.test(page.url()));
+  const stays = (await camera()) === before;
+  await choice.uncheck();
+  await drag();
+  const moves = await until(page, async () => (await camera()) !== before);
+  visitor.check('light by a drag', isTurned && stays && moves, `${page.url().replace(/.*#/, '#')}; the camera ${stays ? 'stays, then' : 'moves, then'} ${moves ? 'moves' : 'stays'}`);
+  await visitor.close(page, 'light');
+}
+
 // ---- narrow screens, and what can be heard
 
 async function checkNarrow(visitor, [name], pictures) {
@@ -744,7 +769,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkGallery(visitor, names, pictures);
   await checkModes(visitor, names[0], pictures);
   const others = [
-    checkMotion, checkLongGallery, checkFolders, checkChangingListing, checkOutlineAgain, checkLinks, checkFirstView, checkRest, checkCamera,
+    checkMotion, checkLongGallery, checkFolders, checkChangingListing, checkOutlineAgain, checkLinks, checkFirstView, checkRest, checkCamera, checkLight,
     checkLateCode, checkLateRoot, checkTroubledTiles, checkCorruptRoot, checkEmptyFolder, checkLateRest, checkEscapes, checkLostCode,
     checkLostWorker, checkNames, checkNarrowGallery, checkNarrow, checkMissing, checkUnreachable, checkWithoutWebGl];
   for (const check of inTurn(others)) await check(visitor, names, pictures);
