@@ -33,5 +33,5 @@ export default defineConfig({
   plugins: [packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
-  test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', isolate: false },
+  test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', isolate: false, testTimeout: 120_000 }, // time decides no test
 });
