@@ -60,7 +60,7 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
 /// below it 4:2:0), webp (lossless at 100) and ktx2 (ETC1S, at 100 UASTC); without effect on png.
 /// Requires sides that open_image() reads, or encode_ktx2() takes, and no alpha for jpeg. Besides
 /// the picture it holds the encoded bytes, and a texel takes up to 6 bytes of jpeg (all
-/// coefficients), 4 of webp, 21 of lossless webp; of ktx2 see ktx2_coder_bytes().
+/// coefficients), 4 of webp, 21 of lossless webp; of ktx2 see coder_bytes().
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 
 /// Of directions instead of colours: a jpeg keeps red and green, which say nearly all, as exactly

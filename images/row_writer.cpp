@@ -57,7 +57,8 @@ std::uint64_t held_bytes(const WrittenImage& image) {
   if (!is_held(image))
     return kBuffers;
   if (image.format == ImageFormat::ktx2)
-    return texels_of(image) * (image.channels + 2 * kRgba) + ktx2_coder_bytes(texels_of(image));
+    return texels_of(image) * (image.channels + 2 * kRgba) +
+           coder_bytes(image.format, texels_of(image));
   const std::uint64_t encoder = image.format == ImageFormat::jpeg ? kJpeg
                                 : image.quality == 100            ? kLosslessWebp
                                                                   : kWebp;

@@ -97,12 +97,10 @@ std::uint64_t map_bytes(ImageFormat format, std::uint32_t side) {
   constexpr double kTexelBytes = 70;
   constexpr double kSources = 16;
   constexpr double kShown = 0.45;  // of a picture's texels
-  const double texels = double{1} * side * side;
-  const std::uint64_t coder = format == ImageFormat::ktx2
-                                  ? images::ktx2_coder_bytes(static_cast<std::uint64_t>(texels))
-                                  : 0;
-  return coder + static_cast<std::uint64_t>(
-                     texels * (kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel)));
+  const std::uint64_t texels = std::uint64_t{side} * side;
+  constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
+  return images::coder_bytes(format, texels) +
+         static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
 }
 
 class MapStage {

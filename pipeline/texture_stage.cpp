@@ -141,8 +141,8 @@ std::uint64_t bake_bytes(ImageFormat format, std::uint32_t side) {
   constexpr std::uint64_t kSources = 16;
   constexpr std::uint64_t kSourceTexels = 2;
   const std::uint64_t texels = std::uint64_t{side} * side;
-  const std::uint64_t coder = format == ImageFormat::ktx2 ? images::ktx2_coder_bytes(texels) : 0;
-  return texels * (kBakedBytes + kSources * kSourceTexels * 3) + coder;
+  return texels * (kBakedBytes + kSources * kSourceTexels * 3) +
+         images::coder_bytes(format, texels);
 }
 
 float root_of_squares(double a, double b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encodes and decodes KTX2 (Basis Universal) for a program that speaks to it by one socket, which is its standard input and output: images/ktx2_process.cpp.
+// Encodes and decodes KTX2 (Basis Universal) for a program that speaks to it by one socket, which is its standard input and output: images/ktx2_coder.cpp.
 // It is done when that is closed, or after a failure. Numbers are unsigned, 32 bits, little endian.
 //
 //   greeting   PROTOCOL

@@ -32,8 +32,9 @@ function within({ points, isClosed }: Polyline, distanceOf: (point: Vector) => n
     const [a, b] = [walked[i - 1], walked[i]];
     const [from, to] = [distanceOf(a), distanceOf(b)];
     // Parts of the segment at which it enters and leaves.
-    const [enters, leaves] = from === to ? [0, from >= 0 && from <= most ? 1 : -1] : [Math.min((0 - from) / (to - from), (most - from) / (to - from)), Math.max((0 - from) / (to - from), (most - from) / (to - from))];
-    const [first, last] = [Math.max(0, enters), Math.min(1, leaves)];
+    const isInside = from >= 0 && from <= most;
+    const ends = from === to ? [0, isInside ? 1 : -1] : [-from / (to - from), (most - from) / (to - from)].sort((one, other) => one - other);
+    const [first, last] = [Math.max(0, ends[0]), Math.min(1, ends[1])];
     if (!(first <= last)) {
       end();
       continue;
