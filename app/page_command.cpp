@@ -5,6 +5,7 @@
 #include "hierarchy/error.h"
 #include "inspection/page_file.h"
 #include "server/static_site.h"
+#include "storage/format/layout.h"
 #include "storage/io/http_client.h"
 #include "storage/io/paths.h"
 
@@ -53,6 +54,13 @@ std::string single_page(Environment& environment, const PageArguments& arguments
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Beside a hierarchy on the disk; empty: there is none.
+fs::path story_of(storage::FileSystem& files, const HierarchyPlace& place) {
+  const fs::path story = storage::story_path(storage::without_last_slash(place.path()));
+  const bool is_there = !place.is_remote() && files.kind(story) == storage::FileKind::regular;
+  return is_there ? story : fs::path();
+}
+
 /// "david" of "models/david.hier/".
 std::string name_of(const fs::path& hierarchy) {
   return storage::without_last_slash(hierarchy).stem().string();
@@ -69,7 +77,8 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
                                  .replace = arguments.force,
                                  .size = arguments.size,
                                  .link = arguments.link,
-                                 .name = name_of(place.path())},
+                                 .name = name_of(place.path()),
+                                 .story = story_of(environment.files, place)},
                                 progress, environment.cancel);
 }
 
@@ -107,6 +116,7 @@ int run_page(const PageArguments& arguments, execution::ProgressMode mode,
 constexpr const char* kPageFooter =
     R"(Of a hierarchy: one HTML file, with the viewer and as many tiles as fit, from the root down. It opens
 by a double click, without a network. With --link it goes on from there when it is online.
+A story beside the hierarchy, NAME.hier.story.json, is told in it.
 
 Of a folder: a site, with a gallery, to be copied to any host of plain files; 3tz archives among them
 need one that sends parts of files (HTTP ranges).

@@ -79,6 +79,18 @@ std::string json_text(const std::string& text) {
   return json;
 }
 
+/// Its text. Throws Error(io), and Error(corrupt) if it is no JSON object.
+std::string read_story(storage::FileSystem& files, const fs::path& path) {
+  constexpr int kDeepest = 32;
+  const auto bytes = storage::read_file(*files.open(path), storage::kMostStoryBytes);
+  std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto shallow = [](int depth, auto, const auto&) { return depth < kDeepest; };
+  const auto story = nlohmann::json::parse(text, shallow, /*allow_exceptions=*/false);
+  if (!story.is_object())
+    throw Error(ErrorCode::corrupt, path.string() + ": it is no JSON object");
+  return text;
+}
+
 std::vector<std::byte> packed(std::vector<std::byte> bytes) {
   std::vector<std::byte> smaller = storage::gzip(bytes);
   return smaller.size() < bytes.size() ? smaller : bytes;
@@ -94,7 +106,7 @@ struct Frame {
   std::string before, behind;
 };
 
-Frame frame_of(const std::string& viewer, const PageOptions& options) {
+Frame frame_of(storage::FileSystem& files, const std::string& viewer, const PageOptions& options) {
   const std::size_t mark = viewer.find(kMark);
   if (mark == std::string::npos)
     throw Error(ErrorCode::io,
@@ -106,6 +118,8 @@ Frame frame_of(const std::string& viewer, const PageOptions& options) {
                   json_text(options.name);
   if (!options.link.empty())
     frame.before += ",\"link\":" + json_text(options.link);
+  if (!options.story.empty())
+    frame.before += ",\"story\":" + json_text(read_story(files, options.story));
   frame.before += ",\"files\":{";
   frame.behind = "}}\n</script>" + frame.behind;
   return frame;
@@ -222,7 +236,7 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                        execution::Progress& progress, const execution::CancelToken& cancel) {
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
-  const Frame frame = frame_of(viewer, options);
+  const Frame frame = frame_of(files, viewer, options);
   storage::OutputFile output(files, {options.output, options.replace, {hierarchy}},
                              [&] { cancel.check(); });
   ByteStream out(*output.file());

@@ -17,13 +17,14 @@ struct PageOptions {
   std::uint64_t size = 20'000'000;  ///< bytes of the file, at the most
   std::string link;                 ///< where all of the hierarchy is; empty: nowhere
   std::string name;                 ///< of the model
+  std::filesystem::path story;      ///< what the page tells of it, as JSON; empty: nothing
 };
 
 /// Writes `viewer` (viewer/vite.single.config.ts) with the manifest, the root and more tiles:
 /// always both children of the node with the largest error, as long as they fit. Tiles that are not
 /// compressed are packed as gzip. Holds a tile. Deterministic. The output appears complete or not
 /// at all. Returns a line for people. Throws Error(usage) if not even the root fits, Error(exists |
-/// io | corrupt).
+/// io | corrupt), the last for a story that is no JSON object, too.
 std::string write_page(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel);

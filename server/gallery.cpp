@@ -32,10 +32,16 @@ nlohmann::ordered_json json_of(const Model& model) {
     json["modified"] = model.modified;
   if (model.has_preview)
     json["preview"] = directory_of(model) + storage::preview_path({}).string();
+  if (model.has_story)
+    json["story"] = encode_path(story_beside(model));
   return json;
 }
 
 }  // namespace
+
+std::string story_beside(const Model& model) {
+  return "models/" + storage::story_path(model.path).generic_string();
+}
 
 std::string picture_beside(const Model& model) {
   return "models/" + model.path + ".webp";

@@ -29,6 +29,8 @@ struct UploadOffer {
 
 /// The listing of a plain host, which hands out archives as they are, with a picture beside each.
 std::string static_gallery_json(const std::vector<Model>& models);
+/// Relative to the listing, as a path; requires model.has_story.
+std::string story_beside(const Model& model);
 /// Of an archive on a plain host, relative to the listing, as a path.
 std::string picture_beside(const Model& model);
 

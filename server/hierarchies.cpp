@@ -74,8 +74,10 @@ std::vector<Model> Hierarchies::list() {
     tell_left_out(failure);
   std::vector<Model> models;
   for (const std::string& path : scan.hierarchies) {
-    if (std::optional<Model> model = look_if_readable(path))
+    if (std::optional<Model> model = look_if_readable(path)) {
+      model->has_story = has_story(path);
       models.push_back(std::move(*model));
+    }
   }
   std::sort(models.begin(), models.end(),
             [](const Model& a, const Model& b) { return a.path < b.path; });
@@ -85,10 +87,32 @@ std::vector<Model> Hierarchies::list() {
 std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
   if (is_archive_name(path))
     return open_archive(std::string(path));
+  if (const auto told = storage::told_of(path)) {
+    std::shared_ptr<const storage::File> story = open_story(std::string(*told));
+    if (!story || !look_if_readable(std::string(*told)))
+      return std::nullopt;
+    return PublishedFile{std::move(story)};
+  }
   const std::optional<Split> found = split(path);
   if (!found || !is_published(found->hierarchy, found->name))
     return std::nullopt;
   return open_in(found->hierarchy, found->name);
+}
+
+bool Hierarchies::has_story(const std::string& hierarchy) {
+  try {
+    return open_story(hierarchy) != nullptr;
+  } catch (const Error& error) {
+    tell_left_out(error.what());
+    return false;
+  }
+}
+
+std::unique_ptr<storage::File> Hierarchies::open_story(const std::string& hierarchy) const {
+  if (hierarchy.empty())
+    return nullptr;  // what is beside the folder is not served
+  auto story = folder_->open(storage::story_path(hierarchy).generic_string());
+  return story && story->size() <= storage::kMostStoryBytes ? std::move(story) : nullptr;
 }
 
 std::optional<PublishedFile> Hierarchies::open_archive(const std::string& path) {

@@ -47,9 +47,9 @@ class Hierarchies {
   std::optional<Model> look(const std::string& path);
 
   /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
-  /// archive, "sub/david.3tz". Nothing if it is no file of a hierarchy or stream that can be read,
-  /// whatever else lies in the folder. Throws Error(io) if that file, of a hierarchy that can be
-  /// read, cannot be opened.
+  /// archive, "sub/david.3tz", or a story, "sub/david.3tz.story.json". Nothing if it is no file of
+  /// a hierarchy or stream that can be read, whatever else lies in the folder. Throws Error(io) if
+  /// that file, of a hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
 
  private:
@@ -76,6 +76,9 @@ class Hierarchies {
                                 const Read& read);
   std::shared_ptr<const storage::Archive> archive(const std::string& path,
                                                   std::unique_ptr<storage::File> file);
+  bool has_story(const std::string& hierarchy);
+  /// Null if it has none. Throws Error(io).
+  std::unique_ptr<storage::File> open_story(const std::string& hierarchy) const;
   std::optional<PublishedFile> open_archive(const std::string& path);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
   void tell_left_out(const std::string& cause);

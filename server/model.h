@@ -17,6 +17,7 @@ struct Model {
   std::uint64_t mesh_checksum = 0;    ///< likewise
   std::uint64_t source_checksum = 0;  ///< as in the manifest
   bool has_preview = false;           ///< a picture of it is one of its files
+  bool has_story = false;             ///< a story lies beside it
   std::int64_t modified = 0;          ///< when it was made: seconds since 1970; 0: not known
 
   friend bool operator==(const Model&, const Model&) = default;

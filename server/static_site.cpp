@@ -98,6 +98,9 @@ class SiteMaker {
 
   void add_copies(const Model& model, std::vector<Copy>& copies) const {
     const std::string to = joined("models", model.path);
+    if (model.has_story)
+      copies.push_back({job_.models.get(), storage::story_path(model.path).generic_string(),
+                        story_beside(model)});
     if (is_archive_name(model.path) && job_.models->open(model.path)) {
       copies.push_back({job_.models.get(), model.path, to});
       return;

@@ -14,6 +14,7 @@ constexpr std::string_view kMark = ".meshhier-";
 constexpr std::size_t kMostDigits = 10;    // of an index below 2^32
 constexpr std::uint32_t kMostLevel = 255;  // a Level has no more; trees have 33
 constexpr std::string_view kVerify = "verify-";
+constexpr std::string_view kStoryEnding = ".story.json";
 
 /// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
 /// begin with 0.
@@ -123,6 +124,19 @@ bool is_hierarchy_file(std::string_view name) {
   return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
          name == preview_path({}) || name == tileset_path({}) || is_tileset_file(name) ||
          tile_of(name);
+}
+
+std::filesystem::path story_path(const std::filesystem::path& hierarchy) {
+  return hierarchy.parent_path() / (hierarchy.filename().string() + std::string(kStoryEnding));
+}
+
+std::optional<std::string_view> told_of(std::string_view story) {
+  if (!story.ends_with(kStoryEnding))
+    return std::nullopt;
+  story.remove_suffix(kStoryEnding.size());
+  if (story.empty() || story.ends_with('/'))
+    return std::nullopt;
+  return story;
 }
 
 bool is_stream_file(std::string_view name) {

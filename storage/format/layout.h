@@ -10,6 +10,7 @@
 //   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more) below 10,000
 //   NAME.hier/tiles/LL/NN0000/NNNNNN.glb     any other: 10,000 in each directory
+//   NAME.hier.story.json                     beside it: what people tell about it (docs/serving.md); of an archive likewise
 //   NAME.prog/progressive.json
 //   NAME.prog/base.bin
 //   NAME.prog/detail_NN.bin                  in the order of their use, from 1 on
@@ -61,6 +62,13 @@ std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Le
 std::vector<std::filesystem::path> tile_directories(const std::filesystem::path& hierarchy,
                                                     Level level, std::uint32_t nodes);
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
+
+/// Beside a hierarchy, if somebody has written one.
+std::filesystem::path story_path(const std::filesystem::path& hierarchy);
+/// The hierarchy, a path too, whose story_path() it is.
+std::optional<std::string_view> told_of(std::string_view story);
+/// More is no story.
+inline constexpr std::uint64_t kMostStoryBytes = std::uint64_t{16} << 20;
 
 std::filesystem::path progressive_index_path(const std::filesystem::path& stream);
 /// Step 0 is the base.

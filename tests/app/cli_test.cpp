@@ -1266,6 +1266,22 @@ TEST_F(CommandLinePage, OneFileHasTheHierarchyAsFarAsItFits) {
               HasSubstr(std::to_string(std::filesystem::file_size(file)) + " bytes; errors up to"));
 }
 
+TEST_F(CommandLinePage, AStoryBesideTheHierarchyIsTold) {
+  build();
+  const Path file = work() / "a.html", story = hierarchy() + ".story.json";
+  const std::string text = R"({"type": "AnnotationPage", "label": "</script>", "items": []})";
+  write_text(story, text);
+  ASSERT_EQ(page({hierarchy() + "/", "-o", file.string()}).code, 0);
+  EXPECT_EQ(embedded(file)["story"], text);
+  for (const std::string& bad : {std::string("{"), std::string("[]"), std::string(100'000, '[')}) {
+    write_text(story, bad);
+    const Outcome outcome = page({hierarchy(), "-o", file.string(), "--force"});
+    EXPECT_EQ(outcome.code, kCorrupt);
+    EXPECT_THAT(outcome.messages, HasSubstr("a.hier.story.json: it is no JSON object"));
+  }
+  EXPECT_EQ(embedded(file)["story"], text);
+}
+
 TEST_F(CommandLinePage, WhatIsWrongIsTold) {
   build();
   const std::string file = (work() / "b.html").string();
@@ -1293,6 +1309,7 @@ TEST_F(CommandLinePage, AFolderBecomesASite) {
     ASSERT_EQ(run(words).code, 0);
   }
   write_text(models / "notes.txt", "mine");
+  write_text(models / "sub/b c.3tz.story.json", "{}");
   ASSERT_EQ(page({models.string(), "-o", site.string() + "/"}).code, 0);
   EXPECT_EQ(text_of(site / "assets/a.js"), "script");
   EXPECT_FALSE(std::filesystem::exists(site / "single.html"));
@@ -1306,6 +1323,9 @@ TEST_F(CommandLinePage, AFolderBecomesASite) {
   EXPECT_EQ(listed[1]["path"], "models/sub/b%20c.3tz");
   EXPECT_EQ(listed[1]["preview"], "models/sub/b%20c.3tz.webp");
   EXPECT_THAT(text_of(site / "models/sub/b c.3tz.webp"), HasSubstr("WEBP"));
+  EXPECT_EQ(listed[1]["story"], "models/sub/b%20c.3tz.story.json");
+  EXPECT_FALSE(listed[0].contains("story"));
+  EXPECT_EQ(text_of(site / "models/sub/b c.3tz.story.json"), "{}");
   EXPECT_EQ(run({"verify", (site / "models/a.hier").string()}).code, 0);
 
   EXPECT_EQ(page({models.string(), "-o", site.string()}).code, kExists);

@@ -2,6 +2,7 @@
 
 #include "server/conditions.h"
 #include "storage/format/gzip.h"
+#include "storage/format/layout.h"
 #include "tests/server/path_tricks.h"
 #include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"
@@ -107,6 +108,47 @@ TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   EXPECT_EQ(picture.header("Content-Type"), "image/webp");
   EXPECT_EQ(picture.body_bytes(), manifest["preview"]["bytes"]);
   EXPECT_EQ(model["bytes"], manifest["total_bytes"]);
+}
+
+TEST_F(SiteTest, AStoryBesideAHierarchyIsListedAndServed) {
+  const auto stories = [&] {
+    site_->refresh();
+    std::vector<std::string> listed;
+    const json document = json::parse(get("/models.json").text);
+    for (const json& model : document["models"])
+      listed.push_back(model.value("story", ""));
+    return listed;
+  };
+  EXPECT_THAT(stories(), ElementsAre("", "", ""));
+  for (const char* name :
+       {"packed.3tz", "plain.hier", "sub dir/zipped.hier", "notes.txt", "none.hier", ""})
+    tests::write_text(folder_.models() / (std::string(name) + ".story.json"), name);
+  EXPECT_THAT(stories(), ElementsAre("models/packed.3tz.story.json", "models/plain.hier.story.json",
+                                     "models/sub%20dir/zipped.hier.story.json"));
+  const Reply story = get("/models/sub%20dir/zipped.hier.story.json");
+  EXPECT_EQ(body_of(story), "sub dir/zipped.hier");
+  EXPECT_EQ(story.header("Content-Type"), "application/json");
+  EXPECT_EQ(story.header("Cache-Control"), "no-cache");
+  EXPECT_EQ(body_of(get("/models/packed.3tz.story.json")), "packed.3tz");
+  for (const char* target :
+       {"/models/notes.txt.story.json", "/models/none.hier.story.json", "/models/.story.json",
+        "/models/stream.prog.story.json", "/models/plain.hier/.story.json"})
+    EXPECT_EQ(get(target).status, 404) << target;
+}
+
+TEST_F(SiteTest, AStoryThatMayNotBeReadHidesNoModel) {
+  tests::write_text(folder_.models() / "plain.hier.story.json", "{}");
+  tests::write_text(folder_.models() / "packed.3tz.story.json", "{}");
+  open_refusing({"plain.hier.story.json"});
+  const json models = json::parse(get("/models.json").text)["models"];
+  ASSERT_THAT(models, SizeIs(3));
+  EXPECT_TRUE(models[0].contains("story"));
+  EXPECT_FALSE(models[1].contains("story"));
+  EXPECT_THAT(told_, testing::Contains(HasSubstr("plain.hier.story.json")));
+  fs::resize_file(folder_.models() / "packed.3tz.story.json", storage::kMostStoryBytes + 1);
+  site_->refresh();
+  EXPECT_FALSE(json::parse(get("/models.json").text)["models"][0].contains("story"));
+  EXPECT_EQ(get("/models/packed.3tz.story.json").status, 404);
 }
 
 TEST_F(SiteTest, TheListTellsWhenHierarchiesWereMade) {

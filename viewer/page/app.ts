@@ -208,6 +208,17 @@ export class App {
     else this.problems.tell(notShown(model.name), { more: why, retry });
   }
 
+  /// The address of what is told about a model; a link to one says nothing of it, but the listing does.
+  private async storyOf(model: Model, signal: AbortSignal): Promise<string | null> {
+    if (model.story !== null || this.query.only !== null) return model.story;
+    try {
+      const { models } = await this.watch.once(signal);
+      return models.find((one) => linkPath(one.path) === linkPath(model.path))?.story ?? null;
+    } catch {
+      return null; // a model may be shown without any listing
+    }
+  }
+
   private surroundings(entry: ModelEntry, spot: Spot, { fetch, createWorker }: EarlyStart): Omit<Surroundings, 'turn'> {
     return {
       fetch,
@@ -218,6 +229,7 @@ export class App {
       setTheme: (theme) => { this.setTheme(theme); },
       setLanguage: (chosen) => { this.setLanguage(chosen); },
       leave: this.query.only === null ? () => { this.close(); } : null,
+      findStory: (signal) => this.storyOf(entry.model, signal),
       rested: (rest) => { entry.write(rest); },
       failed: (message, telling) => this.problems.tell(message, telling),
       again: () => {

@@ -19,6 +19,8 @@ export interface Model {
   modified: number | null;
   /// Its picture's address.
   preview: string | null;
+  /// The address of what people tell about it (src/tools/annotations.ts), or itself: JSON.
+  story: string | null;
   /// Where its files are, if not at its URL.
   files?: RemoteFiles;
 }
@@ -87,6 +89,11 @@ export function nameOfPath(path: string): string {
   return file.replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
+/// Of its hierarchy: `dragon.hier`.
+export function fileOf({ name, path, files }: Model): string {
+  return files === undefined ? readable(withoutLastSlashes(path).replace(/^.*\//, '')) : `${name}.hier`;
+}
+
 /// Null of what cannot be fetched.
 export function resolveUrl(path: string, base: string): string | null {
   try {
@@ -110,11 +117,11 @@ function resolveHierarchy(path: string, base: string): string | null {
 export function modelOfPath(path: string, base: string): Model | null {
   const url = path === '' || path.length > MOST_TEXT ? null : resolveHierarchy(path, base);
   if (url === null) return null;
-  return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null };
+  return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null, story: null };
 }
 
-/// Null of what is none, or cannot be fetched.
-function pictureOf(value: unknown, base: string): string | null {
+/// The address of what belongs to a model. Null of what is none, or cannot be fetched.
+function addressOf(value: unknown, base: string): string | null {
   return textOf(value) === '' ? null : resolveUrl(textOf(value), base);
 }
 
@@ -128,7 +135,8 @@ function readModel(value: unknown, base: string): Model | null {
   model.bytes = countOf(value.bytes);
   model.source = textOf(value.source) || null;
   model.modified = countOf(value.modified);
-  model.preview = pictureOf(value.preview, base);
+  model.preview = addressOf(value.preview, base);
+  model.story = addressOf(value.story, base);
   return model;
 }
 
@@ -144,7 +152,7 @@ function readJob(value: unknown, base: string): Job | null {
     progress: progress === null ? null : Math.min(progress, 1),
     secondsLeft: countOf(value.seconds_left),
     message: textOf(value.message),
-    preview: pictureOf(value.preview, base),
+    preview: addressOf(value.preview, base),
   };
 }
 

@@ -45,6 +45,11 @@ export class ListingWatch {
     private readonly failed: (message: string) => void,
   ) {}
 
+  /// As it is now, without watching it. Throws ListingError.
+  async once(signal: AbortSignal): Promise<Listing> {
+    return this.listing ?? parseListing(await fetchText(this.url, signal), this.url);
+  }
+
   start(): void {
     this.stop();
     this.ending = new AbortController();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the page's address says beside the link to a view: `?models=URL` another listing, `?model=URL` one
-// hierarchy without a listing. The language, `?lang=`, is chosen by words/words.ts.
+// hierarchy without a listing, and `&story=URL` what is told about it. The language, `?lang=`, is chosen by words/words.ts.
 import { modelOfPath, resolveUrl, type Model } from './listing.js';
 import { words } from './words/words.js';
 
@@ -32,6 +32,7 @@ export function readQuery(search: string, base: string): Query {
   const listing = new URL(LISTING, base).href;
   if (model !== null) {
     const only = modelOfPath(model, base);
+    if (only !== null) only.story = resolveUrl(parameters.get('story') ?? '', base);
     return { listing, only, problem: only === null ? badAddress('model', model) : null };
   }
   const other = models === null ? listing : resolveUrl(models, base);

@@ -40,6 +40,11 @@ export class JsonValue {
     return this.value.map((_, i) => this.at(i));
   }
 
+  /// Of what may be one or several.
+  oneOrMore(): JsonValue[] {
+    return Array.isArray(this.value) ? this.items() : [this];
+  }
+
   entries(): [string, JsonValue][] {
     if (typeof this.value !== 'object' || this.value === null || Array.isArray(this.value)) this.fail('an object');
     return Object.keys(this.value).map((key) => [key, this.at(key)]);
@@ -47,6 +52,14 @@ export class JsonValue {
 
   isNull(): boolean {
     return this.value === null;
+  }
+
+  isText(text?: string): boolean {
+    return typeof this.value === 'string' && (text === undefined || this.value === text);
+  }
+
+  isObject(): boolean {
+    return typeof this.value === 'object' && this.value !== null;
   }
 
   flag(): boolean {

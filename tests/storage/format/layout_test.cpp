@@ -154,4 +154,13 @@ TEST(Layout, NoTwoThingsShareAName) {
 }
 
 }  // namespace
+
+TEST(Layout, AStoryLiesBesideItsHierarchy) {
+  EXPECT_EQ(story_path("models/a b.hier"), "models/a b.hier.story.json");
+  EXPECT_EQ(told_of("models/a b.hier.story.json"), "models/a b.hier");
+  EXPECT_EQ(told_of("a.3tz.story.json"), "a.3tz");
+  for (const char* name : {"", ".story.json", "models/.story.json", "a.hier.story.jso", "a.hier"})
+    EXPECT_EQ(told_of(name), std::nullopt) << name;
+}
+
 }  // namespace meshhier::storage

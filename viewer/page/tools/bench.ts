@@ -2,6 +2,7 @@
 // What the tools need of the view, and the view of the tools.
 import type { PerspectiveCamera } from 'three';
 import type { HierarchyView } from '../../src/index.js';
+import type { Notebook } from '../../src/tools/note.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import type { Telling } from '../problems.js';
 import type { CameraPose } from '../view/camera_pose.js';
@@ -11,6 +12,8 @@ export type ToolName = 'pick' | 'measure' | 'clip' | 'notes' | 'camera';
 
 export interface Bench {
   readonly name: string;
+  /// Of the hierarchy: its story lies beside it under that name and ".story.json".
+  readonly fileName: string;
   readonly view: HierarchyView;
   readonly camera: PerspectiveCamera;
   /// Holds everything around the picture.
@@ -23,6 +26,12 @@ export interface Bench {
   /// At once, or on a way that is seen unless less motion is asked for, and only to where a camera can stand.
   jump(pose: CameraPose): void;
   fly(pose: CameraPose): void;
+  /// How the model is shown, as links have it.
+  choices(): string;
+  /// Shows the notes as visitors see them, from the note of that number on, the first of which is 0.
+  play(story: Notebook, from: number): void;
+  /// What is told beside the model; null: nothing, or it has not come yet.
+  story(): Notebook | null;
   /// What the address has of notes; null takes it away.
   readonly notes: string | null;
   setNotes(notes: string | null): void;

@@ -5,6 +5,7 @@ import { isEmpty, MOST_ENTRIES, packNotes, unpackNotes, type Bookmark, type Note
 const NOTHING: Notebook = { notes: [], bookmarks: [] };
 
 export class NotebookStore {
+  title = '';
   notes: Note[] = [];
   bookmarks: Bookmark[] = [];
   /// What is kept is in the page's address, too.
@@ -23,7 +24,7 @@ export class NotebookStore {
   /// What a link has, instead of what the one before had; what no link holds stays.
   follow(link: string | null): void {
     if (link === this.link) return;
-    if (this.isInLink) [this.notes, this.bookmarks] = [[], []];
+    if (this.isInLink) [this.title, this.notes, this.bookmarks] = ['', [], []];
     this.add((link === null ? null : unpackNotes(link)) ?? NOTHING);
   }
 
@@ -31,8 +32,9 @@ export class NotebookStore {
     this.listeners.push(listener);
   }
 
-  /// As many as there is room for.
-  add({ notes, bookmarks }: Notebook): void {
+  /// As many as there is room for. A title that there is stays.
+  add({ title, notes, bookmarks }: Notebook): void {
+    this.title ||= title ?? '';
     this.notes = [...this.notes, ...notes].slice(0, MOST_ENTRIES);
     this.bookmarks = [...this.bookmarks, ...bookmarks].slice(0, MOST_ENTRIES);
     this.changed();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Notes at points of the surface, with files of them.
-import { formatNotes, readNotes, type Note } from '../../src/tools/notes.js';
+// Notes at points of the surface, and the story that they tell in their order; with files of them.
+import { formatNotes, readNotes, type Note, type SeenFrom } from '../../src/tools/notes.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { element } from '../parts/element.js';
 import { CameraPose } from '../view/camera_pose.js';
 import { download } from './download.js';
-import { entryList, type Entry } from './entry_list.js';
 import { textButton } from './figures.js';
+import { noteRow, type NoteOrders } from './note_row.js';
 import type { Mark } from './overlay.js';
 import { Places } from './places.js';
 import type { Tool } from './tool.js';
@@ -15,12 +15,19 @@ import type { Workshop } from './workshop.js';
 
 const CLOSER = 0.25; // of the model's size: from there a note is looked at
 const MOST_MARK = 40; // letters beside a point
+const MOST_TITLE = 200; // letters
 
 export class NotesTool implements Tool {
   readonly root: HTMLElement;
   private readonly list = element('ul', { class: 'tool-list' });
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
+  private readonly title = element('input', { type: 'text', class: 'tool-text', maxlength: String(MOST_TITLE) });
+  private readonly titleRow = element('label', { class: 'tool-field tool-extra' }, words.notes.title, this.title);
+  private readonly play = textButton(words.notes.play, () => { this.tell(); });
+  private readonly edit = textButton(words.notes.edit, () => { this.shop.notebook.add(this.shop.bench.story()!); });
   private readonly places: Places;
+  /// The note of which more than the text is shown.
+  private opened: number | null = null;
   private readonly ending = new AbortController();
 
   constructor(private readonly shop: Workshop) {
@@ -28,10 +35,14 @@ export class NotesTool implements Tool {
     this.places = new Places(bench.view);
     const file = element('input', { type: 'file', accept: '.json,application/json', class: 'tool-file', tabindex: '-1', 'aria-hidden': 'true' });
     file.addEventListener('change', () => void this.load(file));
-    const save = textButton(words.notes.save, () => { download(new Blob([formatNotes(notebook, bench.name)], { type: 'application/json' }), `${bench.name}-notes.json`); });
+    const save = textButton(words.notes.save, () => { download(new Blob([formatNotes(notebook, bench.name)], { type: 'application/json' }), `${bench.fileName}.story.json`); });
     const load = textButton(words.notes.load, () => { file.click(); });
     for (const button of [save, load]) button.classList.add('tool-extra');
-    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.notes.hint), this.list, this.note, save, load, file);
+    this.title.addEventListener('change', () => {
+      notebook.title = this.title.value.trim();
+      notebook.changed();
+    });
+    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.notes.hint), this.titleRow, this.list, this.note, this.play, this.edit, save, load, file);
     notebook.onChange(() => { this.show(); });
     this.show();
   }
@@ -42,7 +53,7 @@ export class NotesTool implements Tool {
     if (pointed === null) return;
     const { point } = pointed.shown;
     notebook.add({ notes: [{ at: point, text: words.notes.one(String(notebook.notes.length + 1)) }], bookmarks: [] });
-    this.list.querySelector<HTMLInputElement>('li:last-child input')?.select();
+    this.list.querySelector<HTMLTextAreaElement>('li:last-child textarea')?.select();
     pointed.original.then((original) => { if (original) this.move(point, original); }, () => undefined);
   }
 
@@ -78,19 +89,43 @@ export class NotesTool implements Tool {
   }
 
   /// By its number: the note itself is another one after each change.
-  private entryOf({ text }: Note, i: number): Entry {
+  private ordersOf(i: number): NoteOrders {
     const { notebook } = this.shop;
     return {
-      text,
-      rename: (changed) => { this.replace((note, k) => (k === i ? { ...note, text: changed } : note)); },
+      change: (change) => { this.replace((note, k) => (k === i ? { ...note, ...change } : note)); },
+      seen: () => this.seen(),
       go: () => { this.flyTo(notebook.notes[i]); },
       remove: () => { this.remove(notebook.notes[i]); },
+      up: i === 0 ? null : () => { this.swap(i - 1, i); },
+      down: i === notebook.notes.length - 1 ? null : () => { this.swap(i, i + 1); },
+      failed: (message) => { this.note.textContent = message; },
     };
   }
 
-  /// Along the way that the camera looks.
-  private flyTo({ at }: Note): void {
+  private swap(i: number, k: number): void {
+    const { notes } = this.shop.notebook;
+    this.opened = this.opened === i ? k : this.opened === k ? i : this.opened;
+    this.replace((_, at) => notes[at === i ? k : at === k ? i : at]);
+  }
+
+  private seen(): SeenFrom {
     const { bench } = this.shop;
+    const { position, target } = bench.pose();
+    return { position: this.places.toInput(position), target: this.places.toInput(target), choices: bench.choices() };
+  }
+
+  private tell(): void {
+    const { title, notes, bookmarks } = this.shop.notebook;
+    this.shop.bench.play({ title, notes, bookmarks }, 0);
+  }
+
+  /// As it wants to be seen, else along the way that the camera looks.
+  private flyTo({ at, view }: Note): void {
+    const { bench } = this.shop;
+    if (view) {
+      bench.fly(new CameraPose(this.places.toWorld(view.position), this.places.toWorld(view.target)));
+      return;
+    }
     const target = this.places.toWorld(at);
     const size = bench.view.box.min.distanceTo(bench.view.box.max);
     bench.fly(new CameraPose(target.clone().addScaledVector(bench.pose().forward, -Math.min(bench.pose().distance, CLOSER * size)), target));
@@ -99,10 +134,18 @@ export class NotesTool implements Tool {
   /// Rows that somebody writes in stay as they are.
   private show(): void {
     const { notebook, bench } = this.shop;
-    const isWriting = this.list.contains(document.activeElement) && this.list.childElementCount === notebook.notes.length;
-    if (!isWriting) this.list.replaceChildren(...entryList(notebook.notes.map((note, i) => this.entryOf(note, i)), words.notes.one));
+    const isWriting = document.activeElement instanceof HTMLTextAreaElement && this.list.contains(document.activeElement) && this.list.childElementCount === notebook.notes.length;
+    if (!isWriting) this.list.replaceChildren(...notebook.notes.map((note, i) => this.rowOf(note, i)));
+    this.title.value = notebook.title;
+    for (const part of [this.titleRow, this.play]) part.hidden = notebook.notes.length === 0;
+    this.edit.hidden = notebook.notes.length > 0 || bench.story() === null;
     this.note.textContent = notebook.isInLink ? '' : words.notes.tooLong;
     bench.redraw();
+  }
+
+  private rowOf(note: Note, i: number): HTMLElement {
+    const opened = (open: boolean): void => { this.opened = open ? i : this.opened === i ? null : this.opened; };
+    return noteRow(note, words.notes.one(String(i + 1)), this.ordersOf(i), this.opened === i, opened);
   }
 
   private async load(file: HTMLInputElement): Promise<void> {

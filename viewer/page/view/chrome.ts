@@ -27,6 +27,7 @@ export interface Orders extends Choices {
   home: () => void;
   zoom: (logarithm: number) => void;
   tools: () => void;
+  story: () => void;
   panelShown: (open: boolean) => void;
   /// What is to be shared, as it is now.
   shared: () => Shared;
@@ -40,6 +41,7 @@ export class Chrome {
   readonly panel: Sheet;
   readonly share: Sheet;
   readonly info: Sheet;
+  private readonly story: HTMLButtonElement;
   private readonly badge = new ModeBadge();
   private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
   private readonly form: SettingsForm;
@@ -56,6 +58,8 @@ export class Chrome {
     this.help = new Sheet('help', words.view.help, ICONS.help, [help()]);
     this.share = new Sheet('share', words.share.title, ICONS.share, [this.sharing.root]);
     this.info = new Sheet('info', words.info.title, ICONS.help, [this.about.root]);
+    this.story = iconButton(words.story.title, ICONS.story, orders.story);
+    this.story.hidden = true;
     const buttons = [this.share, this.settings, this.panel, this.help].map(({ button }) => button);
     const all = [this.info, this.share, this.settings, this.panel, this.help];
     this.sheets = new Sheets(all, [this.info, this.share, this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
@@ -75,6 +79,12 @@ export class Chrome {
   /// `key`: where the light comes from.
   show(preferences: Preferences & Appearance, key: Angles): void {
     this.form.show(preferences, key);
+  }
+
+  /// The model has a story.
+  tellStory(isTold: boolean): void {
+    this.story.hidden = false;
+    this.story.setAttribute('aria-pressed', String(isTold));
   }
 
   /// How a terrain is shown; null: it is none.
@@ -101,7 +111,7 @@ export class Chrome {
     const leave = back === null ? null : iconButton(words.view.back, ICONS.back, back);
     const title = element('h1', {}, this.titleButton());
     const whole = iconButton(words.view.whole, ICONS.home, home);
-    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), ...buttons);
+    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), this.story, ...buttons);
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
   }
 

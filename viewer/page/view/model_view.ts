@@ -6,7 +6,7 @@ import type { PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import { towardsViewer, type Turn } from '../gallery/layout.js';
-import type { Model } from '../listing.js';
+import { fileOf, type Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
@@ -23,6 +23,7 @@ import { Navigation } from './navigation.js';
 import { nextLight, Presentation } from './presentation.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
+import { StoryHost, type StorySurroundings } from './story_host.js';
 import { ToolHost } from './tool_host.js';
 import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
@@ -41,6 +42,8 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
   setLanguage(language: Language): void;
   /// To the gallery; null: there is none.
   leave: (() => void) | null;
+  /// The address of what is told about the model, or itself; null: nothing is.
+  findStory: (signal: AbortSignal) => Promise<string | null>;
   /// The camera stands still, elsewhere than before, or something else was chosen.
   rested(spot: Spot): void;
   /// What it returns takes the message away; one about the same subject takes its place.
@@ -55,6 +58,12 @@ const REST = 300; // milliseconds without movement
 const REPORT = 250; // milliseconds between two reports
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
+/// Whether a camera can stand so.
+function isStanding(pose: CameraPose): boolean {
+  const { position, target } = pose.toPose();
+  return problemOfPose(position, target) === null;
+}
+
 export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
@@ -63,6 +72,15 @@ export class ModelView {
     noted: () => { this.rest(); },
     failed: (retry) => { this.missCode(retry); },
   });
+  private readonly story = new StoryHost({
+    teller: () => (this.view.manifest === null ? null : this.teller()),
+    find: () => this.around.findStory(this.ending.signal),
+    shown: (isTold) => { this.storyShown(isTold); },
+    told: () => { this.startRest(); this.redraw(); },
+    failed: (why, retry) => this.around.failed(words.story.notRead(this.model.name), { more: why, subject: 'story', retry }),
+  });
+  /// What was chosen before a story was told, and what the story has chosen since.
+  private untold: { before: Appearance; told: Appearance } | null = null;
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
   private readonly stage: Stage;
@@ -93,6 +111,7 @@ export class ModelView {
   ) {
     const { fetch, createWorker, preferences: { settings } } = around;
     this.tools.follow(around.spot);
+    this.story.follow(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings, files: model.files });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
@@ -135,6 +154,7 @@ export class ModelView {
     this.presentation.chosen = this.wished(spot);
     this.present();
     this.tools.follow(spot);
+    this.story.follow(spot);
   }
 
   /// What is kept of this browser's wishes, and what a link says instead.
@@ -268,6 +288,7 @@ export class ModelView {
     if (this.frozen !== null) return; // a picture is being taken: the page's waits
     this.stage.draw();
     this.tools.drawn();
+    this.story.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
     this.shown = this.opened;
   }
@@ -280,6 +301,7 @@ export class ModelView {
     if (this.view.manifest !== null) {
       this.chrome.tellSource(this.view.manifest);
       this.tools.showNews();
+      if (this.shown) this.story.seek();
     }
     this.reportedAt = now;
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
@@ -301,7 +323,8 @@ export class ModelView {
   private spot(): Spot {
     const choices = formatChoices(this.presentation.chosen);
     const notes = this.tools.notes === null ? '' : `notes=${this.tools.notes}`;
-    return { pose: this.navigation.atHome ? null : this.pose(), choices: [choices, notes].filter((text) => text !== '').join('&') };
+    const story = this.story.linked === null ? '' : `story=${this.story.linked}`;
+    return { pose: this.navigation.atHome ? null : this.pose(), choices: [choices, notes, story].filter((text) => text !== '').join('&') };
   }
 
   /// Kept for other models too; but not how this one stands.
@@ -365,6 +388,7 @@ export class ModelView {
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
       tools: () => void this.tools.use(null),
+      story: () => { this.story.toggle(); },
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
@@ -380,6 +404,7 @@ export class ModelView {
   private bench(): Omit<Bench, 'notes' | 'setNotes'> {
     return {
       name: this.model.name,
+      fileName: fileOf(this.model),
       view: this.view,
       camera: this.stage.camera,
       root: this.root,
@@ -388,6 +413,9 @@ export class ModelView {
       pose: () => this.navigation.pose,
       jump: (pose) => { this.navigation.jump(pose); },
       fly: (pose) => { this.flyTo(pose); },
+      choices: () => formatChoices(this.presentation.chosen),
+      story: () => this.story.told,
+      play: (story, from) => void this.story.play(story, from).catch(() => { this.missCode(() => { this.bench().play(story, from); }); }),
       freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
@@ -395,10 +423,39 @@ export class ModelView {
     };
   }
 
+  private teller(): ReturnType<StorySurroundings['teller']> {
+    const { view, camera, root, surface, signal, pose } = this.bench();
+    return {
+      view, camera, root, surface, signal, pose,
+      travel: (to) => (isStanding(to) ? this.navigation.travel(to) : 0),
+      present: (choices) => { this.presentAsTold(choices); },
+    };
+  }
+
+  /// On top of what was chosen before, and not kept.
+  private presentAsTold(choices: string): void {
+    const before = this.untold?.told === this.presentation.chosen ? this.untold.before : this.presentation.chosen;
+    this.untold = { before, told: withChoices(choices, { ...before }) };
+    this.presentation.chosen = this.untold.told;
+    this.present();
+  }
+
+  private storyShown(isTold: boolean): void {
+    this.chrome.tellStory(isTold);
+    if (!isTold) this.presentAsBefore();
+    this.redraw();
+  }
+
+  /// What the visitor has chosen meanwhile stays.
+  private presentAsBefore(): void {
+    if (this.untold?.told === this.presentation.chosen) this.presentation.chosen = this.untold.before;
+    this.untold = null;
+    this.present();
+  }
+
   /// Places may be from a file.
   private flyTo(pose: CameraPose): void {
-    const { position, target } = pose.toPose();
-    if (problemOfPose(position, target) === null) this.navigation.fly(pose);
+    if (isStanding(pose)) this.navigation.fly(pose);
   }
 
   private freeze(size: PictureSize): ReturnType<Bench['freeze']> {
@@ -429,7 +486,7 @@ export class ModelView {
       nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back() && !this.chrome.sheets.closeOne()) this.back(); },
+      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back() && !this.chrome.sheets.closeOne() && !this.story.back()) this.back(); },
       tool: (name) => void this.tools.use(name),
       colours: (number) => { this.choose({ look: { colours: COLOURS[number] } }); },
       toggle: (what) => { this.toggle(what); },

@@ -59,10 +59,14 @@ export class Navigation {
   }
 
   fly(pose: CameraPose): void {
-    this.stop();
-    if (still.matches) this.pose = pose;
-    else this.flight = new Flight(this.pose, pose);
-    this.wake();
+    this.start(Flight.straight(this.pose, pose), pose);
+  }
+
+  /// As stories go from place to place. Returns the milliseconds that it takes.
+  travel(pose: CameraPose): number {
+    const flight = Flight.overview(this.pose, pose);
+    this.start(flight, pose);
+    return still.matches ? 0 : flight.milliseconds;
   }
 
   goHome(): void {
@@ -106,6 +110,13 @@ export class Navigation {
     const moved = this.seen?.equals(this.pose) !== true;
     this.seen = this.pose;
     return moved;
+  }
+
+  private start(flight: Flight, to: CameraPose): void {
+    this.stop();
+    if (still.matches) this.pose = to;
+    else this.flight = flight;
+    this.wake();
   }
 
   private stop(): void {

@@ -1,38 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Notes at points, and places of the camera, as a file or in a link. Whatever is read, what comes out is sound.
 import { JsonValue, type Fail } from '../json_value.js';
-import type { Vector } from './vectors.js';
+import { annotationsOf, readAnnotations } from './annotations.js';
+import { MOST_ENTRIES, MOST_TEXT, NotesProblem, type Note, type Notebook, type SeenFrom } from './note.js';
 
-export interface Note {
-  /// In the input's coordinates.
-  readonly at: Vector;
-  readonly text: string;
-}
-
-/// In the input's coordinates.
-export interface Bookmark {
-  readonly name: string;
-  readonly position: Vector;
-  readonly target: Vector;
-}
-
-export interface Notebook {
-  readonly notes: readonly Note[];
-  readonly bookmarks: readonly Bookmark[];
-}
+export { MOST_ENTRIES, MOST_TEXT, NotesProblem, type Bookmark, type Note, type Notebook, type SeenFrom } from './note.js';
 
 const FORMAT = 'meshhier-notes';
 const VERSION = 1;
-/// Of each list.
-export const MOST_ENTRIES = 500;
-/// Characters of a text.
-export const MOST_TEXT = 2000;
-const MOST_BYTES = 2 ** 22;
+const MOST_BYTES = 2 ** 24;
 /// Characters in a link that every program passes on.
 const MOST_LINK = 1500;
-
-/// What is wrong with a file of notes.
-export class NotesProblem extends Error {}
 
 const refuse: Fail = (what) => {
   throw new NotesProblem(what);
@@ -48,33 +26,46 @@ function readText(value: JsonValue): string {
   return value.text().slice(0, MOST_TEXT);
 }
 
+function readView(view: JsonValue): SeenFrom {
+  return { position: view.at('position').triple(), target: view.at('target').triple(), choices: view.has('choices') ? readText(view.at('choices')) : '' };
+}
+
+/// Pictures and links are not followed from here: anybody can write the address of a page.
+function readNote(note: JsonValue): Note {
+  return { at: note.at('at').triple(), text: readText(note.at('text')), ...(note.has('view') ? { view: readView(note.at('view')) } : {}) };
+}
+
 function readNotebook(root: JsonValue): Notebook {
   root.at('format').oneOf(FORMAT);
   root.at('version').count(VERSION, VERSION);
   return {
-    notes: readList(root.at('notes'), (note) => ({ at: note.at('at').triple(), text: readText(note.at('text')) })),
+    ...(root.has('title') ? { title: readText(root.at('title')) } : {}),
+    notes: readList(root.at('notes'), readNote),
     bookmarks: readList(root.at('bookmarks'), (mark) => ({ name: readText(mark.at('name')), position: mark.at('position').triple(), target: mark.at('target').triple() })),
   };
 }
 
-/// Throws NotesProblem.
+/// Notes as formatNotes() writes them, or as pages wrote them before there were stories. Throws NotesProblem.
 export function readNotes(text: string): Notebook {
   if (text.length > MOST_BYTES) refuse(`larger than ${MOST_BYTES} bytes`);
-  return readNotebook(JsonValue.parse(text, refuse));
+  const root = JsonValue.parse(text, refuse);
+  return root.has('format') ? readNotebook(root) : readAnnotations(root, refuse);
 }
 
 /// `model`: what they are about, for people.
-export function formatNotes({ notes, bookmarks }: Notebook, model: string): string {
-  return `${JSON.stringify({ format: FORMAT, version: VERSION, model, notes, bookmarks }, null, 2)}\n`;
+export function formatNotes(notebook: Notebook, model: string): string {
+  return `${JSON.stringify(annotationsOf(notebook, model), null, 2)}\n`;
 }
 
 export function isEmpty({ notes, bookmarks }: Notebook): boolean {
   return notes.length + bookmarks.length === 0;
 }
 
-/// Letters, digits, - and _ alone; null: too long for a link.
-export function packNotes({ notes, bookmarks }: Notebook): string | null {
-  const bytes = new TextEncoder().encode(JSON.stringify({ format: FORMAT, version: VERSION, notes, bookmarks }));
+/// Letters, digits, - and _ alone; null: too long for a link, or with pictures or links, which need a file.
+export function packNotes({ title, notes, bookmarks }: Notebook): string | null {
+  if (notes.some(({ picture, link }) => (picture ?? link ?? null) !== null)) return null;
+  const texts = notes.map(({ at, text, view }) => ({ at, text, ...(view ? { view } : {}) }));
+  const bytes = new TextEncoder().encode(JSON.stringify({ format: FORMAT, version: VERSION, ...(title ? { title } : {}), notes: texts, bookmarks }));
   if (bytes.length > MOST_LINK) return null;
   const packed = btoa(String.fromCharCode(...bytes)).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
   return packed.length > MOST_LINK ? null : packed;
@@ -85,7 +76,7 @@ export function unpackNotes(packed: string): Notebook | null {
   try {
     if (packed.length > MOST_LINK) return null;
     const bytes = Uint8Array.from(atob(packed.replaceAll('-', '+').replaceAll('_', '/')), (sign) => sign.charCodeAt(0));
-    return readNotes(new TextDecoder('utf-8', { fatal: true }).decode(bytes));
+    return readNotebook(JsonValue.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes), refuse));
   } catch {
     return null;
   }

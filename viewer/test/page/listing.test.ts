@@ -10,10 +10,10 @@ function parse(document: unknown) {
 
 describe('a listing', () => {
   it('gives its models and jobs', () => {
-    const david = { name: 'david', path: 'models/sub/david.hier', vertices: 5, triangles: 8, bytes: 900, source: 'david.ply', modified: 1_790_000_000, preview: 'models/sub/david.hier/preview.webp' };
+    const david = { name: 'david', path: 'models/sub/david.hier', vertices: 5, triangles: 8, bytes: 900, source: 'david.ply', modified: 1_790_000_000, preview: 'models/sub/david.hier/preview.webp', story: 'models/sub/david.hier.story.json' };
     const job = { name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, seconds_left: 12, preview: '/x.webp' };
     const { models, jobs } = parse({ models: [david], jobs: [job] });
-    expect(models).toEqual([{ ...david, url: 'http://host/dir/models/sub/david.hier', preview: 'http://host/dir/models/sub/david.hier/preview.webp' }]);
+    expect(models).toEqual([{ ...david, url: 'http://host/dir/models/sub/david.hier', preview: 'http://host/dir/models/sub/david.hier/preview.webp', story: 'http://host/dir/models/sub/david.hier.story.json' }]);
     expect(jobs).toEqual([{ name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, secondsLeft: 12, message: '', preview: 'http://host/x.webp' }]);
   });
 

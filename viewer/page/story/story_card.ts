@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// What a story says, note by note: text, picture, link, and the way through it. Read only.
+import type { Note, Notebook } from '../../src/tools/note.js';
+import { element, iconButton } from '../parts/element.js';
+import { ICONS } from '../parts/icons.js';
+import { words } from '../words/words.js';
+import { resolved } from './story_source.js';
+
+export interface StoryOrders {
+  /// To the note of that number.
+  go(i: number): void;
+  /// By itself from note to note, or not any more.
+  play(): void;
+  close(): void;
+}
+
+export class StoryCard {
+  readonly root: HTMLElement;
+  private readonly step = element('p', { class: 'story-step' });
+  private readonly body = element('div', { class: 'story-body', 'aria-live': 'polite', tabindex: '-1' });
+  private readonly before: HTMLButtonElement;
+  private readonly next: HTMLButtonElement;
+  private readonly playing: HTMLButtonElement;
+  private shown: number | null = null;
+
+  /// `base`: where the story lies.
+  constructor(private readonly story: Notebook, private readonly base: string, orders: StoryOrders) {
+    const title = story.title || words.story.title;
+    this.before = iconButton(words.story.before, ICONS.back, () => { orders.go((this.shown ?? 0) - 1); });
+    this.next = iconButton(words.story.next, ICONS.next, () => { orders.go((this.shown ?? -1) + 1); });
+    this.playing = iconButton(words.story.play, ICONS.play, () => { orders.play(); });
+    const close = iconButton(words.parts.close(words.story.title), ICONS.close, () => { orders.close(); });
+    const bar = element('div', { class: 'story-bar' }, this.before, this.playing, this.next, this.step);
+    this.root = element('section', { class: 'story-card', 'aria-label': `${words.story.title}: ${title}` }, element('div', { class: 'sheet-head' }, element('h2', {}, title), close), this.body, bar);
+  }
+
+  /// Null: none yet.
+  show(i: number | null): void {
+    const { notes } = this.story;
+    this.shown = i;
+    this.step.textContent = i === null ? words.story.notes(notes.length, String(notes.length)) : words.story.step(String(i + 1), String(notes.length));
+    this.before.disabled = i === null || i === 0;
+    this.next.disabled = i === notes.length - 1;
+    this.body.replaceChildren(...(i === null ? [] : this.contentOf(notes[i], i)));
+    this.body.scrollTop = 0;
+  }
+
+  showPlaying(isPlaying: boolean): void {
+    const [name, path] = isPlaying ? [words.story.pause, ICONS.pause] : [words.story.play, ICONS.play];
+    this.playing.title = name;
+    this.playing.setAttribute('aria-label', name);
+    this.playing.querySelector('path')?.setAttribute('d', path);
+  }
+
+  private contentOf({ text, picture, link }: Note, i: number): HTMLElement[] {
+    const content: HTMLElement[] = [];
+    const source = resolved(picture, this.base, true);
+    if (source !== null) {
+      const image = element('img', { class: 'story-picture', src: source, alt: words.story.picture(String(i + 1)), referrerpolicy: 'no-referrer' });
+      image.addEventListener('error', () => { image.replaceWith(element('p', { class: 'tool-note' }, words.story.noPicture)); });
+      content.push(image);
+    }
+    if (text !== '') content.push(element('p', { class: 'story-text' }, text));
+    const href = resolved(link, this.base, false);
+    if (href !== null) content.push(element('a', { class: 'story-link', href, target: '_blank', rel: 'noopener noreferrer' }, words.story.more(new URL(href).host)));
+    return content;
+  }
+}
