@@ -237,6 +237,7 @@ async function checkClip(visitor) {
   visitor.check('no caps', (await capPixels(page)) === 0, 'the inside is seen');
   await page.getByLabel('Caps').check();
   await checkSection(visitor, page);
+  await checkVolume(visitor, page);
   await page.getByRole('radio', { name: 'Box' }).check();
   for (const [side, part] of [['x to', 0.6], ['y to', 0.2]]) {
     await page.getByRole('slider', { name: side }).evaluate((one, p) => {
@@ -253,6 +254,33 @@ async function checkClip(visitor) {
   visitor.check('off', (await capPixels(page)) === 0, 'whole again');
   await checkLasting(visitor, page);
   await visitor.close(page, 'clip');
+}
+
+/// The volume told once the view rests, and how far off it may be.
+async function volumeOf(page) {
+  await settle(page);
+  await page.waitForTimeout(200); // and once more drawn
+  const text = await page.locator('.tool-figures dd').innerText();
+  const [, value, , bound] = /^([\d.e+-]+)( ± ([\d.e+-]+))? .*³$/.exec(text);
+  return { value: Number(value), bound: Number(bound ?? 0), text };
+}
+
+/// What the plane keeps and what it cuts away are the whole.
+async function checkVolume(visitor, page) {
+  const kept = await volumeOf(page);
+  await page.getByRole('button', { name: 'Other side' }).click();
+  const away = await volumeOf(page);
+  await page.getByRole('button', { name: 'Other side' }).click();
+  await page.getByRole('radio', { name: 'Off' }).check();
+  const whole = await volumeOf(page);
+  const off = Math.abs(kept.value + away.value - whole.value);
+  await page.getByRole('button', { name: 'Measure the original' }).click();
+  await page.locator('.tool-note', { hasText: 'The volume of the original mesh.' }).waitFor();
+  const original = await volumeOf(page);
+  visitor.check('volume of the original', original.bound === 0 && Math.abs(original.value - whole.value) <= whole.bound, original.text);
+  visitor.check('volume', kept.value > 0 && away.value > 0 && off <= kept.bound + away.bound + whole.bound + 1e-5 * whole.value, `${kept.text} and ${away.text} of ${whole.text}`);
+  await page.getByRole('radio', { name: 'Plane' }).check();
+  await settle(page);
 }
 
 /// Of the ring, in the middle: closed lines, as wide and high as the model is there.

@@ -608,6 +608,46 @@ async function checkLight(visitor, [name]) {
   await visitor.close(page, 'light');
 }
 
+/// What of a picture is darker or lighter in another one, in parts of all pixels.
+function comparePictures(page, one, other) {
+  return page.evaluate(async (pictures) => {
+    const [a, b] = await Promise.all(pictures.map(async (data) => {
+      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    }));
+    let [darker, lighter] = [0, 0];
+    for (let i = 0; i < a.length; i += 4) {
+      const by = b[i] + b[i + 1] + b[i + 2] - a[i] - a[i + 1] - a[i + 2];
+      if (by < -15) ++darker;
+      if (by > 6) ++lighter;
+    }
+    return { darker: (4 * darker) / a.length, lighter: (4 * lighter) / a.length };
+  }, [one.toString('base64'), other.toString('base64')]);
+}
+
+/// Hollows get darker, nothing gets lighter, and the link has it.
+async function checkOcclusion(visitor, [name], pictures) {
+  const page = await visitor.open(anchor(name), WIDE);
+  await settle(page);
+  const bare = await picture(page);
+  await press(page, 'a');
+  await page.waitForFunction(() => location.hash.includes('&occlusion=on'));
+  const shades = await until(page, async () => !bare.equals(await picture(page)));
+  const shaded = await picture(page);
+  await page.screenshot({ path: path.join(pictures, 'viewer-occlusion.png') });
+  const { darker, lighter } = await comparePictures(page, bare, shaded);
+  visitor.check('occlusion', shades && darker > 0.002 && darker < 0.5 && lighter === 0, `${(100 * darker).toFixed(2)} % of the picture darker, ${(100 * lighter).toFixed(2)} % lighter`);
+  const again = await visitor.open(new URL(page.url()).hash, WIDE);
+  await settle(again);
+  visitor.check('occlusion in the link', await until(again, async () => shaded.equals(await picture(again))), new URL(page.url()).hash);
+  await visitor.close(again, 'occlusion again');
+  await press(page, 'a');
+  visitor.check('occlusion off', await until(page, async () => bare.equals(await picture(page))), 'the picture is as it was');
+  await visitor.close(page, 'occlusion');
+}
+
 // ---- narrow screens, and what can be heard
 
 async function checkNarrow(visitor, [name], pictures) {
@@ -769,7 +809,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkGallery(visitor, names, pictures);
   await checkModes(visitor, names[0], pictures);
   const others = [
-    checkMotion, checkLongGallery, checkFolders, checkChangingListing, checkOutlineAgain, checkLinks, checkFirstView, checkRest, checkCamera, checkLight,
+    checkMotion, checkLongGallery, checkFolders, checkChangingListing, checkOutlineAgain, checkLinks, checkFirstView, checkRest, checkCamera, checkLight, checkOcclusion,
     checkLateCode, checkLateRoot, checkTroubledTiles, checkCorruptRoot, checkEmptyFolder, checkLateRest, checkEscapes, checkLostCode,
     checkLostWorker, checkNames, checkNarrowGallery, checkNarrow, checkMissing, checkUnreachable, checkWithoutWebGl];
   for (const check of inTurn(others)) await check(visitor, names, pictures);

@@ -11,6 +11,8 @@ export interface Light {
   name: LightName;
   /// Where the key light comes from instead, radians to the right and up; null: as the name says.
   key: readonly [number, number] | null;
+  /// Hollows of what is seen get less of it.
+  occlusion: boolean;
 }
 
 export interface Appearance {
@@ -21,7 +23,7 @@ export interface Appearance {
 
 export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'flat', 'sun', 'matcap'];
 export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
-export const DEFAULT_LIGHT: Light = { name: 'auto', key: null };
+export const DEFAULT_LIGHT: Light = { name: 'auto', key: null, occlusion: false };
 
 type Json = Record<string, unknown>;
 
@@ -86,9 +88,9 @@ function isAngle(value: unknown): value is number {
 }
 
 export function readLight(stored: unknown): Light {
-  const { name, key } = asObject(stored);
+  const { name, key, occlusion } = asObject(stored);
   const known = oneOf(name, LIGHTS, null);
-  return known === null ? { ...DEFAULT_LIGHT } : { name: known, key: readKey(key) };
+  return { ...(known === null ? DEFAULT_LIGHT : { name: known, key: readKey(key) }), occlusion: occlusion === true };
 }
 
 export function readStanding(stored: unknown): Standing {
@@ -122,13 +124,13 @@ function onOff(is: boolean): string {
   return is ? 'on' : 'off';
 }
 
-function formatLight({ name, key }: Light): string {
+function formatLight({ name, key }: Pick<Light, 'name' | 'key'>): string {
   return [name, ...(key ?? []).map((angle) => String(Number(angle.toPrecision(DIGITS))))].join(',');
 }
 
-function parseLight(text: string): Light {
+function parseLight(text: string, occlusion: boolean): Light {
   const [name, ...key] = text.split(',');
-  return readLight({ name, key: key.map(Number) });
+  return readLight({ name, key: key.map(Number), occlusion });
 }
 
 /// `name=value` of all that is not as it is without a choice, with & between.
@@ -143,6 +145,7 @@ export function formatChoices({ look, light, standing }: Appearance): string {
   add('hidden', look.hidden.join(','), '');
   for (const name of SWITCHES) add(name, onOff(look[name]), onOff(DEFAULT_LOOK[name]));
   add('light', formatLight(light), formatLight(DEFAULT_LIGHT));
+  add('occlusion', onOff(light.occlusion), onOff(DEFAULT_LIGHT.occlusion));
   add('up', standing.up, DEFAULT_STANDING.up);
   add('stretch', String(standing.stretch), String(DEFAULT_STANDING.stretch));
   return choices.join('&');
@@ -160,8 +163,8 @@ function attributeChoices(choices: URLSearchParams): Json {
 export function withChoices(text: string, given: Appearance): Appearance {
   const choices = new URLSearchParams(text);
   const standing = { ...given.standing, ...(choices.has('up') || choices.has('stretch') ? readStanding({ up: choices.get('up'), stretch: Number(choices.get('stretch') ?? 1) }) : {}) };
-  if (!['colours', 'shading', 'light', 'attribute', 'ramp', 'range', 'hidden', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
+  if (!['colours', 'shading', 'light', 'occlusion', 'attribute', 'ramp', 'range', 'hidden', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
   const switches = Object.fromEntries(SWITCHES.map((name) => [name, oneOf(choices.get(name), ['on', 'off'], onOff(DEFAULT_LOOK[name])) === 'on']));
   const look = readLook({ ...switches, colours: choices.get('colours'), shading: choices.get('shading'), ...attributeChoices(choices) });
-  return { look, light: parseLight(choices.get('light') ?? DEFAULT_LIGHT.name), standing };
+  return { look, light: parseLight(choices.get('light') ?? DEFAULT_LIGHT.name, choices.get('occlusion') === 'on'), standing };
 }

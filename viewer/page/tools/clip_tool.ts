@@ -4,18 +4,23 @@ import { Coordinates } from '../../src/tools/coordinates.js';
 import { boxPlanes, flipped, isKept, localNormal, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
+import { shownBound } from '../../src/tools/shown_bound.js';
+import { originalVolume } from '../../src/tools/original_volume.js';
+import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { CutPainter } from './cut_painter.js';
 import { download } from './download.js';
-import { textButton } from './figures.js';
+import { figureList, figures, textButton } from './figures.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const AXES = ['x', 'y', 'z'] as const;
 const STEPS = 500; // of a slider
+/// The cosine between a plane's normal and up from which a terrain lies above it or below.
+const LEVEL = 0.7;
 const UNIT_AXES: readonly Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 type Mode = keyof typeof words.clip.modes;
@@ -44,6 +49,13 @@ export class ClipTool implements Tool {
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
+  private readonly list = figureList();
+  /// What the volume was measured of.
+  private measured = '';
+  private readonly original = textButton(words.clip.original, () => void this.measureOriginal());
+  /// Of the original, by the planes it was measured for.
+  private exact: { planes: string; volume: Volume } | null = null;
+  private measuring = new AbortController();
   private readonly caps: Control<boolean>;
   private readonly modes: Control<Mode>;
   private position = element('div', {});
@@ -71,7 +83,7 @@ export class ClipTool implements Tool {
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
     const open = view.closed ? null : element('p', { class: 'tool-note tool-extra' }, clip.noCaps);
-    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, open, this.note);
+    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, this.list, this.original, open, this.note);
     this.setMode('plane');
   }
 
@@ -147,6 +159,7 @@ export class ClipTool implements Tool {
     pointing.keeps = (point) => isKept(planes, point);
     this.painter.set(planes, this.isCapped && bench.view.closed);
     bench.setPainter(planes.length > 0 ? this.painter : null);
+    this.measuring.abort();
     this.note.textContent = '';
     bench.redraw();
   }
@@ -169,6 +182,58 @@ export class ClipTool implements Tool {
     this.note.textContent = told;
   }
 
+  /// Once the view rests: as finer tiles come, the volume is told anew.
+  drawn(): void {
+    const { view } = this.shop.bench;
+    if (!this.list.isConnected || !view.stats().settled) return;
+    const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
+    const key = [this.planesKey, this.shop.scale().sign, this.exact?.planes, ...tiles].join();
+    if (key === this.measured) return;
+    this.measured = key;
+    const volume = this.exact?.planes === this.planesKey ? this.exact.volume : this.shownVolume();
+    this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
+    const name = view.closed ? words.clip.volume : words.clip.between;
+    this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale().formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
+  }
+
+  private get planesKey(): string {
+    return JSON.stringify(this.planes());
+  }
+
+  /// What volumes are measured above or within.
+  private volumePlanes(): readonly CutPlane[] {
+    const below = this.coordinates.toInput([0, 0, 0])[2] - this.extent.min[2];
+    const planes = this.localPlanes();
+    return planes.length === 0 ? [{ normal: UNIT_AXES[2], constant: below }] : planes;
+  }
+
+  private async measureOriginal(): Promise<void> {
+    const { source } = this.shop.bench.view;
+    const planes = this.planesKey;
+    if (source === null) return;
+    this.measuring.abort();
+    this.measuring = new AbortController();
+    const { signal } = this.measuring;
+    try {
+      const volume = await originalVolume(source, this.volumePlanes(), { signal, progress: (done, all) => { this.note.textContent = words.clip.measuring(String(done), String(all)); } });
+      this.exact = { planes, volume };
+      this.note.textContent = words.clip.isOriginal;
+      this.shop.bench.redraw();
+    } catch (problem) {
+      if (!signal.aborted) this.note.textContent = words.clip.noOriginal(problem instanceof Error ? problem.message : String(problem));
+    }
+  }
+
+  /// Of a closed model what is kept of it; of a terrain what lies between it and a level plane.
+  private shownVolume(): Volume | null {
+    const { view } = this.shop.bench;
+    const { surface, source } = view;
+    const isLevel = this.mode === 'plane' && view.terrain !== null && Math.abs(dot(this.normal, view.upwards)) > LEVEL;
+    if (source === null || !(view.closed || isLevel)) return null;
+    const bounds = new Map(surface.map(({ node }) => [node, shownBound(node, surface, (other) => source.index.record(other)?.bound ?? Infinity)]));
+    return volumeOf(surface, this.volumePlanes(), (node) => bounds.get(node) ?? Infinity);
+  }
+
   lasting(): string | null {
     return this.mode === 'off' ? null : words.clip.lasting;
   }
@@ -178,6 +243,7 @@ export class ClipTool implements Tool {
   }
 
   close(): void {
+    this.measuring.abort();
     this.painter.dispose();
   }
 }

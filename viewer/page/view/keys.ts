@@ -13,7 +13,7 @@ export interface Commands {
   /// L went down.
   light(): void;
   nextLight(): void;
-  toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'flat' | 'panel' | 'settings' | 'help'): void;
+  toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'occlusion' | 'flat' | 'panel' | 'settings' | 'help'): void;
 }
 
 const TURN = 0.16; // radians
@@ -43,7 +43,7 @@ const VIEW: Record<string, Act> = {
   Home: home, '0': home, Escape: back, Backspace: back,
   '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3), '5': colours(4), '6': colours(5),
   t: toggle('texture'), w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
-  s: toggle('panel'), l: (commands) => { commands.light(); }, g: (commands) => { commands.nextLight(); }, c: toggle('cavities'), '?': toggle('help'), h: toggle('help'),
+  s: toggle('panel'), l: (commands) => { commands.light(); }, g: (commands) => { commands.nextLight(); }, c: toggle('cavities'), a: toggle('occlusion'), '?': toggle('help'), h: toggle('help'),
 };
 
 export const VIEW_KEYS = Object.keys(VIEW);

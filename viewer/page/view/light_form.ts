@@ -31,6 +31,7 @@ function upSelect(chosen: (up: Up) => void): Control<Up> {
 export class LightForm {
   readonly root: HTMLElement;
   private readonly name: Control<LightName>;
+  private readonly occlusion: Control<boolean>;
   private readonly around: Control<number>;
   private readonly above: Control<number>;
   private readonly up: Control<Up>;
@@ -48,8 +49,9 @@ export class LightForm {
     this.above = slider(text.above, '°', ABOVE, (degrees) => { turn({ up: degrees * DEGREE }); });
     this.up = upSelect((up) => { standing({ up }); });
     this.stretch = slider(text.stretch, '×', STRETCHES, (stretch) => { standing({ stretch }); });
+    this.occlusion = checkbox(text.occlusion, 'A', (occlusion) => { light({ occlusion }); });
     const drag = checkbox(text.drag, null, dragsLight);
-    const parts = [this.name, drag, this.around, this.above, this.up, this.stretch];
+    const parts = [this.name, this.occlusion, drag, this.around, this.above, this.up, this.stretch];
     this.root = element('div', { class: 'settings' }, ...parts.map(({ root }) => root));
   }
 
@@ -57,6 +59,7 @@ export class LightForm {
   show(light: Light, key: Angles, { up, stretch }: Standing): void {
     this.key = key;
     this.name.show(light.name);
+    this.occlusion.show(light.occlusion);
     this.around.show(Math.round(key.right / DEGREE));
     this.above.show(Math.round(key.up / DEGREE));
     this.up.show(up);

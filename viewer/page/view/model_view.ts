@@ -232,6 +232,7 @@ export class ModelView {
     if (this.closed) return;
     this.opened = true;
     this.presentation.apply(); // what the model is may choose for it
+    this.occlude();
     this.showChosen();
     this.reframe();
     this.redraw();
@@ -346,8 +347,13 @@ export class ModelView {
 
   private present(): void {
     this.presentation.apply();
+    this.occlude();
     this.showChosen();
     this.redraw();
+  }
+
+  private occlude(): void {
+    this.stage.setOccluded(this.presentation.chosen.light.occlusion).then(() => { this.redraw(); }, () => { this.missCode(() => { this.occlude(); }); });
   }
 
   private showChosen(): void {
@@ -500,8 +506,9 @@ export class ModelView {
   }
 
   private toggle(what: Parameters<Commands['toggle']>[0]): void {
-    const { look } = this.presentation.chosen;
-    if (what === 'flat') this.choose({ look: { shading: look.shading === 'flat' ? 'smooth' : 'flat' } });
+    const { look, light } = this.presentation.chosen;
+    if (what === 'occlusion') this.choose({ light: { occlusion: !light.occlusion } });
+    else if (what === 'flat') this.choose({ look: { shading: look.shading === 'flat' ? 'smooth' : 'flat' } });
     else if (what === 'texture' || what === 'wires' || what === 'points' || what === 'outline' || what === 'cavities') this.choose({ look: { [what]: !look[what] } });
     else this.chrome[what].toggle();
   }

@@ -42,8 +42,8 @@ function isSame(a: object, b: object): boolean {
   return JSON.stringify(a) === JSON.stringify(b);
 }
 
-export function nextLight({ name }: Light): Light {
-  return { name: LIGHTS[(LIGHTS.indexOf(name) + 1) % LIGHTS.length], key: null };
+export function nextLight(light: Light): Light {
+  return { ...light, name: LIGHTS[(LIGHTS.indexOf(light.name) + 1) % LIGHTS.length], key: null };
 }
 
 export class Presentation {
@@ -68,6 +68,6 @@ export class Presentation {
   /// The chosen light, its key turned by radians to the right and up.
   turnedLight(by: Angles): Light {
     const { right, up } = turned(this.shown.key, by);
-    return { name: this.chosen.light.name, key: [right, up] };
+    return { ...this.chosen.light, key: [right, up] };
   }
 }

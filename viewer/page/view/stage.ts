@@ -6,6 +6,7 @@ import { partDrawer } from '../../src/tools/draw_part.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 import { Lighting } from './lighting.js';
+import type { Occlusion } from './occlusion.js';
 
 const MOST_RATIO = 2;
 
@@ -36,6 +37,8 @@ export class Stage {
   asked: PictureSize | null = null;
   /// Null: as it is.
   painter: Painter | null = null;
+  private occlusion: Occlusion | null = null;
+  private distance = 1;
   private nominal = new Vector2();
   private sharpness = 1;
 
@@ -46,6 +49,16 @@ export class Stage {
     this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
     this.scene.add(this.camera, this.shown);
+  }
+
+  /// Whether hollows get less light. Resolves once they do; rejects if the code for it does not come.
+  async setOccluded(is: boolean): Promise<void> {
+    if (is === (this.occlusion !== null)) return;
+    this.occlusion?.dispose();
+    this.occlusion = null;
+    if (!is) return;
+    const { Occlusion } = await import('./occlusion.js');
+    this.occlusion ??= new Occlusion(this.scene, this.camera);
   }
 
   show(object: Object3D): void {
@@ -79,6 +92,7 @@ export class Stage {
   aim(pose: CameraPose, box: Box3): void {
     this.camera.position.copy(pose.position);
     this.camera.lookAt(pose.target);
+    this.distance = pose.distance;
     this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;
     Object.assign(this.camera, depthRange(pose, box));
     this.camera.updateProjectionMatrix();
@@ -87,7 +101,7 @@ export class Stage {
 
   draw(): void {
     if (this.painter) this.painter.paint(this.renderer, this.scene, this.camera);
-    else this.renderer.render(this.scene, this.camera);
+    else this.drawScene();
   }
 
   /// Of a picture as it is aimed at.
@@ -102,7 +116,14 @@ export class Stage {
     return hits.find(({ point }) => this.painter?.keeps(point) ?? true)?.point ?? null;
   }
 
+  /// A part of a larger picture does not know what lies beside it: there hollows are as they are.
+  private drawScene(): void {
+    this.renderer.render(this.scene, this.camera);
+    if (this.camera.view?.enabled !== true) this.occlusion?.shade(this.renderer, this.distance, Math.min(devicePixelRatio, MOST_RATIO));
+  }
+
   dispose(): void {
+    this.occlusion?.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.canvas.remove();

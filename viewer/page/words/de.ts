@@ -196,6 +196,7 @@ export const de: Words = {
   light: {
     light: 'Licht',
     names: { auto: 'Auto', studio: 'Studio', raking: 'Streif', flat: 'Flach', sun: 'Sonne', matcap: 'Ton' },
+    occlusion: 'Höhlungen dunkler, nach dem, was sie umgibt',
     drag: 'Ziehen dreht das Licht',
     around: 'Licht von der Seite',
     above: 'Licht von oben',
@@ -249,7 +250,7 @@ export const de: Words = {
       ['Pos1, 0', 'das ganze Modell'],
       ['Esc, Rücktaste', 'zurück'],
       ['1 2 3 4 5 6', 'Farben: einfarbig, Original, Stücke, Fehler, Höhe, Attribut'],
-      ['T W P O C F', 'Textur, Gitter, Punkte, Umriss, Furchen, kantig'],
+      ['T W P O C A F', 'Textur, Gitter, Punkte, Umriss, Furchen, dunkle Höhlungen, kantig'],
       ['G', 'nächstes Licht'],
       ['L', 'Aussehen und Einstellungen'],
       ['S', 'Messwerte'],

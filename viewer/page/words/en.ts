@@ -201,6 +201,7 @@ export const en = {
   light: {
     light: 'Light',
     names: { auto: 'Auto', studio: 'Studio', raking: 'Raking', flat: 'Flat', sun: 'Sun', matcap: 'Clay' },
+    occlusion: 'Darken hollows by what is around them',
     drag: 'A drag turns the light',
     around: 'Light from the side',
     above: 'Light from above',
@@ -256,7 +257,7 @@ export const en = {
       ['Home, 0', 'the whole model'],
       ['Esc, Backspace', 'back'],
       ['1 2 3 4 5 6', "colours: plain, the input's, partitions, error, height, attribute"],
-      ['T W P O C F', 'texture, wires, points, outline, creases, flat shading'],
+      ['T W P O C A F', 'texture, wires, points, outline, creases, dark hollows, flat shading'],
       ['G', 'next light'],
       ['L', 'look and settings'],
       ['S', 'figures'],

@@ -196,6 +196,7 @@ export const es: Words = {
   light: {
     light: 'Luz',
     names: { auto: 'Auto', studio: 'Estudio', raking: 'Rasante', flat: 'Plana', sun: 'Sol', matcap: 'Arcilla' },
+    occlusion: 'Oscurecer los huecos según lo que los rodea',
     drag: 'Arrastrar gira la luz',
     around: 'Luz desde el lado',
     above: 'Luz desde arriba',
@@ -249,7 +250,7 @@ export const es: Words = {
       ['Inicio, 0', 'el modelo completo'],
       ['Esc, Retroceso', 'atrás'],
       ['1 2 3 4 5 6', 'colores: liso, original, partes, error, altura, atributo'],
-      ['T W P O C F', 'textura, aristas, puntos, contorno, surcos, facetas'],
+      ['T W P O C A F', 'textura, aristas, puntos, contorno, surcos, huecos oscuros, facetas'],
       ['G', 'luz siguiente'],
       ['L', 'aspecto y ajustes'],
       ['S', 'cifras'],

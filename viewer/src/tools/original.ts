@@ -6,6 +6,7 @@ import { letGo } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { TileSource } from '../scene/surface.js';
+import { recordOf, ROOT } from './partitions.js';
 import { Search, type Hit, type Keeps } from './pick.js';
 import { RayProbe, type Ray } from './ray.js';
 
@@ -17,23 +18,11 @@ export interface OriginalOptions {
 }
 
 const MOST_TILES = 64;
-const PAGE_WAIT = 50; // milliseconds between two looks for a page of the index
-const ROOT: Node = { level: 0, index: 0 };
 
 interface Met {
   readonly node: Node;
   readonly record: TileRecord;
   readonly entry: number;
-}
-
-/// As soon as its page of the index is there; null of a damaged one.
-async function recordOf({ index }: TileSource, node: Node, signal: AbortSignal): Promise<TileRecord | null> {
-  for (;;) {
-    const record = index.record(node);
-    if (record !== null || index.isLost(node)) return record;
-    await new Promise((resolve) => setTimeout(resolve, PAGE_WAIT));
-    signal.throwIfAborted();
-  }
 }
 
 class Descent {

@@ -79,6 +79,10 @@ export class LengthScale {
     return `${Number((area * this.factor ** 2).toPrecision(DIGITS))} ${this.sign}²`;
   }
 
+  formatVolume(volume: number): string {
+    return `${Number((volume * this.factor ** 3).toPrecision(DIGITS))} ${this.sign}³`;
+  }
+
   /// 12.3457 ± 0.03 m, the bound rounded up; without one that is 0, or not known.
   formatWithin(length: number, bound: number): string {
     return within(this.format(length), bound * this.factor);
@@ -86,5 +90,9 @@ export class LengthScale {
 
   formatAreaWithin(area: number, bound: number): string {
     return within(this.formatArea(area), bound * this.factor ** 2);
+  }
+
+  formatVolumeWithin(volume: number, bound: number): string {
+    return within(this.formatVolume(volume), bound * this.factor ** 3);
   }
 }

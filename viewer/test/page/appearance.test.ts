@@ -7,7 +7,7 @@ import { DEFAULT_LIGHT, formatChoices, keepStanding, readLight, readStanding, re
 const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
 const OTHER: Appearance = {
   look: { ...DEFAULT_LOOK, colours: 'height', texture: false, relight: true, cavities: false, shading: 'flat', wires: true, points: true, outline: true },
-  light: { name: 'raking', key: [-1.25, 0.5] },
+  light: { name: 'raking', key: [-1.25, 0.5], occlusion: true },
   standing: { up: '-x', stretch: 12 },
 };
 
@@ -19,7 +19,7 @@ describe('the choices of a link', () => {
 
   it('come back, whatever the reader has chosen', () => {
     expect(withChoices(formatChoices(OTHER), PLAIN)).toEqual(OTHER);
-    const one = { ...PLAIN, light: { name: 'flat', key: null } as const };
+    const one = { ...PLAIN, light: { name: 'flat', key: null, occlusion: false } as const };
     expect(formatChoices(one)).toBe('light=flat');
     expect(withChoices('light=flat', OTHER)).toEqual({ ...one, standing: OTHER.standing });
   });
@@ -36,8 +36,10 @@ describe('the choices of a link', () => {
 
 describe('what the browser keeps', () => {
   it('is sound', () => {
-    expect(readLight({ name: 'sun', key: [1, 2] })).toEqual({ name: 'sun', key: [1, 2] });
-    for (const key of [7, [1], [1, 'x'], [1, 2, 3], [NaN, 0], null]) expect(readLight({ name: 'sun', key })).toEqual({ name: 'sun', key: null });
+    expect(readLight({ name: 'sun', key: [1, 2] })).toEqual({ name: 'sun', key: [1, 2], occlusion: false });
+    expect(readLight({ name: 'moon', occlusion: true })).toEqual({ ...DEFAULT_LIGHT, occlusion: true });
+    expect(readLight({ occlusion: 1 })).toEqual(DEFAULT_LIGHT);
+    for (const key of [7, [1], [1, 'x'], [1, 2, 3], [NaN, 0], null]) expect(readLight({ name: 'sun', key })).toEqual({ name: 'sun', key: null, occlusion: false });
     expect(readStanding({ up: 'q', stretch: 'x' })).toEqual(DEFAULT_STANDING);
     expect(readStandings({ a: { up: 'z', stretch: 2 }, b: 7 })).toEqual({ a: { up: 'z', stretch: 2 }, b: DEFAULT_STANDING });
   });

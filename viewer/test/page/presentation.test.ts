@@ -46,9 +46,9 @@ describe('what is shown', () => {
   });
 
   it.each<[Light, object]>([
-    [{ name: 'studio', key: null }, { rig: 'studio', look: { relief: 1 } }],
-    [{ name: 'matcap', key: null }, { look: { material: 'matcap', relief: 1 } }],
-    [{ name: 'auto', key: [0.1, 0.2] }, { rig: 'sun', key: { right: 0.1, up: 0.2 } }],
+    [{ name: 'studio', key: null, occlusion: false }, { rig: 'studio', look: { relief: 1 } }],
+    [{ name: 'matcap', key: null, occlusion: false }, { look: { material: 'matcap', relief: 1 } }],
+    [{ name: 'auto', key: [0.1, 0.2], occlusion: false }, { rig: 'sun', key: { right: 0.1, up: 0.2 } }],
   ])('follows the light that was chosen: %j', (light, shown) => {
     expect(shownOf({ ...PLAIN, light }, HILLS)).toMatchObject(shown);
   });
@@ -56,7 +56,7 @@ describe('what is shown', () => {
 
 describe('the light', () => {
   it('comes around to the first', () => {
-    let light: Light = { name: 'auto', key: [1, 1] };
+    let light: Light = { name: 'auto', key: [1, 1], occlusion: false };
     const names = LIGHTS.map(() => (light = nextLight(light)).name);
     expect(names).toEqual([...LIGHTS.slice(1), 'auto']);
     expect(light.key).toBeNull();

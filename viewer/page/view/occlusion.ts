@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What little light comes to hollows: ambient occlusion of what is on the screen, by three's pass (ground-truth ambient
+// occlusion, Jimenez et al. 2016), multiplied onto a picture that is drawn already.
+import {
+  CustomBlending, DepthTexture, DoubleSide, MeshBasicMaterial, OneFactor, ShaderMaterial, SrcColorFactor, UnsignedIntType, Vector2, WebGLRenderTarget, ZeroFactor,
+  type PerspectiveCamera, type Scene, type WebGLRenderer,
+} from 'three';
+import { GTAOPass } from 'three/addons/postprocessing/GTAOPass.js';
+import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+
+/// Of the distance of what the camera looks at: hollows of that size are shaded, however near the camera is.
+const REACH = 0.1;
+const QUALITY = { samples: 32, distanceExponent: 1.4, distanceFallOff: 0.5, scale: 1.5 };
+const SMOOTHING = { lumaPhi: 20, depthPhi: 4, normalPhi: 2, radius: 10, radiusExponent: 1, rings: 3, samples: 24 };
+
+const VERTEX = 'varying vec2 place;\nvoid main() { place = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }';
+const FRAGMENT = 'uniform sampler2D light;\nvarying vec2 place;\nvoid main() { gl_FragColor = vec4(texture2D(light, place).rrr, 1.0); }';
+
+/// The picture times the light, its opacity as it is.
+function multiplying(): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms: { light: { value: null } }, vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false, transparent: true,
+    blending: CustomBlending, blendSrc: ZeroFactor, blendDst: SrcColorFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor,
+  });
+}
+
+export class Occlusion {
+  private readonly depth = new WebGLRenderTarget(1, 1, { depthTexture: new DepthTexture(1, 1, UnsignedIntType) });
+  /// Of whatever is drawn the depth alone counts.
+  private readonly bare = new MeshBasicMaterial({ side: DoubleSide, colorWrite: false });
+  private readonly pass: GTAOPass;
+  private readonly multiply = multiplying();
+  private readonly quad = new FullScreenQuad(this.multiply);
+  private readonly size = new Vector2();
+
+  constructor(private readonly scene: Scene, private readonly camera: PerspectiveCamera) {
+    this.pass = new GTAOPass(scene, camera, 1, 1, { depthTexture: this.depth.depthTexture! });
+    this.pass.updateGtaoMaterial(QUALITY);
+    this.pass.updatePdMaterial(SMOOTHING);
+    this.pass.output = GTAOPass.OUTPUT.Off;
+    this.pass.pdMaterial.uniforms.tNoise.value = this.pass.gtaoNoiseTexture; // its own is another one each time: a link shows what it showed
+    this.multiply.uniforms.light.value = this.pass.gtaoMap;
+  }
+
+  /// What was drawn on the canvas. `distance`: of what the camera looks at. `ratio`: pixels of the canvas for one here.
+  shade(renderer: WebGLRenderer, distance: number, ratio: number): void {
+    this.fit(renderer, ratio);
+    const reach = REACH * distance;
+    this.pass.updateGtaoMaterial({ radius: reach, thickness: reach });
+    this.drawDepth(renderer);
+    this.pass.render(renderer, this.depth, this.depth, 0, false);
+    renderer.setRenderTarget(null);
+    const { autoClear } = renderer;
+    renderer.autoClear = false;
+    this.quad.render(renderer);
+    renderer.autoClear = autoClear;
+  }
+
+  dispose(): void {
+    this.depth.depthTexture?.dispose();
+    this.depth.dispose();
+    this.bare.dispose();
+    this.pass.dispose();
+    this.multiply.dispose();
+    this.quad.dispose();
+  }
+
+  private fit(renderer: WebGLRenderer, ratio: number): void {
+    const { x, y } = renderer.getDrawingBufferSize(new Vector2()).divideScalar(ratio).ceil();
+    if (this.size.x === x && this.size.y === y) return;
+    this.size.set(x, y);
+    this.depth.setSize(x, y);
+    this.pass.setSize(x, y);
+  }
+
+  private drawDepth(renderer: WebGLRenderer): void {
+    const { scene } = this;
+    const { overrideMaterial } = scene;
+    scene.overrideMaterial = this.bare;
+    renderer.setRenderTarget(this.depth);
+    renderer.render(scene, this.camera);
+    scene.overrideMaterial = overrideMaterial;
+  }
+}

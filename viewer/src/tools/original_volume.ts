@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// The volume of the original mesh: its partitions are asked for, measured, and let go, one behind the other.
+import { placeOf } from '../hierarchy/copies.js';
+import { letGo, type Tile } from '../hierarchy/tile.js';
+import type { TileRecord } from '../hierarchy/tile_index.js';
+import type { TileSource } from '../scene/surface.js';
+import { partitionsOf, type Recorded } from './partitions.js';
+import { sideOf, type CutPlane } from './planes.js';
+import type { Vector } from './vectors.js';
+import { cutsOf, partOfVolume, sumOf, type Triangles, type Volume } from './volume.js';
+
+export interface OriginalVolumeOptions {
+  readonly signal: AbortSignal;
+  /// Of the partitions that it takes so many are measured.
+  readonly progress?: (done: number, all: number) => void;
+}
+
+const AT_ONCE = 4;
+
+function isCutAway({ min, max }: TileRecord, plane: CutPlane): boolean {
+  const corner = plane.normal.map((part, axis) => (part > 0 ? max[axis] : min[axis])) as unknown as Vector;
+  return sideOf(plane, corner) < 0;
+}
+
+/// Of the tiles at a border triangle the first one counts it.
+function borderOf(tile: Tile): Triangles {
+  const { positions, border, own, ghosts, neighbours, ghostStarts, index } = tile;
+  const owners = new Uint32Array(ghosts);
+  neighbours.forEach((neighbour, i) => owners.fill(neighbour, ghostStarts[i], ghostStarts[i + 1]));
+  const isOwn = (vertex: number): boolean => {
+    const place = placeOf(tile, vertex);
+    return place < own || owners[place - own] > index;
+  };
+  const corners: number[] = [];
+  for (let i = 0; i < border.length; i += 3) if ([0, 1, 2].every((k) => isOwn(border[i + k]))) corners.push(border[i], border[i + 1], border[i + 2]);
+  return { positions, corners: Uint32Array.from(corners), count: corners.length / 3 };
+}
+
+async function measured(source: TileSource, { node, record }: Recorded, planes: readonly CutPlane[], signal: AbortSignal): Promise<Volume> {
+  const tile = await source.load(node, record, signal);
+  const { positions, indices, interiorCount } = tile;
+  const parts = [{ positions, corners: indices, count: interiorCount }, borderOf(tile)].map((triangles) => partOfVolume(triangles, planes, record.bound));
+  letGo(tile);
+  return sumOf(parts);
+}
+
+/// `planes`: as for volumeOf(). Its bound is 0 but for what rounding did when the hierarchy was made. The same sum whatever comes first. Rejects where a
+/// file cannot be had, and when the signal aborts.
+export async function originalVolume(source: TileSource, planes: readonly CutPlane[], { signal, progress }: OriginalVolumeOptions): Promise<Volume> {
+  const cuts = cutsOf(planes);
+  const partitions = await partitionsOf(source, (record) => !cuts.some((plane) => isCutAway(record, plane)), signal);
+  const volumes = new Array<Volume>(partitions.length);
+  let [next, done] = [0, 0];
+  const work = async (): Promise<void> => {
+    while (next < partitions.length) {
+      const i = next++;
+      volumes[i] = await measured(source, partitions[i], planes, signal);
+      signal.throwIfAborted();
+      progress?.(++done, partitions.length);
+    }
+  };
+  await Promise.all(Array.from({ length: AT_ONCE }, work));
+  return sumOf(volumes);
+}
