@@ -5,7 +5,6 @@
 #include "hierarchy/error.h"
 #include "inspection/page_file.h"
 #include "server/static_site.h"
-#include "storage/format/layout.h"
 #include "storage/io/http_client.h"
 #include "storage/io/paths.h"
 
@@ -54,13 +53,6 @@ std::string single_page(Environment& environment, const PageArguments& arguments
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Beside a hierarchy on the disk; empty: there is none.
-fs::path story_of(storage::FileSystem& files, const HierarchyPlace& place) {
-  const fs::path story = storage::story_path(storage::without_last_slash(place.path()));
-  const bool is_there = !place.is_remote() && files.kind(story) == storage::FileKind::regular;
-  return is_there ? story : fs::path();
-}
-
 /// "david" of "models/david.hier/".
 std::string name_of(const fs::path& hierarchy) {
   return storage::without_last_slash(hierarchy).stem().string();
@@ -78,7 +70,7 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
                                  .size = arguments.size,
                                  .link = arguments.link,
                                  .name = name_of(place.path()),
-                                 .story = story_of(environment.files, place)},
+                                 .looks_for_story = !place.is_remote()},
                                 progress, environment.cancel);
 }
 

@@ -9,6 +9,7 @@
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/io/output_file.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -79,9 +80,13 @@ std::string json_text(const std::string& text) {
   return json;
 }
 
-/// Its text. Throws Error(io), and Error(corrupt) if it is no JSON object.
-std::string read_story(storage::FileSystem& files, const fs::path& path) {
+/// What lies beside a hierarchy; empty: nothing does. Throws Error(io), and Error(corrupt) if it is
+/// no JSON object.
+std::string story_of(storage::FileSystem& files, const fs::path& hierarchy) {
   constexpr int kDeepest = 32;
+  const fs::path path = storage::story_path(storage::without_last_slash(hierarchy));
+  if (files.kind(path) != storage::FileKind::regular)
+    return {};
   const auto bytes = storage::read_file(*files.open(path), storage::kMostStoryBytes);
   std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto shallow = [](int depth, auto, const auto&) { return depth < kDeepest; };
@@ -106,7 +111,7 @@ struct Frame {
   std::string before, behind;
 };
 
-Frame frame_of(storage::FileSystem& files, const std::string& viewer, const PageOptions& options) {
+Frame frame_of(const std::string& viewer, const std::string& story, const PageOptions& options) {
   const std::size_t mark = viewer.find(kMark);
   if (mark == std::string::npos)
     throw Error(ErrorCode::io,
@@ -118,8 +123,8 @@ Frame frame_of(storage::FileSystem& files, const std::string& viewer, const Page
                   json_text(options.name);
   if (!options.link.empty())
     frame.before += ",\"link\":" + json_text(options.link);
-  if (!options.story.empty())
-    frame.before += ",\"story\":" + json_text(read_story(files, options.story));
+  if (!story.empty())
+    frame.before += ",\"story\":" + json_text(story);
   frame.before += ",\"files\":{";
   frame.behind = "}}\n</script>" + frame.behind;
   return frame;
@@ -236,7 +241,8 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                        execution::Progress& progress, const execution::CancelToken& cancel) {
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
-  const Frame frame = frame_of(files, viewer, options);
+  const std::string story = options.looks_for_story ? story_of(files, hierarchy) : std::string();
+  const Frame frame = frame_of(viewer, story, options);
   storage::OutputFile output(files, {options.output, options.replace, {hierarchy}},
                              [&] { cancel.check(); });
   ByteStream out(*output.file());

@@ -17,7 +17,7 @@ struct PageOptions {
   std::uint64_t size = 20'000'000;  ///< bytes of the file, at the most
   std::string link;                 ///< where all of the hierarchy is; empty: nowhere
   std::string name;                 ///< of the model
-  std::filesystem::path story;      ///< what the page tells of it, as JSON; empty: nothing
+  bool looks_for_story = false;     ///< beside the hierarchy: then the page tells it
 };
 
 /// Writes `viewer` (viewer/vite.single.config.ts) with the manifest, the root and more tiles:

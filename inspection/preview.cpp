@@ -13,6 +13,7 @@
 #include "render/painting.h"
 #include "render/points.h"
 #include "render/portrait.h"
+#include "render/terrain.h"
 #include "render/tile_facets.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -41,9 +42,8 @@ Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
 }
 
 /// Of the root tile, which has the extent of the whole; its points if nothing else is there.
-std::vector<render::Facet> root_facets(const HierarchyReader& reader,
+std::vector<render::Facet> root_facets(PublishedTile root, const HierarchyReader& reader,
                                        const std::optional<AttributePainter>& painter) {
-  PublishedTile root = reader.read_tile({});
   if (painter)
     painter->paint(root);
   const AttributeLayout& layout = painter ? painter->layout() : reader.tile_format().attributes;
@@ -59,6 +59,14 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
   const storage::Manifest& manifest = reader.manifest();
   const bool is_as_built = manifest.first_view && options.up.value_or(manifest.up) == manifest.up;
   return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
+}
+
+/// Without what the root tells.
+render::Look look_of(const HierarchyReader& reader, const PreviewOptions& options) {
+  const auto& textures = reader.manifest().textures;
+  const bool is_shown = textures && !options.attribute;
+  return {is_shown && textures->unlit ? render::Light::none : render::Light::lamps, is_shown,
+          options.up.value_or(reader.manifest().up)};
 }
 
 /// What a tile draws: triangles, or points as facets without area.
@@ -244,8 +252,11 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   if (options.attribute)
     painter.emplace(reader.manifest().source, *options.attribute);
   AttributeLayout layout = painter ? painter->layout() : reader.tile_format().attributes;
+  render::Look look = look_of(reader, options);
   const auto [camera, axes] = [&] {
-    const std::vector<render::Facet> root = root_facets(reader, painter);
+    PublishedTile tile = reader.read_tile({});
+    look.terrain = render::terrain_of(tile, look.up);
+    const std::vector<render::Facet> root = root_facets(std::move(tile), reader, painter);
     if (!painter)
       layout = render::drawn_layout(root, layout);
     if (!region)
@@ -263,16 +274,14 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     if (painter)
       painter->paint(tile.tile);
     render::SceneTile drawn = scene_of(tile, layout, point_side > 0);
+    render::apply_look(look, layout, drawn);
     if (region)
       drawn = clip_scene(std::move(drawn), *region);
     if (point_side > 0)
       drawn.facets = render::squares_of(drawn.facets, axes, point_side);
     return drawn;
   };
-  render::Scene scene{boxes_of(reader, shown, point_side), load,
-                      !painter && reader.manifest().textures && reader.manifest().textures->unlit
-                          ? render::Light::none
-                          : render::Light::lamps};
+  const render::Scene scene{boxes_of(reader, shown, point_side), load, look};
   const render::PaintingOptions painting{
       .band_bytes = (options.memory_budget - picture_bytes(options)) / 2, .step = [&] {
         cancel.check();

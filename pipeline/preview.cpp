@@ -6,6 +6,7 @@
 #include "render/painting.h"
 #include "render/points.h"
 #include "render/portrait.h"
+#include "render/terrain.h"
 #include "render/tile_facets.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
@@ -28,10 +29,10 @@ constexpr std::uint64_t kMostTexels = 2048 * 2048;
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 28;
 constexpr std::uint32_t kLeastSide = 16;
 
-/// Of samples at a time: as many as one for each pixel, which shadows are made of.
+/// Of samples at a time: as many as one for each pixel.
 constexpr std::uint64_t kBandBytes =
     sizeof(render::Sample) * storage::kMostPreviewSide * storage::kMostPreviewSide;
-/// What is held beside a tile: samples, shadows, the picture; then what encodes it. And facets.
+/// What is held beside a tile: samples, the picture; then what encodes it. And facets.
 constexpr std::uint64_t kPaintingBytes =
     kBandBytes + (3 << 20) + kMostTriangles * sizeof(render::Facet);
 
@@ -98,7 +99,14 @@ struct Portrait {
   render::ViewAxes axes;
   AttributeLayout layout;  ///< as it is drawn
   double point_side = 0;   ///< 0: triangles are drawn
+  render::Look look{};
 };
+
+render::Look look_of(const PublishedTile& root, const storage::TileFormat& format) {
+  const bool is_unlit = format.textures && format.textures->unlit;
+  return {is_unlit ? render::Light::none : render::Light::lamps, format.textures.has_value(),
+          format.frame.up, render::terrain_of(root, format.frame.up)};
+}
 
 Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const Cut& cut) {
   const std::vector<render::Facet> whole = root_facets(root, input.format.attributes);
@@ -109,14 +117,18 @@ Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const
           whole, view,
           {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2}),
       render::axes_of(view), render::drawn_layout(whole, input.format.attributes)};
+  portrait.look = look_of(root, input.format);
   if (is_of_points(input.records))
     portrait.point_side = render::point_side(portrait.camera, vertices_of(cut, input.records));
   return portrait;
 }
 
 render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait) {
-  if (portrait.point_side == 0)
-    return render::scene_tile(tile, portrait.layout);
+  if (portrait.point_side == 0) {
+    render::SceneTile drawn = render::scene_tile(tile, portrait.layout);
+    render::apply_look(portrait.look, portrait.layout, drawn);
+    return drawn;
+  }
   render::SceneTile drawn;
   drawn.facets = render::squares_of(render::points_of(tile, portrait.layout), portrait.axes,
                                     portrait.point_side);
@@ -171,8 +183,7 @@ class DrawnTiles {
 render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
                        const DrawnTiles& tiles) {
   render::Scene scene;
-  if (input.format.textures && input.format.textures->unlit)
-    scene.light = render::Light::none;
+  scene.look = portrait.look;
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
                                                  portrait.point_side));

@@ -9,8 +9,8 @@
 
 namespace meshhier::render {
 
-/// Of surfaces without colours, in linear light.
-inline constexpr Vec3f kPlainColour{0.6F, 0.6F, 0.6F};
+/// Of surfaces without colours, in linear light: 0xb9b4ab of a screen, as the viewer has it.
+inline constexpr Vec3f kPlainColour{0.485150F, 0.456411F, 0.407240F};
 
 struct FacetCorner {
   Vec3f position;

@@ -1,56 +1,13 @@
 #include "render/painting.h"
 
-#include "render/occlusion.h"
 #include "render/raster.h"
 #include "render/shade.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace meshhier::render {
 namespace {
-
-/// Shadows are soft: they are made of a picture with so many times fewer pixels a side,
-constexpr std::uint32_t kShadowParts = 2;
-/// and need no more than this; its longer side.
-constexpr std::uint32_t kMostShadowPixels = 1024;
-
-/// Slopes are made so steep on the average, as far as kMostRelief lets them.
-constexpr double kWantedSlope = 0.6, kMostRelief = 40;
-
-/// So that white surfaces that face the key lamp are not burnt.
-constexpr double kExposure = 0.82;
-
-Framing coarser(Framing framing) {
-  const std::uint32_t longer = std::max(framing.width, framing.height);
-  const std::uint32_t parts =
-      std::max(kShadowParts, (longer + kMostShadowPixels - 1) / kMostShadowPixels);
-  framing.width = std::max(framing.width / parts, 1U);
-  framing.height = std::max(framing.height / parts, 1U);
-  framing.samples = 1;
-  return framing;
-}
-
-/// How steep what is seen is, on the average: the tangent of its angle with the picture.
-double mean_slope(const Raster& raster) {
-  double sum = 0;
-  std::uint64_t count = 0;
-  for (const Sample& sample : raster.samples()) {
-    if (!sample.covered())
-      continue;
-    const double across = std::sqrt(double{sample.normal.x} * sample.normal.x +
-                                    double{sample.normal.y} * sample.normal.y);
-    sum += across / std::max<double>(sample.normal.z, 0.1);
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
-double relief_for(const Raster& raster) {
-  const double slope = mean_slope(raster);
-  return slope > 0 ? std::clamp(kWantedSlope / slope, 1.0, kMostRelief) : 1;
-}
 
 /// Whether anything of a box may be seen in the rows of a raster.
 bool may_be_seen(const Raster& raster, const Camera& camera, const Bounds& box) {
@@ -93,20 +50,12 @@ std::uint32_t band_rows(const Framing& framing, std::uint64_t band_bytes) {
 std::uint64_t painting_steps(const Scene& scene, const Camera& camera,
                              const PaintingOptions& options) {
   const std::uint32_t rows = band_rows(camera.framing(), options.band_bytes);
-  return scene.boxes.size() * (1 + std::uint64_t{camera.framing().height + rows - 1} / rows);
+  return scene.boxes.size() * (std::uint64_t{camera.framing().height + rows - 1} / rows);
 }
 
 images::Image paint(const Scene& scene, const Camera& camera, const PaintingOptions& options) {
   const Framing framing = camera.framing();
-  Lighting lighting{.kind = scene.light, .exposure = kExposure};
-  const Occlusion occlusion = [&] {
-    const Camera coarse = camera.with(coarser(framing));
-    Raster raster(coarse);
-    draw(scene, coarse, options, raster);
-    lighting.relief = relief_for(raster);
-    return Occlusion(raster, lighting.relief);
-  }();
-  lighting.occlusion = &occlusion;
+  const Lighting lighting = lighting_of(scene.look, camera);
   images::Image picture(framing.width, framing.height, 4);
   const std::uint32_t rows = band_rows(framing, options.band_bytes);
   for (std::uint32_t first = 0; first < framing.height; first += rows) {

@@ -22,10 +22,8 @@ struct PaintingOptions {
 std::uint64_t painting_steps(const Scene& scene, const Camera& camera,
                              const PaintingOptions& options);
 
-/// Light with shadows where the surface is hollow; where hardly anything is steep, as in terrain
-/// from above, slopes are lit as if they were steeper. Alpha is how much of a pixel is covered.
-/// First the whole is drawn with one sample a pixel, then rows of it with all samples. Throws what
-/// scene.load throws.
+/// As the viewer's page shows it, without its perspective. Alpha is how much of a pixel is covered.
+/// Rows are drawn one band behind the other. Throws what scene.load throws.
 images::Image paint(const Scene& scene, const Camera& camera, const PaintingOptions& options);
 
 }  // namespace meshhier::render

@@ -45,6 +45,21 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout) {
   return scene_tile(tile, layout, border);
 }
 
+void apply_look(const Look& look, const AttributeLayout& layout, SceneTile& tile) {
+  if (!look.terrain)
+    return;
+  shade_steeper(*look.terrain, tile.facets);
+  if (!look.has_pictures && layout.colour == ColourType::none)
+    colour_by_height(*look.terrain, tile.facets);
+}
+
+Lighting lighting_of(const Look& look, const Camera& camera) {
+  const bool is_sunlit = look.terrain && look.terrain->is_upright;
+  return {.kind = look.light,
+          .rig = is_sunlit ? sunlight(camera, look.up) : studio(upward_in(camera, look.up)),
+          .roughness = look.has_pictures ? kPictureRoughness : kRoughness};
+}
+
 BoundsD Scene::box() const {
   BoundsD box;
   for (const Bounds& tile : boxes) {

@@ -3,16 +3,19 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/frame.h"
 #include "hierarchy/published.h"
 #include "render/facet.h"
 #include "render/mip_texture.h"
 #include "render/raster.h"
 #include "render/shade.h"
+#include "render/terrain.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,11 +40,25 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
 /// The same with all of its border.
 SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout);
 
+/// How all of a scene is shown.
+struct Look {
+  Light light = Light::lamps;  ///< that falls on it
+  bool has_pictures = false;
+  UpAxis up = UpAxis::y;
+  std::optional<Terrain> terrain{};  ///< it is one: the sun is on it, and slopes are lit steeper
+};
+
+/// Terrains get steeper slopes, and those without colours the colours of heights. `layout`: of the
+/// tile, as it is drawn.
+void apply_look(const Look& look, const AttributeLayout& layout, SceneTile& tile);
+
+Lighting lighting_of(const Look& look, const Camera& camera);
+
 struct Scene {
   std::vector<Bounds> boxes;                        ///< of the tiles; all that they draw is there
   std::function<SceneTile(std::size_t tile)> load;  ///< the same whenever it is asked
-  Light light = Light::lamps;                       ///< that falls on them
-  std::span<const SceneTile> held{};                ///< all of the tiles: none is loaded; or empty
+  Look look{};
+  std::span<const SceneTile> held{};  ///< all of the tiles: none is loaded; or empty
 
   BoundsD box() const;
 };

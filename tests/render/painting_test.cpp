@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -92,20 +93,42 @@ int contrast(const images::Image& picture) {
   return most - least;
 }
 
-TEST(PaintingTest, HillsThatAreHardlySteepAreSeen) {
-  // Waves of one degree of slope.
-  std::vector<Facet> facets;
-  const auto corner = [](int x, int y) {
-    return FacetCorner{{static_cast<float>(x), static_cast<float>(y), x % 8 < 4 ? 0.0F : 0.07F},
-                       {}};
-  };
-  for (int x = 0; x < 64; x += 4) {
-    facets.push_back({corner(x, 0), corner(x + 4, 0), corner(x + 4, 64)});
-    facets.push_back({corner(x, 0), corner(x + 4, 64), corner(x, 64)});
+/// Waves of one degree of slope, up along z.
+PublishedTile waves() {
+  PublishedTile tile;
+  for (int x = 0; x <= 64; x += 4) {
+    for (int y = 0; y <= 64; y += 4)
+      tile.mesh.vertices.positions.push_back(
+          {static_cast<float>(x), static_cast<float>(y), x % 8 < 4 ? 0.0F : 0.07F});
   }
+  tile.mesh.own_count = static_cast<std::uint32_t>(tile.mesh.vertices.size());
+  const auto corner = [](std::uint32_t column, std::uint32_t row) {
+    return static_cast<TileVertex>(17 * column + row);
+  };
+  for (std::uint32_t x = 0; x < 16; ++x) {
+    for (std::uint32_t y = 0; y < 16; ++y) {
+      tile.mesh.interior.push_back({corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)});
+      tile.mesh.interior.push_back({corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)});
+    }
+  }
+  return tile;
+}
+
+TEST(PaintingTest, HillsThatAreHardlySteepAreSeenAndColouredByHeight) {
+  const PublishedTile tile = waves();
   Scene scene;
+  scene.look = {.up = UpAxis::z, .terrain = terrain_of(tile, UpAxis::z)};
+  ASSERT_TRUE(scene.look.terrain);
   scene.boxes = {Bounds{{0, 0, 0}, {64, 64, 0.07F}}};
-  scene.load = [&](std::size_t) { return SceneTile{facets, {}, nullptr}; };
+  scene.load = [&](std::size_t) {
+    SceneTile drawn = scene_tile(tile, {}, {});
+    for (Facet& facet : drawn.facets) {
+      for (FacetCorner& corner : facet)  // as smooth normals of such waves
+        corner.normal = {corner.position.z > 0 ? 0.017F : -0.017F, 0, 1};
+    }
+    apply_look(scene.look, {}, drawn);
+    return drawn;
+  };
   const images::Image picture = paint(
       scene, Camera(View{}, scene.box(), Framing{.width = 64, .height = 64, .margin = 0}), {});
   EXPECT_GT(contrast(picture), 40);

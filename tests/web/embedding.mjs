@@ -12,6 +12,7 @@ import { withSite } from './site.mjs';
 const WINDOW = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
 const PATIENCE = 120_000; // milliseconds
 const HOST = 'host.html';
+const MOST_DIFFERENCE = 1.5; // of 255
 
 function settle(frame) {
   return frame.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
@@ -100,6 +101,45 @@ async function checkElement(browser, report, origin, { element: code, camera }, 
   await page.close();
 }
 
+/// On white, without what lies over it.
+async function bareScreenshot(page, shown) {
+  await page.addStyleTag({ content: 'body, .view { background: #fff !important } .top-bar, .bar, .busy { display: none !important }' });
+  return page.locator(shown).screenshot();
+}
+
+/// The same view in the page and in an element as large: one light, one tone curve.
+async function checkLight(browser, report, origin, { name }) {
+  const own = await open(browser, `${origin}/index.html?model=models/${name}.hier`);
+  await settle(own);
+  const { position, target } = await own.evaluate(() => window.meshhier.camera());
+  const inPage = await bareScreenshot(own, '.surface canvas');
+  const { width, height } = WINDOW.viewport;
+  const code = `<style>body { margin: 0 } h1 { display: none }</style><script type="module" src="${origin}/meshhier-viewer.js"></script><meshhier-viewer style="display: block; width: ${width}px; height: ${height}px" camera="${[...position, ...target]}" src="${origin}/models/${name}.hier"></meshhier-viewer>`;
+  const page = await host(browser, origin, code, []);
+  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+  const inElement = await bareScreenshot(page, 'meshhier-viewer');
+  const mean = await page.evaluate(meanDifference, [inPage, inElement].map((picture) => picture.toString('base64')));
+  report.line('one light', mean <= MOST_DIFFERENCE, `the page and the element are ${mean.toFixed(2)} of 255 from each other where the model is`);
+  await Promise.all([own.close(), page.close()]);
+}
+
+/// Where neither is white.
+async function meanDifference(pictures) {
+  const [a, b] = await Promise.all(pictures.map(async (data) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  }));
+  let [sum, count] = [0, 0];
+  for (let i = 0; i < a.length; i += 4) {
+    if (a[i] + a[i + 1] + a[i + 2] === 765 || b[i] + b[i + 1] + b[i + 2] === 765) continue;
+    for (let c = 0; c < 3; ++c) sum += Math.abs(a[i + c] - b[i + c]);
+    count += 3;
+  }
+  return count > 3000 ? sum / count : Infinity;
+}
+
 /// The gallery in a frame: models come and go, and Back leads from the page around it to where its reader was before.
 async function checkBack(browser, report, origin, { name }) {
   const complaints = [];
@@ -127,6 +167,7 @@ async function check(browser, report, [pictures, pageDirectory, directory]) {
     await checkLink(browser, report, shared);
     await checkFrame(browser, report, origin, shared);
     await checkElement(browser, report, origin, shared, pictures);
+    await checkLight(browser, report, origin, hierarchy);
     await checkBack(browser, report, origin, hierarchy);
   });
 }

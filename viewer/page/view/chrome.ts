@@ -13,7 +13,7 @@ import { ShareSheet } from '../share/share_sheet.js';
 import type { Shared } from '../share/embed_code.js';
 import { words } from '../words/words.js';
 import { help } from './help.js';
-import type { Angles } from './lighting.js';
+import type { Angles } from '../../src/scene/lighting.js';
 import { Panel } from './panel.js';
 import type { Shown } from './presentation.js';
 import { SettingsForm, type Choices } from './settings_form.js';

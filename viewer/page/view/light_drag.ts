@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // While L is held, or once it is chosen, a drag turns the light; L alone opens the settings.
-import type { Angles } from './lighting.js';
+import type { Angles } from '../../src/scene/lighting.js';
 
 const KEY = 'l';
 

@@ -6,7 +6,7 @@ import { LIGHTS, type Light, type LightName } from '../appearance.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
-import type { Angles } from './lighting.js';
+import type { Angles } from '../../src/scene/lighting.js';
 
 export interface LightChoices {
   /// Whether a drag turns the light from now on, instead of the model.

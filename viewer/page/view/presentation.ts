@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Shows a model as it was chosen; what was left to the page is chosen here, by what the model is.
-import type { HierarchyView, Look, Terrain } from '../../src/index.js';
+// Shows a model as it was chosen; what was left open is chosen by what the model is.
+import type { HierarchyView, Look } from '../../src/index.js';
+import { rigFor, shownLook, type KnownModel } from '../../src/scene/shown_look.js';
 import { LIGHTS, type Appearance, type Light } from '../appearance.js';
-import { keyOf, turned, type Angles, type Lighting, type Rig } from './lighting.js';
-
-/// Slopes that show well: those of hills are shaded so steep.
-const SHOWN_SLOPE = 0.5;
-const MOST_RELIEF = 1000;
+import { keyOf, turned, type Angles, type Lighting, type Rig } from '../../src/scene/lighting.js';
 
 /// What is shown of what was chosen.
 export interface Shown {
@@ -15,27 +12,15 @@ export interface Shown {
   key: Angles;
 }
 
-type Model = Pick<HierarchyView, 'terrain' | 'hasColours' | 'hasTriangles' | 'hasAttributes'>;
-
-function rigOf({ name }: Light, terrain: Terrain | null): Rig {
+function rigOf({ name }: Light, model: KnownModel): Rig {
   if (name === 'matcap') return 'studio';
-  return name === 'auto' ? (terrain?.upright === true ? 'sun' : 'studio') : name;
+  return name === 'auto' ? rigFor(model) : name;
 }
 
-function reliefOf({ slope }: Terrain, stretch: number): number {
-  return Math.min(Math.max(SHOWN_SLOPE / Math.max(slope * stretch, 1e-9), 1), MOST_RELIEF);
-}
-
-/// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun, or seen from their front, their slopes are shaded steeper.
-export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours, hasTriangles, hasAttributes }: Model): Shown {
-  const rig = rigOf(light, terrain);
-  const wished = look.colours === 'attribute' && hasAttributes === false ? 'vertex' : look.colours;
-  const colours = wished === 'vertex' && hasColours === false ? (terrain === null ? 'plain' : 'height') : wished;
-  const isSteep = terrain !== null && (rig === 'sun' || !terrain.upright);
-  const relief = isSteep ? reliefOf(terrain, terrain.upright ? standing.stretch : 1) : 1;
+export function shownOf({ look, light, standing }: Appearance, model: KnownModel): Shown {
+  const rig = rigOf(light, model);
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
-  const points = look.points || hasTriangles === false; // nothing else shows those
-  return { look: { ...look, colours, points, relief, material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
+  return { look: { ...shownLook(look, rig, standing.stretch, model), material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
 }
 
 function isSame(a: object, b: object): boolean {

@@ -8,7 +8,7 @@ import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 import { DEFAULT_LIGHT } from '../appearance.js';
 import { DISTANCE, fitAt, fitMatrix, FOCUS, towardsViewer, type Turn } from '../gallery/layout.js';
 import type { Shape } from '../gallery/shape.js';
-import { Lighting } from './lighting.js';
+import { Lighting } from '../../src/scene/lighting.js';
 import { Presentation } from './presentation.js';
 
 const MOST_RATIO = 2;

@@ -12,7 +12,7 @@ import { PRESETS, QUALITIES, qualityOf, type Quality } from './quality.js';
 import type { ScalarAttribute } from '../../src/index.js';
 import { AttributeForm } from './attribute_form.js';
 import { LightForm, type LightChoices } from './light_form.js';
-import type { Angles } from './lighting.js';
+import type { Angles } from '../../src/scene/lighting.js';
 
 export interface Choices extends LightChoices {
   look: (change: Partial<Look>) => void;

@@ -5,7 +5,7 @@ import { words } from '../words/words.js';
 import { partDrawer } from '../../src/tools/draw_part.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
-import { Lighting } from './lighting.js';
+import { Lighting } from '../../src/scene/lighting.js';
 import type { Occlusion } from './occlusion.js';
 
 const MOST_RATIO = 2;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
-import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
+import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { axesOf, frameShape } from '../scene/framing.js';
 import { HierarchyView, type ViewOptions } from '../scene/hierarchy_view.js';
+import { keyOf, Lighting } from '../scene/lighting.js';
+import { rigFor, shownLook } from '../scene/shown_look.js';
 import type { CameraPlace } from './camera_attribute.js';
 import { moveByKey } from './keyboard.js';
 
@@ -22,19 +24,13 @@ export interface Happenings {
   moved(): void;
 }
 
-function lights(camera: PerspectiveCamera): HemisphereLight {
-  const lamp = new DirectionalLight(0xfff6ea, 2.9);
-  lamp.position.set(-0.6, 0.9, 1);
-  camera.add(lamp, lamp.target);
-  return new HemisphereLight(0xeaf1ff, 0x857d74, 1.15);
-}
-
 export class ShownModel {
   readonly view: HierarchyView;
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(ANGLE);
+  private readonly lighting: Lighting;
   private readonly controls: OrbitControls;
   private readonly sizes = new ResizeObserver(() => { this.wake(); });
   private readonly whole = new Box3();
@@ -50,7 +46,8 @@ export class ShownModel {
     this.renderer = this.makeRenderer();
     this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
-    this.scene.add(this.camera, lights(this.camera), this.view);
+    this.lighting = new Lighting(this.scene, this.camera);
+    this.scene.add(this.camera, this.view);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
     this.listen();
@@ -108,6 +105,9 @@ export class ShownModel {
 
   private begin(): void {
     if (this.ended) return;
+    const rig = rigFor(this.view);
+    this.lighting.set(rig, keyOf(rig));
+    this.view.setLook(shownLook(this.view.look, rig, 1, this.view));
     this.happenings.opened();
     this.wake();
   }

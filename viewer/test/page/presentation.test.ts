@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { DEFAULT_LIGHT, LIGHTS, type Appearance, type Light } from '../../page/appearance.js';
-import { keyOf, turned } from '../../page/view/lighting.js';
+import { keyOf, turned } from '../../src/scene/lighting.js';
 import { nextLight, shownOf } from '../../page/view/presentation.js';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';

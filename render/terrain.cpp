@@ -1,0 +1,135 @@
+#include "render/terrain.h"
+
+#include "hierarchy/srgb.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::render {
+namespace {
+
+/// Part of the surface that may look down: holes that were closed, a skirt.
+constexpr double kMostDown = 0.03;
+/// Of the extent across.
+constexpr double kMostHeight = 0.35;
+/// The same of a sheet on its side: a thicker one is a relief, and light shows its form.
+constexpr double kMostThickness = 0.03;
+/// Vertices on each side that do not count: outliers would take all colours.
+constexpr double kOutliers = 0.01;
+/// Slopes that show well: those of hills are shaded so steep.
+constexpr double kShownSlope = 0.5, kMostRelief = 1000;
+
+struct HeightRange {
+  double low = 0, high = 0;
+};
+
+HeightRange heights_of(const TileMesh& mesh, Vec3d along) {
+  std::vector<double> heights;
+  for (std::uint32_t v = 0; v < mesh.own_count; ++v)
+    heights.push_back(dot(to_double(mesh.vertices.positions[v]), along));
+  if (heights.empty())
+    return {};
+  std::ranges::sort(heights);
+  const auto outside = static_cast<std::size_t>(kOutliers * static_cast<double>(heights.size()));
+  return {heights[outside], heights[heights.size() - 1 - outside]};
+}
+
+double extent_across(const TileMesh& mesh, Vec3d along) {
+  Bounds box;
+  for (const Vec3f position : mesh.vertices.positions)
+    box.add(position);
+  double extent = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (along[axis] == 0)
+      extent = std::max(extent, double{box.max[axis]} - box.min[axis]);
+  }
+  return extent;
+}
+
+/// Twice the areas of triangles that look up, and down, and of their shadows on the ground.
+struct Areas {
+  double above = 0, below = 0, ground = 0;
+};
+
+Areas areas_of(const std::vector<Facet>& facets, Vec3d along) {
+  Areas areas;
+  for (const Facet& facet : facets) {
+    const Vec3d a = to_double(facet[0].position);
+    const Vec3d normal = cross(to_double(facet[1].position) - a, to_double(facet[2].position) - a);
+    const double shadow = dot(normal, along);
+    (shadow > 0 ? areas.above : areas.below) += length(normal);
+    areas.ground += std::abs(shadow);
+  }
+  return areas;
+}
+
+std::optional<Terrain> terrain_along(const PublishedTile& root, const std::vector<Facet>& facets,
+                                     Vec3d along, double most, bool is_upright) {
+  const auto [low, high] = heights_of(root.mesh, along);
+  if (!(high > low && high - low < most * extent_across(root.mesh, along)))
+    return std::nullopt;
+  const auto [above, below, ground] = areas_of(facets, along);
+  if (std::min(above, below) > kMostDown * (above + below) || ground == 0)
+    return std::nullopt;
+  const double steepness = (above + below) / ground;
+  return Terrain{along, is_upright, low, high, std::sqrt(std::max(0.0, steepness * steepness - 1))};
+}
+
+/// As light, at `part` of the way, 0 to 1.
+Vec3f height_colour(double part) {
+  constexpr std::array<std::uint32_t, 5> kColours{0x4f8a63, 0xb9c28a, 0xd8b878, 0x9c7b62, 0xf4f2ee};
+  const double at = std::clamp(part, 0.0, 1.0) * (kColours.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), kColours.size() - 2);
+  const auto channel = [&](int shift) {
+    const auto light = [&](std::uint32_t rgb) { return light_of((rgb >> shift & 255) / 255.0); };
+    const double from = light(kColours[below]), to = light(kColours[below + 1]);
+    return from + (to - from) * (at - static_cast<double>(below));
+  };
+  return to_float({channel(16), channel(8), channel(0)});
+}
+
+}  // namespace
+
+double Terrain::relief() const {
+  return std::clamp(kShownSlope / std::max(slope, 1e-9), 1.0, kMostRelief);
+}
+
+std::optional<Terrain> terrain_of(const PublishedTile& root, UpAxis up) {
+  std::vector<Facet> facets;
+  const auto& positions = root.mesh.vertices.positions;
+  for (const TileTriangle& t : root.mesh.interior) {
+    Facet& facet = facets.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k)
+      facet[k].position = positions[raw(t[k])];
+  }
+  auto upright = terrain_along(root, facets, direction_of(up), kMostHeight, true);
+  if (upright || up == UpAxis::z)
+    return upright;
+  return terrain_along(root, facets, {0, 0, 1}, kMostThickness, false);
+}
+
+void shade_steeper(const Terrain& terrain, std::span<Facet> facets) {
+  const double relief = terrain.relief();
+  for (Facet& facet : facets) {
+    for (FacetCorner& corner : facet) {
+      const Vec3d normal = to_double(unit_or_zero(corner.normal));
+      const Vec3d along = terrain.along * dot(normal, terrain.along);
+      corner.normal = unit_or_zero(to_float((normal - along) * relief + along));
+    }
+  }
+}
+
+void colour_by_height(const Terrain& terrain, std::span<Facet> facets) {
+  const double range = std::max(terrain.high - terrain.low, 1e-30);
+  for (Facet& facet : facets) {
+    for (FacetCorner& corner : facet)
+      corner.colour =
+          height_colour((dot(to_double(corner.position), terrain.along) - terrain.low) / range);
+  }
+}
+
+}  // namespace meshhier::render
