@@ -161,3 +161,30 @@ export async function inChromium(pictures, checks) {
   await browser.close();
   return report.problems === 0 ? 0 : 1;
 }
+
+/// Two screenshots, of channels of 255: how far they are apart at the most, and on average where neither is white; and parts of all pixels that the
+/// other has darker, or lighter.
+export function comparePictures(page, one, other) {
+  return page.evaluate(async (pictures) => {
+    const [a, b] = await Promise.all(pictures.map(async (data) => {
+      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    }));
+    if (a.length !== b.length) return { most: 255, mean: 255, covered: 0, darker: 1, lighter: 1 };
+    const sums = { most: 0, apart: 0, covered: 0, darker: 0, lighter: 0 };
+    for (let i = 0; i < a.length; i += 4) {
+      const by = [0, 1, 2].map((c) => b[i + c] - a[i + c]);
+      const all = by[0] + by[1] + by[2];
+      sums.most = Math.max(sums.most, ...by.map(Math.abs));
+      if (all < -15) ++sums.darker;
+      if (all > 6) ++sums.lighter;
+      if (Math.max(a[i] + a[i + 1] + a[i + 2], b[i] + b[i + 1] + b[i + 2]) === 765) continue;
+      sums.apart += Math.abs(by[0]) + Math.abs(by[1]) + Math.abs(by[2]);
+      ++sums.covered;
+    }
+    const pixels = a.length / 4;
+    return { most: sums.most, mean: sums.apart / (3 * sums.covered), covered: sums.covered / pixels, darker: sums.darker / pixels, lighter: sums.lighter / pixels };
+  }, [one.toString('base64'), other.toString('base64')]);
+}

@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Pictures go to the directory PICTURES. Exit code 2: wrong use; else
 // see browser.mjs.
 import path from 'node:path';
-import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
+import { collectComplaints, inChromium, readHierarchy, comparePictures } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WINDOW = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
@@ -118,26 +118,9 @@ async function checkLight(browser, report, origin, { name }) {
   const page = await host(browser, origin, code, []);
   await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
   const inElement = await bareScreenshot(page, 'meshhier-viewer');
-  const mean = await page.evaluate(meanDifference, [inPage, inElement].map((picture) => picture.toString('base64')));
-  report.line('one light', mean <= MOST_DIFFERENCE, `the page and the element are ${mean.toFixed(2)} of 255 from each other where the model is`);
+  const { mean, covered } = await comparePictures(page, inPage, inElement);
+  report.line('one light', covered > 0.01 && mean <= MOST_DIFFERENCE, `the page and the element are ${mean.toFixed(2)} of 255 from each other where the model is`);
   await Promise.all([own.close(), page.close()]);
-}
-
-/// Where neither is white.
-async function meanDifference(pictures) {
-  const [a, b] = await Promise.all(pictures.map(async (data) => {
-    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
-  }));
-  let [sum, count] = [0, 0];
-  for (let i = 0; i < a.length; i += 4) {
-    if (a[i] + a[i + 1] + a[i + 2] === 765 || b[i] + b[i + 1] + b[i + 2] === 765) continue;
-    for (let c = 0; c < 3; ++c) sum += Math.abs(a[i + c] - b[i + c]);
-    count += 3;
-  }
-  return count > 3000 ? sum / count : Infinity;
 }
 
 /// The gallery in a frame: models come and go, and Back leads from the page around it to where its reader was before.

@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
 // partitions. Each share has an eighth of most checks (MESHHIER_TEST_SHARE). Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, inTurn, loseDevice, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { comparePictures, inChromium, inTurn, loseDevice, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
@@ -606,25 +606,6 @@ async function checkLight(visitor, [name]) {
   const moves = await until(page, async () => (await camera()) !== before);
   visitor.check('light by a drag', isTurned && stays && moves, `${page.url().replace(/.*#/, '#')}; the camera ${stays ? 'stays, then' : 'moves, then'} ${moves ? 'moves' : 'stays'}`);
   await visitor.close(page, 'light');
-}
-
-/// What of a picture is darker or lighter in another one, in parts of all pixels.
-function comparePictures(page, one, other) {
-  return page.evaluate(async (pictures) => {
-    const [a, b] = await Promise.all(pictures.map(async (data) => {
-      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-      context.drawImage(bitmap, 0, 0);
-      return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
-    }));
-    let [darker, lighter] = [0, 0];
-    for (let i = 0; i < a.length; i += 4) {
-      const by = b[i] + b[i + 1] + b[i + 2] - a[i] - a[i + 1] - a[i + 2];
-      if (by < -15) ++darker;
-      if (by > 6) ++lighter;
-    }
-    return { darker: (4 * darker) / a.length, lighter: (4 * lighter) / a.length };
-  }, [one.toString('base64'), other.toString('base64')]);
 }
 
 /// Hollows get darker, nothing gets lighter, and the link has it.

@@ -12,6 +12,7 @@ import type { Preferences } from '../preferences.js';
 import { ShareSheet } from '../share/share_sheet.js';
 import type { Shared } from '../share/embed_code.js';
 import { words } from '../words/words.js';
+import type { ImmersionMode } from '../xr/immersion.js';
 import { help } from './help.js';
 import type { Angles } from '../../src/scene/lighting.js';
 import { Panel } from './panel.js';
@@ -28,6 +29,7 @@ export interface Orders extends Choices {
   zoom: (logarithm: number) => void;
   tools: () => void;
   story: () => void;
+  immerse: (mode: ImmersionMode) => void;
   panelShown: (open: boolean) => void;
   /// What is to be shared, as it is now.
   shared: () => Shared;
@@ -42,6 +44,7 @@ export class Chrome {
   readonly share: Sheet;
   readonly info: Sheet;
   private readonly story: HTMLButtonElement;
+  private readonly immersions: Readonly<Record<ImmersionMode, HTMLButtonElement>>;
   private readonly badge = new ModeBadge();
   private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
   private readonly form: SettingsForm;
@@ -60,6 +63,11 @@ export class Chrome {
     this.info = new Sheet('info', words.info.title, ICONS.help, [this.about.root]);
     this.story = iconButton(words.story.title, ICONS.story, orders.story);
     this.story.hidden = true;
+    this.immersions = {
+      'immersive-vr': iconButton(words.view.vr, ICONS.vr, () => { orders.immerse('immersive-vr'); }),
+      'immersive-ar': iconButton(words.view.ar, ICONS.ar, () => { orders.immerse('immersive-ar'); }),
+    };
+    for (const button of Object.values(this.immersions)) button.hidden = true;
     const buttons = [this.share, this.settings, this.panel, this.help].map(({ button }) => button);
     const all = [this.info, this.share, this.settings, this.panel, this.help];
     this.sheets = new Sheets(all, [this.info, this.share, this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
@@ -79,6 +87,11 @@ export class Chrome {
   /// `key`: where the light comes from.
   show(preferences: Preferences & Appearance, key: Angles): void {
     this.form.show(preferences, key);
+  }
+
+  /// What the device can do; of all else there is no button.
+  tellImmersions(modes: readonly ImmersionMode[]): void {
+    for (const mode of modes) this.immersions[mode].hidden = false;
   }
 
   /// The model has a story.
@@ -111,7 +124,7 @@ export class Chrome {
     const leave = back === null ? null : iconButton(words.view.back, ICONS.back, back);
     const title = element('h1', {}, this.titleButton());
     const whole = iconButton(words.view.whole, ICONS.home, home);
-    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), this.story, ...buttons);
+    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), this.story, ...Object.values(this.immersions), ...buttons);
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
   }
 

@@ -14,6 +14,10 @@ import type { Bench } from '../tools/bench.js';
 import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
+import { Coordinates } from '../../src/tools/coordinates.js';
+import { UNITS, unitOfModel } from '../../src/tools/units.js';
+import type { Immersion, ImmersionMode } from '../xr/immersion.js';
+import { immersions } from '../xr/support.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
 import { Gestures } from './gestures.js';
@@ -81,6 +85,7 @@ export class ModelView {
   });
   /// What was chosen before a story was told, and what the story has chosen since.
   private untold: { before: Appearance; told: Appearance } | null = null;
+  private immersion: Immersion | null = null;
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
   private readonly stage: Stage;
@@ -178,6 +183,7 @@ export class ModelView {
 
   close(): void {
     this.ending.abort();
+    this.immersion?.stop();
     this.loop.stop();
     this.sizes.disconnect();
     window.clearTimeout(this.restTimer);
@@ -231,6 +237,7 @@ export class ModelView {
   private begin(): void {
     if (this.closed) return;
     this.opened = true;
+    immersions().then((modes) => { this.chrome.tellImmersions(modes); }, () => undefined);
     this.presentation.apply(); // what the model is may choose for it
     this.occlude();
     this.showChosen();
@@ -270,7 +277,7 @@ export class ModelView {
   }
 
   private frame(now: number): Pace {
-    if (this.lost !== null) return 'rest';
+    if (this.lost !== null || this.immersion !== null) return 'rest';
     if (this.approach !== null && this.shown && this.view.manifest !== null) this.arrive();
     const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.startRest();
@@ -395,6 +402,7 @@ export class ModelView {
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
       tools: () => void this.tools.use(null),
       story: () => { this.story.toggle(); },
+      immerse: (mode) => void this.immerse(mode),
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
@@ -405,6 +413,25 @@ export class ModelView {
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
     };
+  }
+
+  /// Into the visitor's room, where the device decides when frames are drawn.
+  private async immerse(mode: ImmersionMode): Promise<void> {
+    if (this.immersion !== null || this.view.manifest === null) return;
+    try {
+      const { Immersion } = await import('../xr/immersion.js');
+      const { metresPerUnit } = new Coordinates(this.view.manifest);
+      const unit = unitOfModel(this.view.manifest);
+      const shown = { centre: this.view.box.getCenter(new Vector3()), size: Math.max(...this.view.box.getSize(new Vector3()).toArray()), metresPerUnit: unit === null ? metresPerUnit : UNITS[unit].metres, direction: this.view.firstDirection };
+      this.immersion = await Immersion.start(mode, { ...this.stage.parts, view: this.view, shown, ended: () => { this.emerge(); } });
+    } catch (error) {
+      this.around.failed(words.problems.noImmersion, { more: error instanceof Error ? error.message : String(error), subject: 'immersion' });
+    }
+  }
+
+  private emerge(): void {
+    this.immersion = null;
+    this.redraw();
   }
 
   private bench(): Omit<Bench, 'notes' | 'setNotes'> {

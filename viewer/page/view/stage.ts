@@ -61,6 +61,12 @@ export class Stage {
     this.occlusion ??= new Occlusion(this.scene, this.camera);
   }
 
+  /// What a session in the visitor's room draws with.
+  get parts(): { readonly renderer: WebGLRenderer; readonly scene: Scene; readonly camera: PerspectiveCamera } {
+    const { renderer, scene, camera } = this;
+    return { renderer, scene, camera };
+  }
+
   show(object: Object3D): void {
     this.shown.add(object);
   }

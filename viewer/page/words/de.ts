@@ -111,6 +111,7 @@ export const de: Words = {
     notRead: (model) => `Die Geschichte zu ${model} ist nicht lesbar`,
   },
   problems: {
+    noImmersion: 'Das Gerät zeigt das Modell nicht im Raum',
     noWebGl: 'Dieser Browser hat kein WebGL 2, mit dem Modelle gezeichnet werden.',
     noWebGlMore: 'Ein anderer hat es vielleicht, oder dieser mit eingeschalteter Grafikbeschleunigung.',
     noCode: 'Der Programmcode der Seite konnte nicht geladen werden.',
@@ -127,6 +128,8 @@ export const de: Words = {
     badListing: 'Sie muss relativ zu dieser Seite sein oder mit http oder https beginnen.',
   },
   view: {
+    vr: 'In virtueller Realität',
+    ar: 'In Ihrem Raum (Augmented Reality)',
     surface: (model) => `${model} in drei Dimensionen. Pfeiltasten drehen, Plus und Minus zoomen, das Fragezeichen hilft.`,
     back: 'Zurück',
     whole: 'Ganzes Modell',

@@ -114,6 +114,7 @@ export const en = {
     notRead: (model: string) => `The story of ${model} could not be read`,
   },
   problems: {
+    noImmersion: 'The device does not show the model in the room',
     noWebGl: 'This browser has no WebGL 2, which models are drawn with.',
     noWebGlMore: 'Another browser may have it, or this one with its graphics acceleration on.',
     noCode: "The page's code could not be fetched.",
@@ -131,6 +132,8 @@ export const en = {
     badListing: 'It must be relative to this page, or start with http or https.',
   },
   view: {
+    vr: 'In virtual reality',
+    ar: 'In your room (augmented reality)',
     surface: (model: string) => `${model} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`,
     back: 'Back',
     whole: 'Whole model',

@@ -111,6 +111,7 @@ export const es: Words = {
     notRead: (model) => `La historia de ${model} no se pudo leer`,
   },
   problems: {
+    noImmersion: 'El dispositivo no muestra el modelo en la habitación',
     noWebGl: 'Este navegador no tiene WebGL 2, con el que se dibujan los modelos.',
     noWebGlMore: 'Quizá otro navegador lo tenga, o este con la aceleración gráfica activada.',
     noCode: 'No se ha podido cargar el código de la página.',
@@ -127,6 +128,8 @@ export const es: Words = {
     badListing: 'Debe ser relativa a esta página o empezar por http o https.',
   },
   view: {
+    vr: 'En realidad virtual',
+    ar: 'En su habitación (realidad aumentada)',
     surface: (model) => `${model} en tres dimensiones. Las flechas giran, más y menos acercan y alejan, el signo de interrogación ayuda.`,
     back: 'Atrás',
     whole: 'Modelo completo',

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// A model in the room around a visitor, through WebXR: it refines for what the headset sees, within the device's frame rate.
+import { Group, MathUtils, PerspectiveCamera, Vector3, type Scene, type WebGLRenderer } from 'three';
+import type { HierarchyView } from '../../src/index.js';
+import { Hands } from './hands.js';
+import { Placement, type Shown } from './placement.js';
+
+export type ImmersionMode = 'immersive-vr' | 'immersive-ar';
+
+const NEAR = 0.03; // metres
+const FAR = 200;
+const USUAL_RATE = 72; // frames per second, of a device that does not say
+const WIDER = 1.15; // than one eye sees, that both do
+
+export interface Surroundings {
+  readonly renderer: WebGLRenderer;
+  readonly scene: Scene;
+  /// Lights may be at it: it follows the visitor's head.
+  readonly camera: PerspectiveCamera;
+  readonly view: HierarchyView;
+  readonly shown: Shown;
+  ended(): void;
+}
+
+async function floorOf(session: XRSession): Promise<'local-floor' | 'local'> {
+  return session.requestReferenceSpace('local-floor').then(() => 'local-floor' as const, () => 'local' as const);
+}
+
+export class Immersion {
+  private readonly rig = new Group();
+  private readonly eyes = new PerspectiveCamera(50, 1, NEAR, FAR);
+  /// What both eyes see, in the model's units.
+  private readonly head = new PerspectiveCamera();
+  private readonly placement: Placement;
+  private readonly hands: Hands;
+  private readonly rate: number;
+
+  private constructor(private readonly session: XRSession, private readonly around: Surroundings, onFloor: boolean) {
+    this.placement = new Placement(around.shown, onFloor);
+    this.hands = new Hands(this.placement);
+    this.rate = around.view.settings.framesPerSecond;
+    this.rig.matrixAutoUpdate = false;
+    this.rig.add(this.eyes);
+    around.scene.add(this.rig);
+    around.view.setSettings({ framesPerSecond: Math.min(Math.max(session.frameRate ?? USUAL_RATE, 1), 240) });
+    session.addEventListener('end', () => { this.end(); });
+  }
+
+  /// Of a click. Rejects where the visitor or the browser does not allow it.
+  static async start(mode: ImmersionMode, around: Surroundings): Promise<Immersion> {
+    const session = await navigator.xr!.requestSession(mode, { optionalFeatures: ['local-floor'] });
+    const space = await floorOf(session);
+    const { renderer } = around;
+    renderer.xr.enabled = true;
+    renderer.xr.setReferenceSpaceType(space);
+    const immersion = new Immersion(session, around, space === 'local-floor');
+    await renderer.xr.setSession(session);
+    renderer.setAnimationLoop((now, frame?: XRFrame) => { if (frame) immersion.draw(now, frame); });
+    return immersion;
+  }
+
+  stop(): void {
+    this.session.end().catch(() => undefined); // it has ended by itself
+  }
+
+  private draw(now: number, frame: XRFrame): void {
+    const { renderer, scene, view, camera } = this.around;
+    const space = renderer.xr.getReferenceSpace();
+    if (space !== null) this.hands.step(frame, space, now);
+    this.rig.matrix.copy(this.placement.toWorld);
+    this.rig.updateMatrixWorld(true);
+    const size = this.aimHead();
+    if (size !== null) {
+      camera.position.copy(this.head.position);
+      camera.quaternion.copy(this.head.quaternion);
+      camera.updateMatrixWorld(true);
+      view.update(this.head, size, now);
+    }
+    renderer.render(scene, this.eyes);
+  }
+
+  /// Pixels of an eye; null: the device does not know where it is.
+  private aimHead(): { width: number; height: number } | null {
+    const { cameras } = this.around.renderer.xr.getCamera();
+    const eye = cameras.at(0);
+    const viewport = eye?.viewport;
+    if (eye === undefined || viewport === undefined || viewport.w === 0) return null;
+    const units = this.placement.unitsPerMetre;
+    const world = this.rig.matrix.clone().multiply(eye.matrix);
+    world.decompose(this.head.position, this.head.quaternion, new Vector3());
+    const { elements: e } = eye.projectionMatrix;
+    Object.assign(this.head, { fov: MathUtils.RAD2DEG * 2 * Math.atan(WIDER / e[5]), aspect: e[5] / e[0], near: NEAR * units, far: FAR * units });
+    this.head.updateProjectionMatrix();
+    this.head.updateMatrixWorld();
+    // As large as its part of what the wider one sees.
+    return { width: viewport.z * WIDER, height: viewport.w * WIDER };
+  }
+
+  private end(): void {
+    const { renderer, scene, view } = this.around;
+    renderer.setAnimationLoop(null);
+    renderer.xr.enabled = false;
+    scene.remove(this.rig);
+    view.setSettings({ framesPerSecond: this.rate });
+    this.around.ended();
+  }
+}
