@@ -37,6 +37,7 @@ export class Stage {
   asked: PictureSize | null = null;
   /// Null: as it is.
   painter: Painter | null = null;
+  private isOccluded = false;
   private occlusion: Occlusion | null = null;
   private distance = 1;
   private nominal = new Vector2();
@@ -53,12 +54,11 @@ export class Stage {
 
   /// Whether hollows get less light. Resolves once they do; rejects if the code for it does not come.
   async setOccluded(is: boolean): Promise<void> {
-    if (is === (this.occlusion !== null)) return;
-    this.occlusion?.dispose();
-    this.occlusion = null;
-    if (!is) return;
+    this.isOccluded = is;
+    if (!is) this.dropOcclusion();
+    if (!is || this.occlusion !== null) return;
     const { Occlusion } = await import('./occlusion.js');
-    this.occlusion ??= new Occlusion(this.scene, this.camera);
+    if (this.isOccluded) this.occlusion ??= new Occlusion(this.scene, this.camera); // it may have been switched off meanwhile
   }
 
   /// What a session in the visitor's room draws with.
@@ -128,8 +128,14 @@ export class Stage {
     if (this.camera.view?.enabled !== true) this.occlusion?.shade(this.renderer, this.distance, Math.min(devicePixelRatio, MOST_RATIO));
   }
 
-  dispose(): void {
+  private dropOcclusion(): void {
     this.occlusion?.dispose();
+    this.occlusion = null;
+  }
+
+  dispose(): void {
+    this.isOccluded = false;
+    this.dropOcclusion();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.canvas.remove();

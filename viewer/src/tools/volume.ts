@@ -5,7 +5,7 @@ import type { Indices } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { sideOf, type CutPlane } from './planes.js';
-import { cross, distanceOf, dot, length, subtract, vertexAt, type Vector } from './vectors.js';
+import { cross, dot, subtract, vertexAt, type Vector } from './vectors.js';
 
 export interface Volume {
   /// Negative: the surface's front is inside.
@@ -69,14 +69,24 @@ function fluxOf(triangle: readonly Vector[], { base, height, sides }: Region): n
 /// The part of a triangle in what lies within `reach` of a surface on one of its sides; all of them are no less than that: of the points whose
 /// nearest one is within the triangle a slab, of those nearest to an edge, which has two triangles, half of half a cylinder, and to a vertex, which
 /// has three and more, a third of half a ball, three times.
-function beside([a, b, c]: readonly Vector[], reach: number): number {
-  const area = length(cross(subtract(b, a), subtract(c, a))) / 2;
-  const edges = distanceOf(a, b) + distanceOf(b, c) + distanceOf(c, a);
+function beside(area: number, edges: number, reach: number): number {
   return reach * (area + reach * ((Math.PI / 4) * edges + ((2 * Math.PI) / 3) * reach));
 }
 
-function isFar(triangle: readonly Vector[], planes: readonly CutPlane[], reach: number): boolean {
-  return planes.some((plane) => triangle.every((point) => sideOf(plane, point) < -reach));
+/// How far a vertex is above a plane.
+function heightAt({ normal, constant }: CutPlane, positions: ArrayLike<number>, vertex: number): number {
+  return normal[0] * positions[3 * vertex] + normal[1] * positions[3 * vertex + 1] + normal[2] * positions[3 * vertex + 2] + constant;
+}
+
+function isFar(positions: ArrayLike<number>, corners: readonly number[], planes: readonly CutPlane[], reach: number): boolean {
+  return planes.some((plane) => corners.every((corner) => heightAt(plane, positions, corner) < -reach));
+}
+
+function lengthBetween(positions: ArrayLike<number>, a: number, b: number): number {
+  const x = positions[3 * a] - positions[3 * b];
+  const y = positions[3 * a + 1] - positions[3 * b + 1];
+  const z = positions[3 * a + 2] - positions[3 * b + 2];
+  return Math.sqrt(x * x + y * y + z * z);
 }
 
 /// Triangles, three corners each, of `positions`.
@@ -86,14 +96,35 @@ export interface Triangles {
   readonly count: number;
 }
 
-/// The part of some of a surface's triangles, which may be off by `reach`.
+/// The part of some of a surface's triangles, which may be off by `reach`. Those that no plane cuts, most of them, are summed without making anything.
 export function partOfVolume({ positions, corners, count }: Triangles, planes: readonly CutPlane[], reach: number): Volume {
   const region = regionOf(planes);
-  let [volume, bound] = [0, 0];
+  const { base, height, sides } = region;
+  const [nx, ny, nz] = base.normal;
+  let volume = 0;
+  let bound = 0;
   for (let i = 0; i < 3 * count; i += 3) {
-    const triangle = [vertexAt(positions, corners[i]), vertexAt(positions, corners[i + 1]), vertexAt(positions, corners[i + 2])];
-    volume += fluxOf(triangle, region);
-    if (reach > 0 && !isFar(triangle, planes, reach)) bound += beside(triangle, reach);
+    const a = corners[i];
+    const b = corners[i + 1];
+    const c = corners[i + 2];
+    const aboveA = heightAt(base, positions, a);
+    const aboveB = heightAt(base, positions, b);
+    const aboveC = heightAt(base, positions, c);
+    if (Math.max(aboveA, aboveB, aboveC) < -reach) continue;
+    const ux = positions[3 * b] - positions[3 * a];
+    const uy = positions[3 * b + 1] - positions[3 * a + 1];
+    const uz = positions[3 * b + 2] - positions[3 * a + 2];
+    const vx = positions[3 * c] - positions[3 * a];
+    const vy = positions[3 * c + 1] - positions[3 * a + 1];
+    const vz = positions[3 * c + 2] - positions[3 * a + 2];
+    const x = uy * vz - uz * vy;
+    const y = uz * vx - ux * vz;
+    const z = ux * vy - uy * vx;
+    const isWhole = Math.min(aboveA, aboveB, aboveC) >= 0 && Math.max(aboveA, aboveB, aboveC) <= height && sides.every((side) => heightAt(side, positions, a) >= 0 && heightAt(side, positions, b) >= 0 && heightAt(side, positions, c) >= 0);
+    if (isWhole) volume += ((x * nx + y * ny + z * nz) * (aboveA + aboveB + aboveC)) / 6;
+    else volume += fluxOf([a, b, c].map((vertex) => vertexAt(positions, vertex)), region);
+    if (reach === 0 || (!isWhole && isFar(positions, [a, b, c], planes, reach))) continue;
+    bound += beside(Math.sqrt(x * x + y * y + z * z) / 2, lengthBetween(positions, a, b) + lengthBetween(positions, b, c) + lengthBetween(positions, c, a), reach);
   }
   return { volume, bound };
 }
