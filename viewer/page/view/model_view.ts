@@ -14,9 +14,8 @@ import type { Bench } from '../tools/bench.js';
 import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
-import { Coordinates } from '../../src/tools/coordinates.js';
-import { UNITS, unitOfModel } from '../../src/tools/units.js';
-import type { Immersion, ImmersionMode } from '../xr/immersion.js';
+import { ToldLook } from '../story/told_look.js';
+import { ImmersionHost } from '../xr/immersion_host.js';
 import { immersions } from '../xr/support.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
@@ -83,9 +82,8 @@ export class ModelView {
     told: () => { this.startRest(); this.redraw(); },
     failed: (why, retry) => this.around.failed(words.story.notRead(this.model.name), { more: why, subject: 'story', retry }),
   });
-  /// What was chosen before a story was told, and what the story has chosen since.
-  private untold: { before: Appearance; told: Appearance } | null = null;
-  private immersion: Immersion | null = null;
+  private readonly toldLook = new ToldLook();
+  private readonly immersion: ImmersionHost;
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
   private readonly stage: Stage;
@@ -119,6 +117,12 @@ export class ModelView {
     this.story.follow(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings, files: model.files });
+    this.immersion = new ImmersionHost({
+      stage: this.stage,
+      view: this.view,
+      ended: () => { this.redraw(); },
+      failed: (why) => { around.failed(words.problems.noImmersion, { more: why, subject: 'immersion' }); },
+    });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
     this.presentation.apply();
     this.stage.show(this.view);
@@ -183,7 +187,7 @@ export class ModelView {
 
   close(): void {
     this.ending.abort();
-    this.immersion?.stop();
+    this.immersion.stop();
     this.loop.stop();
     this.sizes.disconnect();
     window.clearTimeout(this.restTimer);
@@ -277,7 +281,7 @@ export class ModelView {
   }
 
   private frame(now: number): Pace {
-    if (this.lost !== null || this.immersion !== null) return 'rest';
+    if (this.lost !== null || this.immersion.isOn) return 'rest';
     if (this.approach !== null && this.shown && this.view.manifest !== null) this.arrive();
     const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.startRest();
@@ -402,7 +406,7 @@ export class ModelView {
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
       tools: () => void this.tools.use(null),
       story: () => { this.story.toggle(); },
-      immerse: (mode) => void this.immerse(mode),
+      immerse: (mode) => void this.immersion.start(mode),
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
@@ -413,25 +417,6 @@ export class ModelView {
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
     };
-  }
-
-  /// Into the visitor's room, where the device decides when frames are drawn.
-  private async immerse(mode: ImmersionMode): Promise<void> {
-    if (this.immersion !== null || this.view.manifest === null) return;
-    try {
-      const { Immersion } = await import('../xr/immersion.js');
-      const { metresPerUnit } = new Coordinates(this.view.manifest);
-      const unit = unitOfModel(this.view.manifest);
-      const shown = { centre: this.view.box.getCenter(new Vector3()), size: Math.max(...this.view.box.getSize(new Vector3()).toArray()), metresPerUnit: unit === null ? metresPerUnit : UNITS[unit].metres, direction: this.view.firstDirection };
-      this.immersion = await Immersion.start(mode, { ...this.stage.parts, view: this.view, shown, ended: () => { this.emerge(); } });
-    } catch (error) {
-      this.around.failed(words.problems.noImmersion, { more: error instanceof Error ? error.message : String(error), subject: 'immersion' });
-    }
-  }
-
-  private emerge(): void {
-    this.immersion = null;
-    this.redraw();
   }
 
   private bench(): Omit<Bench, 'notes' | 'setNotes'> {
@@ -461,29 +446,19 @@ export class ModelView {
     return {
       view, camera, root, surface, signal, pose,
       travel: (to) => (isStanding(to) ? this.navigation.travel(to) : 0),
-      present: (choices) => { this.presentAsTold(choices); },
+      present: (choices) => { this.presentAs(this.toldLook.tell(choices, this.presentation.chosen)); },
     };
   }
 
-  /// On top of what was chosen before, and not kept.
-  private presentAsTold(choices: string): void {
-    const before = this.untold?.told === this.presentation.chosen ? this.untold.before : this.presentation.chosen;
-    this.untold = { before, told: withChoices(choices, { ...before }) };
-    this.presentation.chosen = this.untold.told;
+  private presentAs(chosen: Appearance): void {
+    this.presentation.chosen = chosen;
     this.present();
   }
 
   private storyShown(isTold: boolean): void {
     this.chrome.tellStory(isTold);
-    if (!isTold) this.presentAsBefore();
+    if (!isTold) this.presentAs(this.toldLook.end(this.presentation.chosen));
     this.redraw();
-  }
-
-  /// What the visitor has chosen meanwhile stays.
-  private presentAsBefore(): void {
-    if (this.untold?.told === this.presentation.chosen) this.presentation.chosen = this.untold.before;
-    this.untold = null;
-    this.present();
   }
 
   /// Places may be from a file.
