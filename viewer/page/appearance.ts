@@ -4,8 +4,8 @@ import { RAMPS } from '../src/scene/ramps.js';
 import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';
 import { DEFAULT_STANDING, MOST_STRETCH, UPS, type Standing } from '../src/scene/standing.js';
 
-/// `auto`: the sun over terrains, a studio around all else. `matcap`: no light, the form alone.
-export type LightName = 'auto' | 'studio' | 'raking' | 'flat' | 'sun' | 'matcap';
+/// `auto`: the sun over terrains, a studio around all else. `matcap`: no light, the form alone. `relief`: scratches stand out.
+export type LightName = 'auto' | 'studio' | 'raking' | 'relief' | 'flat' | 'sun' | 'matcap';
 
 export interface Light {
   name: LightName;
@@ -21,7 +21,7 @@ export interface Appearance {
   standing: Standing;
 }
 
-export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'flat', 'sun', 'matcap'];
+export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'relief', 'flat', 'sun', 'matcap'];
 export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
 export const DEFAULT_LIGHT: Light = { name: 'auto', key: null, occlusion: false };
 

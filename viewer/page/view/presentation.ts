@@ -13,14 +13,18 @@ export interface Shown {
 }
 
 function rigOf({ name }: Light, model: KnownModel): Rig {
-  if (name === 'matcap') return 'studio';
+  if (name === 'matcap' || name === 'relief') return 'studio';
   return name === 'auto' ? rigFor(model) : name;
+}
+
+function materialOf({ name }: Light): Look['material'] {
+  return name === 'matcap' || name === 'relief' ? name : 'lit';
 }
 
 export function shownOf({ look, light, standing }: Appearance, model: KnownModel): Shown {
   const rig = rigOf(light, model);
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
-  return { look: { ...shownLook(look, rig, standing.stretch, model), material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
+  return { look: { ...shownLook(look, rig, standing.stretch, model), material: materialOf(light) }, rig, key };
 }
 
 function isSame(a: object, b: object): boolean {

@@ -198,8 +198,8 @@ export const de: Words = {
   },
   light: {
     light: 'Licht',
-    names: { auto: 'Auto', studio: 'Studio', raking: 'Streif', flat: 'Flach', sun: 'Sonne', matcap: 'Ton' },
-    occlusion: 'Höhlungen dunkler, nach dem, was sie umgibt',
+    names: { auto: 'Auto', studio: 'Studio', raking: 'Streif', relief: 'Relief', flat: 'Flach', sun: 'Sonne', matcap: 'Ton' },
+    occlusion: 'Dunkle Höhlungen',
     drag: 'Ziehen dreht das Licht',
     around: 'Licht von der Seite',
     above: 'Licht von oben',

@@ -203,8 +203,8 @@ export const en = {
   },
   light: {
     light: 'Light',
-    names: { auto: 'Auto', studio: 'Studio', raking: 'Raking', flat: 'Flat', sun: 'Sun', matcap: 'Clay' },
-    occlusion: 'Darken hollows by what is around them',
+    names: { auto: 'Auto', studio: 'Studio', raking: 'Raking', relief: 'Relief', flat: 'Flat', sun: 'Sun', matcap: 'Clay' },
+    occlusion: 'Dark hollows',
     drag: 'A drag turns the light',
     around: 'Light from the side',
     above: 'Light from above',

@@ -198,8 +198,8 @@ export const es: Words = {
   },
   light: {
     light: 'Luz',
-    names: { auto: 'Auto', studio: 'Estudio', raking: 'Rasante', flat: 'Plana', sun: 'Sol', matcap: 'Arcilla' },
-    occlusion: 'Oscurecer los huecos según lo que los rodea',
+    names: { auto: 'Auto', studio: 'Estudio', raking: 'Rasante', relief: 'Relieve', flat: 'Plana', sun: 'Sol', matcap: 'Arcilla' },
+    occlusion: 'Huecos oscuros',
     drag: 'Arrastrar gira la luz',
     around: 'Luz desde el lado',
     above: 'Luz desde arriba',

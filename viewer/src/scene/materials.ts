@@ -68,9 +68,14 @@ diffuseColor.rgb *= ${HEIGHT_COLOURS.slice(1).reduce((below, hex, i) => `mix(${b
 
 /// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow. Along silhouettes it turns
 /// from a surface to the one behind it, which is neither.
-const CAVITIES = `#include <normal_fragment_maps>
+function cavitiesBy({ strength, least, most }: { readonly strength: number; readonly least: number; readonly most: number }): string {
+  return `#include <normal_fragment_maps>
 float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.4, 0.8, abs(normal.z));
-diffuseColor.rgb *= clamp(1.0 + 1.8 * bend, 0.5, 1.4);`;
+diffuseColor.rgb *= clamp(1.0 + ${strength.toFixed(1)} * bend, ${least.toFixed(2)}, ${most.toFixed(2)});`;
+}
+
+const CAVITIES = cavitiesBy({ strength: 1.8, least: 0.5, most: 1.4 });
+const RELIEF_CAVITIES = cavitiesBy({ strength: 9, least: 0.15, most: 2 });
 
 /// Looks of one key have the same surfaces.
 export function surfaceKey({ colours, texture, relight, material, cavities, shading, wires, points }: Look, { values }: SharedMaterials): string {
@@ -135,13 +140,14 @@ function unlitMaterial(look: Look, { picture, texture, coloursTint }: Painting):
 }
 
 /// What three's shaders are changed by, for a look.
-function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean, values: AttributePaint | null): void {
+function edit(shader: Shader, { colours, cavities, material }: Look, vertexColors: boolean, values: AttributePaint | null): void {
   const change = (where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void => { shader[where] = shader[where].replace(`#include <${chunk}>`, by); };
   const height = colours === 'height' ? 'varying float vHeight;\n' : '';
   change('vertexShader', 'beginnormal_vertex', RELIEF);
   change('fragmentShader', 'normal_fragment_begin', BACKS);
   if (vertexColors) takeScreenColours(shader);
-  if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
+  if (material === 'relief') change('fragmentShader', 'normal_fragment_maps', RELIEF_CAVITIES);
+  else if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
   if (height !== '') change('vertexShader', 'begin_vertex', HEIGHT);
   if (height !== '') change('fragmentShader', 'color_fragment', RAMP);
   if (values !== null) {
@@ -174,7 +180,7 @@ function litMaterial(look: Look, { picture, texture, normals, hasColours, hasVal
     Object.assign(shader.uniforms, { outwards, upwards, heights, relief }, values?.uniforms);
     edit(shader, look, vertexColors, values);
   };
-  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, values?.key].join('-')}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, values?.key].join('-')}`;
   return material;
 }
 

@@ -13,8 +13,8 @@ export interface Look extends AttributeLook {
   texture: boolean;
   /// Pictures that have their light already are lit all the same.
   relight: boolean;
-  /// `matcap`: like a ball of clay in a bright room, whatever lights there are.
-  material: 'lit' | 'matcap';
+  /// `matcap`: like a ball of clay in a bright room, whatever lights there are. `relief`: what bends within pixels stands out, as scratches and letters do.
+  material: 'lit' | 'matcap' | 'relief';
   /// So many times steeper slopes are shaded than they are, 1 … 1000; each triangle's own normal stays.
   relief: number;
   /// Hollows darker, edges lighter.

@@ -47,6 +47,7 @@ describe('what is shown', () => {
 
   it.each<[Light, object]>([
     [{ name: 'studio', key: null, occlusion: false }, { rig: 'studio', look: { relief: 1 } }],
+    [{ name: 'relief', key: null, occlusion: false }, { rig: 'studio', look: { material: 'relief', relief: 1 } }],
     [{ name: 'matcap', key: null, occlusion: false }, { look: { material: 'matcap', relief: 1 } }],
     [{ name: 'auto', key: [0.1, 0.2], occlusion: false }, { rig: 'sun', key: { right: 0.1, up: 0.2 } }],
   ])('follows the light that was chosen: %j', (light, shown) => {
