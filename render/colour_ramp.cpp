@@ -33,11 +33,19 @@ Vec3d screen_colour(std::uint32_t hex) {
           static_cast<double>(hex & 255) / 255};
 }
 
+Vec3d lights_of(Vec3d screen) {
+  return {light_of(screen.x), light_of(screen.y), light_of(screen.z)};
+}
+
 Vec3f as_light(Vec3d screen) {
-  return to_float({light_of(screen.x), light_of(screen.y), light_of(screen.z)});
+  return to_float(lights_of(screen));
 }
 
 }  // namespace
+
+Vec3d screen_light(std::uint32_t rgb) {
+  return lights_of(screen_colour(rgb));
+}
 
 std::optional<ColourRamp> ramp_named(std::string_view name) {
   const auto found = std::ranges::find(kRamps, name, [](const auto& ramp) { return ramp.first; });

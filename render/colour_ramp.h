@@ -16,6 +16,9 @@ enum class ColourRamp : std::uint8_t { viridis, cividis, turbo, coolwarm };
 
 std::optional<ColourRamp> ramp_named(std::string_view name);
 
+/// As light, of a screen's colour 0xRRGGBB.
+Vec3d screen_light(std::uint32_t rgb);
+
 /// As light, at `part` of the way, 0 to 1; what lies outside has the colour of that end.
 Vec3f ramp_colour(ColourRamp ramp, double part);
 

@@ -1,18 +1,12 @@
 #include "render/light_rig.h"
 
 #include "hierarchy/angle.h"
-#include "hierarchy/srgb.h"
+#include "render/colour_ramp.h"
 
 #include <cstdint>
 
 namespace meshhier::render {
 namespace {
-
-/// Of a screen's colour, 0xRRGGBB.
-Vec3d light_of_colour(std::uint32_t rgb) {
-  const auto channel = [&](int shift) { return meshhier::light_of((rgb >> shift & 255) / 255.0); };
-  return {channel(16), channel(8), channel(0)};
-}
 
 constexpr std::uint32_t kWarm = 0xfff4e4, kCool = 0xd4e2ff, kSkyBlue = 0xf1f5ff, kEarth = 0xffeedd;
 
@@ -29,11 +23,11 @@ Vec3d towards(Angles from) {
 /// `ground`: what comes from below, as a part of what comes from above.
 LightRig rig_of(Lamp key, double fill, double rim, double sky, double ground, Vec3d upward) {
   constexpr Angles kFill{1.1, 0.05}, kRim{2.3, 0.45};
-  const Vec3d cool = light_of_colour(kCool);
+  const Vec3d cool = screen_light(kCool);
   return {{key, Lamp{towards(kFill), cool * fill}, Lamp{towards(kRim), cool * rim}},
           upward,
-          light_of_colour(kSkyBlue) * sky,
-          light_of_colour(kEarth) * (ground * sky)};
+          screen_light(kSkyBlue) * sky,
+          screen_light(kEarth) * (ground * sky)};
 }
 
 /// From upright coordinates, y up, to the model's.
@@ -50,12 +44,12 @@ Vec3d seen(const Camera& camera, Vec3d direction) {
 
 LightRig studio(Vec3d upward) {
   constexpr Angles kKey{-0.75, 0.7};
-  return rig_of({towards(kKey), light_of_colour(kWarm) * 2.9}, 0.35, 1.1, 1.25, 0.42, upward);
+  return rig_of({towards(kKey), screen_light(kWarm) * 2.9}, 0.35, 1.1, 1.25, 0.42, upward);
 }
 
 LightRig sunlight(const Camera& camera, UpAxis up) {
   constexpr Angles kSun{-2.36, 0.79};
-  return rig_of({seen(camera, in_model(towards(kSun), up)), light_of_colour(kWarm) * 3}, 0, 0, 1.1,
+  return rig_of({seen(camera, in_model(towards(kSun), up)), screen_light(kWarm) * 3}, 0, 0, 1.1,
                 0.7, upward_in(camera, up));
 }
 

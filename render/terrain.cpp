@@ -1,6 +1,6 @@
 #include "render/terrain.h"
 
-#include "hierarchy/srgb.h"
+#include "render/colour_ramp.h"
 
 #include <algorithm>
 #include <array>
@@ -55,11 +55,13 @@ struct Areas {
   double above = 0, below = 0, ground = 0;
 };
 
-Areas areas_of(const std::vector<Facet>& facets, Vec3d along) {
+Areas areas_of(const TileMesh& mesh, Vec3d along) {
   Areas areas;
-  for (const Facet& facet : facets) {
-    const Vec3d a = to_double(facet[0].position);
-    const Vec3d normal = cross(to_double(facet[1].position) - a, to_double(facet[2].position) - a);
+  const auto place = [&](TileVertex vertex) {
+    return to_double(mesh.vertices.positions[raw(vertex)]);
+  };
+  for (const TileTriangle& t : mesh.interior) {
+    const Vec3d a = place(t[0]), normal = cross(place(t[1]) - a, place(t[2]) - a);
     const double shadow = dot(normal, along);
     (shadow > 0 ? areas.above : areas.below) += length(normal);
     areas.ground += std::abs(shadow);
@@ -67,12 +69,12 @@ Areas areas_of(const std::vector<Facet>& facets, Vec3d along) {
   return areas;
 }
 
-std::optional<Terrain> terrain_along(const PublishedTile& root, const std::vector<Facet>& facets,
-                                     Vec3d along, double most, bool is_upright) {
-  const auto [low, high] = heights_of(root.mesh, along);
-  if (!(high > low && high - low < most * extent_across(root.mesh, along)))
+std::optional<Terrain> terrain_along(const TileMesh& mesh, Vec3d along, double most,
+                                     bool is_upright) {
+  const auto [low, high] = heights_of(mesh, along);
+  if (!(high > low && high - low < most * extent_across(mesh, along)))
     return std::nullopt;
-  const auto [above, below, ground] = areas_of(facets, along);
+  const auto [above, below, ground] = areas_of(mesh, along);
   if (std::min(above, below) > kMostDown * (above + below) || ground == 0)
     return std::nullopt;
   const double steepness = (above + below) / ground;
@@ -84,12 +86,8 @@ Vec3f height_colour(double part) {
   constexpr std::array<std::uint32_t, 5> kColours{0x4f8a63, 0xb9c28a, 0xd8b878, 0x9c7b62, 0xf4f2ee};
   const double at = std::clamp(part, 0.0, 1.0) * (kColours.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(at), kColours.size() - 2);
-  const auto channel = [&](int shift) {
-    const auto light = [&](std::uint32_t rgb) { return light_of((rgb >> shift & 255) / 255.0); };
-    const double from = light(kColours[below]), to = light(kColours[below + 1]);
-    return from + (to - from) * (at - static_cast<double>(below));
-  };
-  return to_float({channel(16), channel(8), channel(0)});
+  const Vec3d from = screen_light(kColours[below]), to = screen_light(kColours[below + 1]);
+  return to_float(from + (to - from) * (at - static_cast<double>(below)));
 }
 
 }  // namespace
@@ -99,17 +97,10 @@ double Terrain::relief() const {
 }
 
 std::optional<Terrain> terrain_of(const PublishedTile& root, UpAxis up) {
-  std::vector<Facet> facets;
-  const auto& positions = root.mesh.vertices.positions;
-  for (const TileTriangle& t : root.mesh.interior) {
-    Facet& facet = facets.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k)
-      facet[k].position = positions[raw(t[k])];
-  }
-  auto upright = terrain_along(root, facets, direction_of(up), kMostHeight, true);
+  auto upright = terrain_along(root.mesh, direction_of(up), kMostHeight, true);
   if (upright || up == UpAxis::z)
     return upright;
-  return terrain_along(root, facets, {0, 0, 1}, kMostThickness, false);
+  return terrain_along(root.mesh, {0, 0, 1}, kMostThickness, false);
 }
 
 void shade_steeper(const Terrain& terrain, std::span<Facet> facets) {

@@ -68,9 +68,9 @@ export function embeddedModel(page: Pick<Document, 'getElementById' | 'baseURI'>
   if (text == null) return null;
   const root = JsonValue.parse(text, (what) => { throw new Error(`this page is damaged: ${what}`); });
   const link = root.has('link') ? root.at('link').text() : null;
+  const story = root.has('story') ? root.at('story').text() : null;
   const files = new Map(root.at('files').entries().map(([name, content]) => [name, content.text()]));
   const fetch = (url: string, init?: RequestInit): Promise<Response> => globalThis.fetch(url, init);
-  const model: Model = { name: root.at('name').text(), path: '', url: link ?? page.baseURI, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null, story: null };
-  const story = root.has('story') ? root.at('story').text() : null;
-  return { ...model, story, files: new EmbeddedFiles(files, link === null ? null : remoteFiles(link, fetch)) };
+  const model: Model = { name: root.at('name').text(), path: '', url: link ?? page.baseURI, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null, story };
+  return { ...model, files: new EmbeddedFiles(files, link === null ? null : remoteFiles(link, fetch)) };
 }

@@ -83,15 +83,18 @@ export function readable(text: string): string {
   }
 }
 
+function lastPart(path: string): string {
+  return readable(withoutLastSlashes(path).replace(/^.*\//, ''));
+}
+
 /// `models/sub/david%202.hier` to `david 2`.
 export function nameOfPath(path: string): string {
-  const file = readable(withoutLastSlashes(path).replace(/^.*\//, ''));
-  return file.replace(/(.)\.[^.]*$/, '$1') || path;
+  return lastPart(path).replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
 /// Of its hierarchy: `dragon.hier`.
 export function fileOf({ name, path, files }: Model): string {
-  return files === undefined ? readable(withoutLastSlashes(path).replace(/^.*\//, '')) : `${name}.hier`;
+  return files === undefined ? lastPart(path) : `${name}.hier`;
 }
 
 /// Null of what cannot be fetched.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fetches the listing, and again and again until there is one with models and while it tells of jobs.
-import { drain } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { fetchText } from './fetched.js';
 import { ListingError, parseListing, type Listing } from './listing.js';
 import { follow } from './signals.js';
 import { words } from './words/words.js';
@@ -10,19 +10,13 @@ const PAUSE = 2000; // milliseconds
 const PATIENCE = 30_000; // milliseconds, with a host that says nothing or little
 const MOST_BYTES = 2 ** 24; // room for the 10,000 entries that are read, of 1600 bytes each
 
-async function receive(url: string, signal: AbortSignal): Promise<string> {
-  const response = await fetch(url, { cache: 'no-cache', signal });
-  if (!response.ok) throw new ListingError(`${url}: ${`${response.status} ${response.statusText}`.trim()}`);
-  return response.body === null ? '' : new TextDecoder().decode(await drain(response.body, MOST_BYTES, url));
-}
-
-/// Its text, unchanged files from the browser's cache. Throws ListingError.
-async function fetchText(url: string, ended: AbortSignal): Promise<string> {
+/// Its text. Throws ListingError.
+async function fetchListing(url: string, ended: AbortSignal): Promise<string> {
   const ending = new AbortController();
   const timer = window.setTimeout(() => { ending.abort(); }, PATIENCE);
   follow(ending, ended);
   try {
-    return await receive(url, ending.signal);
+    return await fetchText(url, MOST_BYTES, ending.signal, (what) => { throw new ListingError(what); });
   } catch (problem) {
     if (problem instanceof ListingError) throw problem;
     throw new ListingError(problem instanceof HierarchyProblem ? problem.message : words.listing.unreachable(url));
@@ -47,7 +41,7 @@ export class ListingWatch {
 
   /// As it is now, without watching it. Throws ListingError.
   async once(signal: AbortSignal): Promise<Listing> {
-    return this.listing ?? parseListing(await fetchText(this.url, signal), this.url);
+    return this.listing ?? parseListing(await fetchListing(this.url, signal), this.url);
   }
 
   start(): void {
@@ -64,7 +58,7 @@ export class ListingWatch {
   /// `ended`: the start which this look belongs to.
   private async look(ended: AbortSignal): Promise<void> {
     try {
-      const text = await fetchText(this.url, ended);
+      const text = await fetchListing(this.url, ended);
       if (!ended.aborted) this.take(text);
     } catch (error) {
       if (!ended.aborted && this.listing === null) this.failed(error instanceof ListingError ? error.message : String(error));

@@ -2,12 +2,8 @@
 // The notes of a story on the model: numbered buttons at their places in each frame.
 import { Vector4, type PerspectiveCamera, type Vector3 } from 'three';
 import { element } from '../parts/element.js';
+import { placeOf } from '../view/picture_place.js';
 import { words } from '../words/words.js';
-
-interface Picture {
-  readonly width: number;
-  readonly height: number;
-}
 
 export class StoryMarks {
   readonly root = element('div', { class: 'story-marks' });
@@ -28,12 +24,14 @@ export class StoryMarks {
     this.marks.forEach((mark, i) => { mark.setAttribute('aria-current', i === shown ? 'step' : 'false'); });
   }
 
-  /// `places`: of the notes, in the world. What is behind the camera or outside of the picture is not there.
-  place(places: readonly Vector3[], camera: PerspectiveCamera, { width, height }: Picture): void {
+  /// `places`: of the notes, in the world; `picture`: what they lie over. What is behind the camera or outside of the picture is not there.
+  place(places: readonly Vector3[], camera: PerspectiveCamera, picture: HTMLElement): void {
     this.marks.forEach((mark, i) => {
-      const { x, y, w } = new Vector4(...places[i].toArray(), 1).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix);
-      mark.hidden = !(w > 0 && Math.abs(x) <= w && Math.abs(y) <= w);
-      if (!mark.hidden) mark.style.transform = `translate(${(((x / w + 1) / 2) * width).toFixed(1)}px, ${(((1 - y / w) / 2) * height).toFixed(1)}px) translate(-50%, -50%)`;
+      const clip = new Vector4(...places[i].toArray(), 1).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix);
+      mark.hidden = !(clip.w > 0 && Math.abs(clip.x) <= clip.w && Math.abs(clip.y) <= clip.w);
+      if (mark.hidden) return;
+      const { x, y } = placeOf(clip, picture);
+      mark.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     });
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Tells a story: flies from note to note, shows the model as each of them wants it, and says what it says.
-import { Vector3 } from 'three';
 import type { Note, Notebook } from '../../src/tools/note.js';
 import type { Bench } from '../tools/bench.js';
+import { poseOfNote } from '../tools/note_pose.js';
 import { Places } from '../tools/places.js';
-import { CameraPose } from '../view/camera_pose.js';
+import type { CameraPose } from '../view/camera_pose.js';
 import { StoryCard } from './story_card.js';
 import { StoryMarks } from './story_marks.js';
 import './story.css';
@@ -70,7 +70,7 @@ export class StoryPlayer {
   drawn(): void {
     const { surface, camera } = this.teller;
     const places = this.story.notes.map(({ at }) => this.places.toWorld(at));
-    this.marks.place(places, camera, { width: surface.clientWidth, height: surface.clientHeight });
+    this.marks.place(places, camera, surface);
   }
 
   end(): void {
@@ -81,14 +81,11 @@ export class StoryPlayer {
   }
 
   /// The way to its view, or closer to it from where the camera is.
-  private fly({ at, view }: Note): number {
-    this.teller.present(view?.choices ?? '');
-    const target = this.places.toWorld(view ? view.target : at);
-    if (view) return this.teller.travel(new CameraPose(this.places.toWorld(view.position), target));
-    const { box } = this.teller.view;
-    const pose = this.teller.pose();
-    const distance = Math.min(pose.distance, CLOSER * box.getSize(new Vector3()).length());
-    return this.teller.travel(new CameraPose(pose.forward.multiplyScalar(-distance).add(target), target));
+  private fly(note: Note): number {
+    const { teller } = this;
+    const { min, max } = teller.view.box;
+    teller.present(note.view?.choices ?? '');
+    return teller.travel(poseOfNote(note, this.places, teller.pose(), CLOSER * min.distanceTo(max)));
   }
 
   private show(i: number | null): void {

@@ -4,7 +4,7 @@ import { Coordinates } from '../../src/tools/coordinates.js';
 import { boxPlanes, flipped, isKept, localNormal, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
-import { shownBound } from '../../src/tools/shown_bound.js';
+import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
 import { originalVolume } from '../../src/tools/original_volume.js';
 import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
@@ -230,7 +230,7 @@ export class ClipTool implements Tool {
     const { surface, source } = view;
     const isLevel = this.mode === 'plane' && view.terrain !== null && Math.abs(dot(this.normal, view.upwards)) > LEVEL;
     if (source === null || !(view.closed || isLevel)) return null;
-    const bounds = new Map(surface.map(({ node }) => [node, shownBound(node, surface, (other) => source.index.record(other)?.bound ?? Infinity)]));
+    const bounds = new Map(surface.map(({ node }) => [node, shownBound(node, surface, (other) => recordedBound(source, other))]));
     return volumeOf(surface, this.volumePlanes(), (node) => bounds.get(node) ?? Infinity);
   }
 

@@ -4,6 +4,7 @@ import { boundsOf, measuresOf, type Measures } from '../../src/tools/measure.js'
 import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
 import { PROFILE_AXES, profileCsv, profileLines, profileOf } from '../../src/tools/profile.js';
+import { recordedBound } from '../../src/tools/shown_bound.js';
 import { sectionSvg } from '../../src/tools/section_svg.js';
 import { within } from '../../src/tools/units.js';
 import type { Vector } from '../../src/tools/vectors.js';
@@ -111,7 +112,7 @@ export class MeasureTool implements Tool {
     const profiles = profileOf(view.surface, this.points.map(({ local }) => local), upwards);
     this.note.textContent = profiles.length === 0 ? words.measure.noProfile : '';
     if (profiles.length === 0) return;
-    const bound = Math.max(...view.surface.map(({ node }) => view.source?.index.record(node)?.bound ?? Infinity));
+    const bound = Math.max(...view.surface.map(({ node }) => recordedBound(view.source, node)));
     const scale = this.shop.scale();
     const off = bound > 0 && bound < Infinity ? `; ± ${scale.format(bound)}` : '';
     const title = `${words.measure.profile(bench.name, scale.format(this.measures().level))}${off}`;

@@ -3,9 +3,9 @@
 import { formatNotes, readNotes, type Note, type SeenFrom } from '../../src/tools/notes.js';
 import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { element } from '../parts/element.js';
-import { CameraPose } from '../view/camera_pose.js';
 import { download } from './download.js';
 import { textButton } from './figures.js';
+import { poseOfNote } from './note_pose.js';
 import { noteRow, type NoteOrders } from './note_row.js';
 import type { Mark } from './overlay.js';
 import { Places } from './places.js';
@@ -119,16 +119,10 @@ export class NotesTool implements Tool {
     this.shop.bench.play({ title, notes, bookmarks }, 0);
   }
 
-  /// As it wants to be seen, else along the way that the camera looks.
-  private flyTo({ at, view }: Note): void {
+  private flyTo(note: Note): void {
     const { bench } = this.shop;
-    if (view) {
-      bench.fly(new CameraPose(this.places.toWorld(view.position), this.places.toWorld(view.target)));
-      return;
-    }
-    const target = this.places.toWorld(at);
-    const size = bench.view.box.min.distanceTo(bench.view.box.max);
-    bench.fly(new CameraPose(target.clone().addScaledVector(bench.pose().forward, -Math.min(bench.pose().distance, CLOSER * size)), target));
+    const { min, max } = bench.view.box;
+    bench.fly(poseOfNote(note, this.places, bench.pose(), CLOSER * min.distanceTo(max)));
   }
 
   /// Rows that somebody writes in stay as they are.

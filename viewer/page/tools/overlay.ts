@@ -2,6 +2,7 @@
 // Marks over the picture: points, lines and texts, at their places in each frame.
 import { Vector4, type Matrix4, type PerspectiveCamera } from 'three';
 import type { Vector } from '../../src/tools/vectors.js';
+import { placeOf, type PicturePlace } from '../view/picture_place.js';
 
 /// In the tiles' coordinates; a line has an end.
 export interface Mark {
@@ -20,11 +21,6 @@ function make(tag: string, to: Element, attributes: Readonly<Record<string, numb
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
   to.append(made);
   return made;
-}
-
-interface Place {
-  readonly x: number;
-  readonly y: number;
 }
 
 export class Overlay {
@@ -46,13 +42,8 @@ export class Overlay {
     }
   }
 
-  private placeOf({ x, y, w }: Vector4): Place {
-    const { clientWidth, clientHeight } = this.root;
-    return { x: ((x / w + 1) / 2) * clientWidth, y: ((1 - y / w) / 2) * clientHeight };
-  }
-
   private point(clip: Vector4, text: string | undefined): void {
-    const { x, y } = this.placeOf(clip);
+    const { x, y } = placeOf(clip, this.root);
     if (clip.w <= 0 || !Number.isFinite(x + y)) return; // notes may be anywhere
     make('circle', this.root, { cx: x, cy: y, r: POINT_RADIUS });
     this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
@@ -63,13 +54,13 @@ export class Overlay {
     const near = Math.max(a.w, b.w) * 1e-6;
     if (near <= 0) return;
     const cut = (from: Vector4, to: Vector4): Vector4 => (from.w >= near ? from : from.clone().lerp(to, (near - from.w) / (to.w - from.w)));
-    const [one, other] = [this.placeOf(cut(a, b)), this.placeOf(cut(b, a))];
+    const [one, other] = [placeOf(cut(a, b), this.root), placeOf(cut(b, a), this.root)];
     make('line', this.root, { class: 'under', x1: one.x, y1: one.y, x2: other.x, y2: other.y });
     make('line', this.root, { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
     if (Math.hypot(one.x - other.x, one.y - other.y) >= LEAST_LINE) this.text({ x: (one.x + other.x) / 2 + TEXT_OFF, y: (one.y + other.y) / 2 - TEXT_OFF }, text);
   }
 
-  private text({ x, y }: Place, text: string | undefined): void {
+  private text({ x, y }: PicturePlace, text: string | undefined): void {
     if (text !== undefined) make('text', this.root, { x, y }).textContent = text;
   }
 }

@@ -3,7 +3,7 @@
 import { pickOriginal } from '../../src/tools/original.js';
 import { Picker, rayThrough, type Hit, type Keeps } from '../../src/tools/pick.js';
 import { pickedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
-import { shownBound } from '../../src/tools/shown_bound.js';
+import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
 import type { Bench } from './bench.js';
 
 export interface Pointed {
@@ -25,7 +25,7 @@ export class Pointing {
     const ray = rayThrough(camera, right, up, view.surfaceMatrix);
     const hit = this.picker.pick(view.surface, ray, this.keeps);
     if (hit === null || manifest === null || source === null) return null;
-    const tell = (found: Hit): PickedPoint => pickedPoint(found, manifest, snaps, shownBound(found.node, view.surface, (node) => source.index.record(node)?.bound ?? Infinity));
+    const tell = (found: Hit): PickedPoint => pickedPoint(found, manifest, snaps, shownBound(found.node, view.surface, (node) => recordedBound(source, node)));
     const original = pickOriginal(source, ray, { signal, keeps: this.keeps }).then((found) => found && tell(found), (problem: unknown) => {
       signal.throwIfAborted();
       console.debug(problem); // the view goes on with what is shown

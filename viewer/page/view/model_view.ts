@@ -160,8 +160,7 @@ export class ModelView {
   /// As a link says.
   setSpot(spot: Spot): void {
     this.setPose(spot.pose);
-    this.presentation.chosen = this.wished(spot);
-    this.present();
+    this.presentAs(this.wished(spot));
     this.tools.follow(spot);
     this.story.follow(spot);
   }
@@ -364,7 +363,7 @@ export class ModelView {
   }
 
   private occlude(): void {
-    this.stage.setOccluded(this.presentation.chosen.light.occlusion).then(() => { this.redraw(); }, () => { this.missCode(() => { this.occlude(); }); });
+    this.stage.setOccluded(this.presentation.chosen.light.occlusion).then((hasCome) => { if (hasCome) this.redraw(); }, () => { this.missCode(() => { this.occlude(); }); });
   }
 
   private showChosen(): void {

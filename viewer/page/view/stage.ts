@@ -52,13 +52,14 @@ export class Stage {
     this.scene.add(this.camera, this.shown);
   }
 
-  /// Whether hollows get less light. Resolves once they do; rejects if the code for it does not come.
-  async setOccluded(is: boolean): Promise<void> {
+  /// Whether hollows get less light, from the next frame on. True: that was so once code had come, which may be rejected.
+  async setOccluded(is: boolean): Promise<boolean> {
     this.isOccluded = is;
     if (!is) this.dropOcclusion();
-    if (!is || this.occlusion !== null) return;
+    if (!is || this.occlusion !== null) return false;
     const { Occlusion } = await import('./occlusion.js');
     if (this.isOccluded) this.occlusion ??= new Occlusion(this.scene, this.camera); // it may have been switched off meanwhile
+    return true;
   }
 
   /// What a session in the visitor's room draws with.

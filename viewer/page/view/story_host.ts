@@ -53,8 +53,11 @@ export class StoryHost {
     if (this.sought) return;
     this.sought = true;
     this.load().catch((error: unknown) => {
-      this.sought = false;
-      this.around.failed(error instanceof Error ? error.message : String(error), () => { this.seek(); });
+      const retry = (): void => {
+        this.sought = false;
+        this.seek();
+      };
+      this.around.failed(error instanceof Error ? error.message : String(error), retry);
     });
   }
 

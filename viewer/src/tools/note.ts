@@ -40,6 +40,8 @@ export interface Notebook {
 export const MOST_ENTRIES = 500;
 /// Characters of a text.
 export const MOST_TEXT = 2000;
+/// Of a file.
+export const MOST_STORY_BYTES = 2 ** 24;
 
 /// What is wrong with a file of notes.
 export class NotesProblem extends Error {}

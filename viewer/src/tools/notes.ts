@@ -2,13 +2,12 @@
 // Notes at points, and places of the camera, as a file or in a link. Whatever is read, what comes out is sound.
 import { JsonValue, type Fail } from '../json_value.js';
 import { annotationsOf, readAnnotations } from './annotations.js';
-import { MOST_ENTRIES, MOST_TEXT, NotesProblem, type Note, type Notebook, type SeenFrom } from './note.js';
+import { MOST_ENTRIES, MOST_STORY_BYTES, MOST_TEXT, NotesProblem, type Note, type Notebook, type SeenFrom } from './note.js';
 
 export { MOST_ENTRIES, MOST_TEXT, NotesProblem, type Bookmark, type Note, type Notebook, type SeenFrom } from './note.js';
 
 const FORMAT = 'meshhier-notes';
 const VERSION = 1;
-const MOST_BYTES = 2 ** 24;
 /// Characters in a link that every program passes on.
 const MOST_LINK = 1500;
 
@@ -47,7 +46,7 @@ function readNotebook(root: JsonValue): Notebook {
 
 /// Notes as formatNotes() writes them, or as pages wrote them before there were stories. Throws NotesProblem.
 export function readNotes(text: string): Notebook {
-  if (text.length > MOST_BYTES) refuse(`larger than ${MOST_BYTES} bytes`);
+  if (text.length > MOST_STORY_BYTES) refuse(`larger than ${MOST_STORY_BYTES} bytes`);
   const root = JsonValue.parse(text, refuse);
   return root.has('format') ? readNotebook(root) : readAnnotations(root, refuse);
 }

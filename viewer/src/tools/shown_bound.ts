@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 // How far a shown point may be from the input.
 import { keyOf, type Node } from '../hierarchy/tree.js';
-import type { DrawnTile } from '../scene/surface.js';
+import type { DrawnTile, TileSource } from '../scene/surface.js';
+
+/// Of a tile's record; Infinity: not known.
+export function recordedBound(source: TileSource | null, node: Node): number {
+  return source?.index.record(node)?.bound ?? Infinity;
+}
 
 /// Of a point on a tile that is drawn: the tile's bound; and as its border triangles may have corners of others, those of all tiles that it may
 /// touch. `boundOf`: of a tile's record; Infinity: not known. Infinity if the tile is not drawn.

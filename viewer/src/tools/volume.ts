@@ -4,7 +4,7 @@
 import type { Indices } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { DrawnTile } from '../scene/surface.js';
-import { sideOf, type CutPlane } from './planes.js';
+import { flipped, sideOf, type CutPlane } from './planes.js';
 import { cross, dot, subtract, vertexAt, type Vector } from './vectors.js';
 
 export interface Volume {
@@ -62,8 +62,7 @@ function fluxOf(triangle: readonly Vector[], { base, height, sides }: Region): n
   const above = (point: Vector): number => sideOf(base, point);
   if (within.every((point) => above(point) <= height)) return fluxThrough(within, base.normal, above);
   const top = { normal: base.normal, constant: base.constant - height };
-  const below = { normal: [-top.normal[0], -top.normal[1], -top.normal[2]] as const, constant: -top.constant };
-  return fluxThrough(clipped(within, below), base.normal, above) + fluxThrough(clipped(within, top), base.normal, () => height);
+  return fluxThrough(clipped(within, flipped(top)), base.normal, above) + fluxThrough(clipped(within, top), base.normal, () => height);
 }
 
 /// The part of a triangle in what lies within `reach` of a surface on one of its sides; all of them are no less than that: of the points whose
