@@ -97,8 +97,9 @@ export function fileOf({ name, path, files }: Model): string {
   return files === undefined ? lastPart(path) : `${name}.hier`;
 }
 
-/// Null of what cannot be fetched.
+/// Null of what cannot be fetched; of nothing, too, which would be `base` itself.
 export function resolveUrl(path: string, base: string): string | null {
+  if (path.trim() === '') return null;
   try {
     const url = new URL(path, base);
     return ['http:', 'https:'].includes(url.protocol) ? url.href : null;
@@ -118,14 +119,14 @@ function resolveHierarchy(path: string, base: string): string | null {
 
 /// A model of which nothing but the path is known. Null if it cannot be fetched, or is longer than a path may be.
 export function modelOfPath(path: string, base: string): Model | null {
-  const url = path === '' || path.length > MOST_TEXT ? null : resolveHierarchy(path, base);
+  const url = path.length > MOST_TEXT ? null : resolveHierarchy(path, base);
   if (url === null) return null;
   return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null, story: null };
 }
 
 /// The address of what belongs to a model. Null of what is none, or cannot be fetched.
 function addressOf(value: unknown, base: string): string | null {
-  return textOf(value) === '' ? null : resolveUrl(textOf(value), base);
+  return resolveUrl(textOf(value), base);
 }
 
 function readModel(value: unknown, base: string): Model | null {

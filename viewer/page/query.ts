@@ -20,9 +20,17 @@ export function shortened(text: string): string {
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
 }
 
-function badAddress(key: 'model' | 'models', value: string): Query['problem'] {
+function badAddress(key: 'model' | 'models' | 'story', value: string): Query['problem'] {
   const { badAddress, badModel, badListing } = words.problems;
-  return { message: badAddress(`?${key}=${shortened(value)}`), more: key === 'model' ? badModel : badListing };
+  return { message: badAddress(`${key === 'story' ? '&' : '?'}${key}=${shortened(value)}`), more: key === 'model' ? badModel : badListing };
+}
+
+/// `story`: null if the address names none.
+function readModel(model: string, story: string | null, base: string): Omit<Query, 'listing'> {
+  const only = modelOfPath(model, base);
+  if (only === null) return { only, problem: badAddress('model', model) };
+  only.story = resolveUrl(story ?? '', base);
+  return { only, problem: story === null || only.story !== null ? null : badAddress('story', story) };
 }
 
 /// `base`: the page's own address.
@@ -30,11 +38,7 @@ export function readQuery(search: string, base: string): Query {
   const parameters = new URLSearchParams(search);
   const [model, models] = [parameters.get('model'), parameters.get('models')];
   const listing = new URL(LISTING, base).href;
-  if (model !== null) {
-    const only = modelOfPath(model, base);
-    if (only !== null) only.story = resolveUrl(parameters.get('story') ?? '', base);
-    return { listing, only, problem: only === null ? badAddress('model', model) : null };
-  }
+  if (model !== null) return { listing, ...readModel(model, parameters.get('story'), base) };
   const other = models === null ? listing : resolveUrl(models, base);
   return { listing: other ?? listing, only: null, problem: other === null ? badAddress('models', models ?? '') : null };
 }

@@ -8,6 +8,8 @@ export interface Shared extends Spot {
   name: string;
   /// Of the hierarchy.
   url: string;
+  /// The address of what is told about it; null: nothing, or it has none.
+  story: string | null;
   /// The page has the hierarchy within it: there is no code for others.
   isWhole: boolean;
 }
@@ -19,16 +21,17 @@ function escaped(text: string): string {
 }
 
 /// Relative to the page where it lies below it: the page may be called by several names.
-function modelParameter({ page, url }: Shared): string {
+function parameterOf(url: string, page: string): string {
   const folder = new URL('.', page).href;
   return encodeURIComponent(url.startsWith(folder) ? url.slice(folder.length) : url).replace(/%2F/g, '/').replace(/%3A/g, ':');
 }
 
 /// A page that shows the model alone.
 export function addressAlone(shared: Shared): string {
-  const { pose, choices } = shared;
+  const { page, url, story, pose, choices } = shared;
   const hash = pose === null && choices === '' ? '' : formatAddress({ path: '', pose, choices });
-  return `${shared.page}?model=${modelParameter(shared)}${hash}`;
+  const told = story === null ? '' : `&story=${parameterOf(story, page)}`;
+  return `${page}?model=${parameterOf(url, page)}${told}${hash}`;
 }
 
 export function frameCode(shared: Shared): string {

@@ -479,7 +479,7 @@ export class ModelView {
   private shared(): Shared {
     this.rest();
     const { name, url, files } = this.model;
-    return { page: location.origin + location.pathname, name, url, isWhole: files !== undefined, ...this.spot() };
+    return { page: location.origin + location.pathname, name, url, story: this.story.address, isWhole: files !== undefined, ...this.spot() };
   }
 
   private zoomMiddle(logarithm: number): void {

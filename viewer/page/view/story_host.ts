@@ -19,8 +19,8 @@ export interface StorySurroundings {
 
 interface Story {
   readonly notebook: Notebook;
-  /// Where it lies.
-  readonly base: string;
+  /// Where it lies; null: in the page itself.
+  readonly address: string | null;
 }
 
 export class StoryHost {
@@ -39,6 +39,11 @@ export class StoryHost {
   /// What lies beside the model.
   get told(): Notebook | null {
     return this.story?.notebook ?? null;
+  }
+
+  /// The address of that; null: it has none.
+  get address(): string | null {
+    return this.story?.address ?? null;
   }
 
   /// A link's note.
@@ -63,7 +68,7 @@ export class StoryHost {
 
   /// What was written with the tools, from its note of that number on, instead of what is told.
   async play(notebook: Notebook, from: number): Promise<void> {
-    await this.open({ notebook, base: this.story?.base ?? document.baseURI });
+    await this.open({ notebook, address: this.address });
     this.player?.go(from);
   }
 
@@ -90,11 +95,11 @@ export class StoryHost {
     const { loadStory } = await import('../story/story_source.js');
     const notebook = await loadStory(found, teller.signal);
     if (teller.signal.aborted || notebook.notes.length === 0) return;
-    this.story = { notebook, base: found.startsWith('{') ? document.baseURI : found };
+    this.story = { notebook, address: found.startsWith('{') ? null : found };
     if (this.player === null) await this.open(this.story);
   }
 
-  private async open({ notebook, base }: Story): Promise<void> {
+  private async open({ notebook, address }: Story): Promise<void> {
     const { StoryPlayer } = await import('../story/story_player.js');
     const teller = this.around.teller();
     if (teller === null || teller.signal.aborted) return;
@@ -103,7 +108,7 @@ export class StoryHost {
       this.step = i;
       this.around.told();
     };
-    this.player = new StoryPlayer(notebook, base, { ...teller, told, ended: () => { this.end(); } });
+    this.player = new StoryPlayer(notebook, address ?? document.baseURI, { ...teller, told, ended: () => { this.end(); } });
     if (this.step !== null) this.player.stand(this.step);
     this.around.shown(true);
   }

@@ -7,7 +7,7 @@ import { addressAlone, elementCode, frameCode, type Shared } from '../../page/sh
 const POSE = { position: [1.5, -2, 3e9], target: [0, 0.25, 1] } as const;
 
 function shared(change: Partial<Shared> = {}): Shared {
-  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', pose: null, choices: '', isWhole: false, ...change };
+  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', story: null, pose: null, choices: '', isWhole: false, ...change };
 }
 
 describe('the address of a model alone', () => {
@@ -15,6 +15,12 @@ describe('the address of a model alone', () => {
     const address = new URL(addressAlone(shared({ url, pose: POSE, choices: 'light=flat' })));
     expect(readQuery(address.search, address.href).only!.url).toBe(url);
     expect(parseAddress(address.hash)).toEqual({ path: '', pose: POSE, choices: 'light=flat' });
+  });
+
+  it.each(['http://host/show/models/a%20b.hier.story.json', 'https://other/x.json?signed=a&b'])('has the story at %s', (story) => {
+    const address = new URL(addressAlone(shared({ story, pose: POSE })));
+    expect(readQuery(address.search, address.href).only).toMatchObject({ url: shared().url, story });
+    expect(parseAddress(address.hash)!.pose).toEqual(POSE);
   });
 
   it('is short where the model lies below the page, and needs no camera', () => {

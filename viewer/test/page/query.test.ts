@@ -21,7 +21,21 @@ describe('the query', () => {
     expect(readQuery('?model=https://other/a/horse.hier', BASE).only).toMatchObject({ name: 'horse', url: 'https://other/a/horse.hier' });
   });
 
-  it.each(['?model=', '?model=javascript:1', '?model=a.hier%3Fx', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
+  it.each(['?model=a.hier', '?model=https://bucket.example/a.3tz', '?model=https://bucket.example/a.3tz%3Fsignature=x', '?model=a.hier&lang=de'])('has no story unless it names one: %s', (search) => {
+    expect(readQuery(search, BASE)).toMatchObject({ only: { story: null }, problem: null });
+  });
+
+  it('may name a story', () => {
+    expect(readQuery('?model=a.hier&story=a.hier.story.json', BASE)).toMatchObject({ only: { story: 'http://host/dir/a.hier.story.json' }, problem: null });
+  });
+
+  it.each(['&story=', '&story=%20', '&story=ftp://x/y', '&story=javascript:1', '&story=http://['])('shows the model, and is told off, for %s', (story) => {
+    const { only, problem } = readQuery(`?model=a.hier${story}`, BASE);
+    expect(only).toMatchObject({ url: 'http://host/dir/a.hier', story: null });
+    expect(problem!.message).toContain('&story=');
+  });
+
+  it.each(['?models=', '?models=%20', '?model=%20', '?model=', '?model=javascript:1', '?model=a.hier%3Fx', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
     expect(readQuery(search, BASE).problem!.message).toContain(search.split('=')[0]);
   });
 
