@@ -80,10 +80,29 @@ async function pointSomething(page) {
   throw new Error('nothing was pointed at');
 }
 
+/// As people type: Enter begins a line, Ctrl + Enter ends the text.
 async function write(page, i, text) {
   const field = page.locator('.tool-list textarea').nth(i);
-  await field.fill(text);
-  await field.press('Enter');
+  await field.fill('');
+  for (const [number, line] of text.split('\n').entries()) {
+    if (number > 0) await field.press('Enter');
+    await field.pressSequentially(line);
+  }
+  await field.press('Control+Enter');
+}
+
+/// What is typed into fields reaches neither the view nor the tools, and Escape leaves the field alone.
+async function typeKeys(visit, page) {
+  const state = () => page.evaluate(() => JSON.stringify([window.meshhier.camera(), window.meshhier.view.look, location.hash, [...document.querySelectorAll('.sheet, .tool-card')].map(({ hidden }) => hidden)]));
+  const before = await state();
+  for (const field of [page.getByLabel('Title'), page.locator('.tool-list textarea').first()]) {
+    const text = await field.inputValue();
+    await field.focus();
+    for (const key of [...'wtpofslgca?h0123456+-imxnkvbre', 'ArrowLeft', 'ArrowUp', 'Home', 'Backspace', 'Enter']) await field.press(key);
+    await field.fill(text);
+    await field.press('Escape');
+    visit.check('typing', (await state()) === before && (await page.evaluate(() => document.activeElement === document.body)), 'leaves view and tools as they are; Escape leaves the field');
+  }
 }
 
 /// Two notes, the second with all that a note has; the story's file and the camera of the second one.
@@ -96,6 +115,7 @@ async function author(visit, url) {
   await lookFrom(page, [0.4, 0.2, 0]);
   await pointSomething(page);
   await write(page, 1, LONG);
+  await typeKeys(visit, page);
   const row = page.locator('.tool-list li').nth(1);
   await row.locator('summary').click();
   await page.keyboard.press('Escape'); // a field has the focus no more

@@ -3,6 +3,7 @@
 import type { Bookmark } from '../../src/tools/notes.js';
 import { MOST_SIZE, takePicture } from '../../src/tools/screenshot.js';
 import { STEP, Turntable } from '../../src/tools/turntable.js';
+import { isTyped } from '../../src/typing.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { CameraPose, turn } from '../view/camera_pose.js';
@@ -55,7 +56,7 @@ export class CameraTool implements Tool {
     for (const { root } of [width, height, bare]) root.classList.add('tool-extra');
     this.root = element('div', {}, this.list, textButton(camera.add, () => { this.bookmark(); }), this.spinButton, full, width.root, height.root, bare.root, this.shot, this.note);
     for (const sign of ['pointerdown', 'wheel'] as const) surface.addEventListener(sign, () => { this.stop(); }, { signal: this.ending.signal, passive: true });
-    root.addEventListener('keydown', ({ key }) => { if (key.startsWith('Arrow')) this.stop(); }, { signal: this.ending.signal });
+    root.addEventListener('keydown', (event) => { if (event.key.startsWith('Arrow') && !isTyped(event)) this.stop(); }, { signal: this.ending.signal });
     shop.notebook.onChange(() => { this.show(); });
     this.show();
   }

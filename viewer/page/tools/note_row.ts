@@ -20,12 +20,17 @@ export interface NoteOrders {
   failed(message: string): void;
 }
 
-/// Enter ends the text, with Shift it begins a line.
+const MOST_ROWS = 4;
+
+/// Enter begins a line, with Ctrl (or Cmd) it ends the text.
 function textField(note: Note, name: string, orders: NoteOrders): HTMLTextAreaElement {
-  const field = element('textarea', { class: 'tool-text', rows: String(Math.min(note.text.split('\n').length, 4)), 'aria-label': name, maxlength: String(MOST_TEXT) });
+  const field = element('textarea', { class: 'tool-text', title: words.notes.writing, 'aria-label': name, maxlength: String(MOST_TEXT) });
+  const fit = (): void => { field.rows = Math.min(field.value.split('\n').length, MOST_ROWS); };
   field.value = note.text;
+  fit();
+  field.addEventListener('input', fit);
   field.addEventListener('keydown', (event) => {
-    if (event.key !== 'Enter' || event.shiftKey || event.isComposing) return;
+    if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey) || event.isComposing) return;
     event.preventDefault();
     field.blur();
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
 import { LengthScale, unitOfModel } from '../../src/tools/units.js';
+import { isTyped } from '../../src/typing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import type { Bench, ToolName, Tools } from './bench.js';
@@ -14,7 +15,6 @@ import { Pointing } from './pointing.js';
 import { ScaleLine } from './scale_line.js';
 import { loadToolSettings, saveToolSettings } from './tool_settings.js';
 import type { Tool } from './tool.js';
-import { isTaken } from '../view/keys.js';
 import { words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -185,7 +185,7 @@ export class Toolbox implements Tools {
   private keyed(event: KeyboardEvent): void {
     const tool = this.tool;
     const { target, key } = event;
-    if (tool === null || event.ctrlKey || event.altKey || event.metaKey || isTaken(event)) return;
+    if (tool === null || event.ctrlKey || event.altKey || event.metaKey || isTyped(event)) return;
     if (key === 'Enter' && target instanceof HTMLElement && target.matches('button, a, summary, input')) return;
     if (!this.acts(tool, key)) return;
     event.preventDefault();

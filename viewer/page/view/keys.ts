@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The keyboard, as movements and commands.
+import { fieldOf } from '../../src/typing.js';
 import type { ToolName } from '../tools/bench.js';
 import { TOOL_KEYS } from '../tools/keys.js';
 import type { Moves } from './glide.js';
@@ -49,25 +50,12 @@ const VIEW: Record<string, Act> = {
 export const VIEW_KEYS = Object.keys(VIEW);
 const ACTS: Record<string, Act> = { ...Object.fromEntries(TOOLS), ...VIEW };
 
-/// Whether an input of that type needs the key for itself; what is written in needs them all.
-export function needsKey(type: string, key: string): boolean {
-  if (type === 'checkbox' || type === 'button') return key === ' ';
-  if (type === 'radio' || type === 'range') return /^(Arrow|Page|Home$|End$| $)/.test(key);
-  return true;
-}
-
-/// Keys that an element under the focus needs for itself.
-export function isTaken(event: KeyboardEvent): boolean {
-  const { target, key } = event;
-  if (key === 'Escape') return false;
-  if (target instanceof HTMLInputElement) return needsKey(target.type, key);
-  return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
-}
-
-/// Until `signal` aborts.
+/// Until `signal` aborts. What is typed into a field is the field's; Escape leaves it.
 export function listenToKeys(commands: Commands, signal: AbortSignal): void {
   window.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || isTaken(event)) return;
+    const field = fieldOf(event);
+    if (event.key === 'Escape' && !event.isComposing) field?.blur();
+    if (event.ctrlKey || event.altKey || event.metaKey || field !== null) return;
     const act = ACTS[event.key] ?? ACTS[event.key.toLowerCase()];
     if (act === undefined) return;
     event.preventDefault();

@@ -6,6 +6,7 @@ import { axesOf, frameShape } from '../scene/framing.js';
 import { HierarchyView, type ViewOptions } from '../scene/hierarchy_view.js';
 import { keyOf, Lighting } from '../scene/lighting.js';
 import { rigFor, shownLook } from '../scene/shown_look.js';
+import { isTyped } from '../typing.js';
 import type { CameraPlace } from './camera_attribute.js';
 import { moveByKey } from './keyboard.js';
 
@@ -122,7 +123,7 @@ export class ShownModel {
   }
 
   private press(event: KeyboardEvent): void {
-    if (!moveByKey(this.camera, this.controls.target, event)) return;
+    if (isTyped(event) || !moveByKey(this.camera, this.controls.target, event)) return;
     event.preventDefault();
     this.take();
     this.controls.update();

@@ -42,6 +42,7 @@ export const de: ToolWords = {
   },
   notes: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche, um dort etwas zu notieren.',
+    writing: 'Enter beginnt eine Zeile, Strg + Enter beendet den Text',
     one: (number) => `Notiz ${number}`,
     save: 'Als Datei sichern',
     load: 'Aus einer Datei dazunehmen',

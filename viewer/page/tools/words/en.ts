@@ -41,6 +41,7 @@ export const en = {
   },
   notes: {
     hint: 'Click or tap the surface to put a note there.',
+    writing: 'Enter begins a line, Ctrl + Enter ends the text',
     one: (number: string) => `Note ${number}`,
     save: 'Save as a file',
     load: 'Add from a file',

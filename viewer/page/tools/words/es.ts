@@ -42,6 +42,7 @@ export const es: ToolWords = {
   },
   notes: {
     hint: 'Haga clic o toque la superficie para poner una nota.',
+    writing: 'Intro empieza una línea, Ctrl + Intro termina el texto',
     one: (number) => `Nota ${number}`,
     save: 'Guardar en un archivo',
     load: 'Añadir de un archivo',
