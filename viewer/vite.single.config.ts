@@ -14,6 +14,9 @@ function inlineWorkers(): Plugin {
   };
 }
 
+/// Of pictures the page shows its own alone, whatever it is told: it asks nobody for one.
+const POLICY = '<meta http-equiv="Content-Security-Policy" content="img-src data: blob:">';
+
 /// The page with its script and styles within it, as `single.html`; nothing else is written.
 function singleFile(): Plugin {
   return {
@@ -34,6 +37,7 @@ function singleFile(): Plugin {
         const own = html.replace(/<script type="module"[^>]*><\/script>/, '').replace(/<link rel="stylesheet"[^>]*>/, '');
         const code = script.replace(/<\/script/g, '<\\/script').replace(/<!--/g, '<\\!--');
         const source = own
+          .replace('<head>', () => `<head>\n    ${POLICY}`)
           .replace('</head>', () => `<style>${style}</style>\n  </head>`)
           .replace('</body>', () => `  <!-- meshhier: hierarchy -->\n    <script type="module">${code}</script>\n  </body>`);
         this.emitFile({ type: 'asset', fileName: 'single.html', source });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Links: `#MODEL&px,py,pz,tx,ty,tz&NAME=VALUE…`. MODEL is the path of the hierarchy relative to the listing, and
 // empty for the one model that the query names; the camera and what was chosen (appearance.ts) may be missing.
+import { areNear } from '../src/farthest.js';
 import { readable } from './listing.js';
 
 export type Triple = readonly [number, number, number];
@@ -64,9 +65,8 @@ function parseTriple(values: readonly number[]): Triple {
 export function problemOfPose(position: readonly unknown[], target: readonly unknown[]): string | null {
   const isTriple = (values: readonly unknown[]): values is Triple => values.length === 3 && values.every(Number.isFinite);
   if (!isTriple(position) || !isTriple(target)) return 'position and target are three finite numbers each';
-  const way = position.reduce((sum, value, axis) => sum + (rounded(value) - rounded(target[axis])) ** 2, 0);
-  if (way === 0) return 'position and target are the same point';
-  return Number.isFinite(way) ? null : 'position and target are too far from each other';
+  if (!areNear([...position, ...target])) return 'position and target are too far away';
+  return position.every((value, axis) => rounded(value) === rounded(target[axis])) ? 'position and target are the same point' : null;
 }
 
 /// Null of what is no pose.
@@ -87,9 +87,9 @@ export function parseAddress(hash: string): Address | null {
   return path === null ? null : { path, pose: pose === undefined ? null : parsePose(pose), choices: others.filter((part) => part.includes('=')).join('&') };
 }
 
-/// What `parseAddress` reads again, with twelve digits a number.
+/// What `parseAddress` reads again, with twelve digits a number; without the camera, if none can stand so.
 export function formatAddress({ path, pose, choices }: Address): string {
-  const rounded = pose === null ? null : roundedPose(pose);
+  const rounded = pose === null || problemOfPose(pose.position, pose.target) !== null ? null : roundedPose(pose);
   const camera = rounded === null ? '' : `&${[...rounded.position, ...rounded.target].join(',')}`;
   return `#${linkPath(path)}${camera}${choices === '' ? '' : `&${choices}`}`;
 }

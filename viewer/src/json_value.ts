@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // JSON of strangers: each value is asked for as the type that it must have.
+import { areNear, FARTHEST } from './farthest.js';
 
 /// What is wrong; must throw.
 export type Fail = (what: string) => never;
@@ -76,6 +77,16 @@ export class JsonValue {
 
   number(): number {
     return typeof this.value === 'number' && Number.isFinite(this.value) ? this.value : this.fail('a number');
+  }
+
+  /// Of a place that somebody names, along an axis.
+  coordinate(): number {
+    const value = this.number();
+    return areNear([value]) ? value : this.fail(`from ${-FARTHEST} to ${FARTHEST}`);
+  }
+
+  place(): [number, number, number] {
+    return [this.at(0).coordinate(), this.at(1).coordinate(), this.at(2).coordinate()];
   }
 
   /// An integer from `least` to `most`.

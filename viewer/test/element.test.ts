@@ -16,7 +16,7 @@ describe('the element', () => {
     expect(parseCamera(formatCamera(place))).toEqual(place);
   });
 
-  it.each([null, '', '1,2,3', '1,2,3,4,5,6,7', '1,2,3,1,2,3', '1,2,3,4,5,x', '1,,3,4,5,6', '1e999,0,0,0,0,0'])('has no camera of %s', (text) => {
+  it.each([null, '', '1,2,3', '1,2,3,4,5,6,7', '1,2,3,1,2,3', '1,2,3,4,5,x', '1,,3,4,5,6', '1e999,0,0,0,0,0', '1e300,1,0,1e300,0,0'])('has no camera of %s', (text) => {
     expect(parseCamera(text)).toBeNull();
   });
 });

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a story says, note by note: text, picture, link, and the way through it. Read only.
 import type { Note, Notebook } from '../../src/tools/note.js';
+import { resolveUrl } from '../listing.js';
+import { formatCount } from '../numbers.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { words } from '../words/words.js';
-import { resolved } from './story_source.js';
+import { pictureOf } from './story_source.js';
 
 export interface StoryOrders {
   /// To the note of that number.
@@ -23,8 +25,8 @@ export class StoryCard {
   private readonly playing: HTMLButtonElement;
   private shown: number | null = null;
 
-  /// `base`: where the story lies.
-  constructor(private readonly story: Notebook, private readonly base: string, orders: StoryOrders) {
+  /// `base`: where the story lies; null: in the page, which fetches nothing for it.
+  constructor(private readonly story: Notebook, private readonly base: string | null, orders: StoryOrders) {
     const title = story.title || words.story.title;
     this.before = iconButton(words.story.before, ICONS.back, () => { orders.go((this.shown ?? 0) - 1); });
     this.next = iconButton(words.story.next, ICONS.next, () => { orders.go((this.shown ?? -1) + 1); });
@@ -41,7 +43,7 @@ export class StoryCard {
     this.step.textContent = i === null ? words.story.notes(notes.length, String(notes.length)) : words.story.step(String(i + 1), String(notes.length));
     this.before.disabled = i === null || i === 0;
     this.next.disabled = i === notes.length - 1;
-    this.body.replaceChildren(...(i === null ? [] : this.contentOf(notes[i], i)));
+    this.body.replaceChildren(...(i === null ? this.startOf() : this.contentOf(notes[i], i)));
     this.body.scrollTop = 0;
   }
 
@@ -52,16 +54,22 @@ export class StoryCard {
     this.playing.querySelector('path')?.setAttribute('d', path);
   }
 
+  /// Before the first note: what of the file is not told.
+  private startOf(): HTMLElement[] {
+    const { leftOut = 0 } = this.story;
+    return leftOut === 0 ? [] : [element('p', { class: 'tool-note' }, words.story.leftOut(leftOut, formatCount(leftOut)))];
+  }
+
   private contentOf({ text, picture, link }: Note, i: number): HTMLElement[] {
     const content: HTMLElement[] = [];
-    const source = resolved(picture, this.base, true);
+    const source = pictureOf(picture, this.base);
     if (source !== null) {
       const image = element('img', { class: 'story-picture', src: source, alt: words.story.picture(String(i + 1)), referrerpolicy: 'no-referrer' });
       image.addEventListener('error', () => { image.replaceWith(element('p', { class: 'tool-note' }, words.story.noPicture)); });
       content.push(image);
     }
     if (text !== '') content.push(element('p', { class: 'story-text' }, text));
-    const href = resolved(link, this.base, false);
+    const href = link ? resolveUrl(link, this.base ?? document.baseURI) : null;
     if (href !== null) content.push(element('a', { class: 'story-link', href, target: '_blank', rel: 'noopener noreferrer' }, words.story.more(new URL(href).host)));
     return content;
   }

@@ -34,8 +34,8 @@ export class StoryPlayer {
   private timer = 0;
   private isPlaying = false;
 
-  /// `base`: where the story lies. Requires that the manifest is there.
-  constructor(private readonly story: Notebook, base: string, private readonly teller: Teller) {
+  /// `base`: where the story lies; null: in the page. Requires that the manifest is there.
+  constructor(private readonly story: Notebook, base: string | null, private readonly teller: Teller) {
     this.places = new Places(teller.view);
     this.card = new StoryCard(story, base, {
       go: (i) => { this.pause(); this.go(i); },

@@ -4,6 +4,7 @@ import { MOST_STORY_BYTES } from '../../src/tools/note.js';
 import { readNotes, type Notebook } from '../../src/tools/notes.js';
 import { fetchText } from '../fetched.js';
 import { resolveUrl } from '../listing.js';
+import { language } from '../words/words.js';
 
 function refuse(what: string): never {
   throw new Error(what);
@@ -11,12 +12,13 @@ function refuse(what: string): never {
 
 /// `story`: its address, or itself. Throws Error.
 export async function loadStory(story: string, signal: AbortSignal): Promise<Notebook> {
-  return readNotes(story.startsWith('{') ? story : await fetchText(story, MOST_STORY_BYTES, signal, refuse));
+  return readNotes(story.startsWith('{') ? story : await fetchText(story, MOST_STORY_BYTES, signal, refuse), [language]);
 }
 
-/// What a note names, from where the story lies; null of what is not shown. Pictures may be in the story itself.
-export function resolved(address: string | null | undefined, base: string, isPicture: boolean): string | null {
+/// A picture within the story itself, or its address from where the story lies; null of what is not shown. `base`: null: nothing is
+/// fetched for what is told.
+export function pictureOf(address: string | null | undefined, base: string | null): string | null {
   if (!address) return null;
-  if (isPicture && /^data:image\/(png|jpeg|webp|gif|avif);base64,/.test(address)) return address;
-  return resolveUrl(address, base);
+  if (/^data:image\/(png|jpeg|webp|gif|avif);base64,/.test(address)) return address;
+  return base === null ? null : resolveUrl(address, base);
 }

@@ -10,6 +10,8 @@ import { noteRow, type NoteOrders } from './note_row.js';
 import type { Mark } from './overlay.js';
 import { Places } from './places.js';
 import type { Tool } from './tool.js';
+import { formatCount } from '../numbers.js';
+import { language, words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
@@ -147,7 +149,9 @@ export class NotesTool implements Tool {
     file.value = '';
     if (given === undefined) return;
     try {
-      this.shop.notebook.add(readNotes(await given.text()));
+      const { leftOut = 0, ...notebook } = readNotes(await given.text(), [language]);
+      this.shop.notebook.add(notebook);
+      if (leftOut > 0) this.note.textContent = pageWords.story.leftOut(leftOut, formatCount(leftOut));
     } catch (problem) {
       this.note.textContent = words.notes.bad(given.name, problem instanceof Error ? problem.message : String(problem));
     }

@@ -80,6 +80,7 @@ export class ModelView {
     find: () => this.around.findStory(this.ending.signal),
     shown: (isTold) => { this.storyShown(isTold); },
     told: () => { this.startRest(); this.redraw(); },
+    isWhole: () => this.model.files !== undefined,
     failed: (why, retry) => this.around.failed(words.story.notRead(this.model.name), { more: why, subject: 'story', retry }),
   });
   private readonly toldLook = new ToldLook();

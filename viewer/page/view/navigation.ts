@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where the camera is, and all that moves it: gestures, keys and flights.
 import { Box3, Vector3 } from 'three';
+import { areNear } from '../../src/farthest.js';
 import { depthOf, pan, retarget, turn, wholeView, zoom, CameraPose } from './camera_pose.js';
 import { Flight } from './flight.js';
 import { Glide, type Moves } from './glide.js';
@@ -16,7 +17,7 @@ const LONGEST_FRAME = 100; // milliseconds
 const still = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Navigation {
-  pose: CameraPose;
+  private stand: CameraPose;
   private readonly glide = new Glide();
   private flight: Flight | null = null;
   private grabbed: Vector3 | null = null;
@@ -32,7 +33,16 @@ export class Navigation {
     private readonly wake: () => void,
   ) {
     this.home = wholeView(this.box, 1);
-    this.pose = this.home;
+    this.stand = this.home;
+  }
+
+  /// Always numbers: what none can come of leaves the camera where it is.
+  get pose(): CameraPose {
+    return this.stand;
+  }
+
+  set pose(pose: CameraPose) {
+    if (areNear([...pose.position, ...pose.target])) this.stand = pose;
   }
 
   get atHome(): boolean {

@@ -13,6 +13,8 @@ export interface StorySurroundings {
   shown(isTold: boolean): void;
   /// Links are to tell of another note.
   told(): void;
+  /// Whether the page has the model within it, and fetches nothing for what is told.
+  isWhole(): boolean;
   /// It could not be had; why.
   failed(why: string, retry: () => void): void;
 }
@@ -108,7 +110,7 @@ export class StoryHost {
       this.step = i;
       this.around.told();
     };
-    this.player = new StoryPlayer(notebook, address ?? document.baseURI, { ...teller, told, ended: () => { this.end(); } });
+    this.player = new StoryPlayer(notebook, this.around.isWhole() ? null : (address ?? document.baseURI), { ...teller, told, ended: () => { this.end(); } });
     if (this.step !== null) this.player.stand(this.step);
     this.around.shown(true);
   }

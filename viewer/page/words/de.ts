@@ -99,6 +99,7 @@ export const de: Words = {
   story: {
     title: 'Geschichte',
     notes: (count, shown) => (count === 1 ? 'Eine Notiz' : `${shown} Notizen`),
+    leftOut: (count, shown) => (count === 1 ? 'Eine Annotation der Datei fehlt hier: Sie ist kein Kommentar an einem Punkt.' : `${shown} Annotationen der Datei fehlen hier: Sie sind keine Kommentare an Punkten.`),
     step: (number, all) => `${number} von ${all}`,
     before: 'Vorige Notiz',
     next: 'Nächste Notiz',

@@ -102,6 +102,7 @@ export const en = {
   story: {
     title: 'Story',
     notes: (count: number, shown: string) => (count === 1 ? 'One note' : `${shown} notes`),
+    leftOut: (count: number, shown: string) => (count === 1 ? 'One annotation of the file is not shown: it is no comment at a point.' : `${shown} annotations of the file are not shown: they are no comments at points.`),
     step: (number: string, all: string) => `${number} of ${all}`,
     before: 'The note before',
     next: 'Next note',

@@ -99,6 +99,7 @@ export const es: Words = {
   story: {
     title: 'Historia',
     notes: (count, shown) => (count === 1 ? 'Una nota' : `${shown} notas`),
+    leftOut: (count, shown) => (count === 1 ? 'Falta aquí una anotación del archivo: no es un comentario en un punto.' : `Faltan aquí ${shown} anotaciones del archivo: no son comentarios en puntos.`),
     step: (number, all) => `${number} de ${all}`,
     before: 'Nota anterior',
     next: 'Nota siguiente',

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where a camera stands and what it looks at, as an attribute: px,py,pz,tx,ty,tz.
 
+import { areNear } from '../farthest.js';
+
 export interface CameraPlace {
   readonly position: readonly [number, number, number];
   readonly target: readonly [number, number, number];
@@ -11,7 +13,7 @@ export function parseCamera(text: string | null): CameraPlace | null {
   const parts = (text ?? '').split(',');
   const [a, b, c, d, e, f] = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));
   const distance = Math.hypot(a - d, b - e, c - f);
-  return parts.length === 6 && distance > 0 && Number.isFinite(distance) ? { position: [a, b, c], target: [d, e, f] } : null;
+  return parts.length === 6 && distance > 0 && areNear([a, b, c, d, e, f]) ? { position: [a, b, c], target: [d, e, f] } : null;
 }
 
 export function formatCamera({ position, target }: CameraPlace): string {

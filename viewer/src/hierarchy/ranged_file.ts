@@ -51,6 +51,11 @@ function contentRange(response: Response): ContentRange | null {
   return match && { first: Number(match[1]), total: match[2] === '*' ? null : Number(match[2]) };
 }
 
+/// Of a length that no file has, what is wrong: places in it could not be told from their neighbours.
+function problemOfLength(total: number | null): string | null {
+  return total === null || Number.isSafeInteger(total) ? null : `the host says that it has ${total} bytes, as no file has`;
+}
+
 /// Copies what comes into the parts that it belongs to; each is given as soon as it is there.
 class Parts {
   private readonly waiting: { wanted: Wanted; bytes: Uint8Array<ArrayBuffer> }[];
@@ -110,6 +115,8 @@ export class RangedFile {
     const response = await respond(this.fetch, this.url, this.name, { method: 'HEAD' });
     const length = response.headers.get('Content-Length');
     if (length === null || !/^\d+$/.test(length)) throw new HierarchyProblem(this.name, 'the host does not tell how long it is');
+    const impossible = problemOfLength(Number(length));
+    if (impossible !== null) throw new HierarchyProblem(this.name, impossible);
     this.note(versionOf(response, Number(length)));
     return Number(length);
   }
@@ -207,9 +214,11 @@ export class RangedFile {
   /// Throws HierarchyProblem if an answer is no part that begins there, or of another version than those before.
   private check(response: Response, first: number): void {
     const range = contentRange(response);
-    if (response.status !== 206 || (range !== null && range.first !== first)) {
+    const isOther = response.status !== 206 || (range !== null && range.first !== first);
+    const impossible = problemOfLength(range?.total ?? null);
+    if (isOther || impossible !== null) {
       void response.body?.cancel();
-      throw new HierarchyProblem(this.name, 'the host sent something else than the part that was asked for', true);
+      throw new HierarchyProblem(this.name, isOther ? 'the host sent something else than the part that was asked for' : impossible!, isOther);
     }
     this.note(versionOf(response, range?.total ?? null));
   }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A story as a page of annotations: W3C Web Annotations with the cameras and points that IIIF's Presentation API 4 has for
-// scenes. Points are in the input's coordinates. Of other people's pages the comments at points are read, and the cameras.
+// scenes. Points are in the input's coordinates. Of other people's pages, scenes and manifests the comments at points are read, and the
+// cameras; all else is counted, but for the models, which are shown.
 import type { Fail, JsonValue } from '../json_value.js';
-import { MOST_ENTRIES, MOST_TEXT, type Bookmark, type Note, type Notebook, type SeenFrom } from './note.js';
+import { bodiesOf, labelOf, saidBy, type Languages } from './annotation_bodies.js';
+import { cameraBodyOf, CHOICES, readCamera, type Camera } from './annotation_cameras.js';
+import { annotationsIn, DOCUMENTS } from './annotation_pages.js';
+import { idOf, isOfType, targetOf as placeOf } from './annotation_points.js';
+import { MOST_ENTRIES, type Bookmark, type Note, type Notebook, type SeenFrom } from './note.js';
 import type { Vector } from './vectors.js';
 
 const CONTEXT = 'http://iiif.io/api/presentation/4/context.json';
-/// How what a camera sees is shown: a property of this program's own.
-const CHOICES = 'meshhier:choices';
 /// Degrees from the lower to the upper edge of the picture.
 const FIELD_OF_VIEW = 45;
 /// Notes, their cameras and bookmarks.
@@ -52,113 +55,124 @@ export function annotationsOf({ title, notes, bookmarks }: Notebook, model: stri
 
 // ---- reading
 
-interface Camera {
-  readonly id: string;
-  readonly name: string;
-  readonly seen: SeenFrom;
+function motivationsOf(annotation: JsonValue): readonly string[] {
+  if (!annotation.has('motivation')) return [];
+  return annotation.at('motivation').oneOrMore().flatMap((each) => (each.isText() ? [each.text()] : []));
 }
 
-function shortened(text: string): string {
-  return text.slice(0, MOST_TEXT);
+/// One that does not say why it was made is a comment.
+function isComment(annotation: JsonValue): boolean {
+  const motivations = motivationsOf(annotation);
+  return motivations.length === 0 || motivations.includes('commenting');
 }
 
-function idOf(value: JsonValue): string {
-  if (value.isText()) return value.text();
-  return value.isObject() && value.at('id').isText() ? value.at('id').text() : '';
+class Reader {
+  readonly notes: Note[] = [];
+  private readonly byId = new Map<string, JsonValue>();
+  private readonly cameras: Camera[] = [];
+  private readonly used = new Set<Camera>();
+  /// The cameras that other annotations give to comments, by the comments' ids.
+  private readonly given = new Map<string, Camera>();
+  private readonly leftOut: JsonValue[] = [];
+
+  constructor(
+    items: readonly JsonValue[],
+    private readonly languages: Languages,
+    private readonly refuse: Fail,
+  ) {
+    for (const item of items) if (idOf(item) !== '' && !this.byId.has(idOf(item))) this.byId.set(idOf(item), item);
+    const others = items.filter((item) => !this.takeCamera(item));
+    for (const item of others.filter((each) => !this.takeActivation(each))) this.takeOther(item);
+  }
+
+  get bookmarks(): Bookmark[] {
+    return this.cameras.filter((camera) => !this.used.has(camera)).map(({ name, seen }) => {
+      const { position, target } = seen(null);
+      return { name, position, target };
+    });
+  }
+
+  get leftOutCount(): number {
+    return this.leftOut.length;
+  }
+
+  /// False: it has none. One that stands at no point is left out.
+  private takeCamera(item: JsonValue): boolean {
+    const body = cameraBodyOf(item, this.languages);
+    if (body === undefined) return false;
+    const camera = readCamera(item, body, this.byId, this.languages, this.refuse);
+    if (camera === null) this.leftOut.push(item);
+    else this.cameras.push(camera);
+    return true;
+  }
+
+  /// One that shows a camera when a comment is chosen.
+  private takeActivation(item: JsonValue): boolean {
+    if (!item.isObject() || !motivationsOf(item).includes('activating') || !item.has('target')) return false;
+    const camera = bodiesOf(item, this.languages).map(({ value }) => this.cameraOf(idOf(value))).find((each) => each !== undefined);
+    if (camera === undefined) return false;
+    for (const target of item.at('target').oneOrMore()) this.given.set(idOf(target), camera);
+    return true;
+  }
+
+  private takeOther(item: JsonValue): void {
+    const at = item.isObject() && isComment(item) ? placeOf(item, this.refuse) : null;
+    if (at !== null) this.notes.push(this.noteOf(item, at));
+    else if (!this.isModel(item)) this.leftOut.push(item);
+  }
+
+  /// That is what is shown.
+  private isModel(item: JsonValue): boolean {
+    return bodiesOf(item, this.languages).some(({ value }) => isOfType(value, 'Model'));
+  }
+
+  private noteOf(item: JsonValue, at: Note['at']): Note {
+    const camera = this.scopeOf(item) ?? this.given.get(idOf(item));
+    if (camera !== undefined) this.used.add(camera);
+    const { text, picture, link } = saidBy(item, this.languages);
+    return {
+      at,
+      text,
+      ...(camera === undefined ? {} : { view: camera.seen(at) }),
+      ...(picture === undefined ? {} : { picture }),
+      ...(link === undefined ? {} : { link }),
+    };
+  }
+
+  private cameraOf(id: string): Camera | undefined {
+    return id === '' ? undefined : this.cameras.find((camera) => camera.id === id);
+  }
+
+  /// The camera that the target's scope names, or has within it.
+  private scopeOf(item: JsonValue): Camera | undefined {
+    const [target] = item.at('target').oneOrMore();
+    if (!target.isObject() || !target.has('scope')) return undefined;
+    const [scope] = target.at('scope').oneOrMore();
+    if (scope === undefined) return undefined;
+    if (!scope.isObject() || !scope.has('target')) return this.cameraOf(idOf(scope));
+    const [state] = scope.at('target').oneOrMore();
+    return state === undefined ? undefined : (this.cameraOf(idOf(state)) ?? this.cameraWithin(state));
+  }
+
+  /// In a scene that is as it is for one comment.
+  private cameraWithin(scene: JsonValue): Camera | undefined {
+    if (!scene.isObject() || !scene.has('items')) return undefined;
+    for (const item of scene.at('items').items()) {
+      const body = cameraBodyOf(item, this.languages);
+      const camera = body && readCamera(item, body, this.byId, this.languages, this.refuse);
+      if (camera) return camera;
+    }
+    return undefined;
+  }
 }
 
-function isOfType(value: JsonValue, type: string): boolean {
-  return value.isObject() && value.at('type').isText(type);
-}
-
-/// The first text of a map of languages.
-function labelOf(value: JsonValue): string {
-  if (!value.has('label')) return '';
-  const label = value.at('label');
-  if (label.isText()) return shortened(label.text());
-  const [, first] = label.entries()[0] ?? [];
-  const text = first?.oneOrMore()[0];
-  return text?.isText() ? shortened(text.text()) : '';
-}
-
-function readPoint(point: JsonValue): Vector {
-  const along = (axis: string): number => (point.has(axis) ? point.at(axis).number() : 0);
-  return [along('x'), along('y'), along('z')];
-}
-
-/// Null: it is at no point.
-function readTarget(annotation: JsonValue): Vector | null {
-  if (!annotation.has('target')) return null;
-  const [target] = annotation.at('target').oneOrMore();
-  if (!target?.isObject() || !target.has('selector')) return null;
-  const point = target.at('selector').oneOrMore().find((selector) => isOfType(selector, 'PointSelector'));
-  return point === undefined ? null : readPoint(point);
-}
-
-function bodiesOf(annotation: JsonValue): JsonValue[] {
-  return annotation.has('body') ? annotation.at('body').oneOrMore() : [];
-}
-
-/// One without something to look at looks the way cameras of IIIF and glTF do.
-function readCamera(annotation: JsonValue): Camera | null {
-  const body = bodiesOf(annotation).find((each) => isOfType(each, 'PerspectiveCamera'));
-  const position = readTarget(annotation);
-  if (body === undefined || position === null) return null;
-  const looksAt = body.has('lookAt') && isOfType(body.at('lookAt'), 'PointSelector');
-  const target: Vector = looksAt ? readPoint(body.at('lookAt')) : [position[0], position[1], position[2] - 1];
-  const choices = body.has(CHOICES) ? shortened(body.at(CHOICES).text()) : '';
-  return { id: idOf(annotation), name: labelOf(annotation) || labelOf(body), seen: { position, target, choices } };
-}
-
-/// Marks of a text in HTML are left out: the words are what counts.
-function textOf(body: JsonValue): string {
-  const text = body.at('value').text();
-  return body.has('format') && body.at('format').isText('text/html') ? text.replace(/<[^<>]*>/g, ' ').replace(/\s+/g, ' ').trim() : text;
-}
-
-function readText(annotation: JsonValue): string {
-  if (annotation.has('bodyValue')) return shortened(annotation.at('bodyValue').text());
-  const texts = bodiesOf(annotation).filter((body) => isOfType(body, 'TextualBody'));
-  return shortened(texts.map(textOf).join('\n'));
-}
-
-/// The camera's id; none: ''.
-function scopeOf(annotation: JsonValue): string {
-  const [target] = annotation.at('target').oneOrMore();
-  if (!target.has('scope')) return '';
-  const [scope] = target.at('scope').oneOrMore();
-  if (scope === undefined) return '';
-  if (!scope.isObject() || !scope.has('target')) return idOf(scope);
-  const [camera] = scope.at('target').oneOrMore();
-  return camera === undefined ? '' : idOf(camera);
-}
-
-function readNote(annotation: JsonValue, cameras: ReadonlyMap<string, Camera>): Note | null {
-  const at = readTarget(annotation);
-  if (at === null) return null;
-  const bodies = bodiesOf(annotation);
-  const picture = bodies.find((body) => isOfType(body, 'Image'));
-  const link = bodies.find((body) => body.isObject() && body.at('purpose').isText('linking'));
-  const view = cameras.get(scopeOf(annotation))?.seen;
-  return {
-    at,
-    text: readText(annotation),
-    ...(view === undefined ? {} : { view }),
-    ...(picture === undefined ? {} : { picture: idOf(picture) }),
-    ...(link === undefined ? {} : { link: shortened(idOf(link)) }),
-  };
-}
-
-/// What is no comment at a point and no camera is left out.
-export function readAnnotations(root: JsonValue, refuse: Fail): Notebook {
-  root.at('type').oneOf('AnnotationPage');
-  const items = root.at('items').items();
+/// `languages`: the reader's, the one that is wanted most first.
+export function readAnnotations(root: JsonValue, languages: Languages, refuse: Fail): Notebook {
+  root.at('type').oneOf(...DOCUMENTS);
+  const { items, pagesElsewhere } = annotationsIn(root);
   if (items.length > MOST_ANNOTATIONS) refuse(`more than ${MOST_ANNOTATIONS} annotations`);
-  const isCamera = (item: JsonValue): boolean => bodiesOf(item).some((body) => isOfType(body, 'PerspectiveCamera'));
-  const cameras = new Map(items.filter(isCamera).flatMap((item) => readCamera(item) ?? []).map((camera) => [camera.id, camera]));
-  const notes = items.filter((item) => !isCamera(item)).flatMap((item) => readNote(item, cameras) ?? []);
-  const used = new Set(items.filter((item) => !isCamera(item) && readTarget(item) !== null).map(scopeOf));
-  const bookmarks: Bookmark[] = [...cameras.values()].filter(({ id }) => !used.has(id)).map(({ name, seen: { position, target } }) => ({ name, position, target }));
+  const { notes, bookmarks, leftOutCount } = new Reader(items, languages, refuse);
   if (notes.length > MOST_ENTRIES || bookmarks.length > MOST_ENTRIES) refuse(`more than ${MOST_ENTRIES} entries`);
-  return { title: labelOf(root), notes, bookmarks };
+  const leftOut = leftOutCount + pagesElsewhere;
+  return { title: labelOf(root, languages), notes, bookmarks, ...(leftOut === 0 ? {} : { leftOut }) };
 }

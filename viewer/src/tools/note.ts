@@ -34,6 +34,8 @@ export interface Notebook {
   readonly title?: string;
   readonly notes: readonly Note[];
   readonly bookmarks: readonly Bookmark[];
+  /// So many annotations were read and are neither; missing: none.
+  readonly leftOut?: number;
 }
 
 /// Of each list.

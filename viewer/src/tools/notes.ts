@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Notes at points, and places of the camera, as a file or in a link. Whatever is read, what comes out is sound.
 import { JsonValue, type Fail } from '../json_value.js';
+import type { Languages } from './annotation_bodies.js';
 import { annotationsOf, readAnnotations } from './annotations.js';
 import { MOST_ENTRIES, MOST_STORY_BYTES, MOST_TEXT, NotesProblem, type Note, type Notebook, type SeenFrom } from './note.js';
 
@@ -26,12 +27,12 @@ function readText(value: JsonValue): string {
 }
 
 function readView(view: JsonValue): SeenFrom {
-  return { position: view.at('position').triple(), target: view.at('target').triple(), choices: view.has('choices') ? readText(view.at('choices')) : '' };
+  return { position: view.at('position').place(), target: view.at('target').place(), choices: view.has('choices') ? readText(view.at('choices')) : '' };
 }
 
 /// Pictures and links are not followed from here: anybody can write the address of a page.
 function readNote(note: JsonValue): Note {
-  return { at: note.at('at').triple(), text: readText(note.at('text')), ...(note.has('view') ? { view: readView(note.at('view')) } : {}) };
+  return { at: note.at('at').place(), text: readText(note.at('text')), ...(note.has('view') ? { view: readView(note.at('view')) } : {}) };
 }
 
 function readNotebook(root: JsonValue): Notebook {
@@ -40,15 +41,16 @@ function readNotebook(root: JsonValue): Notebook {
   return {
     ...(root.has('title') ? { title: readText(root.at('title')) } : {}),
     notes: readList(root.at('notes'), readNote),
-    bookmarks: readList(root.at('bookmarks'), (mark) => ({ name: readText(mark.at('name')), position: mark.at('position').triple(), target: mark.at('target').triple() })),
+    bookmarks: readList(root.at('bookmarks'), (mark) => ({ name: readText(mark.at('name')), position: mark.at('position').place(), target: mark.at('target').place() })),
   };
 }
 
-/// Notes as formatNotes() writes them, or as pages wrote them before there were stories. Throws NotesProblem.
-export function readNotes(text: string): Notebook {
+/// Notes as formatNotes() writes them, or as pages wrote them before there were stories, or others' annotations, in the first of the
+/// reader's languages that they have. Throws NotesProblem.
+export function readNotes(text: string, languages: Languages = []): Notebook {
   if (text.length > MOST_STORY_BYTES) refuse(`larger than ${MOST_STORY_BYTES} bytes`);
   const root = JsonValue.parse(text, refuse);
-  return root.has('format') ? readNotebook(root) : readAnnotations(root, refuse);
+  return root.has('format') ? readNotebook(root) : readAnnotations(root, languages, refuse);
 }
 
 /// `model`: what they are about, for people.

@@ -39,6 +39,10 @@ describe('a link', () => {
     expect(formatAddress({ path: 'a', pose: null, choices: 'up=z&light=flat' })).toBe('#a&up=z&light=flat');
   });
 
+  it.each([[NaN, 0, 0], [Infinity, 0, 0], [1e300, 1, 0], [0, 0, 0]] as const)('has no camera at %s, %s, %s', (...position) => {
+    expect(formatAddress({ path: 'a', pose: { position, target: [0, 0, 0] }, choices: 'up=z' })).toBe('#a&up=z');
+  });
+
   it('tells a choice by its name', () => {
     const spot = parseAddress('#a&1,2,3,4,5,6&up=z&notes=x-_9')!;
     expect([choiceOf(spot, 'notes'), choiceOf(spot, 'up'), choiceOf(spot, 'note')]).toEqual(['x-_9', 'z', null]);
@@ -48,7 +52,7 @@ describe('a link', () => {
     for (const hash of ['', '#', '#%E0%A4%A']) expect(parseAddress(hash)).toBeNull();
   });
 
-  it.each(['1,2,3', '1,2,3,4,5,x', '1,2,3,4,5,', '1,2,3,4,5,1e999', '1,2,3,1,2,3', '1,2,3,4,5,6,7', ''])(
+  it.each(['1,2,3', '1,2,3,4,5,x', '1,2,3,4,5,', '1,2,3,4,5,1e999', '1e300,2,3,1e300,5,6', '1,2,3,1,2,3', '1,2,3,4,5,6,7', ''])(
     'drops the camera %s',
     (pose) => { expect(parseAddress(`#a&${pose}`)).toEqual({ path: 'a', ...NOWHERE }); },
   );

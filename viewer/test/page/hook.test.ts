@@ -14,6 +14,7 @@ describe('a camera that a script sets', () => {
     ['is nowhere', { position: [NaN, 2, 3], target: [0, 0, 0] }, 'finite'],
     ['looks at infinity', { position: [1, 2, 3], target: [0, Infinity, 0] }, 'finite'],
     ['is too far away to tell how far', { position: [1e200, 0, 0], target: [0, 0, 0] }, 'too far'],
+    ['is there beside what it looks at', { position: [1e300, 1, 0], target: [1e300, 0, 0] }, 'too far'],
     ['has two numbers', { position: [1, 2], target: [0, 0, 0] }, 'three'],
     ['has texts', { position: ['1', 2, 3], target: [0, 0, 0] }, 'three'],
     ['has no target', { position: [1, 2, 3] }, 'three'],

@@ -54,12 +54,17 @@ describe('a page of annotations', () => {
         { at: [1.075, 1.894, 0.204], text: 'A glove .', view: { position: [1, 2, 9], target: [1, 2, 0], choices: '' } },
         { at: [1, 1, 1], text: 'plain' },
       ],
-      bookmarks: [{ name: '', position: [0, 0, 4], target: [0, 0, 3] }],
+      bookmarks: [{ name: '', position: [0, 0, 4], target: [0, 0, 0] }],
+      leftOut: 1, // the comment at no point
     });
   });
 
   it.each([
-    ['another type', changed((page) => { page.type = 'Manifest'; })],
+    ['another type', changed((page) => { page.type = 'Collection'; })],
+    ['a point farther away than any', changed((page) => { page.items[2].target = { selector: [{ type: 'PointSelector', x: 1e300 }] }; })],
+    ['a camera farther away than any', changed((page) => { page.items[0].target = { selector: [{ type: 'PointSelector', x: -2e30 }] }; })],
+    ['a polygon with half a corner', changed((page) => { page.items[2].target = { selector: { type: 'PolygonZSelector', value: 'POLYGONZ((0 0 0, 1))' } }; })],
+    ['a polygon far away', changed((page) => { page.items[2].target = { selector: { type: 'PolygonZSelector', value: 'POLYGONZ((0 0 0, 1 1e300 1))' } }; })],
     ['no type', changed((page) => { page.type = undefined; })],
     ['no list', changed((page) => { page.items = {} as Annotation[]; })],
     ['no number', changed((page) => { page.items[2].target = { selector: [{ type: 'PointSelector', x: 'a' }] }; })],
