@@ -145,7 +145,8 @@ class Hierarchy:
     def iter_tiles(self, level: Optional[int] = None) -> Iterator[Tile]:
         """The tiles of a level (the finest if none is given), one after another: memory for one at a time.
 
-        Their interior triangles are all triangles but those at seams; `tile.border` has these, in every tile that they touch.
+        Each vertex of the level is an own one of one tile. Triangles are not: those at seams, `tile.border`, are in every tile
+        that they touch; what is summed over triangles is summed over those of `cut()`.
         """
         for node in self.tree.level(self._level(level)):
             yield self.read_tile(node)
