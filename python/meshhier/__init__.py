@@ -16,6 +16,7 @@ import os
 
 from .errors import (
     BudgetError,
+    BuildWarning,
     CorruptError,
     Error,
     InputError,
@@ -43,6 +44,6 @@ def open(path: str | os.PathLike[str]) -> Hierarchy:
 
 
 __all__ = [
-    "BudgetError", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ProgramError",
+    "BudgetError", "BuildWarning", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ProgramError",
     "ProgramNotFoundError", "Progress", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
 ]  # fmt: skip

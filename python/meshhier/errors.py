@@ -46,3 +46,7 @@ class VerifyError(ProgramError):
 
 class ProgramNotFoundError(Error):
     """The program `meshhier` is not there."""
+
+
+class BuildWarning(UserWarning):
+    """What the program repaired, left out or could not use, and what else is to be known of a result."""

@@ -9,10 +9,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import warnings
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, NoReturn, Optional, Sequence, Union
 
-from .errors import BudgetError, InputError, ProgramError, ProgramNotFoundError, UsageError, VerifyError
+from .errors import BudgetError, BuildWarning, InputError, ProgramError, ProgramNotFoundError, UsageError, VerifyError
 from .hierarchy import Hierarchy
 
 Path = Union[str, "os.PathLike[str]"]
@@ -40,6 +41,7 @@ class Progress:
 
 
 ProgressCallback = Callable[[Progress], None]
+WarningCallback = Callable[[str], None]
 
 _ERRORS = {3: InputError, 6: BudgetError, 7: VerifyError}
 
@@ -65,25 +67,34 @@ def _fail(message: str, code: int) -> NoReturn:
     raise _ERRORS.get(code, ProgramError)(message, code)
 
 
-def _run(words: Sequence[str], progress: Optional[ProgressCallback]) -> None:
+class _Warnings:
+    """Tells each warning once, as a BuildWarning where build() or verify() was called, and to a callback."""
+
+    def __init__(self, callback: Optional[WarningCallback]) -> None:
+        self._callback = callback
+        self._told: set[str] = set()
+
+    def tell(self, message: str) -> None:
+        if message in self._told:
+            return
+        self._told.add(message)
+        if self._callback is not None:
+            self._callback(message)
+        warnings.warn(message, BuildWarning, stacklevel=5)  # in whoever called build() or verify()
+
+
+def _run(words: Sequence[str], progress: Optional[ProgressCallback], warning: Optional[WarningCallback]) -> None:
     """Runs the program; a callback that raises, and Ctrl-C, stop it first."""
-    command = [find_program(), *words, "--progress", "json" if progress else "none"]
+    command = [find_program(), *words, "--progress", "json"]
     try:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
     except OSError as error:
         raise ProgramNotFoundError(f"cannot start {command[0]}: {error}") from error
-    said = []
+    told = _Warnings(warning)
     try:
-        assert process.stderr is not None and process.stdout is not None
         with process:
-            for line in process.stderr:
-                event = _event(line)
-                if event is None:
-                    said.append(line)
-                elif event["event"] == "error":
-                    said.append(event["message"])
-                elif progress is not None and "stage" in event:
-                    progress(_progress(event))
+            said = _read_messages(process, progress, told)
+            assert process.stdout is not None
             found = process.stdout.read()
     except BaseException:
         process.send_signal(signal.SIGTERM)
@@ -93,6 +104,32 @@ def _run(words: Sequence[str], progress: Optional[ProgressCallback]) -> None:
         message = "".join(said).strip() or found.strip() or f"ended with exit code {process.returncode}"
         code = process.returncode if process.returncode > 0 else 128 - process.returncode
         _fail(message if code != 7 else (found + "".join(said)).strip(), code)
+    _read_account(found, told)
+
+
+def _read_messages(process: subprocess.Popen[str], progress: Optional[ProgressCallback], told: _Warnings) -> list[str]:
+    """Hands on what the program tells while it runs; returns what is left, its errors."""
+    said = []
+    assert process.stderr is not None
+    for line in process.stderr:
+        event = _event(line)
+        if event is None:
+            said.append(line)
+        elif event["event"] == "error":
+            said.append(event["message"])
+        elif event["event"] == "warning":
+            told.tell(event["message"])
+        elif progress is not None and "stage" in event:
+            progress(_progress(event))
+    return said
+
+
+def _read_account(account: str, told: _Warnings) -> None:
+    """Hands on the warnings that the program tells of what it has made."""
+    mark = "warning: "
+    for line in account.splitlines():
+        if line.startswith(mark):
+            told.tell(line[len(mark) :])
 
 
 def _event(line: str) -> Optional[dict[str, Any]]:
@@ -123,6 +160,7 @@ def build(
     settings: Optional[Mapping[str, Any]] = None,
     force: bool = False,
     progress: Optional[ProgressCallback] = None,
+    warning: Optional[WarningCallback] = None,
 ) -> Hierarchy:
     """Makes a hierarchy of a mesh, or of several together, and opens it. A build that was stopped goes on.
 
@@ -132,6 +170,8 @@ def build(
         settings: keys of the config, dotted: {"memory_budget": "2GiB", "storage.compression": "meshopt_zlib"}.
         force: replaces a hierarchy that is there.
         progress: is called twice a second at most. What it raises stops the build.
+        warning: is called with each thing that was repaired, left out or could not be used. Each is a BuildWarning of the module
+            `warnings`, too; a filter that makes it an error stops the build.
 
     Raises InputError, BudgetError, UsageError, ProgramError, ProgramNotFoundError.
     """
@@ -141,12 +181,19 @@ def build(
         words += ["--set", f"{key}={value if isinstance(value, str) else json.dumps(value)}"]
     if force:
         words.append("--force")
-    _run(words, progress)
+    _run(words, progress, warning)
     return Hierarchy(output)
 
 
-def verify(hierarchy: Path, *, input: Optional[Union[Path, Sequence[Path]]] = None, progress: Optional[ProgressCallback] = None) -> None:
-    """Checks everything: checksums, structure, seams; with `input` also that the partitions are that mesh, bit for bit.
+def verify(
+    hierarchy: Path,
+    *,
+    input: Optional[Union[Path, Sequence[Path]]] = None,
+    progress: Optional[ProgressCallback] = None,
+    warning: Optional[WarningCallback] = None,
+) -> None:
+    """Checks everything: checksums, structure, seams; with `input` also that the partitions are that mesh, bit for bit. `progress`
+    and `warning` are as those of build().
 
     Raises VerifyError with all problems; ProgramError, ProgramNotFoundError.
     """
@@ -154,7 +201,7 @@ def verify(hierarchy: Path, *, input: Optional[Union[Path, Sequence[Path]]] = No
     inputs = [] if input is None else [input] if isinstance(input, (str, os.PathLike)) else list(input)
     for one in inputs:
         words += ["--input", os.fspath(one)]
-    _run(words, progress)
+    _run(words, progress, warning)
 
 
 def main() -> NoReturn:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import subprocess
+import warnings
 from pathlib import Path
 
 import pytest
@@ -64,3 +65,35 @@ def test_a_program_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nonexistent")
     with pytest.raises(meshhier.ProgramNotFoundError, match="MESHHIER"):
         meshhier.find_program()
+
+
+@pytest.fixture
+def without_materials(tmp_path: Path) -> Path:
+    """An OBJ whose library of materials is missing, most of whose triangles are degenerate."""
+    path = tmp_path / "a.obj"
+    path.write_text("mtllib none.mtl\nusemtl stone\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\nf 1 1 2\nf 1 1 3\nf 1 1 4\n")
+    return path
+
+
+def test_warnings_are_warnings_and_reach_a_callback(without_materials: Path, tmp_path: Path) -> None:
+    told: list[str] = []
+    with pytest.warns(meshhier.BuildWarning, match="none.mtl") as warned:
+        meshhier.build(without_materials, tmp_path / "a.hier", warning=told.append).close()
+    assert [str(one.message) for one in warned] == told and len(set(told)) == len(told)
+    assert any("none.mtl" in one for one in told) and any("degenerate" in one for one in told)
+    assert all(one.filename == __file__ for one in warned), "they point at who called build()"
+
+
+def test_a_warning_that_is_an_error_stops_the_build(without_materials: Path, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", meshhier.BuildWarning)
+        with pytest.raises(meshhier.BuildWarning, match="none.mtl"):
+            meshhier.build(without_materials, tmp_path / "a.hier")
+    with pytest.warns(meshhier.BuildWarning):
+        assert meshhier.build(without_materials, tmp_path / "a.hier", force=True).triangles == 2
+
+
+def test_a_build_without_a_fault_warns_of_nothing(torus: str, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        meshhier.build(torus, tmp_path / "a.hier").close()
