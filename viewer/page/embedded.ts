@@ -3,6 +3,7 @@
 import { JsonValue } from '../src/json_value.js';
 import { unpacked } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
+import { MANIFEST, MOST_MANIFEST_BYTES } from '../src/hierarchy/manifest_file.js';
 import { remoteFiles, type RemoteFiles, type Whereabouts } from '../src/hierarchy/remote_files.js';
 import type { Model } from './listing.js';
 
@@ -20,11 +21,12 @@ function decoded(base64: string): Uint8Array<ArrayBuffer> {
 /// Names are as in a hierarchy; of the index there may be the beginning only.
 export class EmbeddedFiles implements RemoteFiles {
   private offlineUntil = 0;
+  private readonly lengths = new Map<string, number>(); // of files that parts were asked of
 
   /// `files`: in base64, and perhaps in gzip. `link`: has what is not among them; null: nothing has.
   constructor(
     private readonly files: ReadonlyMap<string, string>,
-    private readonly link: RemoteFiles | null,
+    private link: RemoteFiles | null,
   ) {
     globalThis.addEventListener?.('online', () => { this.offlineUntil = 0; });
   }
@@ -33,17 +35,42 @@ export class EmbeddedFiles implements RemoteFiles {
     return !this.files.has(name) && !this.reaches;
   }
 
-  async whole(name: string, most: number, init?: RequestInit, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
+  /// What this page has was checked when the page was made. Of a part, once it was asked for.
+  holds(name: string, end = 0): boolean {
+    return this.files.has(name) && (this.lengths.get(name) ?? 0) >= end;
+  }
+
+  /// Without its gzip where this page has it.
+  async stored(name: string, most: number, init?: RequestInit, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
     const file = this.files.get(name);
-    if (file !== undefined) return unpacked(decoded(file), most, name);
-    return this.ask(name, (link) => link.whole(name, most, init, where));
+    if (file !== undefined) return this.held(name, await unpacked(decoded(file), most, name));
+    return this.ask(name, (link) => link.stored(name, most, init, where));
+  }
+
+  /// That of the host, if there is one.
+  async manifestNow(signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
+    return this.link?.manifestNow(signal) ?? this.stored(MANIFEST, MOST_MANIFEST_BYTES, { signal });
+  }
+
+  setBuild(name: string): void {
+    this.link?.setBuild?.(name);
+  }
+
+  leaveHost(): boolean {
+    this.link = null;
+    return true;
   }
 
   async part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
     const file = this.files.get(name);
-    const start = file === undefined ? null : await unpacked(decoded(file), length, name);
+    const start = file === undefined ? null : this.held(name, await unpacked(decoded(file), length, name));
     if (start !== null && start.length >= end) return start.subarray(first, end);
     return this.ask(name, (link) => link.part(name, [first, end], length, signal));
+  }
+
+  private held<Bytes extends Uint8Array>(name: string, bytes: Bytes): Bytes {
+    this.lengths.set(name, bytes.length);
+    return bytes;
   }
 
   private get reaches(): boolean {

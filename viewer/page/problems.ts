@@ -8,11 +8,14 @@ interface Told {
   message: string;
   more: string;
   retry: (() => void) | null;
+  retryText: string;
 }
 
 export interface Telling {
   /// What the button Retry does; null: there is none.
   retry?: (() => void) | null;
+  /// Another text on that button.
+  retryText?: string;
   /// Why, and what to do: shown when it is asked for.
   more?: string;
   /// What the message is about: a later one about the same takes its place.
@@ -36,10 +39,10 @@ export class Problems {
   }
 
   /// What was dismissed is not told again until it was taken away, which is what the result does.
-  tell(message: string, { retry = null, more = '', subject = message }: Telling = {}): () => void {
+  tell(message: string, { retry = null, retryText = words.parts.retry, more = '', subject = message }: Telling = {}): () => void {
     if (!this.dismissed.has(subject)) {
       this.told.delete(subject);
-      this.told.set(subject, { message, more, retry });
+      this.told.set(subject, { message, more, retry, retryText });
       this.show();
     }
     return () => {
@@ -74,10 +77,11 @@ export class Problems {
       this.box.remove();
       return;
     }
-    const [, { message, more, retry }] = newest;
+    const [, { message, more, retry, retryText }] = newest;
     if (this.text.textContent !== message) this.text.textContent = message;
     if (this.more.textContent !== more) this.more.textContent = more;
     this.details.hidden = more === '';
+    this.retry.textContent = retryText;
     this.retry.hidden = retry === null;
     if (this.box.parentNode === null) this.root.append(this.box);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-export { HierarchyView, type ViewEvents, type ViewOptions } from './scene/hierarchy_view.js';
+export { HierarchyView } from './scene/hierarchy_view.js';
+export type { ViewEvents, ViewOptions } from './scene/view_options.js';
 export type { DrawnTile, TileSource } from './scene/surface.js';
 export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';
 export type { ScalarAttribute } from './hierarchy/scalar_values.js';
@@ -8,6 +9,6 @@ export { labelColour, rampColour, RAMPS, type RampName } from './scene/ramps.js'
 export { MOST_STRETCH, UPS, type Standing, type Up } from './scene/standing.js';
 export type { Terrain } from './scene/terrain.js';
 export type { Manifest } from './hierarchy/manifest.js';
-export { HierarchyProblem } from './hierarchy/problem.js';
+export { HierarchyProblem, HierarchyReplaced } from './hierarchy/problem.js';
 export { readOutline, type Outline } from './hierarchy/outline.js';
 export { tilePath, type Node } from './hierarchy/tree.js';

@@ -104,6 +104,12 @@ export class JsonValue {
     return Array.from({ length: count }, (_, i) => this.at(i).number());
   }
 
+  /// Sixteen digits.
+  checksum(): string {
+    const text = this.text();
+    return /^[0-9a-f]{16}$/.test(text) ? text : this.fail('a checksum');
+  }
+
   /// Of a file that lies beside the one that names it.
   fileName(): string {
     const name = this.text();

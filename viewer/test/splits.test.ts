@@ -8,6 +8,7 @@ import { remoteFiles } from '../src/hierarchy/remote_files.js';
 import { RemoteHierarchy } from '../src/hierarchy/remote_hierarchy.js';
 import { readTile, type Tile } from '../src/hierarchy/tile.js';
 import type { ExpectedCounts } from '../src/hierarchy/tile_counts.js';
+import { checksum } from '../src/hierarchy/checksum.js';
 import { TileDecoder } from '../src/hierarchy/tile_decoder.js';
 import type { TileRecord } from '../src/hierarchy/tile_index.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
@@ -248,9 +249,12 @@ describe('RemoteHierarchy', () => {
     const { signal } = new AbortController();
     const remote = new RemoteHierarchy(remoteFiles('here', fetch), new TileDecoder(undefined, 0), signal);
     await remote.root();
-    const record = ({ own, copyOf = [], splitOf = [], interior }: TileParts): TileRecord =>
-      ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });
+    const record = (parts: TileParts): TileRecord => {
+      const { own, copyOf = [], splitOf = [], interior } = parts;
+      const bytes = tileBytes(parts);
+      return { own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: bytes.length, checksum: checksum(bytes) };
+    };
     await expect(remote.tile({ level: 1, index: 0 }, record(computed), signal)).resolves.toBeDefined();
-    await expect(remote.tile({ level: 1, index: 1 }, record(none), signal)).rejects.toThrow('tiles/01/000001.glb: its normals are not of the kind that the root has');
+    await expect(remote.tile({ level: 1, index: 1 }, record({ ...none, index: 1 }), signal)).rejects.toThrow('tiles/01/000001.glb: its normals are not of the kind that the root has');
   });
 });

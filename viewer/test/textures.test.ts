@@ -278,7 +278,7 @@ describe('TileObject', () => {
 
 describe('TileStore', () => {
   const tree = new Tree(2);
-  const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 64, pictureHeight: 32, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 } as const;
+  const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 64, pictureHeight: 32, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1, checksum: 0n } as const;
   const node = { level: 1, index: 0 };
   const withRoot = async (load: () => Promise<Tile>): Promise<TileStore> => {
     const nothing = (): void => undefined;

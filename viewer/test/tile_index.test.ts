@@ -125,6 +125,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
 });
 
 describe('readManifest', () => {
+  const SUM = '0123456789abcdef';
   const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":9}',
     '{"format":"meshhier","format_version":6,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
   it.each(hostile)('refuses %s', (text) => {
@@ -134,7 +135,7 @@ describe('readManifest', () => {
   const textured = (textures: unknown, texture: unknown): string => {
     const source = { file_name: 'a.obj', file_bytes: 1, vertices: 3, triangles: 1, attributes: { colours: 'none', normals: false }, bounds: { min: [0, 0, 0], max: [1, 1, 1] }, double_precision: false, textures };
     return JSON.stringify({ format: 'meshhier', format_version: 6, source, origin: [0, 0, 0], up: 'y', transform: null, licence: '', partitions: 1, total_bytes: 1,
-      storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 }, outline: { file: 'outline.glb', bytes: 9 } });
+      storage: { positions: null, texture, compression: 'none' }, index: { file: 'tiles.bin', bytes: 152, checksum: SUM }, outline: { file: 'outline.glb', bytes: 9, checksum: SUM }, checksum: SUM });
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
 

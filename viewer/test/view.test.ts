@@ -2,76 +2,16 @@
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh, type WebGLRenderer } from 'three';
+import { MeshBasicMaterial, Vector3, type Mesh, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
-import { HierarchyView, type ViewOptions } from '../src/index.js';
+import type { ViewOptions } from '../src/index.js';
 import { unsplitOf } from '../src/hierarchy/copies.js';
 import { readTile, type Indices } from '../src/hierarchy/tile.js';
-import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
+import { fetchFrom, hasProgram, resealed, withoutQuery, Workshop } from './support/meshhier.js';
 import { FakeBitmap, fakeDecode, png } from './support/pictures.js';
+import { Session, type Place } from './support/session.js';
 import { tileBytes } from './support/tile_bytes.js';
-
-const VIEWPORT = { width: 800, height: 600 };
-const FRAME = 50;
-
-type Place = readonly [number, number, number];
-
-/// A view with a clock of its own.
-class Session {
-  readonly camera = new PerspectiveCamera(45, VIEWPORT.width / VIEWPORT.height, 1e-3, 100);
-  readonly problems: string[] = [];
-  missing = 0; // files
-  readonly view: HierarchyView;
-  private now = 0;
-
-  constructor(fetch: Fetch, options: ViewOptions = {}) {
-    this.view = new HierarchyView('', { fetch, ...options });
-    this.view.addEventListener('problem', ({ message, files }) => {
-      this.problems.push(message);
-      this.missing = files;
-    });
-    this.view.addEventListener('recovered', () => { this.missing = 0; });
-  }
-
-  look(from: Place, at: Place): void {
-    this.camera.position.set(...from);
-    this.camera.lookAt(new Vector3(...at));
-  }
-
-  async frame(): Promise<boolean> {
-    this.now += FRAME;
-    vi.advanceTimersByTime(FRAME);
-    const news = this.view.update(this.camera, VIEWPORT, this.now);
-    await new Promise((resolve) => setImmediate(resolve));
-    return news;
-  }
-
-  /// Frames until all is there, or so many seconds are over.
-  async settle(seconds = 30): Promise<boolean> {
-    for (const end = this.now + 1000 * seconds; this.now < end; ) {
-      await this.frame();
-      if (this.view.stats().settled) return true;
-    }
-    return false;
-  }
-
-  /// Those that would be drawn.
-  meshes(): Mesh[] {
-    const found: Mesh[] = [];
-    this.view.traverseVisible((object) => {
-      if ('isMesh' in object) found.push(object as Mesh);
-    });
-    return found;
-  }
-
-  /// The tiles that would be drawn, in view or not, in order, and what of each.
-  cut(): string[] {
-    const meshes = this.meshes().sort((a, b) => a.renderOrder - b.renderOrder);
-    return meshes.map(({ geometry: { attributes: { position }, drawRange } }) =>
-      [drawRange.count, position.count, ...position.array.slice(0, 3)].join());
-  }
-}
 
 /// What draws: tells whom it draws, and that pictures have come to the GPU.
 class Device {
@@ -89,7 +29,8 @@ class Device {
 /// A host of which some answers are others; `hurt` is asked for each file, with how often it was asked for before.
 function troubled(known: Fetch, hurt: (url: string, times: number) => Promise<Response> | null): Fetch {
   const asked = new Map<string, number>();
-  return (url, init) => {
+  return (address, init) => {
+    const url = withoutQuery(address);
     const times = asked.get(url) ?? 0;
     asked.set(url, times + 1);
     return hurt(url, times) ?? known(url, init);
@@ -109,7 +50,7 @@ async function withSplits(answer: Response, times: number): Promise<Response> {
 
 /// The same tiles, but all normals are one, and each vertex is split once for each of these times.
 function split(known: Fetch, times: number): Fetch {
-  return async (url, init) => {
+  return resealed(async (url, init) => {
     const answer = await known(url, init);
     if (url.endsWith('/tiles.bin')) return withSplits(answer, times);
     if (!url.endsWith('.glb')) return answer;
@@ -123,7 +64,7 @@ function split(known: Fetch, times: number): Fetch {
     const positions = at.flatMap((vertex) => [...tile.positions.subarray(3 * vertex, 3 * vertex + 3)]);
     const interior = whole(tile.indices.subarray(0, 3 * tile.interiorCount));
     return new Response(tileBytes({ ...tile, ...arrays, interior, splitOf, positions, codes: at.flatMap(() => [0, 0, 127]), colours: undefined, normals: undefined, picture: undefined, normalMap: undefined, tangents: undefined }) as Uint8Array<ArrayBuffer>);
-  };
+  });
 }
 
 function down(): Promise<Response> {
@@ -355,7 +296,7 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
   it('draws a whole cut whatever a ghost says, and tells', async () => {
     const hierarchy = torus();
     const known = fetchFrom(hierarchy);
-    const damaged = troubled(known, (url) => {
+    const damaged = resealed(troubled(known, (url) => {
       if (!/tiles\/0[45]/.test(url)) return null;
       return known(url).then(async (response) => {
         const bytes = new Uint8Array(await response.arrayBuffer());
@@ -364,7 +305,7 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
         view.setUint16(bytes.length - 2, 32767, true);
         return new Response(bytes);
       });
-    });
+    }));
     const session = begin(damaged, { settings: { threshold: 0.5 } });
     await session.view.opened;
     closeUp(session);

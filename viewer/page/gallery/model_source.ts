@@ -4,7 +4,7 @@ import { isArchiveUrl } from '../../src/hierarchy/archive_format.js';
 import { withoutLastSlashes, type Fetch } from '../../src/hierarchy/bytes.js';
 import { fetchManifest, type NamedFile } from '../../src/hierarchy/manifest.js';
 import { fetchOutline } from '../../src/hierarchy/outline.js';
-import { remoteFiles, type RemoteFiles } from '../../src/hierarchy/remote_files.js';
+import { remoteFiles, whole, type RemoteFiles } from '../../src/hierarchy/remote_files.js';
 import { shapeOf, type Shape } from './shape.js';
 
 const MOST_TRIES = 2;
@@ -51,7 +51,7 @@ export class ModelSource {
   /// Its address: that of a file in an archive is the page's own.
   private async pictureOf({ file, bytes }: NamedFile): Promise<string> {
     if (!isArchiveUrl(this.url)) return `${withoutLastSlashes(this.url)}/${file}`;
-    const content = await this.files.whole(file, bytes, { signal: this.ending.signal });
+    const content = await whole(this.files, file, bytes, { signal: this.ending.signal });
     this.ending.signal.throwIfAborted();
     this.picture ??= URL.createObjectURL(new Blob([content], { type: 'image/webp' }));
     return this.picture;

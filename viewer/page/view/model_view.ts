@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
-import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
+import { HierarchyProblem, HierarchyView, type Look, type Manifest, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
 import type { PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
@@ -59,12 +59,19 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
 const FIRST_PICTURE = 'meshhier: first picture';
 const REST = 300; // milliseconds without movement
 const REPORT = 250; // milliseconds between two reports
+const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
 /// Whether a camera can stand so.
 function isStanding(pose: CameraPose): boolean {
   const { position, target } = pose.toPose();
   return problemOfPose(position, target) === null;
+}
+
+/// Whether places in the tiles of one are the same places in those of the other.
+function isSamePlace(one: Manifest, other: Manifest): boolean {
+  const placeOf = ({ origin, place, up, transform, units }: Manifest): string => JSON.stringify([origin, place, up, transform, units]);
+  return placeOf(one) === placeOf(other);
 }
 
 export class ModelView {
@@ -105,6 +112,9 @@ export class ModelView {
   private refused = false;
   private lost: (() => void) | null = null;
   private missing: (() => void) | null = null;
+  private refusal: (() => void) | null = null;
+  private againTimer = 0;
+  private known: Manifest | null = null;
   private restTimer = 0;
   private reportedAt = -Infinity;
 
@@ -191,6 +201,7 @@ export class ModelView {
     this.loop.stop();
     this.sizes.disconnect();
     window.clearTimeout(this.restTimer);
+    window.clearTimeout(this.againTimer);
     this.view.dispose();
     this.stage.dispose();
     this.root.remove();
@@ -213,6 +224,7 @@ export class ModelView {
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     this.view.addEventListener('recovered', () => { this.missing?.(); });
+    this.view.addEventListener('replaced', ({ isLasting }) => { this.replaced(isLasting); });
     canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost, { more: words.problems.pictureLostMore }); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
@@ -222,6 +234,33 @@ export class ModelView {
   private miss(message: string, files: number): void {
     const text = words.problems.missing(this.model.name, files, formatCount(files));
     this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
+  }
+
+  private replaced(isLasting: boolean): void {
+    this.missing?.();
+    const { name } = this.model;
+    const { replaced, replacedMore, hostReplaced, hostReplacedMore } = words.problems;
+    if (isLasting) {
+      this.around.failed(hostReplaced(name), { more: hostReplacedMore, subject: 'replaced' });
+      return;
+    }
+    const reload = (): void => {
+      done();
+      void this.reload();
+    };
+    const done = this.around.failed(replaced(name), { more: replacedMore, subject: 'replaced', retry: reload, retryText: words.parts.reload });
+  }
+
+  /// With what the host has now; the camera, the look, and what was measured stay.
+  private async reload(): Promise<void> {
+    window.clearTimeout(this.againTimer);
+    this.refused = false;
+    try {
+      await this.view.reload();
+      this.begin();
+    } catch (error) {
+      this.refuse(error);
+    }
   }
 
   private missCode(again: () => void): void {
@@ -240,6 +279,7 @@ export class ModelView {
 
   private begin(): void {
     if (this.closed) return;
+    this.refusal?.();
     this.opened = true;
     immersions().then((modes) => { this.chrome.tellImmersions(modes); }, () => undefined);
     this.presentation.apply(); // what the model is may choose for it
@@ -272,7 +312,8 @@ export class ModelView {
     const { notOpened, notAHierarchy } = words.problems;
     const more = passes ? why : `${why}. ${notAHierarchy(this.model.url)}`;
     this.missing?.();
-    this.around.failed(notOpened(this.model.name), { more, subject: 'refused', retry: () => { this.around.again(); } });
+    this.refusal = this.around.failed(notOpened(this.model.name), { more, subject: 'refused', retry: () => { this.around.again(); } });
+    if (passes) this.againTimer = window.setTimeout(() => void this.reload(), AGAIN);
   }
 
   private redraw(): void {
@@ -311,6 +352,7 @@ export class ModelView {
     const stats = this.view.stats();
     const working = !this.refused && !(stats.settled && this.opened);
     if (this.view.manifest !== null) {
+      if (this.know(this.view.manifest)) return 'rest';
       this.chrome.tellSource(this.view.manifest);
       this.tools.showNews();
       if (this.shown) this.story.seek();
@@ -319,6 +361,14 @@ export class ModelView {
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';
     return working ? 'waiting' : 'rest';
+  }
+
+  /// True: it is another one whose places are others. Then all begins anew, and nothing that was measured holds.
+  private know(manifest: Manifest): boolean {
+    const isElsewhere = this.known !== null && this.known !== manifest && !isSamePlace(this.known, manifest);
+    this.known = manifest;
+    if (isElsewhere) queueMicrotask(() => { this.around.again(); });
+    return isElsewhere;
   }
 
   /// Links tell of the camera when it has come to rest.

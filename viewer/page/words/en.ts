@@ -18,6 +18,7 @@ export const en = {
     dismiss: 'Dismiss',
     language: 'Language',
     retry: 'Retry',
+    reload: 'Load it anew',
     theme: (name: string) => `Theme: ${name}`,
   },
   themes: { auto: 'Auto', light: 'Light', dark: 'Dark' },
@@ -128,6 +129,10 @@ export const en = {
     pictureLostMore: 'It comes back as soon as the browser allows; else load the page again.',
     missing: (model: string, count: number, text: string) =>
       `${model}: ${counted(count, text, 'file is', 'files are')} missing. You see what is there.`,
+    replaced: (model: string) => `${model} was replaced by another model.`,
+    replacedMore: 'What you see is the earlier one, as far as it had come. The camera stays when you load it anew.',
+    hostReplaced: (model: string) => `Another model lies where the rest of ${model} was.`,
+    hostReplacedMore: 'You see what this page holds itself.',
     badAddress: (given: string) => `${given} is no address that can be fetched.`,
     badModel: 'It must be relative to this page, or start with http or https, and have no query or fragment.',
     badListing: 'It must be relative to this page, or start with http or https.',

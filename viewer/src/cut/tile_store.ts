@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
 import { Seam } from './seam.js';
+import { HierarchyProblem } from '../hierarchy/problem.js';
 import { letGo, type Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
@@ -46,13 +47,17 @@ interface Entry {
 const PATIENCE_MS = 300;
 /// A file that failed is asked for again after this time, longer each time.
 const RETRY_MS = 2000;
-/// After so many times it is given up, for as long as this.
+/// After so many times it is given up, for as long as this; for less where the host or the line was it, which may be back.
 const MOST_TRIES = 4;
 const FORGET_MS = 60_000;
+const BACK_MS = 20_000;
 
 interface Failure {
   tries: number;
   again: number;
+  mayPass: boolean;
+  /// It did not have to wait since another tile came.
+  wasHurried: boolean;
 }
 
 export class TileStore {
@@ -64,6 +69,7 @@ export class TileStore {
   private readonly failures = new Map<number, Failure>();
   private loading = 0;
   private isOver = false;
+  private isFrozen = false;
 
   constructor(
     private readonly host: StoreHost,
@@ -104,6 +110,7 @@ export class TileStore {
   /// wanted. They are what must stay, and the root. Returns the number of those not there yet that will come.
   want(wanted: readonly Wanted[], now: number): number {
     for (const { node } of wanted) this.touch(node, now);
+    if (this.isFrozen) return 0;
     this.abortStale(now);
     let missing = 0;
     let isFull = false;
@@ -125,6 +132,18 @@ export class TileStore {
       this.usedBytes += bytes - entry.bytes;
       entry.bytes = bytes;
     }
+  }
+
+  /// Nothing comes any more: what is there stays, and what is on its way is given up.
+  freeze(): void {
+    this.isFrozen = true;
+    for (const entry of [...this.entries.values()]) if (!entry.resident && this.entries.has(entry.key)) this.cancel(entry);
+  }
+
+  /// When a file that was given up by a fault of the host or the line may be asked for again; Infinity: there is none.
+  get nextTry(): number {
+    const times = [...this.failures.values()].map(({ mayPass, again }) => (mayPass && !this.isFrozen ? again : Infinity));
+    return Math.min(Infinity, ...times);
   }
 
   /// A file that failed too often, not long ago.
@@ -244,6 +263,7 @@ export class TileStore {
     }
     --this.loading;
     this.failures.delete(entry.key);
+    this.hurry();
     this.host.came(resident);
   }
 
@@ -258,11 +278,20 @@ export class TileStore {
 
   private fail(entry: Entry, problem: unknown): void {
     if (this.isOver || entry.abort.signal.aborted) return;
-    const tries = (this.failures.get(entry.key)?.tries ?? 0) + 1;
-    const wait = tries < MOST_TRIES ? RETRY_MS * 2 ** (tries - 1) : FORGET_MS;
-    this.failures.set(entry.key, { tries, again: entry.useful + wait });
+    const { tries: before = 0, wasHurried = false } = this.failures.get(entry.key) ?? {};
+    const tries = before + 1;
+    const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
+    const pause = mayPass ? BACK_MS : FORGET_MS;
+    const wait = tries < MOST_TRIES ? RETRY_MS * 2 ** (tries - 1) : pause;
+    this.failures.set(entry.key, { tries, again: entry.useful + wait, mayPass, wasHurried });
     this.drop(entry);
     this.host.failed(entry.node, problem);
+  }
+
+  /// The host may be back: what failed by it waits no longer. Once, for it may be the file alone.
+  private hurry(): void {
+    for (const [key, failure] of this.failures)
+      if (failure.mayPass && !failure.wasHurried) this.failures.set(key, { ...failure, again: 0, wasHurried: true });
   }
 
   /// Removes an entry and all below it.

@@ -3,16 +3,19 @@
 import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { axesOf, frameShape } from '../scene/framing.js';
-import { HierarchyView, type ViewOptions } from '../scene/hierarchy_view.js';
+import { HierarchyProblem } from '../hierarchy/problem.js';
+import { HierarchyView } from '../scene/hierarchy_view.js';
 import { keyOf, Lighting } from '../scene/lighting.js';
 import { rigFor, shownLook } from '../scene/shown_look.js';
 import { isTyped } from '../typing.js';
+import type { ViewOptions } from '../scene/view_options.js';
 import type { CameraPlace } from './camera_attribute.js';
 import { moveByKey } from './keyboard.js';
 
 const ANGLE = 45; // degrees
 const MOST_RATIO = 2;
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
+const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 const MARGIN = 1.08;
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 
@@ -21,6 +24,8 @@ export interface Happenings {
   /// `message`: in plain words.
   problem(message: string): void;
   recovered(): void;
+  /// The host has another model by now.
+  replaced(): void;
   /// The user has moved the camera.
   moved(): void;
 }
@@ -38,6 +43,7 @@ export class ShownModel {
   private place: CameraPlace | null;
   private frame = 0;
   private timer = 0;
+  private retrying = 0;
   private ended = false;
 
   /// `place`: null: all of the model is in the picture. Throws Error where there is no WebGL 2, RangeError for settings out of range.
@@ -52,6 +58,12 @@ export class ShownModel {
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
     this.listen();
+  }
+
+  /// Begins anew with what the host has now; the camera stays.
+  reload(): void {
+    clearTimeout(this.retrying);
+    void this.await(this.view.reload());
   }
 
   /// Null: all of the model.
@@ -74,6 +86,7 @@ export class ShownModel {
     this.ended = true;
     cancelAnimationFrame(this.frame);
     clearTimeout(this.timer);
+    clearTimeout(this.retrying);
     this.sizes.disconnect();
     this.controls.dispose();
     this.view.dispose();
@@ -95,7 +108,8 @@ export class ShownModel {
     this.view.addEventListener('change', this.wake);
     this.view.addEventListener('problem', ({ message }) => { this.happenings.problem(message); });
     this.view.addEventListener('recovered', () => { this.happenings.recovered(); });
-    this.view.opened.then(() => { this.begin(); }, (error: unknown) => { this.refuse(error); });
+    this.view.addEventListener('replaced', () => { this.happenings.replaced(); });
+    void this.await(this.view.opened);
     this.controls.addEventListener('change', this.wake);
     this.controls.addEventListener('start', () => { this.take(); });
     this.controls.addEventListener('end', () => { this.happenings.moved(); });
@@ -113,8 +127,20 @@ export class ShownModel {
     this.wake();
   }
 
+  private async await(opened: Promise<void>): Promise<void> {
+    try {
+      await opened;
+      this.begin();
+    } catch (error) {
+      this.refuse(error);
+    }
+  }
+
+  /// A host that may be back is asked again.
   private refuse(error: unknown): void {
-    if (!this.ended) this.happenings.problem(error instanceof Error ? error.message : String(error));
+    if (this.ended) return;
+    if (error instanceof HierarchyProblem && error.mayPass) this.retrying = setTimeout(() => { this.reload(); }, AGAIN) as unknown as number;
+    this.happenings.problem(error instanceof Error ? error.message : String(error));
   }
 
   /// From now on the camera is the user's.

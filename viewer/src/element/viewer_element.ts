@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // <meshhier-viewer src="URL of a hierarchy">: a model in any page.
-import type { ViewOptions } from '../scene/hierarchy_view.js';
+import type { ViewOptions } from '../scene/view_options.js';
 import type { Settings } from '../scene/settings.js';
 import { formatCamera, parseCamera } from './camera_attribute.js';
 import { ShownModel } from './shown_model.js';
@@ -30,6 +30,7 @@ function make<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, attributes: Rea
 }
 
 /// Events: `load`, the model is drawn; `problem`, `event.detail.message` says what failed, the view goes on with what it has;
+/// `replaced`, the host has another model by now, what is shown stays (a message offers `reload()`, unless a listener prevents it);
 /// `camerachange`, the user has moved it.
 export class MeshhierViewerElement extends Base {
   static readonly observedAttributes = ['src', 'camera', 'label'];
@@ -38,11 +39,16 @@ export class MeshhierViewerElement extends Base {
 
   /// On the button beside a problem; for all elements made later.
   static retryText = 'Retry';
+  /// What is said of a model that was replaced, and on the button beside it; likewise.
+  static replacedText = 'This model was replaced by another one.';
+  static reloadText = 'Load it anew';
 
   private shown: ShownModel | null = null;
   private readonly poster: HTMLSlotElement;
   private readonly problem: HTMLElement;
   private readonly text: HTMLElement;
+  private readonly button: HTMLButtonElement;
+  private isReplaced = false;
   private readonly near: IntersectionObserver;
   private wanted = false; // it is near the window
 
@@ -53,11 +59,13 @@ export class MeshhierViewerElement extends Base {
     style.textContent = STYLE;
     this.poster = make('slot');
     this.text = make('span');
-    const retry = make('button', { type: 'button', part: 'retry' });
-    retry.textContent = MeshhierViewerElement.retryText;
-    retry.addEventListener('click', () => { this.retry(); });
+    this.button = make('button', { type: 'button', part: 'retry' });
+    this.button.addEventListener('click', () => {
+      if (this.isReplaced) this.reload();
+      else this.retry();
+    });
     this.problem = make('p', { role: 'alert', part: 'problem' });
-    this.problem.append(this.text, retry);
+    this.problem.append(this.text, this.button);
     this.problem.hidden = true;
     root.append(style, this.poster, this.problem);
     this.near = new IntersectionObserver((entries) => { this.seen(entries.some(({ isIntersecting }) => isIntersecting)); }, { rootMargin: NEAR });
@@ -112,6 +120,14 @@ export class MeshhierViewerElement extends Base {
     else this.open();
   }
 
+  /// Begins anew with what the host has now; the camera stays where the user has put it.
+  reload(): void {
+    this.problem.hidden = true;
+    this.isReplaced = false;
+    if (this.shown === null) this.open();
+    else this.shown.reload();
+  }
+
   private seen(isNear: boolean): void {
     if (!isNear || this.wanted) return;
     this.wanted = true;
@@ -126,6 +142,7 @@ export class MeshhierViewerElement extends Base {
         opened: () => { this.opened(); },
         problem: (message) => { this.tell(message); },
         recovered: () => { this.problem.hidden = true; },
+        replaced: () => { this.replaced(); },
         moved: () => { this.dispatchEvent(new CustomEvent('camerachange')); },
       });
     } catch (error) {
@@ -144,6 +161,7 @@ export class MeshhierViewerElement extends Base {
     this.shown = null;
     this.poster.hidden = false;
     this.problem.hidden = true;
+    this.isReplaced = false;
   }
 
   private options(): ViewOptions {
@@ -164,9 +182,20 @@ export class MeshhierViewerElement extends Base {
     this.dispatchEvent(new CustomEvent('load'));
   }
 
-  private tell(message: string): void {
+  private say(message: string, button: string): void {
     this.text.textContent = message;
+    this.button.textContent = button;
     this.problem.hidden = false;
+  }
+
+  private replaced(): void {
+    if (!this.dispatchEvent(new CustomEvent('replaced', { cancelable: true }))) return;
+    this.isReplaced = true;
+    this.say(MeshhierViewerElement.replacedText, MeshhierViewerElement.reloadText);
+  }
+
+  private tell(message: string): void {
+    this.say(message, MeshhierViewerElement.retryText);
     this.dispatchEvent(new CustomEvent('problem', { detail: { message } }));
   }
 }

@@ -4,6 +4,33 @@ import { HierarchyProblem } from './problem.js';
 
 export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
 
+/// A host that sends nothing for so long does not answer: it may have taken the connection, and no more.
+const SILENT_MS = 20_000;
+
+/// What `awaited` gives, if it gives something in time. Else it is ended by `giveUp`, and a problem of `name` that may pass.
+export async function inTime<T>(awaited: Promise<T>, name: string, giveUp: () => void): Promise<T> {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const late = new Promise<never>((_, reject) => {
+    timer = setTimeout(() => {
+      reject(new HierarchyProblem(name, `the host has sent nothing for ${SILENT_MS / 1000} seconds`, true));
+      giveUp();
+    }, SILENT_MS);
+  });
+  try {
+    return await Promise.race([awaited, late]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+/// Of a stream: the next piece.
+type NextPiece = (reader: ReadableStreamDefaultReader<Uint8Array>) => Promise<ReadableStreamReadResult<Uint8Array>>;
+
+/// In time.
+function receivePiece(name: string): NextPiece {
+  return (reader) => inTime(reader.read(), name, () => { reader.cancel().catch(() => undefined); });
+}
+
 /// In time that grows with the text alone; `/\/+$/` looks at each run of slashes again from each of them.
 export function withoutLastSlashes(text: string): string {
   let end = text.length;
@@ -11,7 +38,7 @@ export function withoutLastSlashes(text: string): string {
   return text.slice(0, end);
 }
 
-function isGzip(bytes: Uint8Array): boolean {
+export function isGzip(bytes: Uint8Array): boolean {
   return bytes[0] === 0x1f && bytes[1] === 0x8b;
 }
 
@@ -26,11 +53,11 @@ function joined(pieces: readonly Uint8Array[], length: number): Uint8Array<Array
 }
 
 /// Hands out all that a stream gives, at most `most` bytes; more is a problem of `name`. Returns how many they were.
-async function pour(stream: ReadableStream<Uint8Array>, most: number, name: string, take: (piece: Uint8Array) => void): Promise<number> {
+async function pour(stream: ReadableStream<Uint8Array>, most: number, name: string, take: (piece: Uint8Array) => void, next: NextPiece = (reader) => reader.read()): Promise<number> {
   let length = 0;
   const reader = stream.getReader();
   for (;;) {
-    const { done, value } = await reader.read();
+    const { done, value } = await next(reader);
     if (done) return length;
     length += value.length;
     if (length > most) {
@@ -59,34 +86,52 @@ export async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, nam
   }
 }
 
-/// The host's answer, if it is a good one. Throws HierarchyProblem of `name`, and what ends `init.signal`.
+/// Answers of a host that is busy, or of what stands before it: the same may succeed later.
+function passes(status: number): boolean {
+  return status === 408 || status === 425 || status >= 429;
+}
+
+/// What ends the request of an answer whose body is still awaited.
+const requests = new WeakMap<Response, AbortController>();
+
+/// The host's answer, if one comes in time and is a good one. Throws HierarchyProblem of `name`, and what ends `init.signal`.
 export async function respond(fetch: Fetch, url: string, name: string, init: RequestInit): Promise<Response> {
+  const ending = new AbortController();
+  const end = (): void => { ending.abort(init.signal?.reason); };
+  if (init.signal?.aborted) end();
+  init.signal?.addEventListener('abort', end, { once: true, signal: ending.signal });
   let response: Response;
   try {
-    response = await fetch(url, init);
+    response = await inTime(fetch(url, { ...init, signal: ending.signal }), name, () => { ending.abort(); });
   } catch (problem) {
-    if (init.signal?.aborted) throw problem;
+    if (init.signal?.aborted || problem instanceof HierarchyProblem) throw problem;
     throw new HierarchyProblem(name, 'could not be fetched; is the host up, and does it allow this page?', true);
   }
-  if (response.ok) return response;
-  void response.body?.cancel();
-  throw new HierarchyProblem(name, `the host answered ${response.status}`, response.status >= 429);
+  if (response.ok) {
+    requests.set(response, ending);
+    return response;
+  }
+  ending.abort();
+  throw new HierarchyProblem(name, `the host answered ${response.status}`, passes(response.status));
 }
 
 /// The pieces of an answer's body as they come, at most `most` bytes. Returns how many they were. Throws as respond() does.
 export async function receivePieces(
-  { body }: Response,
+  response: Response,
   most: number,
   name: string,
   signal: AbortSignal | null | undefined,
   take: (piece: Uint8Array) => void,
 ): Promise<number> {
+  const { body } = response;
   if (body === null) throw new HierarchyProblem(name, 'is empty');
   try {
-    return await pour(body, most, name, take);
+    return await pour(body, most, name, take, receivePiece(name));
   } catch (problem) {
     if (signal?.aborted || problem instanceof HierarchyProblem) throw problem;
     throw new HierarchyProblem(name, 'broke off', true);
+  } finally {
+    requests.get(response)?.abort(); // nobody listens for its end any more
   }
 }
 
@@ -101,6 +146,11 @@ export async function receive(
   return joined(pieces, await receivePieces(response, most, name, signal, (piece) => { pieces.push(piece); }));
 }
 
+/// A file of at most `most` bytes as the host sends it, perhaps in gzip.
+export async function fetchStored(fetch: Fetch, url: string, name: string, most: number, init: RequestInit = {}): Promise<Uint8Array<ArrayBuffer>> {
+  return receive(await respond(fetch, url, name, init), most, name, init.signal);
+}
+
 /// The content of a file of at most `most` bytes, out of its gzip.
 export async function fetchBytes(
   fetch: Fetch,
@@ -109,8 +159,7 @@ export async function fetchBytes(
   most: number,
   init: RequestInit = {},
 ): Promise<Uint8Array<ArrayBuffer>> {
-  const response = await respond(fetch, url, name, init);
-  return unpacked(await receive(response, most, name, init.signal), most, name);
+  return unpacked(await fetchStored(fetch, url, name, most, init), most, name);
 }
 
 /// More than this is not fetched whole for a part of it.

@@ -3,10 +3,12 @@
 import { JsonValue, type Fail } from '../json_value.js';
 import { HierarchyProblem } from './problem.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
-import type { RemoteFiles } from './remote_files.js';
+import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
+import { whole, type RemoteFiles } from './remote_files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 
+const COMPRESSIONS = ['none', 'zlib', 'meshopt', 'meshopt_zlib'] as const;
 export const MANIFEST_UNITS = ['mm', 'cm', 'm', 'km', 'in', 'ft', 'us_ft'] as const;
 
 export interface Manifest {
@@ -41,22 +43,26 @@ export interface Manifest {
   readonly licence: string;
   readonly partitions: number;
   readonly totalBytes: number;
+  /// Tiles are stored in gzip.
+  readonly packedTiles: boolean;
   readonly index: NamedFile;
   readonly outline: NamedFile;
   /// The model's picture; null: it has none.
   readonly preview: NamedFile | null;
+  /// The name of the build: its own checksum, which covers that of the index, which covers those of all tiles.
+  readonly build: string;
 }
 
 /// Of a hierarchy.
 export interface NamedFile {
   readonly file: string;
   readonly bytes: number;
+  /// XXH3-64.
+  readonly checksum: bigint;
 }
 
-export const MANIFEST = 'hierarchy.json';
 const FORMAT_VERSION = 11; // 10: the same without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
-export const MOST_MANIFEST_BYTES = 2 ** 20;
 const MOST_PREVIEW_BYTES = 40_000;
 
 const MOST_SHORT_BITS = 16;
@@ -97,7 +103,7 @@ function readSource(source: JsonValue, storage: JsonValue): Manifest['source'] {
 }
 
 function readFile(file: JsonValue, leastBytes: number, mostBytes: number): NamedFile {
-  return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes) };
+  return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes), checksum: BigInt(`0x${file.at('checksum').checksum()}`) };
 }
 
 /// Throws HierarchyProblem.
@@ -128,11 +134,22 @@ export function readManifest(text: string): Manifest {
     index: readFile(root.at('index'), indexBytes, indexBytes),
     outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
     preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
+    build: root.at('checksum').checksum(),
+    packedTiles: root.at('storage').at('compression').oneOf(...COMPRESSIONS).endsWith('zlib'),
   };
 }
 
-/// Throws HierarchyProblem, and what ends `signal`.
+/// From no cache. Throws HierarchyProblem, and what ends `signal`.
 export async function fetchManifest(files: RemoteFiles, signal: AbortSignal): Promise<Manifest> {
-  const text = await files.whole(MANIFEST, MOST_MANIFEST_BYTES, { signal });
-  return readManifest(new TextDecoder().decode(text));
+  const isHeld = files.holds?.(MANIFEST) ?? false;
+  return parsed(await (isHeld ? whole(files, MANIFEST, MOST_MANIFEST_BYTES, { signal }) : files.manifestNow(signal)));
+}
+
+/// That of the host. Throws as fetchManifest().
+export async function fetchHostManifest(files: RemoteFiles, signal: AbortSignal): Promise<Manifest> {
+  return parsed(await files.manifestNow(signal));
+}
+
+function parsed(bytes: Uint8Array): Manifest {
+  return readManifest(new TextDecoder().decode(bytes));
 }

@@ -3,7 +3,9 @@
 import { readFirstView, type FirstView } from './first_view.js';
 import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
-import type { RemoteFiles } from './remote_files.js';
+import { checksum } from './checksum.js';
+import type { Manifest } from './manifest.js';
+import { whole, type RemoteFiles } from './remote_files.js';
 
 export interface Outline {
   /// Three numbers a vertex, relative to the hierarchy's origin.
@@ -102,7 +104,14 @@ export function readOutline(bytes: Uint8Array): Outline {
   return { positions: new Float32Array(), segments: new Uint16Array(), formSegments, up, matrix, firstView };
 }
 
-/// Throws HierarchyProblem, and what ends `signal`.
+/// The one that the manifest tells of. Throws as fetchOutline().
+export async function fetchOutlineOf({ outline: { checksum: sum } }: Manifest, files: RemoteFiles, signal: AbortSignal): Promise<Outline> {
+  const bytes = await whole(files, FILE, MOST_BYTES, { signal });
+  need(checksum(bytes) === sum || (files.holds?.(FILE) ?? false), 'its checksum is not that of the manifest: it is damaged, or of another build');
+  return readOutline(bytes);
+}
+
+/// Whichever is there. Throws HierarchyProblem, and what ends `signal`.
 export async function fetchOutline(files: RemoteFiles, signal: AbortSignal): Promise<Outline> {
-  return readOutline(await files.whole(FILE, MOST_BYTES, { signal }));
+  return readOutline(await whole(files, FILE, MOST_BYTES, { signal }));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One file over HTTP, of which parts are read (RFC 9110, section 14).
 import { receive, receivePieces, respond, type Fetch } from './bytes.js';
-import { HierarchyProblem } from './problem.js';
+import { HierarchyProblem, HierarchyReplaced } from './problem.js';
 
 /// Parts that lie so near to each other come in one answer.
 const MOST_GAP = 2 ** 14;
@@ -231,7 +231,7 @@ export class RangedFile {
     }
     const { tag, modified, total } = version;
     if (differ(before.tag, tag) || differ(before.modified, modified) || differ(before.total, total))
-      throw new HierarchyProblem(this.name, 'has become another file on the host: open it again');
+      throw new HierarchyReplaced(this.name);
     this.version = { tag: before.tag ?? tag, modified: before.modified ?? modified, total: before.total ?? total };
   }
 }

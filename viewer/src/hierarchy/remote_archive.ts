@@ -4,9 +4,10 @@
 // An archive begins with the manifest, the root tile and the index of tiles: they are found from its beginning, and so is
 // what follows them side by side. All else is found by the index of names at its end.
 import { archivedBytes, beginsAsArchive, findInIndex, HEAD_BYTES, MOST_END_BYTES, MOST_LOCAL_BYTES, readEnd, readLocalHeader, type IndexPlace, type LocalHeader } from './archive_format.js';
-import { unpacked, type Fetch } from './bytes.js';
+import type { Fetch } from './bytes.js';
 import { browserStore, KeptFiles } from './kept_files.js';
-import { MANIFEST, MOST_MANIFEST_BYTES, readManifest, type Manifest } from './manifest.js';
+import { readManifest, type Manifest } from './manifest.js';
+import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { HierarchyProblem } from './problem.js';
 import { RangedFile } from './ranged_file.js';
 import type { RemoteFiles, Whereabouts } from './remote_files.js';
@@ -48,20 +49,27 @@ export class RemoteArchive implements RemoteFiles {
   private firstTile: number | null = null;
   private readonly started = new Map<string, Promise<unknown>>();
   private kept: KeptFiles | null = null;
+  private isOpen = false;
 
   /// `store`: keeps files for the next visit; null: none does.
   constructor(
     private readonly url: string,
-    fetch: Fetch,
+    private readonly fetch: Fetch,
     private readonly store: CacheStorage | null = browserStore(),
   ) {
     this.name = nameOfUrl(url);
     this.file = new RangedFile(url, this.name, fetch);
   }
 
-  async whole(name: string, most: number, init: RequestInit = {}, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
-    const bytes = await this.fromVisits(name, () => (where === undefined ? this.contentOf(name, most, init) : this.contentAt(name, where, most, init)));
-    return unpacked(bytes, most, name);
+  async stored(name: string, most: number, init: RequestInit = {}, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
+    return this.fromVisits(name, () => (where === undefined ? this.contentOf(name, most, init) : this.contentAt(name, where, most, init)));
+  }
+
+  /// The host is asked again only where the page cannot see which version of the archive each answer is of.
+  async manifestNow(signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
+    const isSeen = this.isOpen && this.file.versionText !== null;
+    const archive = this.isOpen && !isSeen ? new RemoteArchive(this.url, this.fetch, null) : this;
+    return archive.contentOf(MANIFEST, MOST_MANIFEST_BYTES, { signal });
   }
 
   async part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>> {
@@ -104,6 +112,7 @@ export class RemoteArchive implements RemoteFiles {
       const version = this.file.versionText;
       if (version !== null && this.store !== null) this.kept = new KeptFiles(this.url, version, this.store);
       this.place(readManifest(new TextDecoder().decode(bytes.subarray(first.headerBytes, end))), bytes.subarray(end), end);
+      this.isOpen = true;
       return { first: 0, bytes };
     });
   }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy at a URL: its root first, then what tells of the rest.
+import { Build } from './build.js';
+import { checksum } from './checksum.js';
 import { fetchManifest, type Manifest } from './manifest.js';
-import { fetchOutline, type Outline } from './outline.js';
-import { HierarchyProblem } from './problem.js';
+import { fetchOutlineOf, type Outline } from './outline.js';
+import { HierarchyProblem, HierarchyReplaced } from './problem.js';
 import { MOST_SIDE } from './limits.js';
 import { mostPictureBytes } from './picture.js';
-import type { RemoteFiles } from './remote_files.js';
+import { whole, type RemoteFiles } from './remote_files.js';
+import { fits, type OpenedTile, type Seal } from './stored_tile.js';
 import { letGo, type NormalSource, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';
 import type { TileDecoder } from './tile_decoder.js';
@@ -41,57 +44,140 @@ function expectedOf({ level, index }: Node, record: TileRecord): ExpectedCounts 
 export class RemoteHierarchy {
   private normalsFrom: NormalSource | null = null;
   private index: TileIndex | null = null;
+  private build: Build | null = null;
+  private packedTiles = false;
+  private rootBytes: Uint8Array | null = null; // as they came, until it is known what they should be
 
-  /// `signal`: ends all that is under way.
+  /// `signal`: ends all that is under way. `isAnew`: what caches have is of an earlier build, perhaps.
   constructor(
     private readonly files: RemoteFiles,
     private readonly decoder: TileDecoder,
     private readonly signal: AbortSignal,
+    private readonly isAnew = false,
   ) {}
 
   async root(): Promise<Tile> {
-    const path = tilePath(ROOT);
-    const bytes = await this.files.whole(path, MOST_ROOT, { priority: 'high', signal: this.signal });
-    const tile = await this.decoder.decode(bytes, path, null);
-    if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(path, 'not a root');
+    const name = tilePath(ROOT);
+    const bytes = await this.files.stored(name, MOST_ROOT, { priority: 'high', signal: this.signal, ...(this.isAnew && { cache: 'reload' as const }) });
+    const { tile } = await this.decoder.decode(bytes, { name, most: MOST_ROOT, expected: null, seal: null });
+    if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(name, 'not a root');
     this.normalsFrom = tile.normalsFrom;
+    this.rootBytes = bytes;
     return tile;
   }
 
-  /// After the root. `record`: what the index says of it; a tile that is another one is refused.
+  /// After the directory. `record`: what the index says of it; a tile that is another one is refused. Throws HierarchyReplaced where it is of
+  /// another build.
   async tile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
-    const path = tilePath(node);
-    const bytes = await this.files.whole(path, mostBytes(record, node.level), { signal }, this.index?.whereabouts(node) ?? undefined);
-    const tile = await this.decoder.decode(bytes, path, expectedOf(node, record));
-    if (tile.normalsFrom === this.normalsFrom) return tile;
-    letGo(tile);
-    throw new HierarchyProblem(path, 'its normals are not of the kind that the root has');
+    try {
+      return await this.checkedTile(node, record, signal);
+    } catch (problem) {
+      throw await this.explained(problem, this.holds(tilePath(node)));
+    }
   }
 
-  async outline(): Promise<Outline> {
-    return fetchOutline(this.files, this.signal);
+  /// After the directory.
+  async outline(manifest: Manifest): Promise<Outline> {
+    try {
+      return await fetchOutlineOf(manifest, this.files, this.signal);
+    } catch (problem) {
+      throw await this.explained(problem);
+    }
   }
 
   async manifest(): Promise<Manifest> {
     return fetchManifest(this.files, this.signal);
   }
 
+  /// The host has another build by now: what it has is left out. False: then there is nothing.
+  leaveHost(): boolean {
+    return this.files.leaveHost?.() ?? false;
+  }
+
   /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into. `root`
-  /// must be the tile that the index has for it.
+  /// must be the tile that the index has for it. Throws HierarchyReplaced where it is of another build.
   async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
+    this.build = new Build(this.files, manifest.build, this.signal);
+    this.packedTiles = manifest.packedTiles;
     const tree = new Tree(manifest.partitions);
     const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem, (node) => this.files.lacks?.(tilePath(node)) ?? false);
     await index.open();
-    this.index = index;
     const record = index.record(ROOT);
+    if (record !== null) await this.checkRoot(record);
     if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== ((root.picture ?? root.normalMap)?.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
+    this.index = index;
+    this.files.setBuild?.(manifest.build);
     return { manifest, tree, index };
   }
 
-  private async indexBytes({ index: { file, bytes } }: Manifest, first: number, end: number): Promise<Uint8Array> {
-    if (first === 0 && end === bytes) return this.files.whole(file, bytes, { signal: this.signal });
-    return this.files.part(file, [first, end], bytes, this.signal);
+  private async checkedTile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
+    const name = tilePath(node);
+    const most = mostBytes(record, node.level);
+    const seal = this.holds(name) ? null : this.sealOf(record);
+    const bytes = await this.files.stored(name, most, { signal }, this.index?.whereabouts(node) ?? undefined);
+    const opened = await this.decoder.decode(bytes, { name, most, expected: expectedOf(node, record), seal });
+    try {
+      await this.checkOpened(opened, name, seal);
+    } catch (problem) {
+      letGo(opened.tile);
+      throw problem;
+    }
+    return opened.tile;
+  }
+
+  private async checkOpened({ tile, isSealed }: OpenedTile, name: string, seal: Seal | null): Promise<void> {
+    if (seal !== null && !isSealed) await this.build?.confirm();
+    if (tile.normalsFrom !== this.normalsFrom) throw new HierarchyProblem(name, 'its normals are not of the kind that the root has');
+  }
+
+  /// It came before anything told what it should be. A cache may have had it of an earlier build: then all begins anew.
+  private async checkRoot(record: TileRecord): Promise<void> {
+    const { rootBytes: bytes } = this;
+    this.rootBytes = null;
+    const name = tilePath(ROOT);
+    if (bytes === null || this.holds(name)) return;
+    const isFitting = fits(bytes, checksum(bytes), this.sealOf(record)) ?? (await this.isStillRoot(bytes));
+    if (isFitting) return;
+    throw this.isAnew ? await this.explained(new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged')) : new HierarchyReplaced(name);
+  }
+
+  /// Of one that a host has unpacked: whether it is what the host has now, and the build still the same.
+  private async isStillRoot(bytes: Uint8Array): Promise<boolean> {
+    const now = await this.files.stored(tilePath(ROOT), MOST_ROOT, { cache: 'no-cache', signal: this.signal });
+    await this.build?.confirm();
+    return now.length === bytes.length && checksum(now) === checksum(bytes);
+  }
+
+  private async indexBytes(manifest: Manifest, first: number, end: number): Promise<Uint8Array> {
+    const { file, bytes } = manifest.index;
+    const isWhole = first === 0 && end === bytes;
+    try {
+      const read = isWhole ? await whole(this.files, file, bytes, { signal: this.signal }) : await this.files.part(file, [first, end], bytes, this.signal);
+      if (!this.holds(file, end)) await this.checkIndex(read, manifest);
+      return read;
+    } catch (problem) {
+      throw await this.explained(problem, this.holds(file, end));
+    }
+  }
+
+  /// A part of it has no checksum: it is of this build if the host still has that.
+  private async checkIndex(read: Uint8Array, { index: { file, bytes, checksum: sum } }: Manifest): Promise<void> {
+    if (read.length < bytes) await this.build?.confirm();
+    else if (checksum(read) !== sum) throw new HierarchyProblem(file, 'its checksum is not that of the manifest: it is damaged, or of another build');
+  }
+
+  private holds(name: string, end?: number): boolean {
+    return this.files.holds?.(name, end) ?? false;
+  }
+
+  private sealOf({ bytes, checksum: sum }: TileRecord): Seal {
+    return { bytes, checksum: sum, isPacked: this.packedTiles };
+  }
+
+  /// `isHeld`: no host has to do with it.
+  private explained(problem: unknown, isHeld = false): Promise<unknown> {
+    return isHeld || this.build === null ? Promise.resolve(problem) : this.build.explain(problem);
   }
 }

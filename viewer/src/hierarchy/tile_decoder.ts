@@ -3,12 +3,11 @@
 import { transcoderUrl } from './basis.js';
 import { NOT_DECODED } from './picture.js';
 import { HierarchyProblem } from './problem.js';
-import { readTile, type Tile } from './tile.js';
-import type { ExpectedCounts } from './tile_counts.js';
+import { openTile, type OpenedTile, type TileWanted } from './stored_tile.js';
 
 interface Answer {
   id: number;
-  tile?: Tile;
+  opened?: OpenedTile;
   /// What is wrong with the file.
   what?: string;
   /// What went wrong otherwise.
@@ -18,10 +17,9 @@ interface Answer {
 
 interface Task {
   readonly worker: Worker;
-  readonly bytes: Uint8Array;
-  readonly name: string;
-  readonly expected: ExpectedCounts | null;
-  readonly resolve: (tile: Tile) => void;
+  readonly bytes: Uint8Array<ArrayBuffer>;
+  readonly wanted: TileWanted;
+  readonly resolve: (opened: OpenedTile) => void;
   readonly reject: (problem: Error) => void;
 }
 
@@ -38,15 +36,15 @@ export class TileDecoder {
     for (let i = 0; i < count; ++i) this.workers.push(this.listen(createWorker()));
   }
 
-  /// `expected`: what the index says of the tile; null: nobody knows.
-  async decode(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
+  /// `bytes`: as they are stored. Throws HierarchyProblem.
+  async decode(bytes: Uint8Array<ArrayBuffer>, wanted: TileWanted): Promise<OpenedTile> {
     if (this.isOver) throw new Error('the view was closed');
-    if (this.workers.length === 0) return this.decodeHere(bytes, name, expected);
+    if (this.workers.length === 0) return this.decodeHere(bytes, wanted);
     const id = this.next++;
     const worker = this.workers[id % this.workers.length];
     return new Promise((resolve, reject) => {
-      this.tasks.set(id, { worker, bytes, name, expected, resolve, reject });
-      worker.postMessage({ id, bytes, name, expected, transcoder: transcoderUrl() });
+      this.tasks.set(id, { worker, bytes, wanted, resolve, reject });
+      worker.postMessage({ id, bytes, wanted, transcoder: transcoderUrl() });
     });
   }
 
@@ -57,11 +55,11 @@ export class TileDecoder {
     this.tasks.clear();
   }
 
-  private async decodeHere(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
+  private async decodeHere(bytes: Uint8Array<ArrayBuffer>, wanted: TileWanted): Promise<OpenedTile> {
     const began = performance.now();
-    const tile = await readTile(bytes, name, expected);
+    const opened = await openTile(bytes, wanted);
     this.milliseconds += performance.now() - began;
-    return tile;
+    return opened;
   }
 
   private listen(worker: Worker): Worker {
@@ -80,20 +78,20 @@ export class TileDecoder {
     const at = this.workers.indexOf(broken);
     if (at >= 0) this.workers.splice(at, 1);
     broken.terminate();
-    for (const [id, { worker, bytes, name, expected, resolve, reject }] of this.tasks) {
+    for (const [id, { worker, bytes, wanted, resolve, reject }] of this.tasks) {
       if (worker !== broken) continue;
       this.tasks.delete(id);
-      this.decodeHere(bytes, name, expected).then(resolve, reject);
+      this.decodeHere(bytes, wanted).then(resolve, reject);
     }
   }
 
-  private settle({ id, tile, what, defect, milliseconds }: Answer): void {
+  private settle({ id, opened, what, defect, milliseconds }: Answer): void {
     const task = this.tasks.get(id);
     this.tasks.delete(id);
     this.milliseconds += milliseconds ?? 0;
-    if (tile) task?.resolve(tile);
+    if (opened) task?.resolve(opened);
     // WebKit: workers of a page that was opened from a disk cannot decode pictures, the page can.
-    else if (task && what === NOT_DECODED) this.decodeHere(task.bytes, task.name, task.expected).then(task.resolve, task.reject);
-    else task?.reject(what === undefined ? new Error(defect) : new HierarchyProblem(task.name, what));
+    else if (task && what === NOT_DECODED) this.decodeHere(task.bytes, task.wanted).then(task.resolve, task.reject);
+    else task?.reject(what === undefined ? new Error(defect) : new HierarchyProblem(task.wanted.name, what));
   }
 }

@@ -29,6 +29,8 @@ export interface TileRecord {
   readonly max: Triple;
   /// Of the tile's file.
   readonly bytes: number;
+  /// XXH3-64 of the tile's file.
+  readonly checksum: bigint;
 }
 
 /// Bytes [first, end) of the index, or all of it where a host knows no ranges.
@@ -81,6 +83,7 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
     min: corner(60, -bound),
     max: corner(72, bound),
     bytes: bytesAt(view, at),
+    checksum: view.getBigUint64(at + 112, true),
   };
 }
 

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Decodes tiles beside the page: {id, bytes, name, expected, transcoder} in, {id, tile} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
+// Opens tiles beside the page: {id, bytes, wanted, transcoder} in, {id, opened} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
 import { setTranscoderUrl } from './basis.js';
 import { HierarchyProblem } from './problem.js';
-import { partsOf, readTile } from './tile.js';
-import type { ExpectedCounts } from './tile_counts.js';
+import { openTile, type TileWanted } from './stored_tile.js';
+import { partsOf } from './tile.js';
 
 interface Task {
   id: number;
-  bytes: Uint8Array;
-  name: string;
-  expected: ExpectedCounts | null;
+  bytes: Uint8Array<ArrayBuffer>;
+  wanted: TileWanted;
   transcoder?: string;
 }
 
 addEventListener('message', (event: MessageEvent<Task>) => {
-  const { id, bytes, name, expected, transcoder } = event.data;
+  const { id, bytes, wanted, transcoder } = event.data;
   setTranscoderUrl(transcoder);
   const began = performance.now();
-  readTile(bytes, name, expected).then(
-    (tile) => {
-      postMessage({ id, tile, milliseconds: performance.now() - began }, { transfer: partsOf(tile) });
+  openTile(bytes, wanted).then(
+    (opened) => {
+      postMessage({ id, opened, milliseconds: performance.now() - began }, { transfer: partsOf(opened.tile) });
     },
     (problem: unknown) => {
       postMessage(problem instanceof HierarchyProblem ? { id, what: problem.what } : { id, defect: String(problem) });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
-import { Box3, Group, Vector3, type Matrix4, type Object3DEventMap, type PerspectiveCamera } from 'three';
+import { Box3, Group, Vector3, type Matrix4, type PerspectiveCamera } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
@@ -10,9 +10,9 @@ import type { Vector, Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import { directionOf } from '../hierarchy/first_view.js';
 import type { Manifest } from '../hierarchy/manifest.js';
-import { HierarchyProblem } from '../hierarchy/problem.js';
-import { remoteFiles, type RemoteFiles } from '../hierarchy/remote_files.js';
-import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
+import { HierarchyProblem, HierarchyReplaced } from '../hierarchy/problem.js';
+import { remoteFiles } from '../hierarchy/remote_files.js';
+import type { Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
@@ -20,7 +20,8 @@ import { Tree, keyOf, tilePath, type Node } from '../hierarchy/tree.js';
 import { Account } from './account.js';
 import { Alarm } from './alarm.js';
 import { modeOf } from './mode.js';
-import { OutlineObject } from './outline_object.js';
+import { Opening } from './opening.js';
+import { OutlineLayer } from './outline_layer.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { changedStanding, DEFAULT_STANDING, upwards, type Standing } from './standing.js';
@@ -30,36 +31,12 @@ import { memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from './tile_object
 import type { DrawnTile, TileSource } from './surface.js';
 import { TileScene } from './tile_scene.js';
 import { isOnlyOnGpu } from './tile_texture.js';
-
-export interface ViewOptions {
-  settings?: Partial<Settings>;
-  look?: Partial<Look>;
-  standing?: Partial<Standing>;
-  /// Makes a worker of the module `tile_worker`; without it tiles are decoded where the view is.
-  createWorker?: () => Worker;
-  workers?: number;
-  /// Instead of the global one.
-  fetch?: Fetch;
-  /// Instead of those at the URL.
-  files?: RemoteFiles;
-  /// Most tiles on their way at once.
-  requests?: number;
-}
-
-export interface ViewEvents extends Object3DEventMap {
-  /// There is something new to draw: call `update` before the next frame.
-  change: object;
-  /// A file failed; the view goes on with what it has. `files`: how many are missing by now.
-  problem: { message: string; files: number };
-  /// All that had failed has come.
-  recovered: object;
-}
+import type { ViewEvents, ViewOptions } from './view_options.js';
 
 const WORKERS = 2;
 const REQUESTS = 6; // what browsers open to a host at once
 const LONGEST_FRAME_MS = 5000; // a longer one was no frame: the page slept
-const RETRY_MS = 1000; // of what all tiles need; twice as long each time
-const MOST_TRIES = 5;
+const RETRY_MS = 1000;
 const ROOT: Node = { level: 0, index: 0 };
 const ROOT_KEY = keyOf(0, 0);
 
@@ -82,8 +59,8 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Of the model, in the tiles' coordinates: smallest, then largest.
   private corners: readonly number[] = [];
   private readonly decoder: TileDecoder;
-  private readonly remote: RemoteHierarchy;
-  private readonly store: TileStore;
+  private opening: Opening;
+  private store: TileStore;
   private readonly tiles = new TileScene(() => { this.askAgain(); });
   private readonly account = new Account();
   private readonly rate: FrameRate;
@@ -101,6 +78,8 @@ export class HierarchyView extends Group<ViewEvents> {
   private wasMoving = false;
   private lastFrame = 0;
   private failed = 0;
+  private isReplaced = false; // nothing more comes
+  private hasLeft = false;
   private readonly missing = new Set<string | number>(); // files that failed and have not come since; tiles by their keys
   private readonly alarm = new Alarm(() => { this.wake(); });
   private readonly ending = new AbortController();
@@ -110,22 +89,33 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Nothing else will come.
   private isRootAll = false;
   private isFirstFrame = true;
-  private outline: Promise<OutlineObject | null> | null = null;
+  private readonly outline = new OutlineLayer(this.tiles, { tell: (problem) => { this.tell('outline', problem); }, came: () => { this.recover('outline'); this.changed(); } });
 
   /// `url`: of the hierarchy's directory, or of its archive.
-  constructor(url: string, options: ViewOptions = {}) {
+  constructor(private readonly url: string, private readonly options: ViewOptions = {}) {
     super();
     this.currentSettings = changedSettings(options.settings ?? {});
     this.currentLook = { ...DEFAULT_LOOK, ...options.look };
     this.currentStanding = changedStanding(options.standing ?? {}, DEFAULT_STANDING);
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
-    const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
-    this.remote = new RemoteHierarchy(options.files ?? remoteFiles(url, fetch), this.decoder, this.ending.signal);
+    this.opening = this.makeOpening(false);
     this.rate = new FrameRate(this.settings.framesPerSecond);
-    this.store = this.makeStore(options.requests ?? REQUESTS);
+    this.store = this.makeStore();
     this.add(this.tiles);
     this.opened = this.open();
     this.opened.catch(() => undefined); // whoever waits is told; nobody must
+    globalThis.addEventListener?.('online', () => { this.retry(); }, { signal: this.ending.signal });
+  }
+
+  /// Begins anew, with what the host has now: as after `replaced`. What is seen stays until the root has come, and how it is looked at stays.
+  /// Resolves and rejects as `opened` does.
+  async reload(): Promise<void> {
+    this.opening.close();
+    this.store.freeze();
+    this.opening = this.makeOpening(true);
+    this.isReplaced = this.hasLeft = false;
+    this.missing.clear();
+    return this.open();
   }
 
   get settings(): Readonly<Settings> {
@@ -197,31 +187,23 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Fetched when it is first asked for, and where it belongs is known.
   private showOutline(): void {
-    if (this.outline === null && this.look.outline && this.manifest !== null) this.outline = this.loadOutline(this.manifest);
-    void this.outline?.then((object) => {
-      if (object !== null) object.visible = this.look.outline;
-      this.changed();
-    });
-  }
-
-  private async loadOutline({ place }: Manifest): Promise<OutlineObject | null> {
-    try {
-      const object = new OutlineObject(await this.remote.outline(), place);
-      this.tiles.add(object);
-      this.recover('outline');
-      return object;
-    } catch (problem) {
-      this.tell('outline', problem);
-      if (problem instanceof HierarchyProblem && problem.mayPass) this.outline = null; // asked for again when it is switched on again
-      return null;
-    }
+    const { directory, opening: { remote } } = this;
+    if (directory !== null) this.outline.show(this.look.outline, () => remote.outline(directory.manifest), directory.manifest.place);
+    this.changed();
   }
 
   // ---- opening
 
-  private makeStore(requests: number): TileStore {
+  private makeOpening(isAnew: boolean): Opening {
+    const fetch: Fetch = this.options.fetch ?? ((input, init) => globalThis.fetch(input, init));
+    const host = { tell: (file: string, problem: unknown) => { this.tell(file, problem); }, recover: (file: string) => { this.recover(file); } };
+    return new Opening(this.options.files ?? remoteFiles(this.url, fetch), this.decoder, host, isAnew);
+  }
+
+  private makeStore(): TileStore {
+    const { remote } = this.opening;
     const host = {
-      load: (node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> => this.remote.tile(node, record, signal),
+      load: (node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> => remote.tile(node, record, signal),
       bytesOf: (tile: Tile, seam: ResidentTile['seam']): number => memoryOf(tile, seam, this.look.wires),
       came: (tile: ResidentTile): void => { this.came(tile); },
       gone: (tile: ResidentTile): void => {
@@ -230,14 +212,15 @@ export class HierarchyView extends Group<ViewEvents> {
       },
       failed: ({ level, index }: Node, problem: unknown): void => { this.tell(keyOf(level, index), problem); },
     };
-    return new TileStore(host, () => this.directory!.tree, this.settings.memoryBudget, requests);
+    return new TileStore(host, () => this.directory!.tree, this.settings.memoryBudget, this.options.requests ?? REQUESTS);
   }
 
   private async open(): Promise<void> {
-    const manifest = this.remote.manifest();
+    const { opening } = this;
+    const manifest = opening.remote.manifest();
     manifest.catch(() => undefined); // told when it is needed
-    const root = await this.persist('root', () => this.remote.root());
-    this.ending.signal.throwIfAborted();
+    const root = await opening.root();
+    if (this.root !== null) this.forget();
     this.root = root;
     this.silhouette = silhouetteOf(root);
     this.tiles.insideOut = root.insideOut;
@@ -245,24 +228,18 @@ export class HierarchyView extends Group<ViewEvents> {
     this.stand(root);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
-    void this.openDirectory(root, manifest);
+    void this.openDirectory(opening, root, manifest);
   }
 
-  /// Tries again, for a while, what failed by the host or the line; tells of each failure but the last.
-  private async persist<T>(file: string, ask: (tries: number) => Promise<T>): Promise<T> {
-    for (let tries = 1; ; ++tries) {
-      try {
-        const found = await ask(tries);
-        this.recover(file);
-        return found;
-      } catch (problem) {
-        const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
-        if (tries === MOST_TRIES || !mayPass) throw problem;
-        this.tell(file, problem);
-      }
-      await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
-      this.ending.signal.throwIfAborted();
-    }
+  /// All of an earlier opening; the manifest stays until there is another one.
+  private forget(): void {
+    this.store.dispose();
+    this.store = this.makeStore();
+    this.outline.clear();
+    this.directory = this.refinement = this.state = null;
+    this.drawn = [];
+    this.isRootAll = false;
+    this.isFirstFrame = true;
   }
 
   /// Upright, as it is wished.
@@ -279,14 +256,15 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   /// Without it there is the root and no more. `early`: the manifest was asked for already.
-  private async openDirectory(root: Tile, early: Promise<Manifest>): Promise<void> {
+  private async openDirectory(opening: Opening, root: Tile, early: Promise<Manifest>): Promise<void> {
     try {
-      const directory = await this.persist('directory', async (tries) => {
-        const manifest = await (tries === 1 ? early : this.remote.manifest());
-        return this.remote.directory(manifest, root, () => { this.recover('index'); this.changed(); }, (problem) => { this.tell('index', problem); });
-      });
-      this.begin(directory, root);
+      this.begin(await opening.directory(root, early, () => { this.changed(); }), root);
     } catch (problem) {
+      if (opening.isClosed) return;
+      if (problem instanceof HierarchyReplaced && !opening.isAnew) {
+        this.reload().catch((failure: unknown) => { this.tell('root', failure); }); // nothing but the root was seen of it
+        return;
+      }
       this.tell('directory', problem);
       this.isRootAll = true;
       this.changed();
@@ -294,7 +272,6 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private begin(directory: Directory, root: Tile): void {
-    if (this.ending.signal.aborted) return;
     const { manifest, tree, index } = directory;
     this.directory = directory;
     this.manifest = manifest;
@@ -319,11 +296,30 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private tell(file: string | number, problem: unknown): void {
-    if (this.ending.signal.aborted) return;
+    if (this.ending.signal.aborted || this.isReplaced) return;
+    if (problem instanceof HierarchyReplaced) {
+      this.leave();
+      return;
+    }
     ++this.failed;
     this.missing.add(file);
     const message = problem instanceof Error ? problem.message : String(problem);
     this.dispatchEvent({ type: 'problem', message, files: this.missing.size });
+    this.changed();
+  }
+
+  /// The host has another build. What was fetched fits together; nothing more of it will come.
+  private leave(): void {
+    if (this.hasLeft) return;
+    const isLasting = this.opening.remote.leaveHost();
+    this.hasLeft = true;
+    this.isReplaced = !isLasting;
+    this.missing.clear();
+    if (!isLasting) {
+      this.opening.close();
+      this.store.freeze();
+    }
+    this.dispatchEvent({ type: 'replaced', isLasting });
     this.changed();
   }
 
@@ -333,10 +329,12 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Asks at once for what failed.
   retry(): void {
+    if (this.isReplaced) return;
     this.store.retry();
+    this.opening.hurry();
     if (this.isRootAll && this.root !== null) {
       this.isRootAll = false;
-      void this.openDirectory(this.root, this.remote.manifest());
+      void this.openDirectory(this.opening, this.root, this.opening.remote.manifest());
     }
     this.showOutline();
     this.changed();
@@ -378,14 +376,15 @@ export class HierarchyView extends Group<ViewEvents> {
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
     this.pixels = viewport.width * viewport.height;
     const isElse = this.refine(this.viewpoint, now);
-    this.setAlarm();
+    this.setAlarm(now);
     return seesElse || isDirty || isElse;
   }
 
   /// Something may be due although nothing happens.
-  private setAlarm(): void {
+  private setAlarm(now: number): void {
     if (this.motion.isMoving) this.alarm.in(REST_MS);
     else if (this.state?.isComplete === false) this.alarm.in(this.state.isPausing ? PAUSE_MS : RETRY_MS);
+    else if (this.store.nextTry < Infinity) this.alarm.in(Math.max(RETRY_MS, this.store.nextTry - now));
     else this.alarm.stop();
   }
 
@@ -410,7 +409,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
-    const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look, this.manifest?.source.values);
+    const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look, this.directory?.manifest.source.values);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
     for (const node of this.tiles.takeDamaged())
       this.tell(keyOf(node.level, node.index), new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
@@ -470,8 +469,16 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Null until `manifest` is there.
   get source(): TileSource | null {
-    const { directory } = this;
-    return directory && { ...directory, load: (node, record, signal) => this.remote.tile(node, record, signal) };
+    const { directory, opening: { remote } } = this;
+    const load: TileSource['load'] = async (node, record, signal) => {
+      try {
+        return await remote.tile(node, record, signal);
+      } catch (problem) {
+        if (problem instanceof HierarchyReplaced && directory === this.directory) this.tell(keyOf(node.level, node.index), problem);
+        throw problem;
+      }
+    };
+    return directory && { ...directory, load };
   }
 
   private mode(shown: readonly ChosenNode[]): Mode {
@@ -515,11 +522,12 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Frees everything, also on the GPU; the view is of no use afterwards.
   dispose(): void {
     this.ending.abort(new Error('the view was closed'));
+    this.opening.close();
     this.alarm.stop();
     this.store.dispose();
     this.decoder.dispose();
     this.tiles.dispose();
-    void this.outline?.then((object) => object?.dispose());
+    this.outline.clear();
     this.removeFromParent();
   }
 }

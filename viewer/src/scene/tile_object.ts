@@ -47,7 +47,7 @@ export interface Extent {
 
 /// The same from counts alone; not less.
 export function mostMemory(
-  record: Omit<TileRecord, 'error' | 'bound' | 'min' | 'max' | 'bytes'>,
+  record: Omit<TileRecord, 'error' | 'bound' | 'min' | 'max' | 'bytes' | 'checksum'>,
   { level, vertexBytes, wires, texelBytes }: Extent,
 ): number {
   const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;

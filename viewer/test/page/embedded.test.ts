@@ -27,7 +27,7 @@ function link(fails: () => unknown = () => null): RemoteFiles & { asked: string[
     const problem: unknown = fails();
     return problem instanceof Error ? Promise.reject(problem) : Promise.resolve(new TextEncoder().encode(name));
   };
-  return { asked, whole: answer, part: answer };
+  return { asked, stored: answer, part: answer, manifestNow: () => answer('hierarchy.json') };
 }
 
 afterEach(() => { vi.useRealTimers(); });
@@ -40,7 +40,7 @@ describe('the hierarchy in a page', () => {
   it('has a name, files, and perhaps a link', async () => {
     const model = embeddedModel(pageWith({ name: 'david', files: { 'a.bin': base64(TEXT) } }))!;
     expect(model).toMatchObject({ name: 'david', url: 'file:///a/david.html' });
-    expect(await model.files!.whole('a.bin', 100)).toEqual(TEXT);
+    expect(await model.files!.stored('a.bin', 100)).toEqual(TEXT);
     expect(embeddedModel(pageWith({ name: 'david', link: 'https://host/david.3tz', files: {} }))!.url).toBe('https://host/david.3tz');
   });
 
@@ -51,12 +51,12 @@ describe('the hierarchy in a page', () => {
   it('gives files out of their gzip, and parts of them', async () => {
     const files = new EmbeddedFiles(new Map([['a', base64(TEXT)], ['b', base64(gzipSync(TEXT))]]), null);
     for (const name of ['a', 'b']) {
-      expect(await files.whole(name, 100)).toEqual(TEXT);
+      expect(await files.stored(name, 100)).toEqual(TEXT);
       expect(await files.part(name, [5, 15], 1000, signal)).toEqual(TEXT.subarray(5, 15));
       await expect(files.part(name, [95, 105], 1000, signal)).rejects.toThrow(`${name}: is not in this page`);
     }
-    await expect(files.whole('b', 99)).rejects.toThrow('b: larger than 99 bytes');
-    await expect(files.whole('c', 100)).rejects.toThrow('c: is not in this page');
+    await expect(files.stored('b', 99)).rejects.toThrow('b: larger than 99 bytes');
+    await expect(files.stored('c', 100)).rejects.toThrow('c: is not in this page');
     expect([files.lacks('a'), files.lacks('c')]).toEqual([false, true]);
   });
 
@@ -64,16 +64,16 @@ describe('the hierarchy in a page', () => {
     const rest = link();
     const files = new EmbeddedFiles(new Map([['a', base64(TEXT)]]), rest);
     expect(files.lacks('c')).toBe(false);
-    expect(new TextDecoder().decode(await files.whole('c', 100))).toBe('c');
+    expect(new TextDecoder().decode(await files.stored('c', 100))).toBe('c');
     await files.part('a', [95, 105], 1000, signal);
-    await files.whole('a', 100);
+    await files.stored('a', 100);
     expect(rest.asked).toEqual(['c', 'a']);
   });
 
   it('does without the link for a while where the line fails', async () => {
     vi.useFakeTimers();
     const files = new EmbeddedFiles(new Map(), link(() => new HierarchyProblem('c', 'could not be fetched', true)));
-    await expect(files.whole('c', 100)).rejects.toThrow('could not be fetched');
+    await expect(files.stored('c', 100)).rejects.toThrow('could not be fetched');
     expect(files.lacks('c')).toBe(true);
     vi.advanceTimersByTime(31_000);
     expect(files.lacks('c')).toBe(false);
@@ -81,7 +81,7 @@ describe('the hierarchy in a page', () => {
 
   it('keeps a link of which a file is broken', async () => {
     const files = new EmbeddedFiles(new Map(), link(() => new HierarchyProblem('c', 'is damaged')));
-    await expect(files.whole('c', 100)).rejects.toThrow('is damaged');
+    await expect(files.stored('c', 100)).rejects.toThrow('is damaged');
     expect(files.lacks('c')).toBe(false);
   });
 });

@@ -6,6 +6,8 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Fetch } from '../../src/hierarchy/bytes.js';
+import { checksum, digitsOf } from '../../src/hierarchy/checksum.js';
+import { tilePath } from '../../src/hierarchy/tree.js';
 
 const ROOT = fileURLToPath(new URL('../../..', import.meta.url));
 
@@ -75,9 +77,42 @@ export class Workshop {
   }
 }
 
+/// As hosts of files take an address.
+export function withoutQuery(url: string): string {
+  return url.replace(/\?.*$/, '');
+}
+
+/// The same host, but its index and its manifest have sizes and checksums of what it sends.
+export function resealed(known: Fetch): Fetch {
+  let index: Promise<Uint8Array<ArrayBuffer>> | null = null;
+  const bytesOf = async (url: string): Promise<Uint8Array<ArrayBuffer>> => new Uint8Array(await (await known(url)).arrayBuffer());
+  const seal = async (base: string): Promise<Uint8Array<ArrayBuffer>> => {
+    const bytes = await bytesOf(`${base}tiles.bin`);
+    const view = new DataView(bytes.buffer);
+    for (let at = 32; at < bytes.length; at += 120) {
+      const tile = await bytesOf(base + tilePath({ level: view.getUint32(at, true), index: view.getUint32(at + 4, true) }));
+      view.setBigUint64(at + 104, BigInt(tile.length), true);
+      view.setBigUint64(at + 112, checksum(tile), true);
+    }
+    return bytes;
+  };
+  return async (address, init) => {
+    const url = withoutQuery(address);
+    const base = url.replace(/(tiles\.bin|hierarchy\.json)$/, '');
+    if (base === url) return known(url, init);
+    index ??= seal(base);
+    const bytes = await index;
+    const range = /^bytes=(\d+)-(\d+)$/.exec(new Headers(init?.headers).get('Range') ?? '');
+    if (url.endsWith('tiles.bin')) return range === null ? new Response(bytes) : new Response(bytes.slice(Number(range[1]), Number(range[2]) + 1), { status: 206 });
+    const manifest = JSON.parse(await (await known(url, init)).text()) as { index: object };
+    return new Response(JSON.stringify({ ...manifest, index: { ...manifest.index, checksum: digitsOf(checksum(bytes)) } }));
+  };
+}
+
 /// Answers for files below a directory as a host does; knows ranges.
 export function fetchFrom(directory: string, asked: string[] = []): Fetch {
-  return (url, init) => {
+  return (address, init) => {
+    const url = withoutQuery(address);
     asked.push(url);
     const file = path.join(directory, url);
     if (!existsSync(file)) return Promise.resolve(new Response(null, { status: 404 }));

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// A tile out of its file as it is stored, if it is the file that the index tells of.
+import { isGzip, unpacked } from './bytes.js';
+import { checksum } from './checksum.js';
+import { HierarchyProblem } from './problem.js';
+import { readTile, type Tile } from './tile.js';
+import type { ExpectedCounts } from './tile_counts.js';
+
+/// What the index says of a file.
+export interface Seal {
+  readonly bytes: number;
+  readonly checksum: bigint;
+  /// It is stored in gzip: a host may unpack it.
+  readonly isPacked: boolean;
+}
+
+export interface TileWanted {
+  readonly name: string;
+  /// Bytes of the content, out of its gzip.
+  readonly most: number;
+  /// Null: nobody knows.
+  readonly expected: ExpectedCounts | null;
+  /// Null: not known, or of no matter.
+  readonly seal: Seal | null;
+}
+
+export interface OpenedTile {
+  readonly tile: Tile;
+  /// Of the bytes as they came.
+  readonly checksum: bigint;
+  /// They are those that the seal is of. False: a host has unpacked them, or there was no seal.
+  readonly isSealed: boolean;
+}
+
+/// Whether bytes with that checksum are the file of the seal; null: nobody can tell, a host has unpacked them.
+export function fits(bytes: Uint8Array, sum: bigint, seal: Seal): boolean | null {
+  if (seal.isPacked && !isGzip(bytes)) return null;
+  return bytes.length === seal.bytes && sum === seal.checksum;
+}
+
+/// Throws HierarchyProblem of `wanted.name`.
+export async function openTile(bytes: Uint8Array<ArrayBuffer>, { name, most, expected, seal }: TileWanted): Promise<OpenedTile> {
+  const sum = checksum(bytes);
+  const isFitting = seal && fits(bytes, sum, seal);
+  if (isFitting === false) throw new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged, or of another build');
+  return { tile: await readTile(await unpacked(bytes, most, name), name, expected), checksum: sum, isSealed: isFitting ?? false };
+}
