@@ -23,6 +23,7 @@ from .errors import (
     NotAHierarchyError,
     ProgramError,
     ProgramNotFoundError,
+    ReplacedError,
     UsageError,
     VerifyError,
 )
@@ -39,11 +40,12 @@ def open(path: str | os.PathLike[str]) -> Hierarchy:
     """Opens a hierarchy: a folder (`david.hier`) or an archive (`david.3tz`).
 
     Raises NotAHierarchyError if there is none, or one of another version; CorruptError if a file is damaged.
+    Where a build replaces a hierarchy that is open, reading raises ReplacedError: two builds are never mixed.
     """
     return Hierarchy(path)
 
 
 __all__ = [
     "BudgetError", "BuildWarning", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ProgramError",
-    "ProgramNotFoundError", "Progress", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
+    "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
 ]  # fmt: skip

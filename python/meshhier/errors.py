@@ -14,6 +14,10 @@ class CorruptError(Error):
     """A file of a hierarchy is not what the format says."""
 
 
+class ReplacedError(Error):
+    """Another build has taken the place of the hierarchy since it was opened: what is left of the two is never put together. Open it again."""
+
+
 class UsageError(Error):
     """The call makes no sense for this hierarchy: a level that it does not have, a key that no config has."""
 

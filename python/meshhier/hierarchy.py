@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .boxes import touches_box
+from .checksum import checksum
 from .cut import CutAssembly
-from .errors import CorruptError, UsageError
+from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
 from .manifest import Scalar, read_manifest
 from .mesh import Mesh
 from .storage import open_files
@@ -20,9 +21,9 @@ from .tree import Node, Tree
 
 _RECORD = np.dtype(
     {
-        "names": ["level", "index", "own", "ghosts", "copies", "interior", "border", "error", "bound", "low", "high", "splits", "width", "height", "bytes"],
-        "formats": ["<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<f4", "<f4", ("<f4", 3), ("<f4", 3), "<u4", "<u4", "<u4", "<u8"],
-        "offsets": [0, 4, 8, 16, 20, 24, 28, 48, 52, 60, 72, 84, 88, 92, 104],
+        "names": ["level", "index", "own", "ghosts", "copies", "interior", "border", "error", "bound", "low", "high", "splits", "width", "height", "bytes", "checksum"],
+        "formats": ["<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<f4", "<f4", ("<f4", 3), ("<f4", 3), "<u4", "<u4", "<u4", "<u8", "<u8"],
+        "offsets": [0, 4, 8, 16, 20, 24, 28, 48, 52, 60, 72, 84, 88, 92, 104, 112],
         "itemsize": 120,
     }
 )
@@ -40,7 +41,7 @@ class Hierarchy:
         self.path = os.fspath(path)
         self._files = open_files(path)
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
-        self._index = self._read_index(self._files.read("tiles.bin"))
+        self._index = self._read_index()
         self._keys = self._index["level"].astype(np.uint64) << np.uint64(32) | self._index["index"]
 
     def __enter__(self) -> Hierarchy:
@@ -56,7 +57,27 @@ class Hierarchy:
         """Closes an archive. Nothing can be read any more."""
         self._files.close()
 
-    def _read_index(self, data: bytes) -> NDArray[Any]:
+    def _read_sealed(self, name: str, size: int, expected: int) -> bytes:
+        """A file whose size and checksum another one tells. Raises ReplacedError where another build has taken its place."""
+        try:
+            data = self._files.read(name)
+            if len(data) != size or checksum(data) != expected:
+                raise CorruptError(f"{self.path}: {name} has another size or checksum than it was made with: it is damaged")
+            return data
+        except (CorruptError, OSError):
+            if self._is_replaced():
+                raise ReplacedError(f"{self.path}: another hierarchy has taken its place since it was opened: open it again") from None
+            raise
+
+    def _is_replaced(self) -> bool:
+        try:
+            now = read_manifest(self._files.read("hierarchy.json"), self.path)
+        except (CorruptError, NotAHierarchyError, OSError):
+            return False  # then what failed says why
+        return now.build != self._manifest.build
+
+    def _read_index(self) -> NDArray[Any]:
+        data = self._read_sealed("tiles.bin", self._manifest.index_bytes, self._manifest.index_checksum)
         header = 32
         count = 2 * self.tree.partitions - 1
         if data[:8] != b"MHTILES\n" or len(data) != header + count * _RECORD.itemsize:
@@ -138,9 +159,10 @@ class Hierarchy:
         return np.stack([record["low"], record["high"]]).astype(np.float64) + self.origin
 
     def read_tile(self, node: Node) -> Tile:
-        """One tile, with its seams. Raises UsageError if there is none, CorruptError."""
-        self._record(node)
-        return read_tile(self._files.read(self._manifest.tile_name(node)), node, self._manifest)
+        """One tile, with its seams. Raises UsageError if there is none, CorruptError, ReplacedError."""
+        record = self._record(node)
+        data = self._read_sealed(self._manifest.tile_name(node), int(record["bytes"]), int(record["checksum"]))
+        return read_tile(data, node, self._manifest)
 
     def iter_tiles(self, level: Optional[int] = None) -> Iterator[Tile]:
         """The tiles of a level (the finest if none is given), one after another: memory for one at a time.

@@ -54,6 +54,8 @@ class Manifest:
     scalars: its further numbers, in the order of tiles.
     lattice: of quantized positions, or None.
     is_textured: tiles have pictures.
+    index_bytes, index_checksum: of tiles.bin.
+    build: the name of the build: the manifest's own checksum, which covers all others.
     """
 
     json: dict[str, Any] = field(repr=False)
@@ -63,6 +65,9 @@ class Manifest:
     scalars: list[Scalar]
     lattice: Optional[Lattice]
     is_textured: bool
+    index_bytes: int
+    index_checksum: int
+    build: str
 
     def tile_name(self, node: Node) -> str:
         """The name of a tile's file within the hierarchy."""
@@ -100,6 +105,9 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             scalars=[_scalar(value) for value in source.get("values", [])],
             lattice=Lattice(np.asarray(lattice["corner"], np.float64), lattice["step"]) if lattice else None,
             is_textured="textures" in source,
+            index_bytes=int(text["index"]["bytes"]),
+            index_checksum=int(text["index"]["checksum"], 16),
+            build=str(text["checksum"]),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise CorruptError(f"{path}: hierarchy.json: {error!r}") from error
