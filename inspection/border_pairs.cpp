@@ -118,7 +118,7 @@ void BorderPairs::add_own(const Node& node, std::vector<Use> uses, SumsByOther& 
     node.find_chain(use.vertex, other, chain);
     const PublishedTile& tile = node.tile();
     sums[use.other].own +=
-        hash(chain, {tile.mesh.vertices, use.vertex}, normal_of(tile.shading, use.vertex),
+        hash(chain, {tile.mesh.vertices, use.vertex}, common_normal(tile, use.vertex, other),
              compare_attributes(node.id(), other));
   }
 }
@@ -130,9 +130,17 @@ void BorderPairs::add_ghosts(const PublishedTile& tile, SumsByOther& sums) const
     const NodeId other{tile.node.level, mesh.ghosts[i].tile};
     const std::size_t vertex = mesh.own_count + i;
     sums[other.index].other +=
-        hash(tile.chains[i], {mesh.vertices, vertex}, normal_of(tile.shading, vertex),
+        hash(tile.chains[i], {mesh.vertices, vertex}, common_normal(tile, vertex, other),
              compare_attributes(tile.node, other));
   }
+}
+
+/// None if one of both tiles has texture coordinates.
+std::span<const NormalCode> BorderPairs::common_normal(const PublishedTile& tile,
+                                                       std::size_t vertex, NodeId other) const {
+  if (tree_.is_early(other) || has_texcoords_(other))
+    return {};
+  return normal_of(tile.shading, vertex);
 }
 
 /// A simplified tile may store attributes more coarsely than the partition beside it does, which

@@ -2,7 +2,8 @@
 //
 // Neighbours agree if both list the same border triangles between them, with the same normals if
 // these are computed, and if each has the other's places there as they are: number, chain,
-// position, attributes and normal of the first vertex (copy_claims.h sees to the others). To look
+// position, attributes and, if neither has texture coordinates, normal of the first vertex
+// (copy_claims.h sees to the others). To look
 // into every neighbour's tile would be quadratic where all tiles are neighbours (a soup of long
 // triangles). So each node sums up what it says of every pair it is in, and the two sums of a pair
 // meet in one sort: every tile is read once, whatever the mesh. Only pairs that differ need to be
@@ -22,12 +23,17 @@
 #include <map>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace meshhier::inspection {
 
 /// Parent maps by node that has a tile; empty ones where it cannot be read.
 using ParentMaps = NodeCache<std::vector<std::uint16_t>>;
+
+/// Whether the tile of a node that is not early has texture coordinates: which normal of a vertex
+/// is its first, and which are splits, is such a tile's own matter.
+using HasTexcoords = std::function<bool(NodeId)>;
 
 /// Two nodes of a level; low < high.
 struct NodePair {
@@ -48,9 +54,12 @@ struct PairSide {
 class BorderPairs {
  public:
   /// `maps` must outlive it. `memory_bytes`: of the sort.
-  BorderPairs(const Tree& tree, ParentMaps& maps, storage::ScratchFile& scratch,
-              std::uint64_t memory_bytes)
-      : tree_(tree), maps_(maps), sides_(scratch, memory_bytes) {}
+  BorderPairs(const Tree& tree, ParentMaps& maps, HasTexcoords has_texcoords,
+              storage::ScratchFile& scratch, std::uint64_t memory_bytes)
+      : tree_(tree),
+        maps_(maps),
+        has_texcoords_(std::move(has_texcoords)),
+        sides_(scratch, memory_bytes) {}
 
   /// What a tile says; for a partition also what the early node above it says, if there is one.
   /// O(b log b), b its border triangles.
@@ -81,11 +90,14 @@ class BorderPairs {
                                  SumsByOther& sums) const;
   void add_own(const Node& node, std::vector<Use> uses, SumsByOther& sums) const;
   void add_ghosts(const PublishedTile& tile, SumsByOther& sums) const;
+  std::span<const NormalCode> common_normal(const PublishedTile& tile, std::size_t vertex,
+                                            NodeId other) const;
   bool compare_attributes(NodeId a, NodeId b) const;
   bool agree(const PairSide& low, const PairSide& high) const;
 
   const Tree& tree_;
   ParentMaps& maps_;
+  HasTexcoords has_texcoords_;
   partition::ExternalSort<PairSide, SideKey> sides_;
 };
 

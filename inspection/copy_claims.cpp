@@ -4,8 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace meshhier::inspection {
+namespace {
+
+std::uint16_t level_of(NodeId node) {
+  return static_cast<std::uint16_t>(raw(node.level));
+}
+
+}  // namespace
 
 /// Goes through the claims in order.
 class CopyClaims::Judge {
@@ -16,7 +24,7 @@ class CopyClaims::Judge {
     if (!is_of_same(claim, last_))
       begin(claim);
     if (claim.by_neighbour == 0) {
-      owned_.push_back(claim.vertex);
+      owned_.push_back(claim);
     } else {
       if (last_.by_neighbour == 0 || claim.tile != last_.tile)
         next_ = 0;
@@ -46,7 +54,8 @@ class CopyClaims::Judge {
 
   void judge(const Claim& claim) {
     const auto from = owned_.begin() + static_cast<std::ptrdiff_t>(next_);
-    const auto found = std::find(from, owned_.end(), claim.vertex);
+    const auto found = std::find_if(from, owned_.end(),
+                                    [&](const Claim& owned) { return owned.agrees_with(claim); });
     if (found != owned_.end()) {
       next_ = static_cast<std::size_t>(found - owned_.begin()) + 1;
       return;
@@ -59,7 +68,7 @@ class CopyClaims::Judge {
 
   const std::function<void(const WrongCopies&)>& visit_;
   Claim last_;
-  std::vector<std::uint64_t> owned_;            ///< of the place being heard
+  std::vector<Claim> owned_;                    ///< of the place being heard
   std::size_t next_ = 0;                        ///< of owned_, behind what the tile has claimed
   std::map<std::uint32_t, WrongCopies> wrong_;  ///< of one owner, by tile
 };
@@ -111,33 +120,46 @@ void CopyClaims::add_splits(const PublishedTile& tile) {
     const NodeId node{tile.node.level, owner.tile};
     if (tree_.is_early(node))
       continue;  // its partition has normals of its own level
-    claims_.add(Claim{raw(node.level), owner.tile, owner.index, own ? 0U : 1U, tile.node.index,
-                      static_cast<std::uint32_t>(mesh.copies.size() + split),
-                      split_hash(tile, vertex, split)});
+    if (has_texcoords_(node))
+      continue;
+    claims_.add(
+        Claim{.level = level_of(node),
+              .by_neighbour = std::uint16_t{!own},
+              .owner = owner.tile,
+              .place = owner.index,
+              .tile = tile.node.index,
+              .wedge = static_cast<std::uint32_t>(mesh.copies.size() + split),
+              .normal = normal_bits(tile, mesh.vertices.size() + mesh.copies.size() + split),
+              .vertex = split_hash(tile, vertex)});
   }
 }
 
 /// Unlike that of any copy.
-std::uint64_t CopyClaims::split_hash(const PublishedTile& tile, std::uint32_t vertex,
-                                     std::size_t split) {
+std::uint64_t CopyClaims::split_hash(const PublishedTile& tile, std::uint32_t vertex) {
   constexpr std::array<std::uint16_t, 1> kNoChain{};
   const TileMesh& mesh = tile.mesh;
   const std::size_t places = mesh.vertices.size();
   const VertexAt at = vertex < places ? VertexAt{mesh.vertices, vertex}
                                       : VertexAt{mesh.copies.vertices, vertex - places};
-  return hash_(kNoChain, at, normal_of(tile.shading, places + mesh.copies.size() + split), true);
+  return hash_(kNoChain, at, {}, true);
+}
+
+std::uint32_t CopyClaims::normal_bits(const PublishedTile& tile, std::size_t number) {
+  const std::span<const NormalCode> normal = normal_of(tile.shading, number);
+  return normal.empty() ? kAnyNormal : std::bit_cast<std::uint32_t>(normal.front());
 }
 
 /// A simplified tile may store attributes more coarsely than the partition beside it does, which
 /// stands for an early node: then the position alone counts.
 CopyClaims::Claim CopyClaims::claim_of(const PublishedTile& tile, NodeId owner, std::size_t copy) {
   Claim claim;
-  claim.level = raw(owner.level);
+  claim.level = level_of(owner);
   claim.owner = owner.index;
   claim.wedge = static_cast<std::uint32_t>(copy);
-  claim.vertex =
-      hash_({}, {tile.mesh.copies.vertices, copy},
-            normal_of(tile.shading, tile.mesh.vertices.size() + copy), !tree_.is_early(owner));
+  const bool with_attributes = !tree_.is_early(owner);
+  if (with_attributes)
+    claim.normal = normal_bits(tile, tile.mesh.vertices.size() + copy);
+  claim.vertex = hash_({}, {tile.mesh.copies.vertices, copy}, {}, with_attributes);
   return claim;
 }
 

@@ -255,8 +255,9 @@ void verify_tiles(const VerifyJob& job) {
   PartitionTotals totals;
   std::size_t off_target = 0;
   ParentMaps maps = make_parent_maps(job);
-  BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
-  CopyClaims claims(job.tree(), job.scratch, job.options.memory_budget / 8);
+  const auto has_texcoords = [&](NodeId node) { return job.reader.record(node).image_width > 0; };
+  BorderPairs pairs(job.tree(), maps, has_texcoords, job.scratch, job.options.memory_budget / 8);
+  CopyClaims claims(job.tree(), has_texcoords, job.scratch, job.options.memory_budget / 8);
   job.progress.stage("verify", records.size(), "tiles");
   std::vector<NodeId> nodes;
   for (const TileRecord& record : records)

@@ -1,6 +1,7 @@
 // Hierarchies with normal maps: tiles above the partitions are lit as the original is.
 #include "bench/generator.h"
 #include "bench/shading_comparison.h"
+#include "bench/stress.h"
 #include "config/config.h"
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
@@ -9,6 +10,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/files_of.h"
+#include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
@@ -16,6 +18,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -169,6 +172,53 @@ TEST_F(NormalMapsTest, WhereTheyDoNotPayThereAreNone) {
   build(job);
   EXPECT_TRUE(storage::HierarchyReader(*files_, job.output).manifest().normal_maps);
   EXPECT_THAT(problems(job), testing::IsEmpty());
+}
+
+/// A sheet of 6 x 6 bumps, each triangle twice, once reversed.
+bench::LoadedMesh two_sided_bumps(std::uint64_t seed) {
+  constexpr std::uint32_t kSide = 6;
+  bench::LoadedMesh mesh;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const double height = 0.5 * double{tests::hash_noise(seed, i)};
+    mesh.positions.push_back(
+        {double{i % kSide}, double{i / kSide}, static_cast<double>(static_cast<float>(height))});
+  }
+  for (std::uint32_t i = 0; i + kSide + 1 < kSide * kSide; ++i) {
+    if (i % kSide == kSide - 1)
+      continue;
+    for (const bench::MeshTriangle& t :
+         {bench::MeshTriangle{i, i + 1, i + kSide + 1}, {i, i + kSide + 1, i + kSide}}) {
+      mesh.triangles.push_back(t);
+      mesh.triangles.push_back({t[0], t[2], t[1]});
+    }
+  }
+  return mesh;
+}
+
+/// Whether a tile with a map has a neighbour of its level without.
+bool has_mixed_neighbours(const storage::HierarchyReader& reader) {
+  return std::ranges::any_of(reader.records(), [&](const TileRecord& record) {
+    const std::vector<GhostRef> ghosts = reader.read_tile(record.node).mesh.ghosts;
+    return record.has_normal_map && std::ranges::any_of(ghosts, [&](const GhostRef& ghost) {
+             return !reader.record({record.node.level, ghost.tile}).has_normal_map;
+           });
+  });
+}
+
+TEST_F(NormalMapsTest, TilesWithAMapAndThoseBesideThemWithoutAgree) {
+  config::Config job = config(rough_torus(), Normals::map_or_none);
+  job.partition.vertices = 4;
+  job.simplify.vertices.reset();
+  job.normal_map.texels = 64;
+  int mixed = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    std::filesystem::remove(job.input.front());
+    bench::write_ply(*files_, {job.input.front()}, *bench::as_generated(two_sided_bumps(seed)));
+    build(job);
+    EXPECT_THAT(problems(job), testing::IsEmpty()) << seed;
+    mixed += has_mixed_neighbours(storage::HierarchyReader(*files_, job.output)) ? 1 : 0;
+  }
+  EXPECT_GE(mixed, 3);
 }
 
 TEST_F(NormalMapsTest, PointsAndFewTrianglesHaveNone) {
