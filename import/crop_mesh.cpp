@@ -1,7 +1,7 @@
 #include "import/crop_mesh.h"
 
 #include "execution/spool_cursor.h"
-#include "hierarchy/clip_polygon.h"
+#include "hierarchy/half_space.h"
 #include "import/renumber_triangles.h"
 #include "import/used_vertices.h"
 
@@ -26,24 +26,6 @@ std::uint8_t sides_beyond(const BoundsD& box, Vec3d p) {
     sides |= static_cast<std::uint8_t>((p[axis] > box.max[axis] ? 2 : 0) << (2 * axis));
   }
   return sides;
-}
-
-/// Whether a part of the triangle lies in the box.
-bool touches(const BoundsD& box, const std::array<Vec3d, 3>& corners) {
-  std::vector<Vec3d> polygon(corners.begin(), corners.end()), next;
-  for (int side = 0; side < 6 && !polygon.empty(); ++side) {
-    const int axis = side / 2;
-    const bool is_upper = side % 2 == 1;
-    const auto beyond = [&](Vec3d p) {
-      return is_upper ? p[axis] - box.max[axis] : box.min[axis] - p[axis];
-    };
-    clip_at(
-        polygon, beyond,
-        [](Vec3d from, Vec3d to, double a, double b) { return from + (to - from) * (a / (a - b)); },
-        next);
-    std::swap(polygon, next);
-  }
-  return polygon.size() >= 3;
 }
 
 /// A corner of a triangle with what decides.
@@ -213,8 +195,9 @@ std::uint64_t crop_mesh(RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
         corners[i] = {block[i], first + i};
     };
     auto kept = std::make_unique<Triangles>(room.scratch, kImportSpoolBytes);
+    const std::array<HalfSpace, 6> sides = half_spaces_of(box);
     const auto take = [&](const Triangle<PlacedCorner>& t) {
-      if (touches(box, {t[0].position, t[1].position, t[2].position}))
+      if (touches(sides, {t[0].position, t[1].position, t[2].position}))
         kept->append(vertices_of(t));
     };
     TriangleTranslator<PlacedCorner, decltype(take)> table({0, mesh.vertex_count(), read, false},

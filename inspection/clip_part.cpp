@@ -29,14 +29,7 @@ class PartClipper {
   CutPart run() {
     std::vector<ClippedPolygon> kept;
     for (const auto& triangle : part_.triangles) {
-      std::vector<ClippedPolygon> pieces = clipper_.pieces(corners_of(triangle));
-      if (pieces.empty())
-        continue;
-      if (clipping_ == Clipping::whole_triangles) {
-        pieces.clear();
-        pieces.push_back(corners_of(triangle));
-      }
-      for (ClippedPolygon& piece : pieces) {
+      for (ClippedPolygon& piece : kept_of(corners_of(triangle))) {
         for (const ClippedCorner& corner : piece)
           use(corner);
         kept.push_back(std::move(piece));
@@ -51,6 +44,15 @@ class PartClipper {
   }
 
  private:
+  std::vector<ClippedPolygon> kept_of(ClippedPolygon triangle) const {
+    if (clipping_ != Clipping::whole_triangles)
+      return clipper_.pieces(std::move(triangle));
+    std::vector<ClippedPolygon> whole;
+    if (clipper_.touches(triangle))
+      whole.push_back(std::move(triangle));
+    return whole;
+  }
+
   ClippedPolygon corners_of(const Triangle<std::uint32_t>& triangle) const {
     ClippedPolygon corners;
     for (const std::uint32_t vertex : triangle) {

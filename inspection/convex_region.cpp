@@ -5,12 +5,8 @@
 namespace meshhier::inspection {
 
 ConvexRegion ConvexRegion::of_box(const BoundsD& box) {
-  return ConvexRegion({{{-1, 0, 0}, -box.min.x},
-                       {{1, 0, 0}, box.max.x},
-                       {{0, -1, 0}, -box.min.y},
-                       {{0, 1, 0}, box.max.y},
-                       {{0, 0, -1}, -box.min.z},
-                       {{0, 0, 1}, box.max.z}});
+  const auto sides = half_spaces_of(box);
+  return ConvexRegion({sides.begin(), sides.end()});
 }
 
 bool ConvexRegion::may_meet(const BoundsD& box) const {

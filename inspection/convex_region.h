@@ -2,19 +2,12 @@
 #pragma once
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/half_space.h"
 #include "hierarchy/vec.h"
 
 #include <vector>
 
 namespace meshhier::inspection {
-
-/// Where dot(normal, p) <= offset.
-struct HalfSpace {
-  Vec3d normal;
-  double offset = 0;
-
-  double beyond(Vec3d p) const { return dot(normal, p) - offset; }
-};
 
 /// The points that lie in all of its half-spaces.
 class ConvexRegion {

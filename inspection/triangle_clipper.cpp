@@ -42,6 +42,16 @@ std::vector<ClippedPolygon> TriangleClipper::pieces(ClippedPolygon triangle) con
   return pieces;
 }
 
+bool TriangleClipper::touches(const ClippedPolygon& triangle) const {
+  const auto corner = [&](std::size_t i) { return to_double(triangle[i].position); };
+  if (region_.box &&
+      !meshhier::touches(region_.box->half_spaces(), {corner(0), corner(1), corner(2)}))
+    return false;
+  return !region_.plan || std::ranges::any_of(triangle, [&](const ClippedCorner& c) {
+    return region_.contains(to_double(c.position));
+  }) || !pieces(triangle).empty();
+}
+
 ClippedPolygon TriangleClipper::within_box(ClippedPolygon polygon) const {
   ClippedPolygon next;
   for (const HalfSpace& half : region_.box->half_spaces()) {

@@ -19,6 +19,10 @@ class TriangleClipper {
   /// On a side of a box a corner has the side's coordinate, rounded to float.
   std::vector<ClippedPolygon> pieces(ClippedPolygon triangle) const;
 
+  /// Whether a point of the triangle lies in the region: of a box a corner or an edge on a side is
+  /// enough.
+  bool touches(const ClippedPolygon& triangle) const;
+
  private:
   ClippedPolygon within_box(ClippedPolygon polygon) const;
   ClippedCorner cut(const ClippedCorner& one, const ClippedCorner& other,

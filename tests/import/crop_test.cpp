@@ -113,6 +113,36 @@ TEST_F(CropTest, ATriangleWhoseCornersAreFarAwayIsThere) {
       << "in the triangle's box, but beside it";
 }
 
+/// A triangle in the plane y = 0, and boxes that have one point, or a line, in common with it.
+TEST_F(CropTest, WhatOnlyTouchesTheBoxIsThere) {
+  files_.put("w/one.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+             "y\nproperty float z\nelement face 1\nproperty list uchar int "
+             "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 0 1\n3 0 1 2\n");
+  const std::vector<BoundsD> touching{
+      {{-9, -9, 0.5}, {9, 9, 0.5}},         // flat, through its middle
+      {{-9, -9, 0.1}, {9, 9, 0.1}},         // the same at no round number
+      {{0.25, -9, 0.25}, {0.25, 9, 0.25}},  // a line through it
+      {{0.25, 0, 0.25}, {0.25, 0, 0.25}},   // a point of it
+      {{-9, 0, -9}, {9, 0, 9}},             // in its plane
+      {{-9, 0, -9}, {9, 5, 9}},             // on it with a side
+      {{1, 0, 0}, {5, 5, 5}},               // corner on corner
+      {{-5, -5, -5}, {0, 0, 0}},            // the same
+      {{-5, -1, -5}, {5, 1, 0}},            // along an edge
+      {{0.5, -1, 0.5}, {2, 1, 2}},          // with an edge, in the middle of the longest
+      {{0.3, -1, 0.7}, {2, 1, 2}},          // the same
+      {{0.1, -1, 0.9}, {2, 1, 2}},          // the same
+  };
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    EXPECT_EQ(import("one.ply", touching[i]).triangles.size(), 1U) << i;
+  const std::vector<BoundsD> apart{{{-9, -9, 1.001}, {9, 9, 2}},
+                                   {{0.501, -1, 0.5}, {2, 1, 2}},
+                                   {{-9, 1e-9, -9}, {9, 5, 9}},
+                                   {{0.3, -1, 0.7000001}, {2, 1, 2}}};
+  for (std::size_t i = 0; i < apart.size(); ++i)
+    EXPECT_THROW(import("one.ply", apart[i]), Error) << i;
+}
+
 TEST_F(CropTest, ReadInPlaceOrAfterwardsItIsTheSame) {
   const BoundsD box{{-0.3, -2, -0.2}, {0.8, 0.4, 2}};
   const Imported whole = tests::import_files(files_, fs::path("w/sphere.ply"), {.weld = true});

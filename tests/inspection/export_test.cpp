@@ -323,6 +323,19 @@ TEST_F(ExportBoxTest, WholeTrianglesAreThoseThatTouchIt) {
   }
 }
 
+TEST_F(ExportBoxTest, ABoxThatIsAVertexIsTouchedByItsTriangles) {
+  publish(tests::sphere(900), {7, 30, false, true, {}});
+  const Loaded whole = all(Level{3});
+  for (std::size_t v = 0; v < whole.positions.size(); v += 40) {
+    const Vec3d place = whole.positions[v];
+    Loaded wanted = whole;
+    std::erase_if(wanted.triangles, [&](const tests::MeshTriangle& t) {
+      return std::ranges::count(corners_of(whole, t), place) == 0;
+    });
+    EXPECT_EQ(surface(piece(Level{3}, {place, place}, false)), surface(wanted)) << v;
+  }
+}
+
 TEST_F(ExportBoxTest, TheBoxOfAllIsTheMesh) {
   for (const auto& mesh : {tests::sphere(900), tests::duplicates(700), tests::soup(90)}) {
     const tests::Sample sample = publish(mesh, {7, 30, false, true, {}});
