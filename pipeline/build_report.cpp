@@ -69,8 +69,19 @@ constexpr std::array kCountWarnings{
     CountWarning{importing::kHiddenColours, "vertices",
                  " without a picture have colours that are not shown: others have both"}};
 
+/// Where positions are rounded, the mesh may have one.
+const char* no_area_text(const SourceSummary& source, bool is_rounded) {
+  if (is_rounded)
+    return "no triangle has an area once positions are rounded to so few bits "
+           "(\"storage.positions.bits\"): viewers show nothing";
+  if (source.double_precision)
+    return "no triangle of the mesh has an area that 32-bit floats can hold, their corners lie on "
+           "lines: viewers show nothing";
+  return "no triangle of the mesh has an area, their corners lie on lines: viewers show nothing";
+}
+
 /// What makes a hierarchy of which a viewer shows nothing, or less than its maker may think.
-std::string warning_text(const SourceSummary& source, bool has_area) {
+std::string warning_text(const SourceSummary& source, bool has_area, bool is_rounded) {
   std::string text;
   const auto warn = [&](const std::string& what) { text += "warning: " + what + '\n'; };
   if (source.triangles == 0 && source.faces == 0)
@@ -80,7 +91,7 @@ std::string warning_text(const SourceSummary& source, bool has_area) {
   else if (source.diagonal() == 0)
     warn("all vertices of the mesh are at one point: viewers show nothing");
   else if (!has_area)
-    warn("no triangle of the mesh has an area, their corners lie on lines: viewers show nothing");
+    warn(no_area_text(source, is_rounded));
   else if (source.degenerate_triangles > source.triangles)
     warn("most triangles of the mesh are degenerate");
   for (const CountWarning& warning : kCountWarnings) {
@@ -93,22 +104,34 @@ std::string warning_text(const SourceSummary& source, bool has_area) {
   return text;
 }
 
-/// Corners are rounded by up to 2^-24 of their largest coordinate in each axis, which moves one by
-/// less than 2^-23 from the line of the others, and these likewise.
+/// Of each coordinate by itself.
+Vec3d absolute(Vec3d p) {
+  return {std::abs(p.x), std::abs(p.y), std::abs(p.z)};
+}
+
+/// Whether the triangle has more area than rounding its corners makes of a line. Along each axis an
+/// edge is off by at most 2^-23 of the largest coordinate there, and by twice that in tiles above
+/// the partitions, whatever the other axes are like: they may be in other units.
+bool is_wide(Vec3f a, Vec3f b, Vec3f c) {
+  constexpr double kRounding = 0x1p-22;
+  Vec3d off;
+  for (const Vec3f corner : {a, b, c}) {
+    const Vec3d p = absolute(to_double(corner)) * kRounding;
+    off = {std::max(off.x, p.x), std::max(off.y, p.y), std::max(off.z, p.z)};
+  }
+  const auto [first, second, third] = widest_first(a, b, c);
+  const Vec3d one = second - first, other = third - first;
+  const Vec3d area = absolute(cross(one, other)), edges = absolute(one) + absolute(other) + off;
+  return area.x > edges.y * off.z + edges.z * off.y || area.y > edges.z * off.x + edges.x * off.z ||
+         area.z > edges.x * off.y + edges.y * off.x;
+}
+
 bool has_area(const TileMesh& mesh) {
-  constexpr double kRounding = 0x1p-21;
-  const auto is_wide = [&](const TileTriangle& triangle) {
+  const auto has = [&](const TileTriangle& triangle) {
     const auto corner = [&](int k) { return mesh.vertices.positions[raw(triangle[k])]; };
-    float largest = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3f p = corner(k);
-      largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    }
-    const auto [first, second, third] = widest_first(corner(0), corner(1), corner(2));
-    return length(cross(second - first, third - first)) >
-           kRounding * largest * length(third - second);
+    return is_wide(corner(0), corner(1), corner(2));
   };
-  return std::ranges::any_of(mesh.interior, is_wide) || std::ranges::any_of(mesh.border, is_wide);
+  return std::ranges::any_of(mesh.interior, has) || std::ranges::any_of(mesh.border, has);
 }
 
 std::string placement_text(const storage::Manifest& made, const config::Config& config) {
@@ -191,7 +214,8 @@ std::string notes_text(const storage::HierarchyReader& made, const config::Confi
   }
   if (config::makes_maps(config.storage.normals) && !made.manifest().normal_maps)
     text += std::string("no tile has a normal map: ") + why_no_maps(source, config) + '\n';
-  return text + warning_text(source, has_area) + placement_text(made.manifest(), config) +
+  return text + warning_text(source, has_area, made.manifest().quantization.has_value()) +
+         placement_text(made.manifest(), config) +
          storage::forced_collapses_text(
              storage::summarize_forced_collapses(made.records(), source.places));
 }

@@ -6,7 +6,7 @@
 #include "import/text_blocks.h"
 #include "partition/top_tree.h"
 #include "pipeline/origin.h"
-#include "pipeline/used_bounds.h"
+#include "pipeline/survey.h"
 
 #include <algorithm>
 #include <utility>
@@ -76,6 +76,37 @@ struct BlockScan {
       sample.push_back(widened(positions[ids[i] - first]));
   }
 };
+
+/// An empty box is beyond nothing.
+bool is_beyond(const BoundsD& box, const BoundsD& limit) {
+  BoundsD both = limit;
+  both.add(box);
+  return both != limit;
+}
+
+void warn_of_far(const FarVertices& far, execution::Progress& progress) {
+  if (far.count == 0)
+    return;
+  const Vec3d& p = far.first;
+  const std::string others =
+      far.count > 1 ? fmt::format(" and {}", counted(far.count - 1, "more vertices")) : "";
+  progress.warn(fmt::format(
+      "triangles reach far from nearly all of the mesh, to {} {} {}{}: coordinates there may be "
+      "rounded, and views show all of the space between. If they are mistakes, delete them",
+      p.x, p.y, p.z, others));
+}
+
+/// More than a thousandth of an edge shows where light falls flat.
+void warn_of_rounding(double rounding, double median_edge, execution::Progress& progress) {
+  constexpr double kMost = 1e-3;
+  if (median_edge == 0 || rounding <= kMost * median_edge)
+    return;
+  progress.warn(fmt::format(
+      "32-bit floats round coordinates by up to {:.3g}, {:.2g} % of the median edge of {:.3g}: "
+      "fine relief loses its shape. Build smaller parts of the mesh (\"crop\"), each has an origin "
+      "of its own",
+      rounding, 100 * rounding / median_edge, median_edge));
+}
 
 }  // namespace
 
@@ -185,11 +216,18 @@ void SourceMesh::choose_colour_type(execution::Progress& progress) {
 
 void SourceMesh::choose_origin(const StageContext& context) {
   summary_.double_precision = !float_exact_;
-  const BoundsD& all = summary_.bounds;
-  if (!is_far_from_zero(all) && !may_have_strays(sample_positions_, all))
+  const std::uint64_t count = summary_.vertices;
+  if (float_exact_ && !may_need_origin(sample_positions_, summary_.bounds, count))
     return;
-  const BoundsD used = used_bounds(*this, context);
-  origin_ = origin_of(used.empty() ? all : used);
+  const Survey used = survey(*this, sample_positions_, context);
+  const bool is_cloud = used.bounds.empty();
+  const std::span<const Vec3d> sample = is_cloud ? sample_positions_ : used.sample;
+  const Origin chosen =
+      pipeline::choose_origin(is_cloud ? summary_.bounds : used.bounds, core_of(sample), count);
+  origin_ = chosen.at;
+  if (is_beyond(used.bounds, chosen.near))
+    warn_of_far(used_outside(*this, chosen.near, context), context.progress);
+  warn_of_rounding(rounding_of(sample, origin_), used.median_edge, context.progress);
 }
 
 std::vector<partition::IdPoint> SourceMesh::take_sample(const importing::CopyList& copies) {
@@ -265,7 +303,7 @@ std::uint64_t sample_bytes(const JobSize& job) {
 
 StageMemory ingest_memory(const JobSize& job) {
   const std::uint64_t block = input_block_bytes(job);
-  const std::uint64_t least = 2 * block + sample_bytes(job) + used_bounds_bytes(job.vertex_count);
+  const std::uint64_t least = 2 * block + sample_bytes(job) + survey_bytes(job.vertex_count);
   return {block, 2 * job.threads, least, least};
 }
 

@@ -66,7 +66,7 @@ class SourceMesh {
     summary_.unused = std::move(unused);
   }
 
-  /// Add to positions to get input coordinates: origin_of() the vertices that triangles use.
+  /// Add to positions to get input coordinates: choose_origin() of the vertices that triangles use.
   Vec3d origin() const { return origin_; }
 
   /// Of the positions, relative to the origin.

@@ -5,6 +5,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/vec.h"
 
+#include <cstdint>
 #include <span>
 
 namespace meshhier::pipeline {
@@ -17,6 +18,33 @@ bool is_far_from_zero(const BoundsD& box);
 /// binary digits near the middle; 0 along others. Floats within the box stay exact: the difference
 /// of two floats within a factor of two is one (Sterbenz 1974). 0 of an empty box.
 Vec3d origin_of(const BoundsD& box);
+
+/// Where nearly all points of a sample are: along each axis the box leaves out as many of them at
+/// both ends, a thirty-second part, but one of eight points at least. O(n). Empty of none.
+BoundsD core_of(std::span<const Vec3d> sample);
+
+/// What is subtracted from coordinates.
+struct Origin {
+  Vec3d at;
+  BoundsD near = kEverywhere;  ///< what lies outside is far from nearly all vertices
+
+  static constexpr BoundsD kEverywhere{{-BoundsD::kHigh, -BoundsD::kHigh, -BoundsD::kHigh},
+                                       {BoundsD::kHigh, BoundsD::kHigh, BoundsD::kHigh}};
+};
+
+/// origin_of() the box of all vertices, if floats then keep nearly all of them apart along each
+/// axis: half a float's last digit is no more than a thousandth of the mean distance that `count`
+/// vertices have along the axis of their core. Else origin_of() the core, and along axes where even
+/// that does not do, whatever the others are like, a number near the core's middle. Coordinates of
+/// the core stay exact as above.
+Origin choose_origin(const BoundsD& all, const BoundsD& core, std::uint64_t count);
+
+/// Whether choose_origin() may find one for the vertices that triangles use, if `sample` and the
+/// box are those of all. O(n).
+bool may_need_origin(std::span<const Vec3d> sample, const BoundsD& all, std::uint64_t count);
+
+/// How far floats relative to the origin are off at nearly all points of the sample. O(n).
+double rounding_of(std::span<const Vec3d> sample, Vec3d origin);
 
 /// Whether a few points may have stretched the box of all: `sample` fills less than a sixteenth of
 /// it along one of its longer sides. O(n).

@@ -8,6 +8,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/warnings.h"
 
 #include <cmath>
 #include <cstdint>
@@ -23,12 +24,14 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace meshhier::pipeline {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -245,8 +248,43 @@ TEST_F(SourceMeshTest, VerticesThatNoTriangleUsesDoNotMoveTheOrigin) {
     for (const char* type : {"float", "double"})
       EXPECT_EQ(open_text(grid_on_the_map(stray, type)).origin(), origin) << type << stray.size();
   }
-  // One that a triangle uses does.
-  EXPECT_EQ(open_text(grid_on_the_map({{0, 0, 0}}, "float", "3 0 1 400\n", 1)).origin(), Vec3d{});
+}
+
+TEST_F(SourceMeshTest, AFewTrianglesThatReachFarDoNotMoveItMuchAndAreNamed) {
+  const SourceMesh without = open_text(grid_on_the_map({}, "double"));
+  for (const Vec3d stray : {Vec3d{0, 0, 0}, Vec3d{447218, 0, 300}, Vec3d{447218, 5428736, 1e7}}) {
+    tests::Warnings warnings;
+    std::ofstream(path()) << grid_on_the_map({{1, 2, 3}, stray}, "double", "3 0 1 401\n", 1);
+    const SourceMesh mesh = open(path(), kInFlight, warnings);
+    EXPECT_LT(length(mesh.origin() - without.origin()), 2);
+    EXPECT_THAT(warnings.all,
+                ElementsAre(HasSubstr(fmt::format(
+                    "far from nearly all of the mesh, to {} {} {}:", stray.x, stray.y, stray.z))));
+  }
+}
+
+TEST_F(SourceMeshTest, WhatFloatsLoseOfAnEdgeIsTold) {
+  const auto told = [&](const std::string& text) {
+    tests::Warnings warnings;
+    std::ofstream(path()) << text;
+    open(path(), kInFlight, warnings);
+    return warnings.all;
+  };
+  EXPECT_THAT(told(grid_on_the_map({}, "double")), testing::IsEmpty());
+  // As many vertices around 0 hold no origin off.
+  const auto two_places = [&](double far, double step) {
+    std::ostringstream text;
+    text << std::setprecision(17)
+         << text_header(600, 200, "property double x\nproperty double y\nproperty double z\n");
+    for (int i = 0; i < 600; ++i)
+      text << (i % 2 == 0 ? 0.1 : far) + i * step << ' ' << i % 3 * step << " 0.3\n";
+    for (int i = 0; i < 200; ++i)
+      text << "3 " << i << ' ' << i + 2 << ' ' << i + 4 << '\n';
+    return text.str();
+  };
+  EXPECT_THAT(told(two_places(1, 0.001)), testing::IsEmpty());
+  EXPECT_THAT(told(two_places(1000, 0.001)),
+              ElementsAre(AllOf(HasSubstr("% of the median edge of 0.00"), HasSubstr("round"))));
 }
 
 TEST_F(SourceMeshTest, BytesInAWiderTypeAreColoursOf8Bits) {
