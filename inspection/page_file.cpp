@@ -4,6 +4,7 @@
 #include "hierarchy/plain_text.h"
 #include "inspection/byte_stream.h"
 #include "storage/format/archive_files.h"
+#include "storage/format/build_name.h"
 #include "storage/format/gzip.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/index.h"
@@ -157,8 +158,10 @@ class PageWriter {
   }
   std::uint64_t used() const { return used_; }
   std::string entry(const fs::path& name) const {
-    const auto file = files_.open(reader_.directory() / name);
-    return entry_of(name, storage::read_file(*file, kMostFile));
+    return storage::of_one_build(files_, reader_.directory(), reader_.manifest(), [&] {
+      const auto file = files_.open(reader_.directory() / name);
+      return entry_of(name, storage::read_file(*file, kMostFile));
+    });
   }
 
  private:
@@ -266,6 +269,7 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                                   reader.manifest().index_bytes);
   index.resize(index_bytes_with(reader, chosen.last_record));
   page.put(entry_of(storage::index_path({}), std::move(index)));
+  storage::require_same_build(place.files(), hierarchy, reader.manifest());
   out.put(frame.behind);
   out.flush();
   const std::uint64_t bytes = around + page.used();

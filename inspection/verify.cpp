@@ -6,6 +6,7 @@
 #include "inspection/verify_parts.h"
 #include "storage/format/archive_check.h"
 #include "storage/format/archive_files.h"
+#include "storage/format/build_name.h"
 #include "storage/format/layout.h"
 
 #include <optional>
@@ -159,6 +160,8 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
       TileStore tiles(*reader, options.memory_budget / 4, problems);
       verify_all({place->files(), *reader, options, scratch, tiles, problems, report.checks,
                   progress, cancel});
+      if (problems.count() > 0)
+        storage::require_same_build(place->files(), directory, reader->manifest());
     }
   }
   report.problems = problems.take();

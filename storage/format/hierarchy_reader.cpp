@@ -3,6 +3,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "storage/format/build_name.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/outline_glb.h"
@@ -57,8 +58,10 @@ void check_shading(std::span<const TileRecord> records, const Manifest& manifest
 std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,
                                    const Manifest& manifest, const Tree& tree) {
   const auto path = index_path(directory);
-  const auto bytes =
-      read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum}, index_bytes(tree));
+  const auto bytes = of_one_build(files, directory, manifest, [&] {
+    return read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum},
+                       index_bytes(tree));
+  });
   std::vector<TileRecord> records = decode_index(bytes, tree, path.string());
   check_shading(records, manifest, path.string());
   return records;
@@ -134,8 +137,9 @@ void HierarchyReader::will_read(std::span<const NodeId> nodes) const {
 PublishedTile HierarchyReader::read_tile(NodeId node) const {
   const TileRecord& expected = record(node);
   const auto path = tile_path(directory_, expected.node);
-  const auto bytes =
-      read_sealed(files_, path, {expected.file_bytes, expected.checksum}, kMaxGlbBytes);
+  const auto bytes = of_one_build(files_, directory_, manifest_, [&] {
+    return read_sealed(files_, path, {expected.file_bytes, expected.checksum}, kMaxGlbBytes);
+  });
   PublishedTile tile = decode_tile(bytes, expected.node, tree_, format_, path.string());
   if (const char* what = difference(tile, expected)) {
     throw Error(ErrorCode::corrupt,
@@ -148,8 +152,10 @@ PublishedTile HierarchyReader::read_tile(NodeId node) const {
 
 Outline HierarchyReader::read_outline() const {
   const auto path = outline_path(directory_);
-  const auto bytes = read_sealed(
-      files_, path, {manifest_.outline_bytes, manifest_.outline_checksum}, kMaxGlbBytes);
+  const auto bytes = of_one_build(files_, directory_, manifest_, [&] {
+    return read_sealed(files_, path, {manifest_.outline_bytes, manifest_.outline_checksum},
+                       kMaxGlbBytes);
+  });
   Outline outline = decode_outline(bytes, path.string());
   check_first_view(outline.first_view, manifest_, path.string());
   return outline;
@@ -157,8 +163,10 @@ Outline HierarchyReader::read_outline() const {
 
 std::vector<std::byte> HierarchyReader::read_preview() const {
   assert(manifest_.preview);
-  return read_sealed(files_, preview_path(directory_),
-                     {manifest_.preview->bytes, manifest_.preview->checksum}, kMostPreviewBytes);
+  return of_one_build(files_, directory_, manifest_, [&] {
+    return read_sealed(files_, preview_path(directory_),
+                       {manifest_.preview->bytes, manifest_.preview->checksum}, kMostPreviewBytes);
+  });
 }
 
 }  // namespace meshhier::storage

@@ -23,7 +23,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr long kConnectSeconds = 30;
-constexpr long kSilentSeconds = 30;  ///< without a byte
 constexpr long kMostRedirects = 10;
 constexpr int kMostTries = 5;
 constexpr std::chrono::milliseconds kMostWait = 60s;  ///< however long the host asks for
@@ -223,7 +222,7 @@ class HttpClient::Connection {
     set(CURLOPT_NETRC, long{CURL_NETRC_OPTIONAL});
     set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
     set(CURLOPT_LOW_SPEED_LIMIT, 1L);
-    set(CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
+    set(CURLOPT_LOW_SPEED_TIME, static_cast<long>(options.silence.count()));
     set(CURLOPT_USERAGENT, "meshhier");
     set(CURLOPT_HTTPHEADER, headers_.get());
     set(CURLOPT_NOPROGRESS, 0L);

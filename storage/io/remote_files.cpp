@@ -59,6 +59,11 @@ bool is_name_of_file(const fs::path& path) {
   return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 
+/// A text that tells what the other files are: who opens it again asks what it says by then.
+bool may_change(const fs::path& path) {
+  return path.extension() == ".json";
+}
+
 bool is_archive(const fs::path& path) {
   return lower_extension(path) == ".3tz";
 }
@@ -130,6 +135,10 @@ std::unique_ptr<File> RemoteFiles::open(const fs::path& path) {
   Content content = find(path);
   if (!content)
     throw Error(ErrorCode::io, fmt::format("{}: there is no such file on the host", path.string()));
+  if (may_change(path)) {
+    const std::lock_guard lock(mutex_);
+    contents_.erase(path);
+  }
   return std::make_unique<RemoteFile>(path, std::move(content), counters_);
 }
 

@@ -7,13 +7,16 @@
 #include "storage/format/layout.h"
 #include "storage/format/outline_glb.h"
 #include "storage/io/file.h"
+#include "storage/io/forwarding_files.h"
 #include "storage/io/hash.h"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -266,6 +269,53 @@ TEST_F(HierarchyReaderTest, DamagedFilesAreRefusedByName) {
   const fs::path outline = storage::outline_path(directory_);
   damage(outline);
   expect_failure(ErrorCode::corrupt, outline, "is damaged", [&] { read.read_outline(); });
+}
+
+/// What is done once, right after the manifest was opened.
+class ReplacingFiles final : public storage::ForwardingFiles {
+ public:
+  ReplacingFiles(storage::FileSystem& others, std::function<void()> replace)
+      : ForwardingFiles(others), replace_(std::move(replace)) {}
+  std::unique_ptr<storage::File> open(const fs::path& path) override {
+    auto file = ForwardingFiles::open(path);
+    if (path.filename() != storage::manifest_path({}) || !replace_)
+      return file;
+    // As another build does: the file that is open stays what it was.
+    auto held = storage::read_file(*file, 1 << 20);
+    std::exchange(replace_, nullptr)();
+    const fs::path copy = path.parent_path() / "held";
+    storage::write_file(others(), copy, held);
+    return ForwardingFiles::open(copy);
+  }
+
+ private:
+  std::function<void()> replace_;
+};
+
+TEST_F(HierarchyReaderTest, TwoBuildsAreNeverMixed) {
+  constexpr const char* kReplaced = "another hierarchy has taken its place";
+  const SampleHierarchy first = make_sample(torus(300), 4);
+  const SampleHierarchy second = make_sample(torus(300, 0.1F), 4);
+  const NodeId node{Level{2}, 1};
+  write(first);
+  const HierarchyReader read = reader();
+  outline_.vertices[1].x += 1;
+  write(second);
+  expect_failure(ErrorCode::io, directory_, kReplaced, [&] { read.read_tile(node); });
+  expect_failure(ErrorCode::io, directory_, kReplaced, [&] { read.read_outline(); });
+  EXPECT_EQ(reader().read_tile(node).mesh.vertices.positions,
+            second.tile(node).mesh.vertices.positions);
+  fs::remove_all(directory_);
+  fs::create_directories(directory_);
+  write(make_sample(torus(300), 2));
+  expect_failure(ErrorCode::io, directory_, kReplaced, [&] { read.read_tile(node); });
+}
+
+TEST_F(HierarchyReaderTest, ABuildThatComesWhileAnotherIsOpenedIsTold) {
+  write(make_sample(torus(300), 4));
+  ReplacingFiles files(*files_, [&] { write(make_sample(torus(300, 0.1F), 4)); });
+  expect_failure(ErrorCode::io, directory_, "another hierarchy has taken its place",
+                 [&] { HierarchyReader(files, directory_); });
 }
 
 TEST_F(HierarchyReaderTest, DamagedManifestsAndIndexesAreRefused) {

@@ -196,6 +196,33 @@ TEST_F(RemoteFilesTest, NobodyThereIsTold) {
   EXPECT_THAT(problem(reopen(address)), HasSubstr("a.3tz: Couldn't connect to server, 5 times"));
 }
 
+TEST_F(RemoteFilesTest, AHostThatTakesARequestAndSaysNothingIsAskedAgain) {
+  std::atomic<int> asked = 0;
+  HttpOptions options;
+  options.silence = std::chrono::seconds(1);
+  const auto answer = [&](const HostRequest& request) {
+    if (++asked == 1)
+      std::this_thread::sleep_for(std::chrono::seconds(4));
+    return answer_with(request, content_);
+  };
+  RemoteFiles& remote = open(answer, "a.3tz", options);
+  EXPECT_EQ(remote.open(remote.root())->size(), content_.size());
+  EXPECT_EQ(asked, 2);
+}
+
+TEST_F(RemoteFilesTest, ATextThatIsOpenedAgainIsAskedForAgain) {
+  std::string text = "{}";
+  RemoteFiles& remote =
+      open([&](const HostRequest& request) { return answer_with(request, text); }, "a.hier");
+  const fs::path path = remote.root() / "hierarchy.json";
+  EXPECT_TRUE(remote.exists(path));
+  EXPECT_EQ(read(*remote.open(path), 0, 100), "{}");
+  EXPECT_EQ(host_->requests(), 1U);
+  text = "{ }";
+  EXPECT_EQ(read(*remote.open(path), 0, 100), "{ }");
+  EXPECT_EQ(host_->requests(), 2U);
+}
+
 TEST_F(RemoteFilesTest, AHostWithoutRangesSendsSmallFilesWhole) {
   RemoteFiles& remote =
       open([&](const HostRequest& request) { return answer_whole(request, content_); });

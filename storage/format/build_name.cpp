@@ -1,0 +1,60 @@
+#include "storage/format/build_name.h"
+
+#include "storage/format/layout.h"
+#include "storage/format/sealed_json.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+/// Behind the digits, at the end of a sealed text.
+constexpr std::string_view kBehindName = "\"\n}\n";
+constexpr std::size_t kNameDigits = 16;
+
+/// Null if there is none that can be read.
+std::optional<Manifest> manifest_now(FileSystem& files, const std::filesystem::path& hierarchy) {
+  try {
+    const auto path = manifest_path(hierarchy);
+    return parse_manifest(read_sealed_text(*files.open(path)), path.string());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
+    return std::nullopt;
+  }
+}
+
+/// Whether all files but the manifest are the same.
+bool is_same_build(const Manifest& a, const Manifest& b) {
+  const auto sums = [](const Manifest& manifest) {
+    return std::tuple(manifest.index_checksum, manifest.outline_checksum, manifest.tileset_checksum,
+                      manifest.preview ? manifest.preview->checksum : 0);
+  };
+  return sums(a) == sums(b);
+}
+
+}  // namespace
+
+std::string build_name(const std::string& manifest_text) {
+  const std::size_t behind = kBehindName.size() + kNameDigits;
+  return manifest_text.substr(manifest_text.size() - std::min(behind, manifest_text.size()),
+                              kNameDigits);
+}
+
+void require_same_build(FileSystem& files, const std::filesystem::path& hierarchy,
+                        const Manifest& opened) {
+  const std::optional<Manifest> now = manifest_now(files, hierarchy);
+  if (now && !is_same_build(*now, opened)) {
+    throw Error(ErrorCode::io,
+                fmt::format("{}: another hierarchy has taken its place while it was read; nothing "
+                            "is made of the two: run the command again",
+                            hierarchy.string()));
+  }
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,37 @@
+// Which build of a hierarchy its files are of: the manifest's checksum names it. It covers that of
+// the index, which covers those of all tiles.
+#pragma once
+
+#include "hierarchy/error.h"
+#include "storage/format/manifest.h"
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <string>
+
+namespace meshhier::storage {
+
+/// The name of the build of a manifest's text that parse_manifest() has taken: sixteen digits.
+std::string build_name(const std::string& manifest_text);
+
+/// Throws Error(io) if the manifest that is there now is of another build than `opened`, which was
+/// read there before: what was read of the two does not fit together. Returns if it is the same, or
+/// if none can be read: then it was not another build that did the harm.
+void require_same_build(FileSystem& files, const std::filesystem::path& hierarchy,
+                        const Manifest& opened);
+
+/// Returns what `read` does. Where a file is missing or is not what it should be because another
+/// build has taken its place, that is said instead (Error(io)).
+template <class Read>
+auto of_one_build(FileSystem& files, const std::filesystem::path& hierarchy, const Manifest& opened,
+                  const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::corrupt || error.code() == ErrorCode::io)
+      require_same_build(files, hierarchy, opened);
+    throw;
+  }
+}
+
+}  // namespace meshhier::storage
