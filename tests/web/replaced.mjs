@@ -14,7 +14,8 @@ import { startServer } from './meshhier_server.mjs';
 const WINDOW = { viewport: { width: 700, height: 500 }, reducedMotion: 'reduce' };
 const PATIENCE = 120_000; // milliseconds
 const SIDE = 150; // cells of the square
-const FIRST_TILES = 5; // that come before the other build
+const FIRST_TILES = 45; // that come before the other build: of the page some of the finest; of the element, which is smaller, fewer do
+const FIRST_OF_ELEMENT = 5;
 const FEW = 40; // pixels: of a mark or an icon
 
 /// A rough square of one colour, as PLY: fine tiles show.
@@ -112,7 +113,7 @@ async function checkElement(browser, report, { shop, url, decoder, element }) {
   page.setDefaultTimeout(PATIENCE);
   const body = `<!doctype html><link rel="icon" href="data:,"><script type="module" src="${element}"></script><meshhier-viewer src="models/square.hier" style="height: 450px"></meshhier-viewer>`;
   await page.route('**/host.html', (route) => route.fulfill({ contentType: 'text/html', body }));
-  const tiles = await holdTiles(page, FIRST_TILES);
+  const tiles = await holdTiles(page, FIRST_OF_ELEMENT);
   await page.goto(`${url}host.html`);
   await until(page, tiles.isHolding);
   const shown = page.locator('meshhier-viewer');

@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { afterAll, afterEach, describe, expect, it, vi } from 'vitest';
+import { checksum, digitsOf } from '../src/hierarchy/checksum.js';
 import { ProgressiveMesh, StreamError, type StreamIndex } from '../src/progressive/index.js';
 import { parseStreamIndex } from '../src/progressive/stream_index.js';
 import { fetchFrom, hasProgram, MESHHIER, Workshop } from './support/meshhier.js';
@@ -29,7 +30,7 @@ const BASE = baseOf([3, VERTICES], [1, TRIANGLE]);
 
 /// The index of a stream of one triangle, with a change.
 function indexText(change: object = {}, file: object = {}): string {
-  const base = { file: NAME, level: 0, vertices: 3, triangles: 1, merges: 0, shown_vertices: 3, shown_triangles: 1, bytes: BASE.length };
+  const base = { file: NAME, level: 0, vertices: 3, triangles: 1, merges: 0, shown_vertices: 3, shown_triangles: 1, bytes: BASE.length, checksum: digitsOf(checksum(BASE)) };
   return JSON.stringify({
     format: 'meshhier-progressive', format_version: 2, vertices: 3, own_vertices: 3, triangles: 1, origin: [0, 0, 0], up: 'y', licence: '',
     source: {
@@ -47,7 +48,7 @@ function indexOf(change: object = {}, file: object = {}): StreamIndex {
 }
 
 function take(bytes: Uint8Array<ArrayBuffer>): Promise<unknown> {
-  return new ProgressiveMesh(indexOf({}, { bytes: bytes.length })).take(bytes, NAME);
+  return new ProgressiveMesh(indexOf({}, { bytes: bytes.length, checksum: digitsOf(checksum(bytes)) })).take(bytes, NAME);
 }
 
 /// A host with these files; the others are lost.
@@ -70,6 +71,11 @@ function flood(): { body: ReadableStream<Uint8Array>; sent: () => number } {
 afterEach(() => { vi.unstubAllGlobals(); });
 
 describe('a progressive stream', () => {
+  it('refuses a file of another stream', async () => {
+    const mesh = new ProgressiveMesh(indexOf({}, { checksum: '0123456789abcdef' }));
+    await expect(mesh.take(BASE, NAME)).rejects.toThrow('base.bin: is damaged, or of another stream');
+  });
+
   it('puts its base into its arrays', async () => {
     host({ 'a/progressive.json': indexText(), 'a/base.bin': BASE });
     const mesh = await ProgressiveMesh.open('a');

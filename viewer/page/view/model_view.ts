@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
-import { HierarchyProblem, HierarchyView, type Look, type Manifest, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
+import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
 import type { PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
@@ -24,6 +24,7 @@ import { LightDrag } from './light_drag.js';
 import { listenToKeys, type Commands } from './keys.js';
 import { Navigation } from './navigation.js';
 import { nextLight, Presentation } from './presentation.js';
+import { Renewal } from './renewal.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
 import { StoryHost, type StorySurroundings } from './story_host.js';
@@ -59,19 +60,12 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
 const FIRST_PICTURE = 'meshhier: first picture';
 const REST = 300; // milliseconds without movement
 const REPORT = 250; // milliseconds between two reports
-const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
 /// Whether a camera can stand so.
 function isStanding(pose: CameraPose): boolean {
   const { position, target } = pose.toPose();
   return problemOfPose(position, target) === null;
-}
-
-/// Whether places in the tiles of one are the same places in those of the other.
-function isSamePlace(one: Manifest, other: Manifest): boolean {
-  const placeOf = ({ origin, place, up, transform, units }: Manifest): string => JSON.stringify([origin, place, up, transform, units]);
-  return placeOf(one) === placeOf(other);
 }
 
 export class ModelView {
@@ -113,8 +107,7 @@ export class ModelView {
   private lost: (() => void) | null = null;
   private missing: (() => void) | null = null;
   private refusal: (() => void) | null = null;
-  private againTimer = 0;
-  private known: Manifest | null = null;
+  private readonly renewal: Renewal;
   private restTimer = 0;
   private reportedAt = -Infinity;
 
@@ -128,6 +121,14 @@ export class ModelView {
     this.story.follow(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings, files: model.files });
+    this.renewal = new Renewal({
+      view: this.view,
+      name: model.name,
+      failed: (message, telling) => around.failed(message, telling),
+      opened: () => { this.begin(); },
+      refused: (error) => { this.refuse(error); },
+      again: () => { around.again(); },
+    });
     this.immersion = new ImmersionHost({
       stage: this.stage,
       view: this.view,
@@ -201,7 +202,7 @@ export class ModelView {
     this.loop.stop();
     this.sizes.disconnect();
     window.clearTimeout(this.restTimer);
-    window.clearTimeout(this.againTimer);
+    this.renewal.close();
     this.view.dispose();
     this.stage.dispose();
     this.root.remove();
@@ -224,7 +225,7 @@ export class ModelView {
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     this.view.addEventListener('recovered', () => { this.missing?.(); });
-    this.view.addEventListener('replaced', ({ isLasting }) => { this.replaced(isLasting); });
+    this.view.addEventListener('replaced', () => { this.missing?.(); });
     canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost, { more: words.problems.pictureLostMore }); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
@@ -234,33 +235,6 @@ export class ModelView {
   private miss(message: string, files: number): void {
     const text = words.problems.missing(this.model.name, files, formatCount(files));
     this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
-  }
-
-  private replaced(isLasting: boolean): void {
-    this.missing?.();
-    const { name } = this.model;
-    const { replaced, replacedMore, hostReplaced, hostReplacedMore } = words.problems;
-    if (isLasting) {
-      this.around.failed(hostReplaced(name), { more: hostReplacedMore, subject: 'replaced' });
-      return;
-    }
-    const reload = (): void => {
-      done();
-      void this.reload();
-    };
-    const done = this.around.failed(replaced(name), { more: replacedMore, subject: 'replaced', retry: reload, retryText: words.parts.reload });
-  }
-
-  /// With what the host has now; the camera, the look, and what was measured stay.
-  private async reload(): Promise<void> {
-    window.clearTimeout(this.againTimer);
-    this.refused = false;
-    try {
-      await this.view.reload();
-      this.begin();
-    } catch (error) {
-      this.refuse(error);
-    }
   }
 
   private missCode(again: () => void): void {
@@ -280,6 +254,7 @@ export class ModelView {
   private begin(): void {
     if (this.closed) return;
     this.refusal?.();
+    this.refused = false;
     this.opened = true;
     immersions().then((modes) => { this.chrome.tellImmersions(modes); }, () => undefined);
     this.presentation.apply(); // what the model is may choose for it
@@ -313,7 +288,7 @@ export class ModelView {
     const more = passes ? why : `${why}. ${notAHierarchy(this.model.url)}`;
     this.missing?.();
     this.refusal = this.around.failed(notOpened(this.model.name), { more, subject: 'refused', retry: () => { this.around.again(); } });
-    if (passes) this.againTimer = window.setTimeout(() => void this.reload(), AGAIN);
+    if (passes) this.renewal.later();
   }
 
   private redraw(): void {
@@ -352,7 +327,7 @@ export class ModelView {
     const stats = this.view.stats();
     const working = !this.refused && !(stats.settled && this.opened);
     if (this.view.manifest !== null) {
-      if (this.know(this.view.manifest)) return 'rest';
+      if (this.renewal.know(this.view.manifest)) return 'rest';
       this.chrome.tellSource(this.view.manifest);
       this.tools.showNews();
       if (this.shown) this.story.seek();
@@ -361,14 +336,6 @@ export class ModelView {
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';
     return working ? 'waiting' : 'rest';
-  }
-
-  /// True: it is another one whose places are others. Then all begins anew, and nothing that was measured holds.
-  private know(manifest: Manifest): boolean {
-    const isElsewhere = this.known !== null && this.known !== manifest && !isSamePlace(this.known, manifest);
-    this.known = manifest;
-    if (isElsewhere) queueMicrotask(() => { this.around.again(); });
-    return isElsewhere;
   }
 
   /// Links tell of the camera when it has come to rest.

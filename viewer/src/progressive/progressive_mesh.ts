@@ -5,6 +5,7 @@
 // are put into their places; then each merge copies one vertex's slot to another's. Nothing else is
 // ever updated: O(1) for each entry of a file.
 import { fetchBytes } from '../hierarchy/bytes.js';
+import { checksum } from '../hierarchy/checksum.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import { readRuns, type Run } from './detail_file.js';
 import { parseStreamIndex, StreamError, valueBytes, type StreamIndex } from './stream_index.js';
@@ -96,6 +97,7 @@ export class ProgressiveMesh {
     const file = this.index.files[this.taken];
     if (bytes.byteLength !== file.bytes)
       throw new StreamError(`${name}: has ${bytes.byteLength} bytes, expected ${file.bytes}`);
+    if (checksum(bytes) !== file.checksum) throw new StreamError(`${name}: is damaged, or of another stream that has taken the place of this one`);
     const start = performance.now();
     const entries = [0, 0, 0, 0];
     for await (const run of readRuns(bytes, this.taken, this.bytes, name)) {

@@ -12,6 +12,8 @@ export interface StreamFile {
   shown_vertices: number;
   shown_triangles: number;
   bytes: number;
+  /// XXH3-64.
+  checksum: bigint;
 }
 
 export type ColourType = 'none' | 'u8' | 'u16' | 'f32';
@@ -58,6 +60,7 @@ function readFile(file: JsonValue): StreamFile {
     shown_vertices: file.at('shown_vertices').count(),
     shown_triangles: file.at('shown_triangles').count(),
     bytes: file.at('bytes').count(0, MOST_BYTES),
+    checksum: BigInt(`0x${file.at('checksum').checksum()}`),
   };
 }
 
