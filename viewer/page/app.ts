@@ -6,7 +6,7 @@ import { Gallery } from './gallery/gallery.js';
 import type { Turn } from './gallery/layout.js';
 import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
-import { modelOfPath, readable, type Listing, type Model } from './listing.js';
+import { modelOfPath, readable, withoutWarnings, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
 import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
@@ -16,6 +16,7 @@ import { readQuery, shortened, type Query } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
+import { maySend } from './upload/permission.js';
 import { UploadPlace } from './upload/upload_place.js';
 import type { Language } from './words/languages.js';
 import { language, words } from './words/words.js';
@@ -58,6 +59,7 @@ export class App {
       this.query.listing,
       (listing) => { this.listed(listing); },
       (message) => { this.gallery?.tell(`${words.gallery.nothingToShow(message)} ${words.gallery.howToList}`); },
+      (listing) => (maySend(listing.upload, this.query.listing) ? listing : withoutWarnings(listing)),
     );
     document.documentElement.lang = language;
     root.append(this.problems.root);

@@ -21,6 +21,8 @@ export interface Model {
   preview: string | null;
   /// The address of what people tell about it (src/tools/annotations.ts), or itself: JSON.
   story: string | null;
+  /// What its build warned of; missing: nothing, or it is not told.
+  warnings?: readonly string[];
   /// Where its files are, if not at its URL.
   files?: RemoteFiles;
 }
@@ -59,6 +61,7 @@ export class ListingError extends Error {}
 
 const MOST_ENTRIES = 10_000;
 const MOST_TEXT = 1000;
+const MOST_WARNINGS = 100; // of a model
 
 type Json = Record<string, unknown>;
 
@@ -68,6 +71,10 @@ function isObject(value: unknown): value is Json {
 
 function textOf(value: unknown): string {
   return typeof value === 'string' ? value.slice(0, MOST_TEXT) : '';
+}
+
+function textsOf(value: unknown): string[] {
+  return Array.isArray(value) ? value.slice(0, MOST_WARNINGS).map(textOf).filter((text) => text !== '') : [];
 }
 
 function countOf(value: unknown): number | null {
@@ -141,6 +148,8 @@ function readModel(value: unknown, base: string): Model | null {
   model.modified = countOf(value.modified);
   model.preview = addressOf(value.preview, base);
   model.story = addressOf(value.story, base);
+  const warnings = textsOf(value.warnings);
+  if (warnings.length > 0) model.warnings = warnings;
   return model;
 }
 
@@ -174,6 +183,13 @@ function readAll<T>(values: unknown[], read: (value: unknown) => T | null, key: 
     if (item !== null && !found.has(key(item))) found.set(key(item), item);
   }
   return [...found.values()];
+}
+
+/// As visitors see it who only look: how models were made is nothing for them.
+export function withoutWarnings(listing: Listing): Listing {
+  const models = listing.models.map((model) => ({ ...model }));
+  for (const model of models) delete model.warnings;
+  return { ...listing, models };
 }
 
 /// The listing that was fetched from `url`. Entries that are not as they should be are left out.

@@ -37,11 +37,13 @@ export class ListingWatch {
     private readonly url: string,
     private readonly changed: (listing: Listing) => void,
     private readonly failed: (message: string) => void,
+    /// What of a listing is for this visitor.
+    private readonly visible: (listing: Listing) => Listing = (listing) => listing,
   ) {}
 
   /// As it is now, without watching it. Throws ListingError.
   async once(signal: AbortSignal): Promise<Listing> {
-    return this.listing ?? parseListing(await fetchListing(this.url, signal), this.url);
+    return this.listing ?? this.visible(parseListing(await fetchListing(this.url, signal), this.url));
   }
 
   start(): void {
@@ -77,7 +79,7 @@ export class ListingWatch {
 
   private take(text: string): void {
     if (text === this.text) return;
-    const listing = parseListing(text, this.url);
+    const listing = this.visible(parseListing(text, this.url));
     this.text = text;
     this.listing = listing;
     this.changed(listing);

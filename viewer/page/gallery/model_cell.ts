@@ -26,13 +26,13 @@ function roughSizes({ triangles, bytes }: Sizes): string[] {
   return parts;
 }
 
-function exactText({ name, source, modified }: Model, { vertices, triangles, bytes }: Sizes): string {
+function exactText({ name, source, modified, warnings = [] }: Model, { vertices, triangles, bytes }: Sizes): string {
   const parts = [source ?? name];
   if (vertices !== null) parts.push(words.counts.vertices(vertices, formatCount(vertices)));
   if (triangles !== null) parts.push(words.counts.triangles(triangles, formatCount(triangles)));
   if (bytes !== null) parts.push(words.counts.bytes(bytes, formatCount(bytes)));
   if (modified !== null) parts.push(formatDate(modified));
-  return parts.join('\n');
+  return [...parts, ...warnings].join('\n');
 }
 
 /// What all cells draw with.
@@ -65,6 +65,8 @@ export class ModelCell implements Cell {
       this.sizes,
     );
     this.showSizes(model);
+    const { warnings = [] } = model;
+    if (warnings.length > 0) this.stage.append(element('span', { class: 'cell-warning' }, words.counts.warnings(warnings.length, formatCount(warnings.length))));
     this.root = element('li', {}, this.link);
     this.solid = new Solid(model.url, this.stage);
     this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });

@@ -35,6 +35,7 @@ export function factsOf(model: Model, manifest: Manifest): Fact[] {
     [names.sourceBytes, formatBytes(source.fileBytes)],
     [names.bytes, formatBytes(totalBytes)],
     [names.modified, model.modified === null ? null : formatDate(model.modified)],
+    [names.warnings, model.warnings?.join('\n') ?? null],
   ];
   return facts.flatMap(([name, text]) => (text === null || text === '' ? [] : [[name, text] as const]));
 }

@@ -2,19 +2,10 @@
 // The word that a server asks for before it takes meshes: known as long as the tab.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
-
-const KEY = 'meshhier-upload-token';
+import { storedToken, storeToken } from './stored_token.js';
 
 export class Token {
-  private known: string | null = null;
-
-  constructor() {
-    try {
-      this.known = sessionStorage.getItem(KEY);
-    } catch {
-      // the browser keeps nothing
-    }
-  }
+  private known = storedToken();
 
   forget(): void {
     this.keep(null);
@@ -28,12 +19,7 @@ export class Token {
 
   private keep(token: string | null): void {
     this.known = token;
-    try {
-      if (token === null) sessionStorage.removeItem(KEY);
-      else sessionStorage.setItem(KEY, token);
-    } catch {
-      // it is known until the page is left
-    }
+    storeToken(token);
   }
 }
 

@@ -28,6 +28,7 @@ export const de: Words = {
     bytes: (count, text) => counted(count, text, 'Byte', 'Bytes'),
     tiles: (count, text) => counted(count, text, 'Kachel', 'Kacheln'),
     pictures: (count, text) => counted(count, text, 'Bild', 'Bilder'),
+    warnings: (count, text) => counted(count, text, 'Warnung', 'Warnungen'),
   },
   gallery: {
     search: 'Suchen',
@@ -160,6 +161,7 @@ export const de: Words = {
       sourceBytes: 'Quelldatei',
       bytes: 'Hierarchie',
       modified: 'Erstellt',
+      warnings: 'Warnungen',
     },
   },
   share: {

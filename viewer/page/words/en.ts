@@ -30,6 +30,7 @@ export const en = {
     bytes: (count: number, text: string) => counted(count, text, 'byte', 'bytes'),
     tiles: (count: number, text: string) => counted(count, text, 'tile', 'tiles'),
     pictures: (count: number, text: string) => counted(count, text, 'picture', 'pictures'),
+    warnings: (count: number, text: string) => counted(count, text, 'warning', 'warnings'),
   },
   gallery: {
     search: 'Search',
@@ -165,6 +166,7 @@ export const en = {
       sourceBytes: 'Source file',
       bytes: 'Hierarchy',
       modified: 'Made',
+      warnings: 'Warnings',
     },
   },
   share: {

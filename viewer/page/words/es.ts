@@ -28,6 +28,7 @@ export const es: Words = {
     bytes: (count, text) => counted(count, text, 'byte', 'bytes'),
     tiles: (count, text) => counted(count, text, 'tesela', 'teselas'),
     pictures: (count, text) => counted(count, text, 'imagen', 'imágenes'),
+    warnings: (count, text) => counted(count, text, 'aviso', 'avisos'),
   },
   gallery: {
     search: 'Buscar',
@@ -160,6 +161,7 @@ export const es: Words = {
       sourceBytes: 'Archivo fuente',
       bytes: 'Jerarquía',
       modified: 'Creado',
+      warnings: 'Avisos',
     },
   },
   share: {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { ListingError, modelOfPath, nameOfPath, parseListing, resolveUrl } from '../../page/listing.js';
+import { ListingError, modelOfPath, nameOfPath, parseListing, resolveUrl, withoutWarnings, type Listing } from '../../page/listing.js';
+import { maySend } from '../../page/upload/permission.js';
 
 const URL_ = 'http://host/dir/models.json';
 
@@ -99,5 +100,27 @@ describe('a path', () => {
     expect(nameOfPath(slashes)).toBe('x');
     expect(resolveUrl(slashes, URL_)).toHaveLength('http://host/dir/'.length + slashes.length);
     expect(parse({ models: [{ path: slashes }] }).models).toEqual([]);
+  });
+});
+
+describe('warnings of a build', () => {
+  const listed = (warnings: unknown): Listing => parseListing(JSON.stringify({ models: [{ path: 'a.hier', warnings }] }), 'http://host/models.json');
+
+  it('are texts, and so many', () => {
+    expect(listed(['one', 7, '', null, 'two']).models[0].warnings).toEqual(['one', 'two']);
+    expect(listed(Array.from({ length: 1000 }, () => 'x'.repeat(2000))).models[0].warnings!.map(({ length }) => length)).toEqual(Array.from({ length: 100 }, () => 1000));
+    for (const none of [undefined, null, 'x', [], {}, [7]]) expect(listed(none).models[0]).not.toHaveProperty('warnings');
+  });
+
+  it('are none for those who only look', () => {
+    expect(withoutWarnings(listed(['one'])).models).toEqual(listed(undefined).models);
+  });
+
+  it.each([
+    [null, 'localhost', true], [null, '127.0.0.1', true], [null, '[::1]', true], [null, 'museum.example', false],
+    [{ limit: 1, token: false }, 'museum.example', true], [{ limit: 1, token: true }, 'museum.example', false],
+  ])('are for those who may send meshes: %j at %s: %s', (offer, hostname, may) => {
+    expect(maySend(offer, `http://${hostname}/models.json`, { origin: `http://${hostname}`, hostname })).toBe(may);
+    expect(maySend(offer, 'http://other/models.json', { origin: `http://${hostname}`, hostname })).toBe(false);
   });
 });
