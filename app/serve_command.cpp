@@ -192,7 +192,7 @@ class Service {
         hierarchies_(storage::open_folder(arguments.folder), tell_) {
     ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
     if (!viewer.folder)
-      console_.print(viewer.missing);
+      console_.print(viewer.missing + ' ' + kServedWithoutPage);
     if (!arguments.inbox.empty()) {
       server::WatchOptions options = watch_options(arguments, environment);
       options.on_new = [this] { site_->refresh(); };

@@ -16,9 +16,9 @@ namespace {
 constexpr std::array kPlaces{"../share/meshhier/viewer", "../../viewer/dist/page"};
 
 constexpr const char* kRemedy =
-    "In the source tree, \"npm ci && npm run build\" in viewer/ makes it, and scripts/install puts "
-    "it in place; or "
-    "name its folder with --viewer. models.json and the models' files are served without it.";
+    "The Debian package and the portable program have it. In the source tree, \"npm ci && npm run "
+    "build\" in viewer/ makes it, and scripts/install puts it in place. --viewer names another "
+    "folder that has it.";
 
 bool has_page(storage::FileSystem& files, const std::filesystem::path& directory) {
   return files.exists(directory / "index.html");
@@ -27,7 +27,7 @@ bool has_page(storage::FileSystem& files, const std::filesystem::path& directory
 }  // namespace
 
 std::string page_without_viewer() {
-  return std::string("The viewer's page is missing. ") + kRemedy;
+  return fmt::format("The viewer's page is missing. {} {}", kRemedy, kServedWithoutPage);
 }
 
 ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path& asked) {

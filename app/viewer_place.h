@@ -19,6 +19,10 @@ struct ViewerPlace {
 /// this program has it. Throws Error(io) if `asked` has no page.
 ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path& asked);
 
+/// What a server does all the same.
+inline constexpr const char* kServedWithoutPage =
+    "models.json and the models' files are served without it.";
+
 /// The same for who asks for the page: not where things lie on this machine.
 std::string page_without_viewer();
 

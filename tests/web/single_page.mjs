@@ -9,10 +9,12 @@ import { cpSync, mkdirSync, mkdtempSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { collectComplaints, inChromium, until, withoutRestDetail } from './browser.mjs';
+import { collectComplaints, comparePictures, inChromium, until, withoutRestDetail } from './browser.mjs';
 import { serve } from './server.mjs';
 
 const PATIENCE = 60_000; // milliseconds
+/// Of a page with all tiles, a part whose coarsest tile is off by more than a rounding to 16 bits.
+const ROUNDED_SHARE = 0.3;
 const PHONE = { viewport: { width: 390, height: 700 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 
 /// A page at rest: what it shows, asked for and complained about.
@@ -64,6 +66,23 @@ async function checkLinked(browser, report, file, alone) {
   await offline.context.close();
 }
 
+/// Where positions are rounded, the picture is that of the exact ones.
+async function checkRounded(browser, report, make, directory, [exact, rounded]) {
+  make(directory, '-o', exact, '--size', '500MB');
+  const told = make(directory, '-o', rounded, '--size', String(Math.round(statSync(exact).size * ROUNDED_SHARE)));
+  const pictures = [];
+  for (const file of [exact, rounded]) {
+    const { page, context } = await open(browser, pathToFileURL(file).href, { offline: true });
+    pictures.push(await page.screenshot());
+    await context.close();
+  }
+  const page = await browser.newPage();
+  const { most, mean, covered } = await comparePictures(page, ...pictures);
+  await page.close();
+  report.line('a page with rounded positions', /rounded to 16 bits/.test(told) && covered > 0.05 && mean < 0.5,
+    `${statSync(rounded).size} bytes of ${statSync(exact).size}: ${mean.toFixed(3)} of 255 apart on average, ${most} at most; ${told.split('\n')[0]}`);
+}
+
 async function checkSite(browser, report, site, names) {
   const host = await serve({ '': site }, { ranges: true });
   const page = await browser.newPage();
@@ -94,6 +113,7 @@ async function checkAll(browser, report, [meshhier, pictures, viewer, directory,
   const { finestLevel } = await closeIn(page);
   await context.close();
   await checkLinked(browser, report, linked, finestLevel);
+  await checkRounded(browser, report, make, directory, ['exact.html', 'rounded.html'].map((name) => path.join(work, name)));
   const models = path.join(work, 'models');
   mkdirSync(models);
   for (const each of [directory, archive]) cpSync(each, path.join(models, path.basename(each)), { recursive: true });
