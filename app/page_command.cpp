@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
 #include "app/options.h"
+#include "app/story_pictures.h"
 #include "app/viewer_place.h"
 #include "hierarchy/error.h"
 #include "inspection/page_file.h"
@@ -11,6 +12,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -27,6 +29,7 @@ struct PageArguments {
   bool force = false;
   std::uint64_t size = inspection::PageOptions().size;
   std::string link;
+  bool fetches_pictures = false;
   std::string viewer;
 };
 
@@ -35,7 +38,7 @@ constexpr std::uint64_t kMostViewerBytes = std::uint64_t{64} << 20;
 ViewerPlace viewer_of(Environment& environment, const PageArguments& arguments) {
   ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
   if (!viewer.folder)
-    throw Error(ErrorCode::io, viewer.missing);
+    throw Error(ErrorCode::io, "page puts models into the viewer's page. " + viewer.missing);
   return viewer;
 }
 
@@ -64,21 +67,31 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
     throw Error(ErrorCode::usage,
                 "--link: expected the address of the whole hierarchy, https://...");
   const std::string viewer = single_page(environment, arguments);
-  return inspection::write_page(place.files(), place.path(), viewer,
-                                {.output = arguments.output,
-                                 .replace = arguments.force,
-                                 .size = arguments.size,
-                                 .link = arguments.link,
-                                 .name = name_of(place.path()),
-                                 .looks_for_story = !place.is_remote()},
-                                progress, environment.cancel);
+  return inspection::write_page(
+      place.files(), place.path(), viewer,
+      {.output = arguments.output,
+       .replace = arguments.force,
+       .size = arguments.size,
+       .link = arguments.link,
+       .name = name_of(place.path()),
+       .looks_for_story = !place.is_remote(),
+       .open_picture = open_story_pictures(
+           {storage::without_last_slash(place.path()).parent_path(), arguments.fetches_pictures},
+           environment.cancel)},
+      progress, environment.cancel);
 }
 
 std::string make_site(const PageArguments& arguments, execution::Progress& progress,
                       Environment& environment) {
-  if (!arguments.link.empty())
-    throw Error(ErrorCode::usage,
-                "--link is for the page of one hierarchy; this is a folder of them");
+  for (const auto& [is_given, option] :
+       {std::pair(!arguments.link.empty(), "--link"),
+        std::pair(arguments.fetches_pictures, "--fetch-pictures")}) {
+    if (is_given) {
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("{} is for the page of one hierarchy; this is a folder of them", option));
+    }
+  }
   const ViewerPlace viewer = viewer_of(environment, arguments);
   const server::SiteJob job{storage::open_folder(arguments.hierarchy), *viewer.folder,
                             arguments.output, arguments.force};
@@ -108,7 +121,8 @@ int run_page(const PageArguments& arguments, execution::ProgressMode mode,
 constexpr const char* kPageFooter =
     R"(Of a hierarchy: one HTML file, with the viewer and as many tiles as fit, from the root down. It opens
 by a double click, without a network. With --link it goes on from there when it is online.
-A story beside the hierarchy, NAME.hier.story.json, is told in it.
+Tiles are packed; where not all fit, positions are rounded to 16 bits if more is shown that way.
+A story beside the hierarchy, NAME.hier.story.json, is told in it, with the pictures that lie there.
 
 Of a folder: a site, with a gallery, to be copied to any host of plain files; 3tz archives among them
 need one that sends parts of files (HTTP ranges).
@@ -131,6 +145,8 @@ void add_page_command(CLI::App& parser, Invocation& invocation) {
   add_size_option(*command, "--size", "Of the HTML file: bytes, at the most", arguments->size);
   command->add_option("--link", arguments->link, "Of the HTML file: where all of the hierarchy is")
       ->type_name("ADDRESS");
+  command->add_flag("--fetch-pictures", arguments->fetches_pictures,
+                    "Of the HTML file: embed the pictures of a story that lie on other hosts, too");
   command->add_option("--viewer", arguments->viewer, "Where the page lies, if not as installed")
       ->type_name("DIR");
   add_progress_option(*command, invocation.progress);

@@ -3,19 +3,16 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/byte_stream.h"
+#include "inspection/page_tiles.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"
-#include "storage/format/gzip.h"
 #include "storage/format/hierarchy_reader.h"
-#include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
-#include <queue>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -32,25 +29,10 @@ namespace fs = std::filesystem;
 /// Where the viewer's page takes the hierarchy.
 constexpr std::string_view kMark = "<!-- meshhier: hierarchy -->";
 constexpr std::string_view kTitle = "<title>meshhier</title>";
-/// Records of the index that the viewer fetches at once (viewer/src/hierarchy/tile_index.ts).
-constexpr std::uint64_t kPageRecords = 545;
-
-/// RFC 4648, section 4.
-std::string base64(std::span<const std::byte> bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
+/// Chromium's longest text has 2^29 - 24 characters, and the hierarchy in the page is one.
+constexpr std::uint64_t kMostPageBytes = 500'000'000;
+/// What the manifest of a page has more than the hierarchy's: the lattice, and other numbers.
+constexpr std::uint64_t kManifestSlack = 600;
 
 std::string escaped(std::string_view text) {
   std::string made;
@@ -81,35 +63,25 @@ std::string json_text(const std::string& text) {
   return json;
 }
 
-/// What lies beside a hierarchy; empty: nothing does. Throws Error(io), and Error(corrupt) if it is
-/// no JSON object.
-std::string story_of(storage::FileSystem& files, const fs::path& hierarchy) {
-  constexpr int kDeepest = 32;
+/// What lies beside a hierarchy, with its pictures, which take half of what the viewer leaves at
+/// the most. Throws Error(io), and Error(corrupt) if it is no JSON object.
+PageStory story_of(storage::FileSystem& files, const fs::path& hierarchy,
+                   const PageOptions& options, std::uint64_t room) {
+  if (!options.looks_for_story)
+    return {};
   const fs::path path = storage::story_path(storage::without_last_slash(hierarchy));
   if (files.kind(path) != storage::FileKind::regular)
     return {};
   const auto bytes = storage::read_file(*files.open(path), storage::kMostStoryBytes);
-  std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto shallow = [](int depth, auto, const auto&) { return depth < kDeepest; };
-  const auto story = nlohmann::json::parse(text, shallow, /*allow_exceptions=*/false);
-  if (!story.is_object())
-    throw Error(ErrorCode::corrupt, path.string() + ": it is no JSON object");
-  return text;
-}
-
-std::vector<std::byte> packed(std::vector<std::byte> bytes) {
-  std::vector<std::byte> smaller = storage::gzip(bytes);
-  return smaller.size() < bytes.size() ? smaller : bytes;
-}
-
-/// A file as it stands in the page.
-std::string entry_of(const fs::path& name, std::vector<std::byte> bytes) {
-  return fmt::format(",\n\"{}\":\"{}\"", name.generic_string(), base64(packed(std::move(bytes))));
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::uint64_t most = std::min(room / 2, storage::kMostStoryBytes - text.size());
+  return with_pictures(text, path.string(), most / 4 * 3, options.open_picture);
 }
 
 /// The viewer's page around the hierarchy.
 struct Frame {
   std::string before, behind;
+  std::uint64_t bytes() const { return before.size() + behind.size(); }
 };
 
 Frame frame_of(const std::string& viewer, const std::string& story, const PageOptions& options) {
@@ -131,110 +103,149 @@ Frame frame_of(const std::string& viewer, const std::string& story, const PageOp
   return frame;
 }
 
-class PageWriter {
- public:
-  PageWriter(storage::FileSystem& files, const storage::HierarchyReader& reader, ByteStream& out,
-             std::uint64_t room)
-      : files_(files), reader_(reader), out_(out), room_(room) {}
+/// What is chosen, and how it is packed.
+struct Filling {
+  PagePacker packer;
+  PageChoice choice;
 
-  /// False if it does not fit.
-  bool add(const std::vector<std::string>& entries, std::uint64_t index_bytes) {
-    std::uint64_t bytes = 0;
-    for (const std::string& entry : entries)
-      bytes += entry.size();
-    const std::uint64_t index = (index_bytes + 2) / 3 * 4 + 100;
-    if (used_ + bytes + index > room_)
-      return false;
-    for (const std::string& entry : entries)
-      put(entry);
-    return true;
+  /// How far the page is from the original, at the most, besides a rounding of the hierarchy.
+  double error() const { return double{choice.error} + choice.rounding; }
+};
+
+/// What a page is made of.
+struct PageSource {
+  storage::FileSystem& files;
+  const storage::HierarchyReader& reader;
+  const PageOptions& options;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
+};
+
+Filling filled(const PageSource& source, PagePacking packing, std::uint64_t room) {
+  PagePacker packer(source.files, source.reader, packing);
+  PageChoice choice = choose_tiles(packer, room, source.progress, source.cancel);
+  return {packer, std::move(choice)};
+}
+
+/// Rounded where not all fits exactly, and the error of what is shown covers the rounding, or the
+/// page is nearer to the original that way.
+Filling filling_of(const PageSource& source, std::uint64_t room) {
+  source.progress.stage("choose", 0, "steps");
+  if (!source.options.link.empty())
+    return filled(source, PagePacking::as_stored, room);
+  Filling exact = filled(source, PagePacking::exact, room);
+  const bool has_none = exact.choice.tiles.empty();
+  const double rounding =
+      PagePacker(source.files, source.reader, PagePacking::rounded).most_rounding();
+  if (rounding == 0 || (!has_none && rounding >= exact.error()))
+    return exact;
+  Filling rounded = filled(source, PagePacking::rounded, room);
+  const bool is_covered = rounded.choice.rounding <= double{rounded.choice.error};
+  return has_none || is_covered || rounded.error() < exact.error() ? rounded : exact;
+}
+
+std::string entry_of(const PageSource& source, const fs::path& name) {
+  constexpr std::uint64_t kMostEntry = std::uint64_t{1} << 32;
+  const auto path = source.reader.directory() / name;
+  return page_entry(name, storage::read_file(source.files, path, kMostEntry));
+}
+
+/// Entries one behind the other, the first one without its comma.
+class EntryStream {
+ public:
+  explicit EntryStream(ByteStream& out) : out_(out) {}
+  void put(std::string_view entries) {
+    const std::size_t comma = is_first_ && !entries.empty() ? 1 : 0;
+    out_.put(entries.substr(comma));
+    is_first_ = is_first_ && entries.empty();
+    bytes_ += entries.size() - comma;
   }
-  /// Whatever it takes: it was reserved.
-  void put(const std::string& entry) {
-    const auto text = std::string_view(entry).substr(is_first_ ? 1 : 0);  // without its comma
-    out_.put(text);
-    is_first_ = false;
-    used_ += text.size();
-  }
-  std::uint64_t used() const { return used_; }
-  std::string entry(const fs::path& name) const {
-    return storage::of_one_build(files_, reader_.directory(), reader_.manifest(), [&] {
-      const auto file = files_.open(reader_.directory() / name);
-      return entry_of(name, storage::read_file(*file, kMostFile));
-    });
-  }
+  std::uint64_t bytes() const { return bytes_; }
 
  private:
-  /// Of a tile or another file of a hierarchy.
-  static constexpr std::uint64_t kMostFile = std::uint64_t{1} << 32;
-
-  storage::FileSystem& files_;
-  const storage::HierarchyReader& reader_;
   ByteStream& out_;
-  std::uint64_t room_;
-  std::uint64_t used_ = 0;
   bool is_first_ = true;
+  std::uint64_t bytes_ = 0;
 };
 
-/// A tile that may be refined, the one with the largest error first.
-struct Coarse {
-  float error = 0;
-  NodeId node;
-  friend bool operator<(const Coarse& a, const Coarse& b) {
-    return a.error != b.error ? a.error < b.error : b.node < a.node;
+/// Returns how many bytes were written.
+std::uint64_t write_files(const PageSource& source, const Filling& filling,
+                          const std::string& outline, ByteStream& out) {
+  const auto& [packer, choice] = filling;
+  std::vector<TileRecord> records = source.reader.records();
+  EntryStream entries(out);
+  entries.put(outline);
+  source.progress.stage("page", choice.tiles.size(), "tiles");
+  for (const NodeId tile : choice.tiles) {
+    source.cancel.check();
+    PackedTile packed = packer.pack(tile);
+    entries.put(packed.entry);
+    records[record_number(source.reader, tile)] = packed.record;
+    source.progress.advance(1);
   }
-};
-
-std::uint64_t number_of(const storage::HierarchyReader& reader, NodeId tile) {
-  const auto& records = reader.records();
-  return static_cast<std::uint64_t>(&storage::record_of(records, tile) - records.data());
+  entries.put(packer.account(std::move(records), choice.last_record, choice.rounding));
+  return entries.bytes();
 }
 
-/// Of the index up to the page that has a record.
-std::uint64_t index_bytes_with(const storage::HierarchyReader& reader, std::uint64_t record) {
-  const std::uint64_t records = (record / kPageRecords + 1) * kPageRecords;
-  return std::min(storage::index_bytes(records), reader.manifest().index_bytes);
+std::string megabytes(std::uint64_t bytes) {
+  constexpr std::uint64_t kMegabyte = 1'000'000;
+  return fmt::format("{}MB", (bytes + kMegabyte - 1) / kMegabyte);
 }
 
-struct Chosen {
-  std::uint64_t tiles = 0;
-  std::uint64_t last_record = 0;
-  float error = 0;  ///< the largest of what is not refined
-};
+/// What did not fit, and what would make it fit; a line, or nothing.
+std::string left_out_text(const PageSource& source, const Filling& filling,
+                          std::uint64_t other_bytes) {
+  const std::uint64_t all = source.reader.records().size();
+  const std::uint64_t left = all - filling.choice.tiles.size();
+  if (left == 0)
+    return "";
+  const std::string what = counted(left, "tiles");
+  if (!source.options.link.empty())
+    return fmt::format("{} did not fit: the page fetches them from the link\n", what);
+  const std::uint64_t needed =
+      other_bytes + expected_page_bytes(filling.packer, filling.choice, source.cancel);
+  const std::string cure =
+      needed <= kMostPageBytes
+          ? fmt::format("about {}: give --size {}, or", megabytes(needed), megabytes(needed))
+          : fmt::format("about {}, and browsers hold {} at most: give", megabytes(needed),
+                        megabytes(kMostPageBytes));
+  return fmt::format(
+      "{} did not fit. All of them take {} --link with the address of the whole hierarchy\n", what,
+      cure);
+}
 
-/// Behind the root.
-Chosen add_tiles(const storage::HierarchyReader& reader, PageWriter& page,
-                 execution::Progress& progress, const execution::CancelToken& cancel) {
-  const Tree& tree = reader.tree();
-  Chosen chosen{1, 0, 0};
-  std::priority_queue<Coarse> coarse;
-  coarse.push({reader.record(tree.root()).error, tree.root()});
-  while (!coarse.empty()) {
-    cancel.check();
-    const Coarse next = coarse.top();
-    std::vector<std::string> entries;
-    std::vector<NodeId> children;
-    std::uint64_t last = chosen.last_record;
-    const Tree::Children below = tree.children(next.node);
-    for (const NodeId child : below.span()) {
-      const NodeId tile = tree.tile_node(child);
-      children.push_back(tile);
-      entries.push_back(page.entry(storage::tile_path({}, tile)));
-      last = std::max(last, number_of(reader, tile));
-    }
-    if (!page.add(entries, index_bytes_with(reader, last)))
-      break;
-    coarse.pop();
-    chosen.last_record = last;
-    chosen.tiles += children.size();
-    for (const NodeId tile : children) {
-      if (!tree.is_partition(tile))
-        coarse.push({reader.record(tile).error, tile});
-    }
-    progress.advance(children.size());
-  }
-  chosen.error = coarse.empty() ? 0 : coarse.top().error;
-  return chosen;
+std::string account_text(const PageSource& source, const Filling& filling, std::uint64_t bytes,
+                         std::uint64_t viewer) {
+  const double error = filling.error();
+  std::string text = fmt::format(
+      "{}: {} of {}, {} bytes, of which the viewer takes {}; {}\n", source.options.output.string(),
+      filling.choice.tiles.size(), counted(source.reader.records().size(), "tiles"), bytes, viewer,
+      error == 0 ? "all of the mesh"
+                 : fmt::format("errors up to {:.3g} in the units of the input", error));
+  if (filling.choice.rounding > 0)
+    text += fmt::format("positions are rounded to {} bits, by {:.3g} at most\n",
+                        Lattice::kShortBits, filling.choice.rounding);
+  return text;
+}
+
+std::string story_text(const PageStory& story, execution::Progress& progress) {
+  for (const std::string& line : story.left_out)
+    progress.warn("a picture of the story is left out: " + line);
+  if (story.pictures == 0 && story.left_out.empty())
+    return "";
+  return fmt::format("{} of {} of the story\n", story.pictures,
+                     counted(story.pictures + story.left_out.size(), "pictures"));
+}
+
+/// `needed`: what there must be besides the viewer and the story, whose pictures take half of what
+/// there is.
+[[noreturn]] void refuse_size(std::uint64_t size, std::uint64_t viewer, const PageStory& story,
+                              std::uint64_t needed) {
+  const bool has_pictures = story.pictures > 0 || !story.left_out.empty();
+  const std::uint64_t least = viewer + (has_pictures ? 2 : 1) * (story.text.size() + needed);
+  throw Error(ErrorCode::usage, fmt::format("a page of {} bytes has no room for the viewer and the "
+                                            "root: give --size {} or more",
+                                            size, least));
 }
 
 }  // namespace
@@ -244,42 +255,40 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                        execution::Progress& progress, const execution::CancelToken& cancel) {
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
-  const std::string story = options.looks_for_story ? story_of(files, hierarchy) : std::string();
-  const Frame frame = frame_of(viewer, story, options);
+  const PageSource source{place.files(), reader, options, progress, cancel};
   storage::OutputFile output(files, {options.output, options.replace, {hierarchy}},
                              [&] { cancel.check(); });
-  ByteStream out(*output.file());
-  const std::uint64_t around = frame.before.size() + frame.behind.size();
-  PageWriter page(place.files(), reader, out, options.size > around ? options.size - around : 0);
-  progress.stage("page", reader.records().size(), "tiles");
-  out.put(frame.before);
-  const fs::path root = storage::tile_path({}, reader.tree().root());
-  const std::vector<std::string> first{page.entry(storage::manifest_path({})), page.entry(root)};
-  const std::uint64_t least_index = index_bytes_with(reader, 0);
-  if (!page.add(first, least_index)) {
-    const std::uint64_t least = around + first[0].size() + first[1].size() + 2 * least_index;
-    throw Error(ErrorCode::usage,
-                fmt::format("a page of {} bytes has no room for the viewer and the "
-                            "root: give --size {} or more",
-                            options.size, least));
+  const std::uint64_t size = std::min(options.size, kMostPageBytes);
+  const PageStory story =
+      story_of(files, hierarchy, options, size > viewer.size() ? size - viewer.size() : 0);
+  const Frame frame = frame_of(viewer, story.text, options);
+  std::string outline = entry_of(source, storage::outline_path({}));
+  const std::uint64_t fixed =
+      frame.bytes() + entry_of(source, storage::manifest_path({})).size() + kManifestSlack;
+  std::uint64_t room = size > fixed ? size - fixed : 0;
+  // It shows itself before the first tile, so it is worth a part, but no more.
+  const bool has_outline = outline.size() <= room / 4;
+  const Filling filling = filling_of(source, has_outline ? room - outline.size() : room);
+  if (filling.choice.tiles.empty()) {
+    const std::uint64_t around = fixed - std::min(fixed, viewer.size() + story.text.size());
+    refuse_size(options.size, viewer.size(), story, around + outline.size() + filling.choice.least);
   }
-  page.add({page.entry(storage::outline_path({}))}, least_index);
-  const Chosen chosen = add_tiles(reader, page, progress, cancel);
-  auto index = storage::read_file(*place.files().open(storage::index_path(hierarchy)),
-                                  reader.manifest().index_bytes);
-  index.resize(index_bytes_with(reader, chosen.last_record));
-  page.put(entry_of(storage::index_path({}), std::move(index)));
-  storage::require_same_build(place.files(), hierarchy, reader.manifest());
+  if (!has_outline)
+    outline.clear();
+
+  ByteStream out(*output.file());
+  out.put(frame.before);
+  const std::uint64_t bytes = frame.bytes() + write_files(source, filling, outline, out);
   out.put(frame.behind);
   out.flush();
-  const std::uint64_t bytes = around + page.used();
+  const std::string left_out = left_out_text(source, filling, fixed + outline.size());
+  storage::require_same_build(place.files(), hierarchy, reader.manifest());
   output.publish();
-  return fmt::format(
-      "{}: {} of {}, {} bytes; {}", options.output.string(), chosen.tiles,
-      counted(reader.records().size(), "tiles"), bytes,
-      chosen.error == 0
-          ? "all of the mesh"
-          : fmt::format("errors up to {:.3g} in the units of the input", chosen.error));
+  std::string account = account_text(source, filling, bytes, viewer.size()) + left_out +
+                        (has_outline ? "" : "the shape-outline did not fit\n") +
+                        story_text(story, progress);
+  account.pop_back();  // the end of the last line
+  return account;
 }
 
 }  // namespace meshhier::inspection

@@ -3,6 +3,7 @@
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "inspection/page_story.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -14,17 +15,21 @@ namespace meshhier::inspection {
 struct PageOptions {
   std::filesystem::path output;
   bool replace = false;             ///< a file that is there
-  std::uint64_t size = 20'000'000;  ///< bytes of the file, at the most
+  std::uint64_t size = 15'000'000;  ///< bytes of the file, at the most: what mail takes, where an
+                                    ///< attachment grows by a third and 20 to 25 MB are allowed
   std::string link;                 ///< where all of the hierarchy is; empty: nowhere
   std::string name;                 ///< of the model
   bool looks_for_story = false;     ///< beside the hierarchy: then the page tells it
+  OpenPicture open_picture{};       ///< of the story; required if it looks for one
 };
 
 /// Writes `viewer` (viewer/vite.single.config.ts) with the manifest, the root and more tiles:
-/// always both children of the node with the largest error, as long as they fit. Tiles that are not
-/// compressed are packed as gzip. Holds a tile. Deterministic. The output appears complete or not
-/// at all. Returns a line for people. Throws Error(usage) if not even the root fits, Error(exists |
-/// io | corrupt), the last for a story that is no JSON object, too.
+/// always both children of the node with the largest error, as long as they fit. Without a link
+/// tiles are packed, and where not all fit, their positions are rounded if the page is nearer to
+/// the original that way. Holds a tile and the story. Deterministic. The output appears complete or
+/// not at all. Returns lines for people: what is in it, what is not, and what would change that;
+/// warns of pictures that are left out. Throws Error(usage) if not even the root fits, Error(exists
+/// | io | corrupt), the last for a story that is no JSON object, too.
 std::string write_page(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel);

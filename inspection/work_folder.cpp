@@ -1,6 +1,7 @@
 #include "inspection/work_folder.h"
 
 #include "hierarchy/error.h"
+#include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 
 #include <random>

@@ -5,6 +5,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/rounded_tile.h"
 #include "partition/compactness.h"
 #include "pipeline/images_stage.h"
 #include "pipeline/normal_map_stage.h"
@@ -28,20 +29,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
 
 namespace meshhier::pipeline {
 namespace {
-
-/// Rounds all vertices; returns how far one went at most.
-double round_to(const Lattice& lattice, TileMesh& mesh) {
-  return std::max(meshhier::round_to(lattice, mesh.vertices.positions),
-                  meshhier::round_to(lattice, mesh.copies.vertices.positions));
-}
 
 /// Over the input's bounds as they are stored.
 std::optional<Lattice> lattice_of(const DistributedSource& source, const StageContext& context) {
@@ -66,15 +59,6 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
     format.normal_maps = context.config.normal_map.format;
   format.lattice = lattice_of(source, context);
   return format;
-}
-
-/// A bound of exact positions as one of rounded ones. Where rounding is nearly all of it, the
-/// levels below still tell it from the children's.
-float with_rounding(float bound, double rounding, int levels_below) {
-  float sum = float_above(bound + rounding);
-  for (int i = 0; i < levels_below; ++i)
-    sum = std::nextafter(sum, std::numeric_limits<float>::infinity());
-  return sum;
 }
 
 /// What writes tiles.
@@ -232,8 +216,8 @@ std::vector<TileRecord> complete_records(std::span<const Published> tiles, const
     record.error = error.error;
     record.bound = error.bound;
     if (rounded) {
-      record.bound = with_rounding(error.bound, rounded->worst_rounding,
-                                   raw(tree.depth()) - raw(record.node.level));
+      record.bound = bound_with_rounding(error.bound, rounded->worst_rounding,
+                                         raw(tree.depth()) - raw(record.node.level));
     }
   }
   return records;

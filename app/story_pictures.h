@@ -1,0 +1,22 @@
+// The pictures that a story names: beside it, and on the web if they may be fetched.
+#pragma once
+
+#include "execution/cancel.h"
+#include "inspection/page_story.h"
+
+#include <filesystem>
+
+namespace meshhier::app {
+
+struct StoryPictures {
+  std::filesystem::path beside;  ///< the folder of the story
+  bool fetches = false;          ///< pictures of other hosts, else they are refused
+};
+
+/// Opens what lies in the folder or below it, by relative addresses; no link is followed, no hidden
+/// name is opened. A host gets 20 seconds for a picture, all hosts two minutes. `cancel` must
+/// outlive the result.
+inspection::OpenPicture open_story_pictures(const StoryPictures& pictures,
+                                            const execution::CancelToken& cancel);
+
+}  // namespace meshhier::app
