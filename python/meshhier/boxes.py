@@ -8,13 +8,32 @@ from typing import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import UsageError
 
-def touches_box(corners: NDArray[np.float64], low: Sequence[float], high: Sequence[float]) -> NDArray[np.bool_]:
+Corner = NDArray[np.float64]
+
+
+def checked_box(box: Sequence[Sequence[float]]) -> tuple[Corner, Corner]:
+    """The lower and the upper corner. They may be infinite. Raises UsageError for what is no box."""
+    try:
+        low, high = (np.asarray(corner, np.float64) for corner in box)
+        is_box = low.shape == high.shape == (3,) and bool((low <= high).all())
+    except (TypeError, ValueError):
+        is_box = False
+    if not is_box:
+        raise UsageError(f"a box is ((x, y, z), (x, y, z)), the smaller coordinates first, not {box}")
+    return low, high
+
+
+def touches_box(corners: NDArray[np.float64], low: Corner, high: Corner) -> NDArray[np.bool_]:
     """For each of (m, 3, 3) triangles whether it has a point in the box: no axis separates the two (Akenine-Möller, Fast 3D
     Triangle-Box Overlap Testing, 2001)."""
-    low_corner, high_corner = np.asarray(low, np.float64), np.asarray(high, np.float64)
-    middle, half = (low_corner + high_corner) / 2, (high_corner - low_corner) / 2
-    near = (corners.min(axis=1) <= high_corner).all(axis=1) & (corners.max(axis=1) >= low_corner).all(axis=1)
+    near = (corners.min(axis=1) <= high).all(axis=1) & (corners.max(axis=1) >= low).all(axis=1)
+    if not near.any():
+        return near
+    # What is beyond the triangles that are near decides nothing, and may be infinite.
+    low, high = np.maximum(low, corners[near].min(axis=(0, 1)) - 1), np.minimum(high, corners[near].max(axis=(0, 1)) + 1)
+    middle, half = (low + high) / 2, (high - low) / 2
     moved = corners[near] - middle
     edges = np.roll(moved, -1, axis=1) - moved
     normals = np.cross(edges[:, 0], edges[:, 1])

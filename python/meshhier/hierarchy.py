@@ -9,7 +9,7 @@ from typing import Any, Iterator, Optional, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import touches_box
+from .boxes import checked_box, touches_box
 from .checksum import checksum
 from .cut import CutAssembly
 from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
@@ -186,8 +186,10 @@ class Hierarchy:
         neither is given. With a `box` those outside of it are as coarse as they may."""
         if error is not None and level is not None:
             raise UsageError("a cut is by error or by level, not both")
+        if error is not None and not error >= 0:
+            raise UsageError(f"an error is 0 or more, in input units, not {error}")
         wanted = self._level(level) if error is None else self.tree.depth
-        low, high = (None, None) if box is None else (np.asarray(corner, np.float64) for corner in box)
+        low, high = (None, None) if box is None else checked_box(box)
         nodes: list[Node] = []
         pending = [self.tree.tile(Node(0, 0))]
         while pending:
@@ -226,8 +228,9 @@ class Hierarchy:
             chosen = self._checked([Node(*node) for node in nodes])
         else:
             chosen = self.cut_nodes(error=error, level=level, box=box)
+        corners = None if box is None else checked_box(box)
         mesh = CutAssembly(self._manifest, self.read_tile).mesh(chosen)
-        return mesh if box is None else mesh.take(touches_box(mesh.positions[mesh.triangles], *box))
+        return mesh if corners is None else mesh.take(touches_box(mesh.positions[mesh.triangles], *corners))
 
     def _checked(self, nodes: list[Node]) -> list[Node]:
         for node in nodes:

@@ -46,6 +46,12 @@ WarningCallback = Callable[[str], None]
 _ERRORS = {3: InputError, 6: BudgetError, 7: VerifyError}
 
 
+def _name(path: Path) -> str:
+    """A path as a word of a command: no option, whatever its first letter."""
+    name = os.fspath(path)
+    return f"./{name}" if name.startswith("-") else name
+
+
 def find_program() -> str:
     """The program's path: what MESHHIER names, the one that came in this package, or that of the PATH.
 
@@ -176,7 +182,7 @@ def build(
     Raises InputError, BudgetError, UsageError, ProgramError, ProgramNotFoundError.
     """
     meshes = [mesh] if isinstance(mesh, (str, os.PathLike)) else list(mesh)
-    words = ["build", *(os.fspath(one) for one in meshes), "-o", os.fspath(output)]
+    words = ["build", *(_name(one) for one in meshes), "-o", _name(output)]
     for key, value in (settings or {}).items():
         words += ["--set", f"{key}={value if isinstance(value, str) else json.dumps(value)}"]
     if force:
@@ -197,10 +203,10 @@ def verify(
 
     Raises VerifyError with all problems; ProgramError, ProgramNotFoundError.
     """
-    words = ["verify", os.fspath(hierarchy)]
+    words = ["verify", _name(hierarchy)]
     inputs = [] if input is None else [input] if isinstance(input, (str, os.PathLike)) else list(input)
     for one in inputs:
-        words += ["--input", os.fspath(one)]
+        words += ["--input", _name(one)]
     _run(words, progress, warning)
 
 

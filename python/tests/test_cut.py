@@ -108,6 +108,17 @@ def test_a_box_takes_what_touches_it(torus: str, built: Any) -> None:
     assert inside.sum() <= len(part.triangles) <= (~apart).sum()
     assert set(map(bytes, triangle_set(whole.triangles[inside], whole.positions))) <= found
     assert len(hierarchy.cut(box=(high + 1, high + 2)).triangles) == 0
+    half = (low + high) / 2
+    for unbounded, bounded in (((-np.inf,) * 3, low), (low - 1e30, low)):
+        far, near = hierarchy.cut(box=(unbounded, half)), hierarchy.cut(box=(bounded, half))
+        assert (triangle_set(far.triangles, far.positions) == triangle_set(near.triangles, near.positions)).all()
+    assert len(hierarchy.cut(box=((-np.inf,) * 3, (np.inf,) * 3)).triangles) == len(whole.triangles)
+
+
+@pytest.mark.parametrize("box", [((1, 1, 1), (0, 0, 0)), ((0, 0, 0),), ((0, 0), (1, 1)), ((np.nan,) * 3, (1, 1, 1)), "box", ((0, 0, 0), None)])
+def test_what_is_no_box_is_refused(box: Any, torus: str, built: Any) -> None:
+    with pytest.raises(meshhier.UsageError, match="a box is"):
+        meshhier.open(built(torus, "plain.hier")).cut(box=box)
 
 
 def test_pictures_come_with_their_tiles(tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ def test_the_tree_is_that_of_the_index(torus: str, built: Any) -> None:
             assert hierarchy.tree.ancestor(child, node.level) == node
 
 
-@pytest.mark.parametrize("options", [{"level": -1}, {"level": 99}, {"level": 1, "error": 1.0}, {"nodes": [(1, 0)]}, {"nodes": [(1, 0), (0, 0)]}, {"nodes": [(9, 9)]}])
+@pytest.mark.parametrize("options", [{"level": -1}, {"level": 99}, {"level": 1, "error": 1.0}, {"error": -1.0}, {"error": float("nan")}, {"nodes": [(1, 0)]}, {"nodes": [(1, 0), (0, 0)]}, {"nodes": [(9, 9)]}])
 def test_what_makes_no_sense_is_refused(options: Any, torus: str, built: Any) -> None:
     with pytest.raises(meshhier.UsageError):
         meshhier.open(built(torus, "plain.hier")).cut(**options)

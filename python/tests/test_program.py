@@ -97,3 +97,10 @@ def test_a_build_without_a_fault_warns_of_nothing(torus: str, tmp_path: Path) ->
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         meshhier.build(torus, tmp_path / "a.hier").close()
+
+
+def test_names_that_begin_like_options_are_names(torus: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "-o.ply").write_bytes(Path(torus).read_bytes())
+    meshhier.build("-o.ply", "--force.hier").close()
+    meshhier.verify("--force.hier", input="-o.ply")
