@@ -4,6 +4,7 @@
 #include "progressive/stream_index.h"
 #include "server/folder_scan.h"
 #include "storage/format/archive_files.h"
+#include "storage/format/build_name.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
 #include "storage/format/sealed_json.h"
@@ -96,7 +97,23 @@ std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
   const std::optional<Split> found = split(path);
   if (!found || !is_published(found->hierarchy, found->name))
     return std::nullopt;
-  return open_in(found->hierarchy, found->name);
+  return open_of_build(found->hierarchy, found->name);
+}
+
+std::string Hierarchies::build_of(const std::string& hierarchy) {
+  const std::optional<Model> model = look_if_readable(hierarchy);
+  return model ? model->build : std::string();
+}
+
+// Another build may take the place of one at any moment: what lies between two looks at the
+// manifest is of the build that both saw.
+std::optional<PublishedFile> Hierarchies::open_of_build(const std::string& hierarchy,
+                                                        const std::string& name) {
+  const std::string before = build_of(hierarchy);
+  std::optional<PublishedFile> file = open_in(hierarchy, name);
+  if (file && build_of(hierarchy) == before)
+    file->build = before;
+  return file;
 }
 
 bool Hierarchies::has_story(const std::string& hierarchy) {
@@ -269,19 +286,21 @@ std::shared_ptr<const storage::Archive> Hierarchies::archive(const std::string& 
 }
 
 Model Hierarchies::model_of(const std::string& path, const storage::File& file) const {
-  const storage::Manifest manifest =
-      storage::parse_manifest(storage::read_sealed_text(file), file.path().string());
+  const std::string text = storage::read_sealed_text(file);
+  const storage::Manifest manifest = storage::parse_manifest(text, file.path().string());
   const bool is_alone = manifest.source.files.empty();
-  return {path,
-          name_of(path.empty() ? folder_->path() : std::filesystem::path(path)),
-          manifest.source.file_name,
-          manifest.source.vertices,
-          manifest.source.triangles,
-          manifest.total_bytes,
-          is_alone ? manifest.source.file_bytes : manifest.source.files[0].bytes,
-          is_alone ? manifest.source.checksum : manifest.source.files[0].checksum,
-          manifest.source.checksum,
-          manifest.preview.has_value()};
+  Model model{path,
+              name_of(path.empty() ? folder_->path() : std::filesystem::path(path)),
+              manifest.source.file_name,
+              manifest.source.vertices,
+              manifest.source.triangles,
+              manifest.total_bytes,
+              is_alone ? manifest.source.file_bytes : manifest.source.files[0].bytes,
+              is_alone ? manifest.source.checksum : manifest.source.files[0].checksum,
+              manifest.source.checksum,
+              manifest.preview.has_value()};
+  model.build = storage::build_name(text);
+  return model;
 }
 
 void Hierarchies::tell_left_out(const std::string& cause) {

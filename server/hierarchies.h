@@ -25,6 +25,7 @@ struct PublishedFile {
   std::shared_ptr<const storage::File> file;
   std::uint64_t archive_offset = 0;  ///< of its content; 0 if it lies in a directory
   bool is_tile = false;
+  std::string build{};  ///< the one that it is of, where that is known
 };
 
 /// Looks at what is there whenever it is asked, and remembers manifests as long as their files stay
@@ -80,6 +81,9 @@ class Hierarchies {
   /// Null if it has none. Throws Error(io).
   std::unique_ptr<storage::File> open_story(const std::string& hierarchy) const;
   std::optional<PublishedFile> open_archive(const std::string& path);
+  /// Of a hierarchy, with the build that it is of.
+  std::optional<PublishedFile> open_of_build(const std::string& hierarchy, const std::string& name);
+  std::string build_of(const std::string& hierarchy);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
   void tell_left_out(const std::string& cause);
   void tell_once(const std::string& message);

@@ -19,6 +19,7 @@ struct Model {
   bool has_preview = false;           ///< a picture of it is one of its files
   bool has_story = false;             ///< a story lies beside it
   std::int64_t modified = 0;          ///< when it was made: seconds since 1970; 0: not known
+  std::string build{};                ///< its name; "" of a stream
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -20,9 +20,10 @@ constexpr const char* kMethodsWithUploads = "GET, HEAD, OPTIONS, POST, PUT";
 
 // A hierarchy is never changed, but `build --force` puts another one in its place, under the same
 // names: a client that mixed tiles of the two would show cracks. So it asks each time, and is told
-// within a millisecond that it has the file already.
+// within a millisecond that it has the file already; or it names the build, "?build=NAME", and
+// keeps the file for ever: of another build there is none at that address.
 constexpr const char* kRevalidate = "no-cache";
-// The viewer's build names these after their content.
+// Of addresses that name their content.
 constexpr const char* kForever = "public, max-age=31536000, immutable";
 
 Reply not_found() {
@@ -112,10 +113,14 @@ Reply Site::model_file(const Request& request, std::string_view path) {
   const std::optional<PublishedFile> found = hierarchies_.open(path);
   if (!found)
     return not_found();
+  const auto build = query_value(request.target, "build");
+  const bool names_build = build && !found->build.empty();
+  if (names_build && *build != found->build)
+    return text_reply(409, "Another build of this hierarchy is there by now.");
   return file_reply(request, {.file = found->file,
                               .tag = file_tag(found->file->version(), found->archive_offset),
                               .type = content_type(path),
-                              .cache = kRevalidate,
+                              .cache = names_build ? kForever : kRevalidate,
                               .may_be_gzip = found->is_tile});
 }
 

@@ -6,6 +6,7 @@
 #include "server/gallery.h"
 #include "server/hierarchies.h"
 #include "storage/format/layout.h"
+#include "storage/format/sealed_json.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
@@ -71,6 +72,8 @@ class SiteMaker {
       write(copy);
       progress_.copied();
     }
+    for (const Copy& copy : copies)
+      require_unchanged(copy);
     for (const Model& model : models_) {
       if (is_archive_name(model.path) && model.has_preview)
         write_picture(model);
@@ -116,6 +119,21 @@ class SiteMaker {
     if (!from)
       throw Error(ErrorCode::io, fmt::format("{} has gone meanwhile", copy.name));
     write(*from, place_ / copy.to);
+  }
+
+  /// The manifest comes first of a hierarchy's files: if it is still the one that was copied, all
+  /// are of one build.
+  void require_unchanged(const Copy& copy) const {
+    if (fs::path(copy.name).filename() != storage::manifest_path({}))
+      return;
+    const auto now = copy.folder->open(copy.name);
+    const auto copied = files_.open(place_ / copy.to);
+    if (!now || storage::read_sealed_text(*now) != storage::read_sealed_text(*copied)) {
+      throw Error(ErrorCode::io,
+                  fmt::format("{}: another hierarchy has taken its place while it was copied: make "
+                              "the site again",
+                              fs::path(copy.name).parent_path().string()));
+    }
   }
 
   void write_picture(const Model& model) {

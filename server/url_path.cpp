@@ -55,6 +55,18 @@ bool is_plain_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
+std::optional<std::string_view> query_value(std::string_view target, std::string_view key) {
+  std::size_t at = target.find('?');
+  while (at != std::string_view::npos) {
+    const std::size_t begin = at + 1;
+    at = target.find('&', begin);
+    const std::string_view pair = target.substr(begin, at == target.npos ? at : at - begin);
+    if (pair.starts_with(key) && pair.substr(key.size()).starts_with('='))
+      return pair.substr(key.size() + 1);
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> decode_path(std::string_view target) {
   target = target.substr(0, target.find('?'));
   if (!target.starts_with('/'))

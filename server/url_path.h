@@ -14,6 +14,10 @@ namespace meshhier::server {
 /// It is decoded once: what is escaped twice is a name with a '%' in it.
 std::optional<std::string> decode_path(std::string_view target);
 
+/// What a target's query says of `key`, as it was sent: "1f" of "/a?build=1f&x=1". Nothing if it
+/// says nothing of it.
+std::optional<std::string_view> query_value(std::string_view target, std::string_view key);
+
 /// Whether `name` is a file's name that a path may have as a part.
 bool is_plain_name(std::string_view name);
 

@@ -1,6 +1,8 @@
 #include "server/site.h"
 
+#include "hierarchy/error.h"
 #include "server/conditions.h"
+#include "server/static_site.h"
 #include "storage/format/gzip.h"
 #include "storage/format/layout.h"
 #include "tests/server/path_tricks.h"
@@ -423,6 +425,56 @@ TEST_F(SiteTest, AFileThatIsReplacedHasAnotherTag) {
   const Reply reply = site_->answer(again);
   EXPECT_EQ(reply.status, 200);
   EXPECT_EQ(body_of(reply), text_of(folder_.models() / "plain.hier/tiles/00/000000.glb"));
+}
+
+/// The last text in a manifest.
+std::string build_of(const std::string& manifest) {
+  return json::parse(manifest)["checksum"];
+}
+
+TEST_F(SiteTest, AnAddressThatNamesABuildHasNoOther) {
+  for (const char* model : {"plain.hier", "packed.3tz"}) {
+    const std::string base = std::string("/models/") + model + "/";
+    const std::string build = build_of(body_of(get(base + "hierarchy.json")));
+    for (const char* file : {"tiles/00/000000.glb", "tiles.bin", "outline.glb"}) {
+      const std::string target = base + file;
+      const Reply reply = get(target + "?build=" + build);
+      EXPECT_EQ(reply.status, 200) << target;
+      EXPECT_EQ(body_of(reply), body_of(get(target)));
+      EXPECT_EQ(reply.header("Cache-Control"), "public, max-age=31536000, immutable");
+      const Reply other = get(target + "?build=0123456789abcdef");
+      EXPECT_EQ(other.status, 409) << target;
+      EXPECT_EQ(other.header("Cache-Control"), "");
+    }
+    EXPECT_EQ(get(base + "tiles/00/000000.glb").header("Cache-Control"), "no-cache");
+    tests::build_small(folder_.path() / "meshes/other.ply", folder_.models() / model,
+                       storage::Compression::none, 700);
+    EXPECT_EQ(get(base + "tiles/00/000000.glb?build=" + build).status, 409);
+    const std::string now = build_of(body_of(get(base + "hierarchy.json")));
+    EXPECT_EQ(get(base + "tiles/00/000000.glb?build=" + now).status, 200);
+  }
+}
+
+TEST_F(SiteTest, ASiteIsMadeOfOneBuildOrNotAtAll) {
+  const auto files = storage::make_posix_file_system();
+  const auto viewer = storage::open_folder(folder_.viewer());
+  const SiteJob job{storage::open_folder(folder_.models()), *viewer, folder_.path() / "site"};
+  int copied = 0;
+  const auto replace = [&] {
+    if (++copied == 12)
+      tests::build_small(folder_.path() / "meshes/other.ply", folder_.models() / "plain.hier",
+                         storage::Compression::none, 700);
+  };
+  const SiteProgress progress{[] {}, [](const std::string&) {}, [](std::uint64_t) {}, replace};
+  try {
+    write_site(*files, job, progress);
+    ADD_FAILURE() << "a site of two builds";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(job.output));
+  write_site(*files, job, progress);
+  EXPECT_TRUE(fs::exists(job.output / "models/plain.hier/hierarchy.json"));
 }
 
 TEST_F(SiteTest, TilesOfOneArchiveHaveTagsOfTheirOwn) {

@@ -36,6 +36,15 @@ TEST(UrlPathTest, TricksAreNoPaths) {
     EXPECT_EQ(decode_path(target), std::nullopt) << target;
 }
 
+TEST(UrlPathTest, QueriesSayWhatTheySay) {
+  EXPECT_EQ(query_value("/a?build=1f", "build"), "1f");
+  EXPECT_EQ(query_value("/a?x=1&build=1f&y", "build"), "1f");
+  EXPECT_EQ(query_value("/a?build=", "build"), "");
+  EXPECT_EQ(query_value("/a?build=1=2?3", "build"), "1=2?3");
+  for (const char* target : {"/a", "/a?", "/a?build", "/a?rebuild=1", "/build=1", "/a?x&&", ""})
+    EXPECT_EQ(query_value(target, "build"), std::nullopt) << target;
+}
+
 TEST(UrlPathTest, LongPathsAreRefusedWhereFileSystemsRefuseThem) {
   const std::string longest(255, 'a');
   EXPECT_EQ(decode_path('/' + longest), longest);
