@@ -1,5 +1,6 @@
 // The input of the target `build`, little endian:
 //
+//   u8  choices           as many bytes follow, of which a config is drawn (random_config.h)
 //   u8  method            of simplifying, modulo what there are
 //   u8  partitions        one less than there are, modulo the places of the vertices
 //   u8  tile vertices     four less than a simplified tile has
@@ -7,8 +8,8 @@
 //   u8  vertices          one less than there are
 //   a position (3 bytes or 3 floats) a vertex, then three u8 a triangle, modulo the vertices
 //
-// Whatever the mesh, its hierarchy is sound and within its bounds, or the mesh is refused with a
-// reason and leaves nothing behind.
+// Whatever the mesh and the config, the hierarchy is sound and within its bounds, or the build is
+// refused with a reason and leaves nothing behind.
 #include "pipeline/build.h"
 
 #include "bench/stress.h"
@@ -17,7 +18,9 @@
 #include "fuzz/targets.h"
 #include "inspection/verify.h"
 #include "inspection/verify_error.h"
+#include "storage/format/archive_files.h"
 #include "support/memory_files.h"
+#include "support/random_config.h"
 #include "support/simplify_methods.h"
 
 #include <algorithm>
@@ -60,6 +63,26 @@ bench::LoadedMesh take_mesh(Take& take) {
   return mesh;
 }
 
+/// As the first bytes say: of none of them the defaults.
+class Choices {
+ public:
+  explicit Choices(Take& take) : bytes_(take.bytes(take.number<std::uint8_t>())) {}
+
+  config::Config draw(const bench::LoadedMesh& mesh) {
+    DrawnFor what{.with_ktx2 = false};  // those take another process
+    what.box = {};
+    for (const Vec3d& p : mesh.positions) {
+      if (is_finite(p))
+        what.box.add(p);
+    }
+    return random_config(
+        [&](std::uint64_t most) { return bytes_.number<std::uint16_t>() % (most + 1); }, what);
+  }
+
+ private:
+  Take bytes_;
+};
+
 /// Where the vertices lie: -0 equals 0, and those that are not finite lie nowhere.
 std::size_t count_places(const bench::LoadedMesh& mesh) {
   std::set<std::array<std::uint64_t, 3>> places;
@@ -75,8 +98,9 @@ std::size_t count_places(const bench::LoadedMesh& mesh) {
 void check_bounds(MemoryFiles& files, const config::Config& config) {
   execution::NoProgress progress;
   const inspection::ErrorOptions options{Level{}, 300, pipeline::memory_budget(config)};
+  const storage::HierarchyFiles inside(files, config.output);
   for (const auto& level :
-       inspection::measure_errors(files, config.output, options, progress, {})) {
+       inspection::measure_errors(inside.files(), config.output, options, progress, {})) {
     if (level.triangles > 0 && !level.problems.empty())
       throw Violation(level.name + ": " + level.problems.front());
   }
@@ -87,7 +111,9 @@ void check_sound(MemoryFiles& files, const config::Config& config) {
   inspection::VerifyOptions options;
   options.input = config.input;
   options.cuts = 4;
-  const auto report = inspection::verify_hierarchy(files, config.output, options, progress, {});
+  const storage::HierarchyFiles inside(files, config.output);
+  const auto report =
+      inspection::verify_hierarchy(inside.files(), config.output, options, progress, {});
   if (!report.problems.empty())
     throw Violation(report.problems.front());
 }
@@ -97,24 +123,29 @@ void check_sound(MemoryFiles& files, const config::Config& config) {
 void build(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   Take take(input);
-  config::Config config;
+  Choices choices(take);
+  const auto methods = all_simplify_methods();
+  const auto method = take.upto(static_cast<std::uint8_t>(methods.size() - 1));
+  const auto partitions = take.number<std::uint8_t>();
+  const auto tile_vertices = take.number<std::uint8_t>();
+  bench::LoadedMesh mesh = take_mesh(take);
+  config::Config config = choices.draw(mesh);
   config.input = "/models/a.ply";
   config.output = "/models/a.hier";
   config.threads = 1;
-  const auto methods = all_simplify_methods();
-  config.simplify = methods[take.upto(static_cast<std::uint8_t>(methods.size() - 1))].second;
-  const auto partitions = take.number<std::uint8_t>();
-  config.simplify.vertices = 4U + take.number<std::uint8_t>();
-  bench::LoadedMesh mesh = take_mesh(take);
+  config.simplify = methods[method].second;
+  config.simplify.vertices = 4U + tile_vertices;
   config.preview = mesh.triangles.size() % 16 == 0;  // drawing takes longer than all else
   config.partition.count = 1 + partitions % static_cast<std::uint32_t>(count_places(mesh));
 
   MemoryFiles files;
   bench::write_ply(files, {config.input.front(), true}, *bench::as_generated(std::move(mesh)));
   execution::NoProgress progress;
-  const std::string refused = refusal({ErrorCode::input}, "/models/a.ply: ", [&] {
-    pipeline::build_hierarchy(config, {}, {files, progress, {}});
-  });
+  // Nothing may lie in a piece of the mesh, and a config may have no place on the globe.
+  const bool is_plain = !config.crop && config.placement == config::PlacementConfig();
+  const auto run = [&] { pipeline::build_hierarchy(config, {}, {files, progress, {}}); };
+  const std::string refused = is_plain ? refusal({ErrorCode::input}, "/models/a.ply: ", run)
+                                       : refusal({ErrorCode::input, ErrorCode::usage}, "", run);
   if (!refused.empty()) {
     for (const auto& path : files.list("models"))
       require(path == config.input, "left behind after \"" + refused + "\": " + path.string());

@@ -67,6 +67,12 @@ class Take {
     const T value = number<T>();
     return most + T{1} == T{0} ? value : static_cast<T>(value % (most + T{1}));
   }
+  /// The next bytes; fewer where they end.
+  Bytes bytes(std::size_t count) {
+    const Bytes taken = bytes_.first(std::min(count, bytes_.size()));
+    skip(count);
+    return taken;
+  }
   Bytes rest() const { return bytes_; }
 
  private:

@@ -10,13 +10,14 @@
 #include "pipeline/build.h"
 #include "pipeline/tasks/task_plan.h"
 #include "pipeline/tasks/task_status.h"
+#include "storage/format/archive_files.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/random_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
-#include "tests/support/simplify_methods.h"
 #include "tests/support/try_build.h"
 
 #include <algorithm>
@@ -31,6 +32,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -81,10 +83,33 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-bench::LoadedMesh random_mesh(Dice& dice) {
+/// One of the unreasonable ones, or a bumpy surface that may have normals and colours.
+std::unique_ptr<bench::GeneratedMesh> random_mesh(Dice& dice) {
+  if (dice.one_in(3)) {
+    bench::SurfaceOptions options;
+    options.shape = static_cast<bench::Shape>(dice.from(0, 3));
+    options.triangles = dice.of_any_size(4000);
+    options.noise = dice.one_in(2) ? 0 : 0.5;
+    options.normals = dice.one_in(3);
+    options.colours = dice.one_in(3);
+    options.offset = dice.one_in(3) ? Vec3d{447213, 5428731, 300} : Vec3d{};
+    return bench::make_surface(options);
+  }
   const auto cases = bench::stress_cases();
   const bench::StressCase& chosen = cases[dice.from(0, cases.size() - 1)];
-  return bench::make_stress(chosen.name, dice.of_any_size(4000), dice.from(1, 1000));
+  return bench::as_generated(
+      bench::make_stress(chosen.name, dice.of_any_size(4000), dice.from(1, 1000)));
+}
+
+BoundsD box_of(const bench::GeneratedMesh& mesh) {
+  BoundsD box;
+  mesh.visit_vertices(4096, [&](std::span<const Vec3d> positions, std::span<const float>) {
+    for (const Vec3d& p : positions) {
+      if (is_finite(p))
+        box.add(p);
+    }
+  });
+  return box;
 }
 
 /// What may change from one build to the next that goes on with it.
@@ -93,36 +118,35 @@ void draw_resources(Dice& dice, config::Config& config) {
   config.memory_budget = (dice.one_in(2) ? std::uint64_t{1} << 30 : dice.from(64, 256) << 20);
 }
 
-config::Config random_config(Dice& dice) {
-  config::Config config;
-  const auto methods = tests::all_simplify_methods();
-  config.simplify = methods[dice.from(0, methods.size() - 1)].second;
-  if (dice.one_in(4))
-    config.partition.count = static_cast<std::uint32_t>(dice.of_any_size(40));
-  else
-    config.partition.vertices = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
-  if (dice.one_in(3)) {
-    std::vector<std::uint32_t> vertices(dice.one_in(2) ? 1 : dice.from(1, 8));
-    for (std::uint32_t& of_level : vertices)
-      of_level = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
-    config.simplify.vertices = TargetVertexCounts(std::move(vertices));
-  }
-  config.partition.axis =
-      dice.one_in(3) ? config::AxisRule::longest : config::AxisRule::compactness;
-  config.outline.sectors = static_cast<std::uint32_t>(dice.of_any_size(200));
+config::Config random_config(Dice& dice, const bench::GeneratedMesh& mesh) {
+  config::Config config = tests::random_config(
+      [&](std::uint64_t most) { return dice.from(0, most); }, {.box = box_of(mesh)});
   draw_resources(dice, config);
+  return config;
+}
+
+/// A random mesh in `input`, and how it is built to `output`.
+config::Config random_build(Dice& dice, storage::FileSystem& files, const fs::path& input,
+                            const fs::path& output) {
+  const auto mesh = random_mesh(dice);
+  bench::write_ply(files, {input, true}, *mesh);
+  config::Config config = random_config(dice, *mesh);
+  config.input = input;
+  config.output = output;
   return config;
 }
 
 using Files = std::map<std::string, std::string>;
 
-/// All files below `directory`, by their paths in it.
-Files content(storage::FileSystem& files, const fs::path& directory) {
+/// All files of the output, by their paths in it, or the archive.
+Files content(storage::FileSystem& files, const config::Config& config) {
+  const fs::path& output = config.output;
+  const bool is_archive = config.storage.container == config::Container::archive;
   Files all;
-  for (const fs::path& file : files.list(directory)) {
+  for (const fs::path& file : is_archive ? std::vector{output} : files.list(output)) {
     const std::vector<std::byte> bytes = storage::read_file(files, file, 1U << 30);
-    all[file.lexically_relative(directory).string()] = {reinterpret_cast<const char*>(bytes.data()),
-                                                        bytes.size()};
+    all[file.lexically_relative(output).string()] = {reinterpret_cast<const char*>(bytes.data()),
+                                                     bytes.size()};
   }
   return all;
 }
@@ -132,7 +156,8 @@ std::vector<std::string> problems(storage::FileSystem& files, const config::Conf
   options.input = config.input;
   options.cuts = 3;
   execution::NoProgress progress;
-  return inspection::verify_hierarchy(files, config.output, options, progress,
+  const storage::HierarchyFiles inside(files, config.output);
+  return inspection::verify_hierarchy(inside.files(), config.output, options, progress,
                                       execution::CancelToken())
       .problems;
 }
@@ -153,12 +178,9 @@ void run_rounds(const Round& round) {
 /// One round in memory: a build that is disturbed up to a dozen times.
 class DisturbedBuild {
  public:
-  explicit DisturbedBuild(std::uint64_t seed) : dice_(seed), config_(random_config(dice_)) {
-    config_.input = "/models/mesh.ply";
-    config_.output = "/models/mesh.hier";
-    bench::write_ply(*files_, {config_.input.front(), true},
-                     *bench::as_generated(random_mesh(dice_)));
-  }
+  explicit DisturbedBuild(std::uint64_t seed)
+      : dice_(seed),
+        config_(random_build(dice_, *files_, "/models/mesh.ply", "/models/mesh.hier")) {}
 
   void run() {
     const std::optional<ErrorCode> refused = build(*files_);
@@ -169,14 +191,14 @@ class DisturbedBuild {
       return;
     }
     EXPECT_THAT(problems(*files_, config_), IsEmpty());
-    expected_ = content(*files_, config_.output);
+    expected_ = content(*files_, config_);
     files_->remove_all(config_.output);
     for (std::uint64_t left = dice_.from(1, 12); left > 0 && !::testing::Test::HasFailure(); --left)
       disturb();
     draw_resources(dice_, config_);
     config_.memory_budget = std::uint64_t{1} << 30;
     EXPECT_EQ(build(*files_), std::nullopt) << message_;
-    EXPECT_EQ(content(*files_, config_.output), expected_);
+    EXPECT_EQ(content(*files_, config_), expected_);
     EXPECT_EQ(files_->children("/models").size(), 2U) << "something else was left";
   }
 
@@ -202,7 +224,7 @@ class DisturbedBuild {
       files.limit_writes(dice_.of_any_size(4 << 20));
     const std::optional<ErrorCode> code = build(files, progress, cancel);
     if (!code || files_->exists(config_.output))
-      EXPECT_EQ(content(*files_, config_.output), expected_);
+      EXPECT_EQ(content(*files_, config_), expected_);
     else
       EXPECT_TRUE(code == ErrorCode::io || code == ErrorCode::interrupted ||
                   code == ErrorCode::budget)
@@ -254,16 +276,11 @@ void kill_builds(std::uint64_t seed) {
   Dice dice(seed);
   const tests::TemporaryDirectory directory;
   const auto files = storage::make_posix_file_system();
-  config::Config config = random_config(dice);
-  config.input = directory.path() / "mesh.ply";
-  config.output = directory.path() / "mesh.hier";
-  bench::write_ply(*files, {config.input.front(), true}, *bench::as_generated(random_mesh(dice)));
-  nlohmann::ordered_json text = config::resolved_json(config);
-  text["input"] = "mesh.ply";
-  text["output"] = "mesh.hier";
+  const config::Config config =
+      random_build(dice, *files, directory.path() / "mesh.ply", directory.path() / "mesh.hier");
   const fs::path json = directory.path() / "config.json";
-  const std::string dumped = text.dump();
-  storage::write_file(*files, json, std::as_bytes(std::span(dumped)));
+  const std::string text = config::complete_text(config, "/");
+  storage::write_file(*files, json, std::as_bytes(std::span(text)));
 
   const auto begin = std::chrono::steady_clock::now();
   const int status = run_program({"build", json});
@@ -274,18 +291,18 @@ void kill_builds(std::uint64_t seed) {
     EXPECT_THAT(WEXITSTATUS(status), testing::AnyOf(2, 3, 6));
     return;
   }
-  const Files expected = content(*files, config.output);
+  const Files expected = content(*files, config);
   fs::remove_all(config.output);
   for (std::uint64_t left = dice.from(1, 10); left > 0; --left) {
     run_program({"build", json},
                 dice.of_any_size(static_cast<std::uint64_t>(taken.count()) * 3 / 2));
     if (fs::exists(config.output)) {
-      EXPECT_EQ(content(*files, config.output), expected);
+      EXPECT_EQ(content(*files, config), expected);
       fs::remove_all(config.output);
     }
   }
   EXPECT_EQ(run_program({"build", json}), 0);
-  EXPECT_EQ(content(*files, config.output), expected);
+  EXPECT_EQ(content(*files, config), expected);
   EXPECT_THAT(problems(*files, config), IsEmpty());
   EXPECT_EQ(files->children(directory.path()).size(), 3U) << "something else was left";
 }
@@ -298,13 +315,10 @@ TEST(Soak, KilledBuildsEndTheSame) {
 /// twice at once, and what they have sealed is torn or lost.
 class KilledTasks {
  public:
-  explicit KilledTasks(std::uint64_t seed) : dice_(seed), config_(random_config(dice_)) {
-    config_.input = directory_.path() / "mesh.ply";
-    config_.output = directory_.path() / "mesh.hier";
-    if (dice_.one_in(4))
-      config_.storage.container = config::Container::archive;
-    bench::write_ply(*files_, {config_.input.front(), true},
-                     *bench::as_generated(random_mesh(dice_)));
+  explicit KilledTasks(std::uint64_t seed)
+      : dice_(seed),
+        config_(random_build(dice_, *files_, directory_.path() / "mesh.ply",
+                             directory_.path() / "mesh.hier")) {
     const std::string text = config::complete_text(config_, "/");
     storage::write_file(*files_, json(), std::as_bytes(std::span(text)));
   }
@@ -331,12 +345,7 @@ class KilledTasks {
   std::string json() const { return directory_.path() / "config.json"; }
   std::string work() const { return directory_.path() / "work"; }
 
-  Files output() {
-    if (config_.storage.container == config::Container::files)
-      return content(*files_, config_.output);
-    const std::vector<std::byte> bytes = storage::read_file(*files_, config_.output, 1U << 30);
-    return {{"", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}}};
-  }
+  Files output() { return content(*files_, config_); }
 
   TaskPlan plan() {
     const std::vector<std::byte> bytes =

@@ -1,0 +1,34 @@
+// Configs by chance: whatever a build can be asked for is asked for at some time. What there is
+// comes from the table of keys, so a new key is drawn from its first day, or a test fails.
+#pragma once
+
+#include "config/config.h"
+#include "hierarchy/bounds.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace meshhier::tests {
+
+/// One of 0 ... most; 0 leaves things as they usually are.
+using Draw = std::function<std::uint64_t(std::uint64_t most)>;
+
+/// What configs are drawn for.
+struct DrawnFor {
+  BoundsD box{{-1, -1, -1}, {1, 1, 1}};  ///< of the mesh, for pieces of it
+  bool with_ktx2 = true;                 ///< pictures that other processes make, where they are
+};
+
+/// Keys that are not drawn: paths, what tests draw by themselves (threads, budget), and what needs
+/// the files or the data of a map.
+inline constexpr std::array<std::string_view, 8> kNotDrawn{
+    "$schema", "input",         "output",           "memory_budget",
+    "threads", "placement.crs", "placement.offset", "placement.metadata"};
+
+/// A config of small tiles, without input and output. A pure function of what is drawn: of zeros
+/// alone the defaults.
+config::Config random_config(const Draw& draw, const DrawnFor& what = {});
+
+}  // namespace meshhier::tests
