@@ -20,6 +20,7 @@
 #include <ostream>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -140,6 +141,17 @@ std::unique_ptr<storage::FileSystem> guarded_files(const BuildArguments& argumen
   return arguments.no_links ? storage::make_posix_file_system({false, std::nullopt}) : nullptr;
 }
 
+/// What the account warns of, for programs; people read it there.
+void tell_warnings(std::string_view account, execution::Progress& progress) {
+  constexpr std::string_view kMark = "warning: ";
+  while (!account.empty()) {
+    const std::string_view line = account.substr(0, account.find('\n'));
+    if (line.starts_with(kMark))
+      progress.warn(line.substr(kMark.size()));
+    account.remove_prefix(std::min(line.size() + 1, account.size()));
+  }
+}
+
 int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
               const Environment& around) {
   const auto guarded = guarded_files(arguments);
@@ -174,6 +186,8 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   const pipeline::BuildReport report =
       pipeline::build_hierarchy(config, {arguments.force, arguments.restart, others_of(arguments)},
                                 {environment.files, *progress, environment.cancel});
+  if (mode == execution::ProgressMode::json)
+    tell_warnings(report.text, *progress);
   progress->finish(config.output.string());
   if (stats)
     write_stats(*stats, report.stats);

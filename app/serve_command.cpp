@@ -121,6 +121,7 @@ server::UploadOptions upload_options(const ServeArguments& arguments, Environmen
   server::UploadOptions options;
   options.inbox = environment.files.canonical(arguments.inbox);
   options.limit_bytes = arguments.upload_limit;
+  options.suffix = suffix_of(arguments.config, environment);
   options.is_loopback = server::is_loopback_host(arguments.server.host);
   if (!arguments.token_file.empty())
     options.token = read_upload_token(environment.files, arguments.token_file);

@@ -1,9 +1,10 @@
 #include "server/build_target.h"
 
 #include "hierarchy/mesh_name.h"
+#include "storage/format/layout.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <filesystem>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -34,6 +35,22 @@ bool is_first_of_its_stem(const std::string& name, const std::vector<std::string
   });
 }
 
+/// NAME_MAX of Linux, in bytes.
+constexpr std::size_t kLongestName = 255;
+
+/// The longest name that a hierarchy has beside it while it is built, shown and checked.
+std::size_t longest_beside(const std::string& output) {
+  const std::filesystem::path path = output;
+  std::size_t longest = 0;
+  for (const auto& beside :
+       {storage::work_path(path), storage::replaced_path(path), storage::input_note_path(path),
+        storage::unfinished_path(storage::input_note_path(path)),
+        storage::output_lock_path(storage::input_note_path(path)),
+        storage::verify_scratch_path(path, 0), storage::story_path(path)})
+    longest = std::max(longest, beside.native().size());
+  return longest;
+}
+
 bool is_taken(const storage::Folder& folder, const std::string& name) {
   const std::vector<storage::FolderEntry> entries = folder.entries("");
   return std::any_of(entries.begin(), entries.end(),
@@ -41,6 +58,16 @@ bool is_taken(const storage::Folder& folder, const std::string& name) {
 }
 
 }  // namespace
+
+std::size_t excess_of_output(const std::string& output) {
+  const std::size_t longest = longest_beside(output);
+  return longest - std::min(longest, kLongestName);
+}
+
+std::size_t excess_of_name(const std::string& name, const std::string& suffix) {
+  return std::max(excess_of_output(stem_of(name) + suffix),
+                  excess_of_output(full_name_of(name) + suffix));
+}
 
 BuildTarget find_target(TargetFolder target, const std::string& name,
                         const std::vector<std::string>& inbox,

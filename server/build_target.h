@@ -4,6 +4,7 @@
 #include "server/hierarchies.h"
 #include "storage/io/folder.h"
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -26,6 +27,11 @@ struct TargetFolder {
   const storage::Folder& folder;
   std::string suffix;  ///< ".hier"
 };
+
+/// Bytes by which the name of a hierarchy is too long for all that lies beside it; 0: it is not.
+std::size_t excess_of_output(const std::string& output);
+/// The same of a mesh's file, whichever of the two names below its hierarchy gets.
+std::size_t excess_of_name(const std::string& name, const std::string& suffix);
 
 /// For the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to "a.ply.hier" if
 /// a.hier was made from something else, or an inbox file earlier in the alphabet has the same stem.

@@ -1,19 +1,25 @@
 #include "server/content_type.h"
 
+#include "server/text.h"
+
 #include <array>
+#include <string>
 #include <utility>
 
 namespace meshhier::server {
 namespace {
 
-// What hierarchies, streams and the viewer's page consist of.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kTypes{
+// What hierarchies, streams, stories' pictures and the viewer's page consist of.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kTypes{
     {{".3tz", "application/vnd.maxar.archive.3tz+zip"},
+     {".avif", "image/avif"},
      {".css", "text/css; charset=utf-8"},
+     {".gif", "image/gif"},
      {".glb", "model/gltf-binary"},
      {".gltf", "model/gltf+json"},
      {".html", "text/html; charset=utf-8"},
      {".ico", "image/x-icon"},
+     {".jpeg", "image/jpeg"},
      {".jpg", "image/jpeg"},
      {".js", "text/javascript; charset=utf-8"},
      {".json", "application/json"},
@@ -32,8 +38,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kTypes{
 }  // namespace
 
 std::string_view content_type(std::string_view file_name) {
+  const std::string name = lower_case(file_name);
   for (const auto& [extension, type] : kTypes) {
-    if (file_name.ends_with(extension))
+    if (name.ends_with(extension))
       return type;
   }
   return "application/octet-stream";

@@ -4,6 +4,7 @@
 #include "server/url_path.h"
 #include "storage/format/layout.h"
 #include "storage/io/paths.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -51,6 +52,8 @@ class Scanner {
   std::vector<storage::FolderEntry> entries_of(const std::string& directory) {
     try {
       return folder_.entries(directory);
+    } catch (const storage::Busy&) {
+      throw;
     } catch (const Error& error) {
       if (directory.empty())
         throw;

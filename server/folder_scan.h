@@ -17,7 +17,7 @@ struct FolderScan {
 
 /// Directories with a manifest, in which nothing else is looked for, and archives. Names that no
 /// URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io) if
-/// the folder itself cannot be listed.
+/// the folder itself cannot be listed, and storage::Busy.
 FolderScan scan_folder(const storage::Folder& folder);
 
 /// A path in a folder, of which either part may be empty.

@@ -67,7 +67,10 @@ std::string gallery_json(const std::vector<Model>& models,
                          const PlaceNames& places, const std::optional<UploadOffer>& offer) {
   nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
   for (const Model& model : models) {
-    document["models"].push_back(json_of(model));
+    nlohmann::ordered_json json = json_of(model);
+    if (jobs && !model.warnings.empty())
+      json["warnings"] = model.warnings;
+    document["models"].push_back(std::move(json));
   }
   if (jobs)
     document["jobs"] = *jobs;

@@ -34,8 +34,8 @@ std::string story_beside(const Model& model);
 /// Of an archive on a plain host, relative to the listing, as a path.
 std::string picture_beside(const Model& model);
 
-/// `jobs`: of a watched folder; none if none is watched. `offer`: none if no uploads are taken.
-/// Paths are relative to the document, as a URL has them.
+/// `jobs`: of a watched folder; none if none is watched, and then no build's warnings are told.
+/// `offer`: none if no uploads are taken. Paths are relative to the document, as a URL has them.
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
                          const PlaceNames& places, const std::optional<UploadOffer>& offer = {});

@@ -5,9 +5,11 @@
 #include "server/folder_scan.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"
+#include "storage/format/input_note.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
 #include "storage/format/sealed_json.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -64,7 +66,7 @@ std::optional<Split> split(std::string_view path) {
 }  // namespace
 
 Hierarchies::Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell)
-    : folder_(std::move(folder)), tell_(std::move(tell)) {}
+    : folder_(std::move(folder)), tell_(std::move(tell)), pictures_(folder_) {}
 
 std::vector<Model> Hierarchies::list() {
   const FolderScan scan = scan_folder(*folder_);
@@ -77,6 +79,7 @@ std::vector<Model> Hierarchies::list() {
   for (const std::string& path : scan.hierarchies) {
     if (std::optional<Model> model = look_if_readable(path)) {
       model->has_story = has_story(path);
+      model->warnings = warnings_of(*model);
       models.push_back(std::move(*model));
     }
   }
@@ -95,9 +98,9 @@ std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
     return PublishedFile{std::move(story)};
   }
   const std::optional<Split> found = split(path);
-  if (!found || !is_published(found->hierarchy, found->name))
-    return std::nullopt;
-  return open_of_build(found->hierarchy, found->name);
+  if (found && is_published(found->hierarchy, found->name))
+    return open_of_build(found->hierarchy, found->name);
+  return open_picture(path);
 }
 
 std::string Hierarchies::build_of(const std::string& hierarchy) {
@@ -116,9 +119,46 @@ std::optional<PublishedFile> Hierarchies::open_of_build(const std::string& hiera
   return file;
 }
 
+std::optional<PublishedFile> Hierarchies::open_picture(std::string_view path) {
+  const std::vector<std::string> tellers = pictures_.tellers_of(path);
+  const bool is_told = std::ranges::any_of(tellers, [this](const std::string& hierarchy) {
+    return look_if_readable(hierarchy).has_value();
+  });
+  std::shared_ptr<const storage::File> picture = is_told ? folder_->open(path) : nullptr;
+  return picture ? std::optional(PublishedFile{std::move(picture)}) : std::nullopt;
+}
+
+/// Notes are written by watched folders alone, and tell of no other build.
+std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
+  const std::string name = storage::input_note_path(model.path).generic_string();
+  const auto note = model.path.empty() ? nullptr : folder_->open(name);
+  if (!note)
+    return {};
+  const storage::FileVersion version = note->version();
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = warned_.find(model.path);
+    if (found != warned_.end() && found->second.version == version)
+      return found->second.content == model.source_checksum ? found->second.warnings
+                                                            : std::vector<std::string>();
+  }
+  Warned warned{version, 0, {}};
+  try {
+    storage::InputNote read = storage::read_input_note(*note, name);
+    warned.content = read.content;
+    warned.warnings = std::move(read.warnings);
+  } catch (const Error&) {
+  }  // a note that is damaged tells nothing
+  const std::lock_guard lock(mutex_);
+  warned_[model.path] = warned;
+  return warned.content == model.source_checksum ? warned.warnings : std::vector<std::string>();
+}
+
 bool Hierarchies::has_story(const std::string& hierarchy) {
   try {
     return open_story(hierarchy) != nullptr;
+  } catch (const storage::Busy&) {
+    throw;
   } catch (const Error& error) {
     tell_left_out(error.what());
     return false;
@@ -146,6 +186,8 @@ bool Hierarchies::is_published(const std::string& hierarchy, const std::string& 
     return look_if_readable(hierarchy).has_value();
   try {
     return is_stream(hierarchy);
+  } catch (const storage::Busy&) {
+    throw;
   } catch (const Error& error) {
     tell_left_out(error.what());
     return false;
@@ -182,6 +224,8 @@ std::optional<Model> Hierarchies::look(const std::string& path) {
 std::optional<Model> Hierarchies::look_if_readable(const std::string& path) {
   try {
     return look(path);
+  } catch (const storage::Busy&) {
+    throw;
   } catch (const Error& error) {
     tell_left_out(error.what());
     return std::nullopt;
@@ -254,6 +298,8 @@ std::optional<Model> Hierarchies::remember(const std::string& path,
   try {
     known.model = read();
     known.model->modified = version.modified_ns / kNanoseconds;
+  } catch (const storage::Busy&) {
+    throw;
   } catch (const Error& error) {
     tell_left_out(error.what());
     if (error.code() == ErrorCode::io)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/model.h"
+#include "server/story_pictures.h"
 #include "storage/format/archive.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
@@ -29,7 +30,8 @@ struct PublishedFile {
 };
 
 /// Looks at what is there whenever it is asked, and remembers manifests as long as their files stay
-/// the same. Thread-safe.
+/// the same. Where no file can be opened at this moment, nothing is known: storage::Busy is thrown.
+/// Thread-safe.
 class Hierarchies {
  public:
   /// Hears of hierarchies and directories that cannot be read, each once, the first thousand; may
@@ -48,7 +50,8 @@ class Hierarchies {
   std::optional<Model> look(const std::string& path);
 
   /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
-  /// archive, "sub/david.3tz", or a story, "sub/david.3tz.story.json". Nothing if it is no file of
+  /// archive, "sub/david.3tz", or a story, "sub/david.3tz.story.json", or a picture beside a story
+  /// that names it, "sub/pictures/1.jpg". Nothing if it is no file of
   /// a hierarchy or stream that can be read, whatever else lies in the folder. Throws Error(io) if
   /// that file, of a hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
@@ -58,6 +61,12 @@ class Hierarchies {
   struct Known {
     storage::FileVersion version;
     std::optional<Model> model;  ///< none: it cannot be read
+  };
+  /// What the build of a hierarchy warned of, as long as its note is this one.
+  struct Warned {
+    storage::FileVersion version;
+    std::uint64_t content = 0;  ///< of the hierarchy that it is about
+    std::vector<std::string> warnings;
   };
   struct OpenArchive {
     std::string path;
@@ -80,6 +89,7 @@ class Hierarchies {
   bool has_story(const std::string& hierarchy);
   /// Null if it has none. Throws Error(io).
   std::unique_ptr<storage::File> open_story(const std::string& hierarchy) const;
+  std::optional<PublishedFile> open_picture(std::string_view path);
   std::optional<PublishedFile> open_archive(const std::string& path);
   /// Of a hierarchy, with the build that it is of.
   std::optional<PublishedFile> open_of_build(const std::string& hierarchy, const std::string& name);
@@ -89,10 +99,14 @@ class Hierarchies {
   void tell_once(const std::string& message);
   Model model_of(const std::string& path, const storage::File& manifest) const;
 
+  std::vector<std::string> warnings_of(const Model& model);
+
   std::shared_ptr<const storage::Folder> folder_;
   Tell tell_;
+  StoryPictures pictures_;
   std::mutex mutex_;  ///< guards all below
   std::map<std::string, Known> known_;
+  std::map<std::string, Warned> warned_;
   std::list<OpenArchive> archives_;  ///< the one used last first
   std::set<std::string> told_;
 };

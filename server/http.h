@@ -50,6 +50,7 @@ struct Request {
   std::optional<std::string> origin{};  ///< "" if there are several
   std::optional<std::string> authorization{};
   std::optional<std::string> content_type{};
+  bool is_part = false;   ///< its body is a part of something (Content-Range)
   bool has_body = false;  ///< more than 0 bytes are announced behind the head
   Body* body = nullptr;   ///< null if no Content-Length tells how long it is
 };
@@ -72,9 +73,20 @@ struct Reply {
   std::string_view header(std::string_view name) const;
 };
 
+/// How long a client waits until it asks again, where nothing is known.
+inline constexpr const char* kRetryAfterSeconds = "1";
+
 /// One line for people.
 inline Reply text_reply(int status, const std::string& text) {
   return {status, {{"Content-Type", "text/plain; charset=utf-8"}}, text + '\n', {}};
+}
+
+/// What may pass: 503, and when to ask again.
+inline Reply busy_reply() {
+  Reply reply =
+      text_reply(503, "The server has too much to do at this moment: ask again in a second.");
+  reply.headers.emplace_back("Retry-After", kRetryAfterSeconds);
+  return reply;
 }
 
 inline std::string_view Reply::header(std::string_view name) const {

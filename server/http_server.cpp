@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -33,6 +34,26 @@ constexpr int kBacklog = 4096;
 
 /// Then a connection is closed; more would only keep a thread from others.
 constexpr std::size_t kMostRequests = 10'000;
+
+/// What is open besides connections and what they read: standard streams, folders, the port, kept
+/// archives (hierarchies.cpp).
+constexpr std::size_t kOwnFiles = 24;
+/// What a thread has open at once while it looks for a file, or stores one.
+constexpr std::size_t kFilesOfThread = 4;
+
+/// As many threads and connections as the open files of this process allow: a request that finds
+/// none left could only be told to come again.
+ServerOptions fitted(ServerOptions options) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return options;
+  const std::size_t files = std::max<std::size_t>(limit.rlim_cur, kOwnFiles) - kOwnFiles;
+  const std::size_t threads = std::max<std::size_t>(files / (2 * kFilesOfThread), 1);
+  options.threads = std::min(options.threads, threads);
+  const std::size_t left = files - std::min(files, options.threads * kFilesOfThread);
+  options.most_connections = std::min(options.most_connections, std::max(left, options.threads));
+  return options;
+}
 
 std::optional<std::string> header(const httplib::Request& request, const char* name) {
   if (request.get_header_value_count(name) != 1)
@@ -64,6 +85,7 @@ Request request_of(const httplib::Request& request, Body* body) {
           origin_of(request),
           header(request, "Authorization"),
           header(request, "Content-Type"),
+          request.has_header("Content-Range"),
           announces_body(request),
           body};
 }
@@ -146,10 +168,10 @@ thread_local Exchange exchange;
 class HttpServer::Library final : public httplib::Server {
  public:
   Library(const ServerOptions& options, Answer answer, Log log)
-      : options_(options),
+      : options_(fitted(options)),
         answer_(std::move(answer)),
         log_(std::move(log)),
-        queue_({options.threads, options.most_connections}, options.limits) {
+        queue_({options_.threads, options_.most_connections}, options.limits) {
     set_up();
     bind();
   }
@@ -274,9 +296,12 @@ class HttpServer::Library final : public httplib::Server {
       case Connection::Next::request:
         break;
       case Connection::Next::malformed:
-        return refuse(connection, 400, "Bad Request");
+        return refuse(connection, 400, "Bad Request",
+                      "This is no request that is read in one way.");
       case Connection::Next::too_large:
-        return refuse(connection, 431, "Request Header Fields Too Large");
+        return refuse(
+            connection, 431, "Request Header Fields Too Large",
+            fmt::format("The head of the request has more than {} bytes.", kMostHeadBytes));
       case Connection::Next::end:
         return false;
     }
@@ -295,12 +320,14 @@ class HttpServer::Library final : public httplib::Server {
   }
 
   /// What is no request is not shown in the log: "-" stands for it.
-  bool refuse(Connection& connection, int status, const char* reason) {
+  bool refuse(Connection& connection, int status, const char* reason, const std::string& why) {
     const std::string reply = fmt::format(
-        "HTTP/1.1 {} {}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status, reason);
+        "HTTP/1.1 {} {}\r\nConnection: close\r\nCache-Control: no-store\r\n"
+        "Content-Type: text/plain; charset=utf-8\r\nContent-Length: {}\r\n\r\n{}\n",
+        status, reason, why.size() + 1, why);
     connection.write(reply.data(), reply.size());
     if (log_)
-      log_({connection.address(), "-", "-", status, 0});
+      log_({connection.address(), "-", "-", status, why.size() + 1});
     return false;
   }
 

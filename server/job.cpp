@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kStateNames{"waiting", "building", "failed"};
 constexpr std::size_t kLongestMessage = 1000;
+constexpr std::size_t kMostWarnings = 100;
 
 std::optional<double> number(const Json& event, const char* key) {
   const auto found = event.find(key);
@@ -34,6 +35,13 @@ void take_stage(Job& job, const Json& event) {
   if (done && total && *total > 0)
     job.progress = std::clamp(*done / *total, 0.0, 1.0);
   job.seconds_left = number(event, "eta_seconds");
+}
+
+void take_warning(Job& job, const std::string& message) {
+  const std::string line = plain_text(message, kLongestMessage);
+  if (job.warnings.size() < kMostWarnings &&
+      std::ranges::find(job.warnings, line) == job.warnings.end())
+    job.warnings.push_back(line);
 }
 
 }  // namespace
@@ -58,6 +66,8 @@ void take_line(Job& job, std::string_view line) {
       job.message = plain_text(line, kLongestMessage);
   } else if (event.contains("stage")) {
     take_stage(job, event);
+  } else if (text(event, "event") == "warning") {
+    take_warning(job, text(event, "message"));
   } else if (event.contains("message")) {
     job.message = plain_text(text(event, "message"), kLongestMessage);
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,7 @@ struct Job {
   std::optional<double> progress{};      ///< of the stage, 0 to 1, if it is known
   std::optional<double> seconds_left{};  ///< of the stage
   std::string message{};                 ///< why it waits or failed
+  std::vector<std::string> warnings{};   ///< of the build, each once, the first hundred
 };
 
 /// As in models.json; what is not known is left out.

@@ -5,9 +5,12 @@
 #include "server/content_type.h"
 #include "server/file_reply.h"
 #include "server/url_path.h"
+#include "storage/io/system_failure.h"
 
 #include <exception>
+#include <new>
 #include <utility>
+#include <vector>
 
 namespace meshhier::server {
 namespace {
@@ -30,6 +33,14 @@ Reply not_found() {
   return text_reply(404, "There is no such file.");
 }
 
+/// What is not there now may be there in a moment.
+void forbid_keeping(Reply& reply) {
+  std::erase_if(reply.headers, [](const auto& header) {
+    return header.first == "Cache-Control" || header.first == "ETag";
+  });
+  reply.headers.emplace_back("Cache-Control", "no-store");
+}
+
 /// Host is there once, in HTTP/1.1; what names another host was meant for that.
 bool is_for_this_host(const Request& request) {
   return request.host && is_loopback_name(*request.host);
@@ -48,12 +59,28 @@ Reply Site::answer(const Request& request) {
   Reply reply;
   try {
     reply = route(request);
+  } catch (const storage::Busy& failure) {
+    tell_busy(failure.what());
+    reply = busy_reply();
+  } catch (const std::bad_alloc& failure) {
+    tell_busy(failure.what());
+    reply = busy_reply();
   } catch (const std::exception& failure) {
     tell_(failure.what());
     reply = text_reply(500, "The server could not read this; its terminal says why.");
   }
+  if (reply.status >= 400)
+    forbid_keeping(reply);
   add_common_headers(reply);
   return reply;
+}
+
+/// Clients that come at once are told by their replies; people are told once.
+void Site::tell_busy(const std::string& cause) {
+  if (!told_busy_.exchange(true))
+    tell_(cause +
+          "; requests get status 503 as long as that is so (ulimit -n says how many files "
+          "may be open)");
 }
 
 Reply Site::route(const Request& request) {

@@ -7,6 +7,7 @@
 #include "server/uploads.h"
 #include "storage/io/folder.h"
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,6 +49,7 @@ class Site {
   Reply models_json(const Request& request);
   Reply model_file(const Request& request, std::string_view path);
   Reply viewer_file(const Request& request, const std::string& path);
+  void tell_busy(const std::string& cause);
   void add_common_headers(Reply& reply) const;
 
   SiteOptions options_;
@@ -55,6 +57,7 @@ class Site {
   Hierarchies::Tell tell_;
   Hierarchies& hierarchies_;
   Gallery gallery_;
+  std::atomic<bool> told_busy_{false};
 };
 
 }  // namespace meshhier::server

@@ -7,6 +7,7 @@
 #include "server/hierarchies.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
+#include "storage/format/story_pictures.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
@@ -26,6 +27,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kListing = "models.json";
 constexpr const char* kPage = "index.html";
+/// GitHub Pages takes the files of a site that has this as they are, whatever their names.
+constexpr const char* kAsItIs = ".nojekyll";
+/// Of a picture, in a message.
+constexpr std::size_t kLongestName = 200;
 /// Of the viewer's folder, what is not for a site: `meshhier page` puts a hierarchy into it.
 constexpr std::string_view kSingle = "single.html";
 
@@ -80,6 +85,7 @@ class SiteMaker {
     }
     const std::string listing = static_gallery_json(models_);
     storage::write_file(files_, place_ / kListing, std::as_bytes(std::span(listing)));
+    storage::write_file(files_, place_ / kAsItIs, {});
     return fmt::format("{}: {}, {} bytes", job_.output.string(), counted(models_.size(), "models"),
                        bytes_);
   }
@@ -102,8 +108,7 @@ class SiteMaker {
   void add_copies(const Model& model, std::vector<Copy>& copies) const {
     const std::string to = joined("models", model.path);
     if (model.has_story)
-      copies.push_back({job_.models.get(), storage::story_path(model.path).generic_string(),
-                        story_beside(model)});
+      add_story(model, copies);
     if (is_archive_name(model.path) && job_.models->open(model.path)) {
       copies.push_back({job_.models.get(), model.path, to});
       return;
@@ -112,6 +117,25 @@ class SiteMaker {
          names_below(*job_.models, model.path,
                      [](const std::string& file) { return storage::is_hierarchy_file(file); }))
       copies.push_back({job_.models.get(), joined(model.path, name), joined(to, name)});
+  }
+
+  /// With the pictures beside it that it names.
+  void add_story(const Model& model, std::vector<Copy>& copies) const {
+    const fs::path story = storage::story_path(model.path);
+    copies.push_back({job_.models.get(), story.generic_string(), story_beside(model)});
+    const auto file = job_.models->open(story.generic_string());
+    if (!file)
+      return;
+    const auto bytes = storage::read_file(*file, storage::kMostStoryBytes);
+    for (const std::string& picture :
+         storage::pictures_beside({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
+      const std::string name = joined(story.parent_path().generic_string(), picture);
+      if (job_.models->open(name))
+        copies.push_back({job_.models.get(), name, joined("models", name)});
+      else
+        progress_.tell(fmt::format("{} names the picture {}, which is not there", story.string(),
+                                   plain_text(picture, kLongestName)));
+    }
   }
 
   void write(const Copy& copy) {

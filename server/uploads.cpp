@@ -3,10 +3,13 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
+#include "hierarchy/plain_text.h"
+#include "server/build_target.h"
 #include "server/multipart.h"
 #include "server/staged_upload.h"
 #include "server/text.h"
 #include "server/url_path.h"
+#include "storage/io/system_failure.h"
 
 #include <memory>
 #include <set>
@@ -64,11 +67,26 @@ void store(storage::File& file, const Body& body, const Source& source) {
   });
 }
 
+/// Null if the model of that mesh, "scan.ply" or "house/scan.obj", can be built under its name.
+std::optional<Reply> refuse_length(const std::string& name, const std::string& suffix) {
+  const std::size_t excess = excess_of_name(name, suffix);
+  if (excess == 0)
+    return std::nullopt;
+  return text_reply(400, fmt::format("The name is too long by {} for the files that are made of "
+                                     "it: shorten it.",
+                                     counted(excess, "bytes")));
+}
+
 /// The files of a form, in a folder that is being made.
 class FolderFiles {
  public:
-  FolderFiles(storage::FileSystem& files, std::filesystem::path folder)
-      : files_(files), folder_(std::move(folder)) {
+  /// `name`: what the folder will be called; `suffix`: of hierarchies.
+  FolderFiles(storage::FileSystem& files, std::filesystem::path folder, std::string name,
+              std::string suffix)
+      : files_(files),
+        folder_(std::move(folder)),
+        name_(std::move(name)),
+        suffix_(std::move(suffix)) {
     files_.make_directories(folder_);
   }
 
@@ -105,11 +123,14 @@ class FolderFiles {
       return text_reply(400, "Two files have the same name.");
     if (names_.size() > kMostFiles)
       return text_reply(400, fmt::format("There are more than {} files.", kMostFiles));
+    if (is_mesh_name(name))
+      return refuse_length(name_ + '/' + name, suffix_);
     return std::nullopt;
   }
 
   storage::FileSystem& files_;
   std::filesystem::path folder_;
+  std::string name_, suffix_;
   std::set<std::string> names_;  ///< in small letters: some disks make no difference
   std::size_t meshes_ = 0;
 };
@@ -208,7 +229,7 @@ std::optional<Reply> Uploads::refuse_name(const std::string& name) const {
   const std::filesystem::path path = options_.inbox / name;
   if (files_.exists(path) || files_.is_link(path))
     return taken(name);
-  return std::nullopt;
+  return refuse_length(name, options_.suffix);
 }
 
 Reply Uploads::take(const Request& request, std::string_view place) {
@@ -220,6 +241,8 @@ Reply Uploads::take(const Request& request, std::string_view place) {
                       "The name cannot be taken: one part, no dot in front, at most 255 bytes.");
   try {
     return take_whole(request, *name);
+  } catch (const storage::Busy&) {
+    throw;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::interrupted)
       return text_reply(503, "The server ends.");
@@ -239,6 +262,8 @@ Reply Uploads::take_whole(const Request& request, const std::string& name) {
   const auto boundary = is_file ? std::string() : form_boundary(type);
   if (!boundary)
     return text_reply(415, "The files of a folder are sent as a form (multipart/form-data).");
+  if (request.is_part)
+    return text_reply(400, "Parts of files (Content-Range) are not taken: send all of it.");
   if (auto refused = refuse_size(request))
     return std::move(*refused);
   if (auto refused = refuse_name(name))
@@ -264,7 +289,8 @@ Reply Uploads::take_file(Body& body, const std::string& name) {
 Reply Uploads::take_folder(Body& body, const std::string& boundary, const std::string& name) {
   StagedUpload staged(files_, options_.inbox);
   MultipartReader form(body, boundary);
-  if (auto refused = FolderFiles(files_, staged.path()).take(body, form))
+  FolderFiles files(files_, staged.path(), name, options_.suffix);
+  if (auto refused = files.take(body, form))
     return std::move(*refused);
   return publish(staged, name);
 }

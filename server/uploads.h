@@ -25,6 +25,7 @@ namespace meshhier::server {
 struct UploadOptions {
   std::filesystem::path inbox;                          ///< absolute
   std::uint64_t limit_bytes = std::uint64_t{20} << 30;  ///< of a request
+  std::string suffix = ".hier";                         ///< of the hierarchies that are made
   std::string token{};      ///< who sends must know it; empty: there is none
   bool is_loopback = true;  ///< only this machine reaches the server; else nobody sends without a
                             ///< token
@@ -42,7 +43,8 @@ class Uploads {
 
   /// What pages are told; nothing if nobody may send.
   std::optional<UploadOffer> offer() const;
-  /// `place`: the target below /inbox, "/scan.ply". 201, or why not, in one line. Never throws.
+  /// `place`: the target below /inbox, "/scan.ply". 201, or why not, in one line. Throws nothing
+  /// but storage::Busy.
   Reply take(const Request& request, std::string_view place);
 
  private:

@@ -1,9 +1,11 @@
 #include "server/watch.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
 #include "storage/io/file_checksum.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <exception>
@@ -201,6 +203,8 @@ void Watch::handle(const std::string& name) {
     if (is_in_hand(target))
       return put_off(name, "waits for another build that is at work on " + target.name);
     build(name, target);
+  } catch (const storage::Busy& error) {
+    put_off(name, error.what());
   } catch (const std::exception& error) {
     if (is_stopping())
       return;
@@ -312,6 +316,11 @@ void Watch::check_target(const std::string& name, const BuildTarget& target) con
                 "the name of this file cannot be part of a URL: rename it, without control "
                 "characters and backslashes");
   }
+  if (const std::size_t excess = excess_of_output(target.name); excess > 0) {
+    throw Error(ErrorCode::usage, fmt::format("the name of this file is too long by {} for the "
+                                              "files that are made of it: rename it",
+                                              counted(excess, "bytes")));
+  }
   if (target.kind == BuildTarget::Kind::nowhere) {
     throw Error(ErrorCode::exists,
                 fmt::format("{} holds something else of that name: rename this file, or that",
@@ -352,7 +361,7 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
 Watch::Outcome Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
   storage::ChildProcess child(words(name, target, restart));
   const Job job = hear(child, name);
-  Outcome outcome{child.wait(), job.message};
+  Outcome outcome{child.wait(), job.message, job.warnings};
   if (outcome.message.empty() && outcome.code > 128)
     outcome.message = fmt::format("the build was ended by signal {}", outcome.code - 128);
   else if (outcome.message.empty())
@@ -386,8 +395,11 @@ Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
     if (is_stopping() && !std::exchange(is_asked, true))
       child.ask_to_stop();
     for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+      const std::size_t known = job.warnings.size();
       take_line(job, std::string_view(text).substr(0, end));
       text.erase(0, end + 1);
+      if (job.warnings.size() > known)
+        tell_(fmt::format("{}: warning: {}", name, job.warnings.back()));
       const std::lock_guard lock(mutex_);
       const auto found = entries_.find(name);
       if (found != entries_.end() && found->second.state == State::building)
@@ -406,7 +418,7 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
   if (is_stopping())
     return;
   if (outcome.code == 0)
-    return settle_built(name, target, version);
+    return settle_built(name, target, version, outcome.warnings);
   tell_(fmt::format("{}: {}", name, outcome.message));
   if (version_of(name) != version)
     set_state(name, State::growing, kGrowing);
@@ -419,16 +431,31 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
 /// Files that are now as they were when the build read them are what was built: whoever changes
 /// one, or puts another one in its place and it back again, changes one of its times.
 void Watch::settle_built(const std::string& name, const BuildTarget& target,
-                         const InputVersion& version) {
+                         const InputVersion& version, const std::vector<std::string>& warnings) {
   options_.on_new();
   const std::optional<Model> model = hierarchies_.look(target.name);
   if (model && is_still(name, version.mesh) && is_made_of(name, *model, Unknown::is_another)) {
     keep_mark(name);
-    tell_(name + ": done");
+    keep_warnings(name, *model, warnings);
+    tell_(name + ": done" +
+          (warnings.empty() ? "" : ", with " + counted(warnings.size(), "warnings")));
     return set_state(name, State::done, "");
   }
   tell_(name + ": it was changed while it was built; it is looked at again");
   set_state(name, State::growing, kGrowing);
+}
+
+/// Beside the hierarchy, in its note: a server that is started anew lists them, too.
+void Watch::keep_warnings(const std::string& name, const Model& model,
+                          const std::vector<std::string>& warnings) {
+  if (warnings.empty())
+    return;
+  storage::InputNote& note = known_[name].note;
+  note.warnings.clear();
+  for (const std::string& warning : warnings)
+    note.warnings.push_back(shown_text(warning));
+  keep_note(model.path, note);
+  options_.on_new();
 }
 
 std::string Watch::shown_text(const std::string& message) const {

@@ -79,6 +79,7 @@ class Watch {
   struct Outcome {
     int code = 0;
     std::string message;
+    std::vector<std::string> warnings;
   };
 
   void run();
@@ -112,8 +113,10 @@ class Watch {
   Job hear(storage::ChildProcess& child, const std::string& name);
   void settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
               const Outcome& outcome);
-  void settle_built(const std::string& name, const BuildTarget& target,
-                    const InputVersion& version);
+  void settle_built(const std::string& name, const BuildTarget& target, const InputVersion& version,
+                    const std::vector<std::string>& warnings);
+  void keep_warnings(const std::string& name, const Model& model,
+                     const std::vector<std::string>& warnings);
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,

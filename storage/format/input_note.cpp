@@ -47,6 +47,7 @@ InputNote read_note(const Json& document) {
   }
   for (const Json& place : document.at("awaited"))
     note.awaited.push_back(bytes_path(place.get_ref<const std::string&>()));
+  note.warnings = document.value("warnings", std::vector<std::string>());
   return note;
 }
 
@@ -61,9 +62,11 @@ std::string to_json_text(const InputNote& note) {
   }
   for (const std::filesystem::path& place : note.awaited)
     awaited.push_back(bytes_text(place));
-  return sealed_text(
-      kNoteFormat,
-      {{"content", note.content}, {"files", std::move(files)}, {"awaited", std::move(awaited)}});
+  Json document{
+      {"content", note.content}, {"files", std::move(files)}, {"awaited", std::move(awaited)}};
+  if (!note.warnings.empty())
+    document["warnings"] = note.warnings;
+  return sealed_text(kNoteFormat, std::move(document));
 }
 
 InputNote read_input_note(const File& file, const std::string& name) {

@@ -20,6 +20,7 @@ struct InputNote {
   std::uint64_t content = 0;                   ///< `source.checksum` of the hierarchy's manifest
   std::vector<NotedFile> files;                ///< the mesh, and what belongs to it
   std::vector<std::filesystem::path> awaited;  ///< what was looked for there, and was not there
+  std::vector<std::string> warnings{};         ///< of the build, a line each
 };
 
 /// JSON that carries its own checksum.

@@ -24,8 +24,11 @@ namespace meshhier::storage {
 
 void fail_system(const char* action, const std::filesystem::path& path, int error) {
   const char* hint = error == ENOSPC || error == EDQUOT ? " (free some space and run again)" : "";
-  throw Error(ErrorCode::io,
-              fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint));
+  const std::string message =
+      fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint);
+  if (error == EMFILE || error == ENFILE || error == ENOMEM)
+    throw Busy(message);
+  throw Error(ErrorCode::io, message);
 }
 
 namespace {

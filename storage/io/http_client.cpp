@@ -27,6 +27,11 @@ constexpr long kMostRedirects = 10;
 constexpr int kMostTries = 5;
 constexpr std::chrono::milliseconds kMostWait = 60s;  ///< however long the host asks for
 
+/// Of one answer's header; those of hosts of files have some hundred bytes.
+constexpr std::size_t kMostHead = std::size_t{64} << 10;
+/// What libcurl fails with where a line of it has more than 100 kB: it has said so since 8.6.
+constexpr auto kLineTooLong = static_cast<CURLcode>(100);
+
 constexpr long kWhole = 200, kPart = 206, kNotSatisfiable = 416;
 
 bool may_pass(CURLcode code) {
@@ -66,6 +71,16 @@ std::optional<std::uint64_t> number(std::string_view text) {
   return value;
 }
 
+/// A length in bytes as files have them.
+std::optional<std::uint64_t> file_length(std::string_view text) {
+  const std::optional<std::uint64_t> value = number(text);
+  return value && *value <= static_cast<std::uint64_t>(INT64_MAX) ? value : std::nullopt;
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 /// What one answer says of itself, of the last of several that redirects make.
 struct Head {
   std::string etag;
@@ -73,6 +88,9 @@ struct Head {
   std::optional<std::uint64_t> first;  ///< of Content-Range
   std::optional<std::uint64_t> total;
   std::optional<std::uint64_t> length;
+  std::string impossible;    ///< a length that no file has
+  std::size_t bytes = 0;     ///< of the header so far
+  bool is_complete = false;  ///< all of it has come
 
   void add(std::string_view line) {
     if (line.starts_with("HTTP/")) {
@@ -89,7 +107,7 @@ struct Head {
     else if (name == "last-modified")
       modified = value;
     else if (name == "content-length")
-      length = number(value);
+      length = length_of(value);
     else if (name == "content-range")
       add_range(value);
   }
@@ -97,13 +115,20 @@ struct Head {
   std::string version() const { return etag.empty() ? modified : etag; }
 
  private:
+  std::optional<std::uint64_t> length_of(std::string_view text) {
+    const auto length = file_length(text);
+    if (!length && is_number(text))
+      impossible = text.substr(0, 40);
+    return length;
+  }
+
   /// "bytes 0-99/1234", or "bytes */1234" of what there is none of.
   void add_range(std::string_view value) {
     constexpr std::string_view kUnit = "bytes ";
     const std::size_t slash = value.find('/');
     if (!value.starts_with(kUnit) || slash == std::string_view::npos)
       return;
-    total = number(value.substr(slash + 1));
+    total = length_of(value.substr(slash + 1));
     const std::size_t dash = value.find('-');
     if (dash != std::string_view::npos && dash < slash)
       first = number(value.substr(kUnit.size(), dash - kUnit.size()));
@@ -123,8 +148,18 @@ struct Transfer {
 };
 
 std::size_t take_header(char* data, std::size_t size, std::size_t count, void* to) {
-  static_cast<Transfer*>(to)->head.add({data, size * count});
-  return size * count;
+  Head& head = static_cast<Transfer*>(to)->head;
+  const std::string_view line(data, size * count);
+  head.add(line);
+  head.bytes += line.size();
+  head.is_complete = trimmed(line).empty();
+  return head.bytes > kMostHead ? 0 : line.size();
+}
+
+/// Whether that is why there is no answer. Of one long line libcurl gives nothing.
+bool is_head_too_large(const Head& head, CURLcode code) {
+  return head.bytes > kMostHead ||
+         (!head.is_complete && (code == CURLE_OUT_OF_MEMORY || code == kLineTooLong));
 }
 
 long status_of(CURL* handle) {
@@ -283,6 +318,12 @@ class HttpClient::Connection {
   std::string settle(const HttpAddress& address, Transfer& transfer, CURLcode code) {
     HttpAnswer& answer = transfer.answer;
     const long status = status_of(handle_);
+    if (is_head_too_large(transfer.head, code))
+      fail(address,
+           fmt::format("the header of the host's answer has more than {} bytes", kMostHead));
+    if (!transfer.head.impossible.empty())
+      fail(address, fmt::format("the host says that it has {} bytes, as no file has",
+                                transfer.head.impossible));
     if (transfer.is_too_much && answer.is_whole) {
       fail(address, fmt::format("the host sends files whole, but no parts of them (HTTP ranges), "
                                 "and this one has more than {} bytes",

@@ -1,11 +1,21 @@
 // A system call that failed, as an exception.
 #pragma once
 
+#include "hierarchy/error.h"
+
 #include <filesystem>
+#include <string>
 
 namespace meshhier::storage {
 
-/// Throws Error(io): "cannot ACTION PATH: CAUSE", of an errno.
+/// Error(io) that says nothing of the file: the process or the system has too many files open, or
+/// no memory, at this moment.
+class Busy final : public Error {
+ public:
+  explicit Busy(const std::string& message) : Error(ErrorCode::io, message) {}
+};
+
+/// Throws Error(io): "cannot ACTION PATH: CAUSE", of an errno; Busy if that passes.
 [[noreturn]] void fail_system(const char* action, const std::filesystem::path& path, int error);
 
 }  // namespace meshhier::storage

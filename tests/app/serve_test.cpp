@@ -8,6 +8,7 @@
 #include "tests/support/meshes.h"
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
@@ -17,6 +18,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -25,6 +27,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -156,6 +159,41 @@ TEST_F(ServeTest, ItSaysItsUrlServesAndEndsWithoutAnError) {
     EXPECT_THAT(process.out(), MatchesRegex("http://127.0.0.1:[0-9]+/\n"));
     EXPECT_THAT(process.messages(), HasSubstr("broken.hier"));
   }
+}
+
+TEST_F(ServeTest, WithFewOpenFilesManyAtOnceAreServedOrToldToComeAgain) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few{64, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  ServeProcess& server = serve({"--quiet"});
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  const std::uint16_t port = server.port();
+  std::atomic<int> served{0}, told{0}, others{0};
+  const auto ask = [&](const char* target) {
+    try {
+      const auto reply =
+          tests::RawClient(port).get(target, "Accept-Encoding: gzip\r\nConnection: close\r\n");
+      const bool is_told = reply.status == 503 && reply.headers.contains("retry-after") &&
+                           reply.headers.at("cache-control") == "no-store";
+      ++(reply.status == 200 ? served : is_told ? told : others);
+    } catch (const std::exception&) {
+      ++others;
+    }
+  };
+  const auto ask_all = [&] {
+    for (const char* target : {"/models/plain.hier/hierarchy.json", "/models.json",
+                               "/models/packed.3tz/tiles/00/000000.glb"})
+      ask(target);
+  };
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 80; ++i)
+    clients.emplace_back(ask_all);
+  for (std::thread& client : clients)
+    client.join();
+  EXPECT_EQ(others, 0);
+  EXPECT_EQ(served + told, 240);
+  EXPECT_GT(served, 200);
 }
 
 TEST_F(ServeTest, RequestsAreToldOnlyWhereThatIsAskedFor) {

@@ -33,6 +33,18 @@ void expect(const BuildTarget& target, Kind kind, const std::string& name) {
   EXPECT_EQ(target.name, name);
 }
 
+TEST(NameLengthTest, ANameIsAsLongAsWhatIsMadeOfItAllows) {
+  EXPECT_EQ(excess_of_name("scan.ply", ".hier"), 0U);
+  std::size_t longest = 0;
+  while (excess_of_name(std::string(longest + 1, 'n') + ".ply", ".hier") == 0)
+    ++longest;
+  EXPECT_GT(longest, 190U);
+  EXPECT_EQ(excess_of_name(std::string(longest + 7, 'n') + ".ply", ".hier"), 7U);
+  EXPECT_EQ(excess_of_name(std::string(240, 'n') + "/a.ply", ".hier"),
+            excess_of_name(std::string(240, 'n') + ".a.ply", ".hier"));
+  EXPECT_GT(excess_of_name("house/" + std::string(240, 'n') + ".ply", ".hier"), 0U);
+}
+
 TEST_F(BuildTargetTest, ANewFileGetsItsStem) {
   expect(target("new.ply"), Kind::build, "new.hier");
   expect(target("new.obj.gz"), Kind::build, "new.hier");

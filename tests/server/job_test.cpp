@@ -1,6 +1,7 @@
 #include "server/job.h"
 
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,18 @@ TEST(JobTest, ErrorsAreMessages) {
             R"({"name":"a.ply","state":"failed","message":"a.ply: line 7:?no number"})");
   take_line(job, "meshhier: something else");
   EXPECT_EQ(job.message, "meshhier: something else");
+}
+
+TEST(JobTest, WarningsAreKeptBesideTheMessage) {
+  Job job{.name = "a.obj", .state = JobState::building, .message = "before"};
+  take_line(job, R"({"event":"warning","message":"wall.mtl: missing"})");
+  take_line(job, R"({"event":"warning","message":"wall.mtl: missing"})");
+  take_line(job, R"({"event":"warning","message":"two\nlines"})");
+  EXPECT_EQ(job.message, "before");
+  EXPECT_EQ(job.warnings, (std::vector<std::string>{"wall.mtl: missing", "two?lines"}));
+  for (int i = 0; i < 1000; ++i)
+    take_line(job, R"({"event":"warning","message":")" + std::to_string(i) + "\"}");
+  EXPECT_EQ(job.warnings.size(), 100U);
 }
 
 TEST(JobTest, LinesThatNobodyExpectsDoNoHarm) {

@@ -4,7 +4,9 @@
 #include "hierarchy/error.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
+#include "storage/io/system_failure.h"
 
+#include <cerrno>
 #include <memory>
 #include <set>
 #include <string>
@@ -13,6 +15,35 @@
 #include <vector>
 
 namespace meshhier::tests {
+
+/// Another folder of which nothing can be opened while too many files are open.
+class BusyFolder final : public storage::Folder {
+ public:
+  explicit BusyFolder(std::shared_ptr<const storage::Folder> real)
+      : Folder(real->path()), real_(std::move(real)) {}
+
+  /// So many calls are done as ever, then none; -1: all.
+  mutable int calls_left = -1;
+
+  std::unique_ptr<storage::File> open(std::string_view name) const override {
+    count();
+    return real_->open(name);
+  }
+  std::vector<storage::FolderEntry> entries(std::string_view name) const override {
+    count();
+    return real_->entries(name);
+  }
+
+ private:
+  void count() const {
+    if (calls_left == 0)
+      storage::fail_system("open", path(), EMFILE);
+    if (calls_left > 0)
+      --calls_left;
+  }
+
+  std::shared_ptr<const storage::Folder> real_;
+};
 
 /// Another folder of which some files, and directories ("name/") with all below them, cannot be
 /// read.

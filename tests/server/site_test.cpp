@@ -4,6 +4,7 @@
 #include "server/conditions.h"
 #include "server/static_site.h"
 #include "storage/format/gzip.h"
+#include "storage/format/input_note.h"
 #include "storage/format/layout.h"
 #include "tests/server/path_tricks.h"
 #include "tests/server/refusing_folder.h"
@@ -136,6 +137,109 @@ TEST_F(SiteTest, AStoryBesideAHierarchyIsListedAndServed) {
        {"/models/notes.txt.story.json", "/models/none.hier.story.json", "/models/.story.json",
         "/models/stream.prog.story.json", "/models/plain.hier/.story.json"})
     EXPECT_EQ(get(target).status, 404) << target;
+}
+
+TEST_F(SiteTest, PicturesThatAStoryNamesAreServedAndNoOthers) {
+  const auto story = [](const std::string& picture) {
+    return R"({"items": [{"body": [{"type": "Image", "id": ")" + picture + "\"}]}]}";
+  };
+  fs::create_directories(folder_.models() / "sub dir/pictures");
+  for (const char* name : {"a.jpg", "b.jpg", "evil.svg", "sub dir/pictures/1.PNG", "sub dir/c.webp",
+                           "plain.hier/inside.png"})
+    tests::write_text(folder_.models() / name, name);
+  for (const char* target : {"/models/a.jpg", "/models/sub%20dir/pictures/1.PNG"})
+    EXPECT_EQ(get(target).status, 404) << "no story names it: " << target;
+  tests::write_text(folder_.models() / "plain.hier.story.json", story("a.jpg"));
+  tests::write_text(folder_.models() / "sub dir/zipped.hier.story.json", story("pictures/1.PNG"));
+  tests::write_text(folder_.models() / "none.hier.story.json", story("b.jpg"));
+  const Reply picture = get("/models/a.jpg");
+  EXPECT_EQ(body_of(picture), "a.jpg");
+  EXPECT_EQ(picture.header("Content-Type"), "image/jpeg");
+  EXPECT_EQ(picture.header("Cache-Control"), "no-cache");
+  EXPECT_EQ(picture.header("X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(get("/models/sub%20dir/pictures/1.PNG").header("Content-Type"), "image/png");
+  for (const char* target :
+       {"/models/b.jpg", "/models/evil.svg", "/models/sub%20dir/c.webp", "/models/notes.txt",
+        "/models/plain.hier/inside.png", "/models/sub%20dir/a.jpg", "/models/../secret.txt"})
+    EXPECT_EQ(get(target).status, 404) << target;
+  tests::write_text(folder_.models() / "plain.hier.story.json", story("b.jpg?x=1"));
+  EXPECT_EQ(get("/models/a.jpg").status, 404) << "it is named no more";
+  EXPECT_EQ(get("/models/b.jpg").status, 200);
+  tests::write_text(folder_.models() / "plain.hier.story.json", story("../secret.txt"));
+  EXPECT_EQ(get("/models/secret.txt").status, 404);
+}
+
+TEST_F(SiteTest, WhereNoFileCanBeOpenedClientsAreToldToComeAgain) {
+  const auto busy = std::make_shared<tests::BusyFolder>(storage::open_folder(folder_.models()));
+  const auto page = std::make_shared<tests::BusyFolder>(storage::open_folder(folder_.viewer()));
+  tests::write_text(folder_.models() / "plain.hier.story.json", "{}");
+  const auto answer = [&](const std::string& target, int calls) {
+    busy->calls_left = page->calls_left = calls;
+    SiteOptions options;
+    options.viewer = page;
+    open_as(std::move(options), busy, {});
+    return get(target);
+  };
+  const std::vector<std::string> targets{"/",
+                                         "/assets/page-1a2b.js",
+                                         "/models.json",
+                                         "/models/plain.hier/hierarchy.json",
+                                         "/models/plain.hier/tiles/00/000000.glb",
+                                         "/models/plain.hier.story.json",
+                                         "/models/packed.3tz",
+                                         "/models/packed.3tz/tiles.bin",
+                                         "/models/stream.prog/base.bin",
+                                         "/models/sub%20dir/zipped.hier/preview.webp"};
+  for (const std::string& target : targets) {
+    bool was_busy = false;
+    for (int calls = 0; calls < 40; ++calls) {
+      const Reply reply = answer(target, calls);
+      ASSERT_THAT(reply.status, testing::AnyOf(200, 503)) << target << " after " << calls;
+      if (reply.status == 200)
+        continue;
+      was_busy = true;
+      EXPECT_EQ(reply.header("Retry-After"), "1");
+      EXPECT_EQ(reply.header("Cache-Control"), "no-store");
+    }
+    EXPECT_TRUE(was_busy) << target;
+    EXPECT_EQ(answer(target, -1).status, 200) << target;
+  }
+}
+
+TEST_F(SiteTest, NoFailureIsKept) {
+  Request outside = request("/assets/page-1a2b.js");
+  outside.range = "bytes=100000-";
+  Request body = request("/models.json");
+  body.has_body = true;
+  Request method = request("/");
+  method.method = "DELETE";
+  Request packed = request("/models/sub%20dir/zipped.hier/tiles/00/000000.glb");
+  packed.accept_encoding = "identity";
+  for (const Request& refused : {outside, body, method, packed, request("/none"), request("/.x")}) {
+    const Reply reply = site_->answer(refused);
+    EXPECT_GE(reply.status, 400) << refused.target;
+    EXPECT_EQ(reply.header("Cache-Control"), "no-store") << refused.target;
+  }
+}
+
+TEST_F(SiteTest, WarningsOfABuildAreListedWhereAFolderIsWatched) {
+  using Warnings = std::vector<std::string>;
+  const json manifest = json::parse(text_of(folder_.models() / "plain.hier/hierarchy.json"));
+  const auto note = [&](std::uint64_t content) {
+    const storage::InputNote note{.content = content,
+                                  .files = {{"plain.ply", {}, 0}},
+                                  .awaited = {},
+                                  .warnings = {"wall.mtl: missing"}};
+    tests::write_text(folder_.models() / storage::input_note_path("plain.hier"),
+                      storage::to_json_text(note));
+    site_->refresh();
+    return json::parse(get("/models.json").text)["models"][1].value("warnings", Warnings());
+  };
+  const std::uint64_t content = manifest["source"]["checksum"];
+  EXPECT_THAT(note(content), IsEmpty()) << "readers learn nothing of how models were made";
+  open({}, [] { return nlohmann::ordered_json::array(); });
+  EXPECT_THAT(note(content), ElementsAre("wall.mtl: missing"));
+  EXPECT_THAT(note(content + 1), IsEmpty()) << "it is about another build";
 }
 
 TEST_F(SiteTest, AStoryThatMayNotBeReadHidesNoModel) {

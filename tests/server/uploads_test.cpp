@@ -1,6 +1,7 @@
 #include "server/uploads.h"
 
 #include "hierarchy/error.h"
+#include "server/build_target.h"
 #include "server/staged_upload.h"
 #include "storage/io/output_file.h"
 #include "tests/server/form_text.h"
@@ -147,6 +148,29 @@ TEST_F(UploadsTest, NamesThatCouldMeanMoreAreRefused) {
   }
   EXPECT_EQ(post("a/b", {{"a.obj", "o"}}).status, 400);
   EXPECT_EQ(post(".house", {{"a.obj", "o"}}).status, 400);
+}
+
+TEST_F(UploadsTest, NamesThatNoModelCanBeMadeOfAreRefusedAtOnce) {
+  for (std::size_t bytes = 190; bytes <= 255; ++bytes) {
+    const std::string name = std::string(bytes - 4, 'n') + ".ply";
+    const Reply reply = put(name, "x");
+    EXPECT_EQ(reply.status, excess_of_name(name, ".hier") == 0 ? 201 : 400) << bytes;
+    if (reply.status == 400)
+      EXPECT_THAT(reply.text, HasSubstr("too long"));
+  }
+  EXPECT_EQ(put(std::string(240, 'n') + ".ply", "x").status, 400);
+  EXPECT_EQ(post(std::string(240, 'h'), {{"a.obj", "o"}}).status, 400);
+  EXPECT_EQ(post("house", {{std::string(240, 'n') + ".obj", "o"}}).status, 400);
+  EXPECT_EQ(post("hut", {{"a.obj", "o"}, {std::string(240, 'n') + ".png", "p"}}).status, 201)
+      << "a picture has nothing made of it";
+}
+
+TEST_F(UploadsTest, PartsOfFilesAreRefused) {
+  TextBody body("x");
+  Request part = request("PUT", &body);
+  part.is_part = true;
+  EXPECT_EQ(uploads().take(part, "/a.ply").status, 400);
+  expect_nothing_left("a part");
 }
 
 TEST_F(UploadsTest, NothingIsReplaced) {

@@ -263,6 +263,40 @@ TEST_F(WatchTest, WhatABuildSaysOfPlacesStaysHere) {
                     Not(HasSubstr(directory_.path().string()))));
 }
 
+TEST_F(WatchTest, WarningsAreToldAndStayWithTheModel) {
+  start();
+  drop_obj();  // without its library
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  EXPECT_THAT(told(), Contains(AllOf(StartsWith("a.obj: warning: "), HasSubstr("a.mtl"))));
+  EXPECT_THAT(told(), Contains(StartsWith("a.obj: done, with ")));
+  const auto warnings = [&] { return hierarchies_->list().at(0).warnings; };
+  EXPECT_THAT(warnings(), Contains(HasSubstr("a.mtl")));
+  EXPECT_THAT(warnings(), Not(Contains(HasSubstr(directory_.path().string()))));
+  start();  // as after a restart
+  EXPECT_THAT(warnings(), Contains(HasSubstr("a.mtl")));
+  drop_library("textures/wall.png");
+  put_picture("textures/wall.png", 8);
+  wait_until([&] { return texels() == 8 * 8 && is_idle(); });
+  EXPECT_THAT(warnings(), IsEmpty()) << "all is there now";
+}
+
+TEST_F(WatchTest, AccountsWarnToo) {
+  start();
+  tests::write_text(inbox() / "p.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+  wait_until([&] { return is_there("p.hier") && is_idle(); });
+  EXPECT_THAT(hierarchies_->list().at(0).warnings, Contains(HasSubstr("has no triangles")));
+}
+
+TEST_F(WatchTest, ANameThatNoHierarchyCanHaveIsTold) {
+  start();
+  const std::string name = std::string(245, 'n') + ".ply";
+  drop(name);
+  wait_until([&] { return job(name, "state") == "failed"; });
+  EXPECT_THAT(job(name, "message"), HasSubstr("too long by"));
+}
+
 TEST_F(WatchTest, ABrokenFileIsTriedAgainWhenItIsAnother) {
   start();
   tests::write_text(inbox() / "a.ply", "ply\n");

@@ -273,6 +273,22 @@ TEST_F(RemoteFilesTest, LiesAreTold) {
   EXPECT_THAT(problem(open(with(say("0-99/1000", 100)))), HasSubstr("another length"));
   EXPECT_THAT(problem(open(with(say("0-99999/100000", 100'000)))), HasSubstr("more than the part"));
   EXPECT_THAT(problem(open(with(say("0-65535/*", 65536)))), HasSubstr("how long it is"));
+  for (const char* length :
+       {"9223372036854775808", "18446744073709551616", "99999999999999999999999"}) {
+    EXPECT_THAT(problem(open(with(say(fmt::format("0-99/{}", length), 100)))),
+                HasSubstr(fmt::format("says that it has {} bytes, as no file has", length)));
+    EXPECT_THAT(
+        problem(open(with(fmt::format("HTTP/1.1 200 OK\r\nContent-Length: {}\r\n\r\nx", length)))),
+        HasSubstr("as no file has"));
+  }
+  for (const std::string& header :
+       {"X: " + std::string(200'000, 'x') + "\r\n", std::string(), std::string(500'000, 'y')}) {
+    std::string reply = part + header;
+    for (int i = 0; i < (header.empty() ? 2000 : 0); ++i)
+      reply += fmt::format("X-{}: {}\r\n", i, std::string(100, 'x'));
+    EXPECT_THAT(problem(open(with(reply + "Content-Range: bytes 0-99/100\r\n\r\n"))),
+                HasSubstr("header of the host's answer has more than 65536 bytes"));
+  }
   EXPECT_THAT(problem(open(with("HTTP/1.1 204 None\r\n\r\n"))), HasSubstr("answered 204"));
   EXPECT_THAT(problem(open(with("no http at all"))), HasSubstr("a.3tz: "));
   EXPECT_THAT(problem(open(with("HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\n\r\n"))),

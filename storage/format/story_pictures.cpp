@@ -1,0 +1,122 @@
+#include "storage/format/story_pictures.h"
+
+#include "hierarchy/small_letters.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <optional>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+constexpr std::array<std::string_view, 6> kPictureEndings{".avif", ".gif", ".jpeg",
+                                                          ".jpg",  ".png", ".webp"};
+
+/// A manifest's picture is some twenty deep.
+constexpr int kDeepestStory = 64;
+
+/// -1 if it is no hexadecimal digit.
+int hex_digit(char c) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  const std::size_t value =
+      kDigits.find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  return value == std::string_view::npos ? -1 : static_cast<int>(value);
+}
+
+/// A part of an address as a file's name; nothing if it cannot be one.
+std::optional<std::string> part_name(std::string_view part) {
+  std::string name;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    char c = part[i];
+    if (c == '%') {
+      const int high = i + 2 < part.size() ? hex_digit(part[i + 1]) : -1;
+      const int low = i + 2 < part.size() ? hex_digit(part[i + 2]) : -1;
+      if (high < 0 || low < 0)
+        return std::nullopt;
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    }
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' ')
+      return std::nullopt;
+    name += c;
+  }
+  return name;
+}
+
+/// Takes a step; false if it leads nowhere that is beside the story.
+bool take_step(std::vector<std::string>& path, std::string_view part) {
+  const std::optional<std::string> name = part_name(part);
+  if (!name || name->empty())
+    return false;
+  if (*name == ".")
+    return true;
+  if (*name == "..") {
+    const bool is_below = !path.empty();
+    if (is_below)
+      path.pop_back();
+    return is_below;
+  }
+  path.push_back(*name);
+  return name->front() != '.';
+}
+
+/// As browsers resolve an address; nothing if it does not lead downwards from the story's folder.
+std::optional<std::string> path_beside(std::string_view address) {
+  address = address.substr(0, address.find_first_of("?#"));
+  const std::size_t slash = address.find('/');
+  if (address.empty() || slash == 0 || address.substr(0, slash).find(':') != std::string_view::npos)
+    return std::nullopt;
+  std::vector<std::string> parts;
+  while (true) {
+    const std::size_t end = std::min(address.find('/'), address.size());
+    if (!take_step(parts, address.substr(0, end)))
+      return std::nullopt;
+    if (end == address.size())
+      break;
+    address.remove_prefix(end + 1);
+  }
+  std::string path;
+  for (const std::string& part : parts)
+    path += path.empty() ? part : '/' + part;
+  return is_picture_name(path) ? std::optional(path) : std::nullopt;
+}
+
+void collect_pictures(const nlohmann::json& value, std::set<std::string>& found) {
+  if (value.is_object() && value.value("type", nlohmann::json()) == "Image") {
+    const auto id = value.find("id");
+    if (id != value.end() && id->is_string()) {
+      if (auto path = path_beside(id->get_ref<const std::string&>()))
+        found.insert(*std::move(path));
+    }
+  }
+  if (!value.is_structured())
+    return;
+  for (const nlohmann::json& below : value)
+    collect_pictures(below, found);
+}
+
+}  // namespace
+
+bool is_picture_name(std::string_view name) {
+  const std::string small = small_letters(name);
+  return std::ranges::any_of(kPictureEndings, [&](std::string_view ending) {
+    return small.size() > ending.size() && small.ends_with(ending) &&
+           small[small.size() - ending.size() - 1] != '/';
+  });
+}
+
+std::vector<std::string> pictures_beside(std::string_view story) {
+  const auto shallow = [](int depth, auto, const auto&) { return depth < kDeepestStory; };
+  const nlohmann::json document = nlohmann::json::parse(story, shallow, /*allow_exceptions=*/false);
+  std::set<std::string> found;
+  if (!document.is_discarded())
+    collect_pictures(document, found);
+  return {found.begin(), found.end()};
+}
+
+}  // namespace meshhier::storage
