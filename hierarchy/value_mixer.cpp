@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace meshhier {
 namespace {
@@ -27,8 +29,11 @@ double mean_of(std::span<const WeightedVertex> vertices, const ValueOf& value) {
   return sum == 0 ? first : first + sum / weight;
 }
 
+/// Labels of a few vertices are compared each with each, which needs no memory.
+constexpr std::size_t kFewVertices = 16;
+
 template <class ValueOf>
-double label_of(std::span<const WeightedVertex> vertices, const ValueOf& value) {
+double label_of_few(std::span<const WeightedVertex> vertices, const ValueOf& value) {
   double best = value(0), most = -1;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const double label = value(i);
@@ -41,6 +46,35 @@ double label_of(std::span<const WeightedVertex> vertices, const ValueOf& value) 
     }
   }
   return best;
+}
+
+/// The same of any number: sums are of the same weights in the same order.
+template <class ValueOf>
+double label_of_many(std::span<const WeightedVertex> vertices, const ValueOf& value) {
+  std::vector<std::pair<double, std::size_t>> labels;  // those that are numbers, and whose
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (const double label = value(i); !std::isnan(label))
+      labels.emplace_back(label, i);
+  }
+  std::ranges::sort(labels);
+  double best = value(0), most = std::isnan(best) ? 0 : -1;
+  for (std::size_t i = 0; i < labels.size();) {
+    const double label = labels[i].first;
+    double weight = 0;
+    for (; i < labels.size() && labels[i].first == label; ++i)
+      weight += vertices[labels[i].second].weight;
+    if (weight > most) {
+      most = weight;
+      best = label;
+    }
+  }
+  return best;
+}
+
+template <class ValueOf>
+double label_of(std::span<const WeightedVertex> vertices, const ValueOf& value) {
+  return vertices.size() <= kFewVertices ? label_of_few(vertices, value)
+                                         : label_of_many(vertices, value);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class ValueMixer {
   /// * of a quantity the mean, by weight, of those that are finite; if there is none, or no weight,
   ///   the first vertex's. Equal ones stay as they are, bit for bit;
   /// * of a label that with the largest sum of weights, among equal ones the least.
-  /// O(v n), for labels O(v n^2). Requires a vertex, and weights of at least 0.
+  /// O(v n log n). Requires a vertex, and weights of at least 0.
   void mix(std::span<const WeightedVertex> vertices, float* to) const;
 
   /// Whether two vertices have the same labels.

@@ -3,6 +3,7 @@
 #include "hierarchy/value_mixer.h"
 #include "hierarchy/value_statistics.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -104,6 +105,30 @@ TEST(ValueMixer, QuantitiesAreAveragedAndLabelsChosen) {
   EXPECT_THAT(mixed({vertex(1, 1, 7), vertex(1, 1, 9), vertex(1, 1, 7)}, {2, 3, 2}),
               ElementsAre(1, 1, 7));
   EXPECT_EQ(mixed({vertex(1, 1, 9), vertex(1, 1, 7)}, {2, 2})[2], 7) << "the least of equal ones";
+}
+
+TEST(ValueMixer, OfManyLabelsItIsTheOneOfMostWeightToo) {
+  for (const int count : {15, 16, 17, 200}) {
+    std::vector<std::vector<float>> vertices;
+    std::vector<double> weights, sums(7);
+    for (int i = 0; i < count; ++i) {
+      const int label = i * i % 7;
+      vertices.push_back(vertex(1, 1, label));
+      weights.push_back(0.1 + 0.3 * (i % 5));
+      sums[static_cast<std::size_t>(label)] += weights.back();
+    }
+    const auto most = std::ranges::max_element(sums) - sums.begin();
+    EXPECT_EQ(mixed(vertices, weights)[2], static_cast<double>(most)) << count;
+    EXPECT_EQ(mixed(vertices, std::vector<double>(vertices.size()))[2], 0) << "the least";
+  }
+}
+
+TEST(ValueMixer, VeryManyDifferentLabelsTakeNoSquareOfThem) {
+  constexpr int kCount = 300'000;  // of which the square would take a minute
+  std::vector<std::vector<float>> vertices;
+  for (int i = 0; i < kCount; ++i)
+    vertices.push_back(vertex(1, 1, kCount - i));
+  EXPECT_EQ(mixed(vertices, std::vector<double>(vertices.size(), 1))[2], 1);
 }
 
 TEST(ValueMixer, WhatIsNotFiniteDoesNotCount) {
