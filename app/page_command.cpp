@@ -7,8 +7,11 @@
 #include "inspection/page_file.h"
 #include "server/static_site.h"
 #include "storage/io/http_client.h"
+#include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -28,6 +31,7 @@ struct PageArguments {
   std::string output;
   bool force = false;
   std::uint64_t size = inspection::PageOptions().size;
+  CLI::Option* size_option = nullptr;
   std::string link;
   bool fetches_pictures = false;
   std::string viewer;
@@ -61,11 +65,41 @@ std::string name_of(const fs::path& hierarchy) {
   return storage::without_last_slash(hierarchy).stem().string();
 }
 
+bool is_page_name(const std::string& output) {
+  const std::string ending = storage::lower_extension(output);
+  return ending == ".html" || ending == ".htm";
+}
+
+/// Throws Error(usage) for a name that says that it is something else.
+void require_page_name(storage::FileSystem& files, const std::string& output) {
+  if (!is_page_name(output) && !storage::lower_extension(output).empty() &&
+      !storage::is_standard_output(files, output)) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("-o {}: the page is an HTML file; name one that ends in .html", output));
+  }
+}
+
+/// Throws Error(usage) for what is said of one HTML file.
+void require_folder(const PageArguments& arguments) {
+  const std::array options{std::pair(!arguments.link.empty(), "--link"),
+                           std::pair(arguments.fetches_pictures, "--fetch-pictures"),
+                           std::pair(arguments.size_option->count() > 0, "--size"),
+                           std::pair(is_page_name(arguments.output), "the name of an HTML file")};
+  const auto given = std::ranges::find_if(options, &std::pair<bool, const char*>::first);
+  if (given != options.end()) {
+    throw Error(ErrorCode::usage, fmt::format("{} is for the page of one hierarchy; {} is a folder "
+                                              "of them, and becomes a site, a folder",
+                                              given->second, arguments.hierarchy));
+  }
+}
+
 std::string make_page(const PageArguments& arguments, const HierarchyPlace& place,
                       execution::Progress& progress, Environment& environment) {
   if (!arguments.link.empty() && !storage::is_web_address(arguments.link))
     throw Error(ErrorCode::usage,
                 "--link: expected the address of the whole hierarchy, https://...");
+  require_page_name(environment.files, arguments.output);
   const std::string viewer = single_page(environment, arguments);
   return inspection::write_page(
       place.files(), place.path(), viewer,
@@ -83,15 +117,7 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
 
 std::string make_site(const PageArguments& arguments, execution::Progress& progress,
                       Environment& environment) {
-  for (const auto& [is_given, option] :
-       {std::pair(!arguments.link.empty(), "--link"),
-        std::pair(arguments.fetches_pictures, "--fetch-pictures")}) {
-    if (is_given) {
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("{} is for the page of one hierarchy; this is a folder of them", option));
-    }
-  }
+  require_folder(arguments);
   const ViewerPlace viewer = viewer_of(environment, arguments);
   const server::SiteJob job{storage::open_folder(arguments.hierarchy), *viewer.folder,
                             arguments.output, arguments.force};
@@ -142,7 +168,8 @@ void add_page_command(CLI::App& parser, Invocation& invocation) {
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   add_file_output_options(*command, "The HTML file, or the folder of the site", arguments->output,
                           arguments->force);
-  add_size_option(*command, "--size", "Of the HTML file: bytes, at the most", arguments->size);
+  arguments->size_option =
+      add_size_option(*command, "--size", "Of the HTML file: bytes, at the most", arguments->size);
   command->add_option("--link", arguments->link, "Of the HTML file: where all of the hierarchy is")
       ->type_name("ADDRESS");
   command->add_flag("--fetch-pictures", arguments->fetches_pictures,

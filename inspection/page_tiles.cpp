@@ -2,6 +2,7 @@
 
 #include "hierarchy/rounded_tile.h"
 #include "inspection/base64.h"
+#include "partition/compactness.h"
 #include "storage/format/build_name.h"
 #include "storage/format/gzip.h"
 #include "storage/format/index.h"
@@ -163,6 +164,8 @@ PackedTile PagePacker::pack(NodeId tile) const {
   if (format_.lattice) {
     packed.rounding = round_to(*format_.lattice, published.mesh);
     packed.record.bounds = bounds_of(published.mesh.vertices.positions);
+    if (reader_.tree().is_partition(tile))
+      packed.record.compactness = partition::published_compactness(published.mesh);
   }
   const auto bytes = storage::encode_tile(published, reader_.tree(), format_);
   packed.record.file_bytes = bytes.size();
@@ -180,9 +183,11 @@ storage::Manifest PagePacker::manifest(std::span<const TileRecord> records, doub
                                        std::span<const std::byte> index) const {
   storage::Manifest manifest = reader_.manifest();
   manifest.compression = format_.compression;
+  manifest.config["storage"]["compression"] = storage::name_of(format_.compression);
   if (format_.lattice) {
     const double before = manifest.quantization ? manifest.quantization->worst_rounding : 0;
     manifest.quantization = storage::Quantization{*format_.lattice, before + rounding};
+    manifest.config["storage"]["positions"] = {{"bits", format_.lattice->bits}};
   }
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);

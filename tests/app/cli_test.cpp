@@ -1367,6 +1367,10 @@ TEST_F(CommandLinePage, WhatIsWrongIsTold) {
        "--link is for the page of one");
   says({work().string(), "-o", file, "--fetch-pictures"}, kUsage,
        "--fetch-pictures is for the page of one");
+  says({work().string(), "-o", (work() / "site").string(), "--size", "20MB"}, kUsage,
+       "--size is for the page of one");
+  says({work().string(), "-o", file}, kUsage, "the name of an HTML file is for the page of one");
+  says({hierarchy(), "-o", (work() / "b.glb").string()}, kUsage, "name one that ends in .html");
   std::filesystem::remove(viewer() / "single.html");
   says({hierarchy(), "-o", file}, kIo, "has no single.html");
 }
