@@ -5,7 +5,7 @@
 //   lib/meshhier/ld-linux-x86-64.so.2, *.so.*
 //   share/meshhier/proj             what PROJ knows of maps
 //
-// The program finds itself by MESHHIER_PROGRAM: /proc/self/exe is the loader.
+// The program finds itself by MESHHIER_PROGRAM: what runs is the loader.
 #include <cerrno>
 #include <climits>
 #include <cstdio>
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <sys/auxv.h>
 #include <unistd.h>
 
 namespace {
@@ -23,13 +24,19 @@ namespace {
   std::exit(1);
 }
 
-/// This file's path, without links.
+/// This file's path, without links. Where there is no /proc, the system still tells by which path
+/// it was started.
 std::string own_path() {
-  std::vector<char> path(PATH_MAX);
-  const ssize_t length = ::readlink("/proc/self/exe", path.data(), path.size());
-  if (length <= 0 || static_cast<std::size_t>(length) == path.size())
-    fail("cannot find out where the program lies: is /proc there?");
-  return {path.data(), static_cast<std::size_t>(length)};
+  std::vector<char> path(PATH_MAX + 1);
+  const ssize_t length = ::readlink("/proc/self/exe", path.data(), PATH_MAX);
+  if (length > 0 && length < PATH_MAX)
+    return {path.data(), static_cast<std::size_t>(length)};
+  const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  if (started == nullptr || ::realpath(started, path.data()) == nullptr)
+    fail(
+        "cannot find out where the program lies: there is no /proc, and the path that it was "
+        "started by leads nowhere; start it by its whole path");
+  return path.data();
 }
 
 std::string directory_of(const std::string& path) {

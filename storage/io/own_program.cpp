@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include <sys/auxv.h>
+
 namespace meshhier::storage {
 namespace {
 
@@ -13,9 +15,29 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOwnProgram = "/proc/self/exe";
 
+/// By which the system has started the process, without links. Where there is no /proc.
+const fs::path& started() {
+  static const fs::path path = [] {
+    const auto* const given = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+    std::error_code error;
+    return given == nullptr ? fs::path() : fs::canonical(given, error);
+  }();
+  return path;
+}
+
 /// What /proc/self/exe names; of a file which was replaced it ends with a remark that it was.
 fs::path running(std::error_code& error) {
-  return fs::read_symlink(kOwnProgram, error);
+  const fs::path path = fs::read_symlink(kOwnProgram, error);
+  if (!error || started().empty())
+    return path;
+  error.clear();
+  return started();
+}
+
+/// The file that runs: as it is in memory, even if its name is another one's by now.
+std::string running_file() {
+  std::error_code error;
+  return fs::exists(kOwnProgram, error) || started().empty() ? kOwnProgram : started().string();
 }
 
 fs::path libraries_of(const fs::path& launcher) {
@@ -38,7 +60,7 @@ std::string own_program() {
     return launcher().string();
   std::error_code error;
   const fs::path path = running(error);
-  return !error && fs::exists(path, error) ? path.string() : kOwnProgram;
+  return !error && fs::exists(path, error) ? path.string() : running_file();
 }
 
 std::string own_directory() {
@@ -48,14 +70,15 @@ std::string own_directory() {
   const fs::path path = running(error);
   if (error) {
     throw Error(ErrorCode::io,
-                std::string("cannot resolve ") + kOwnProgram + ": " + error.message());
+                "cannot find out where the program lies: there is no /proc; start it by its whole "
+                "path");
   }
   return path.parent_path().string();
 }
 
 std::string own_code() {
   const fs::path path = launcher();
-  return path.empty() ? kOwnProgram : (libraries_of(path) / path.filename()).string();
+  return path.empty() ? running_file() : (libraries_of(path) / path.filename()).string();
 }
 
 }  // namespace meshhier::storage

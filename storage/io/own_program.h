@@ -1,7 +1,8 @@
 // The program that runs: where it is, and how to start it again.
 //
-// In the portable archive (packaging/portable/launcher.cpp) /proc/self/exe is the loader that came
-// with it: the launcher says by MESHHIER_PROGRAM where it lies itself.
+// In the portable archive (packaging/portable/launcher.cpp) what runs is the loader that came with
+// it: the launcher says by MESHHIER_PROGRAM where it lies itself. Without /proc the path counts by
+// which the process was started.
 #pragma once
 
 #include <string>
