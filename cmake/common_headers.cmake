@@ -2,7 +2,7 @@
 
 # meshhier_common_headers(LIBRARY...)
 #
-# Gives them to libraries that include JSON anyhow: others would take longer. Does so only where files are compiled together: elsewhere
+# Gives them to libraries that include JSON anyhow: others would take longer, and programs are compiled in another way (-fPIE). Does so only where files are compiled together: elsewhere
 # each file has to name all that it needs. Sets `common_headers` to the library that has them, or to nothing.
 function(meshhier_common_headers)
   if(NOT CMAKE_UNITY_BUILD)

@@ -92,7 +92,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
     labels.begin(ObjLabel::material, name);
   }
   bool takes_groups() const override { return labels.are_asked(); }
-  void use_group(const std::string& names) override { labels.begin(ObjLabel::group, names); }
+  void use_group(const std::string& group) override { labels.begin(ObjLabel::group, group); }
   void use_object(const std::string& name) override { labels.begin(ObjLabel::object, name); }
   void use_libraries(const std::string& statement) override {
     if (keeps_materials_)

@@ -33,14 +33,6 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// One of the three kinds of things that corners refer to.
-struct Kind {
-  const char* name;
-  std::uint64_t count = 0;
-  std::uint64_t highest = 0;       ///< number, from 1 on, that was referred to
-  std::uint64_t highest_line = 0;  ///< where that was
-};
-
 /// Text from the line `lines` behind the one at its start; each ends with LF, CRLF or CR.
 std::string_view behind_lines(std::string_view text, std::uint64_t lines) {
   for (; lines > 0; --lines) {
@@ -56,6 +48,14 @@ std::string_view behind_lines(std::string_view text, std::uint64_t lines) {
 }  // namespace
 
 class ObjReader::Impl {
+  /// One of the three kinds of things that corners refer to.
+  struct Kind {
+    const char* name;
+    std::uint64_t count = 0;
+    std::uint64_t highest = 0;       ///< number, from 1 on, that was referred to
+    std::uint64_t highest_line = 0;  ///< where that was
+  };
+
  public:
   Impl(const std::filesystem::path& path, ObjVisitor& visitor)
       : none_({}),

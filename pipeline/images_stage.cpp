@@ -59,11 +59,11 @@ bool is_alpha_unsaid(std::uint32_t image, const images::MaterialList& materials)
 
 /// In one line. `names`: of pictures.
 void warn_of_alpha(const std::vector<std::string>& names, execution::Progress& progress) {
-  constexpr std::size_t kLongestName = 255;
+  constexpr std::size_t kMostBytes = 255;
   if (names.empty())
     return;
   const bool is_one = names.size() == 1;
-  const std::string first = plain_text(names[0], kLongestName);
+  const std::string first = plain_text(names[0], kMostBytes);
   progress.warn(fmt::format(
       "{} of the mesh {} transparent texels, which are shown opaque ({}{}): if they are holes, add "
       "the line 'map_d {}' to the materials that show {}",

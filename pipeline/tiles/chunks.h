@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -219,8 +220,13 @@ class Ranker {
   void rank(ChunkedVertices& block, std::vector<Rank>& ranks) {
     block.first_ranks = next_;
     ranks.clear();
-    for (const std::uint32_t chunk : block.chunk_of)
-      ranks.push_back(Rank{next_[chunk]++});
+    for (const std::uint32_t chunk : block.chunk_of) {
+      const std::uint32_t rank = next_[chunk]++;
+      if constexpr (std::is_integral_v<Rank>)
+        ranks.push_back(rank);
+      else
+        ranks.push_back({rank, 0});
+    }
   }
 
  private:

@@ -262,10 +262,9 @@ std::uint64_t index_bytes(std::uint64_t records) {
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
   const bool has_maps = std::ranges::any_of(records, &TileRecord::has_normal_map);
-  std::vector<std::byte> bytes;
-  bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);
   const auto magic = std::as_bytes(std::span(kIndexMagic));
-  bytes.insert(bytes.end(), magic.begin(), magic.end());
+  std::vector<std::byte> bytes(magic.begin(), magic.end());
+  bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);
   append_little(bytes, has_maps ? kIndexVersion : kNoMapsIndexVersion);
   append_little(bytes, static_cast<std::uint32_t>(kRecordBytes));
   append_little(bytes, std::uint64_t{records.size()});

@@ -138,8 +138,10 @@ mesh_io::FaceCounts block_triangles(MeshSource& source, const Visit& visit) {
   }
   counts.degenerate_triangles = counts.faces - counts.triangles;
   const mesh_io::FaceCounts rest = source.read_triangles_from(counts.faces, visit, {});
-  return {counts.faces + rest.faces, counts.triangles + rest.triangles,
-          counts.degenerate_triangles + rest.degenerate_triangles};
+  return {counts.faces + rest.faces,
+          counts.triangles + rest.triangles,
+          counts.degenerate_triangles + rest.degenerate_triangles,
+          {}};
 }
 
 template <class T>

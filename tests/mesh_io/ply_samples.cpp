@@ -93,7 +93,7 @@ void read_triangle_blocks(MeshSource& source, bool backwards, ReadMesh& mesh) {
     if (!block.whole)
       break;
   }
-  mesh.counts = {faces, mesh.triangles.size(), faces - mesh.triangles.size()};
+  mesh.counts = {faces, mesh.triangles.size(), faces - mesh.triangles.size(), {}};
   const FaceCounts rest = source.read_triangles_from(
       faces, [&](std::span<const Triangle<VertexId>> block) { append(block, mesh); }, {});
   mesh.counts.faces += rest.faces;

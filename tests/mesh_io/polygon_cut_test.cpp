@@ -77,8 +77,9 @@ void expect_covered_all_ways(const Polygon& polygon) {
         for (Vec3d& p : other)
           p = {p.z, p.x, p.y};
         ASSERT_EQ(cut.cut(other), kind);
-        if (kind == Kind::ears)
+        if (kind == Kind::ears) {
           EXPECT_TRUE(std::ranges::equal(cut.triangles(), triangles));
+        }
       }
     }
   }
