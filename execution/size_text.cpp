@@ -81,6 +81,9 @@ std::optional<std::uint64_t> parse_size(std::string_view text) {
 }
 
 std::string exact_size_text(std::uint64_t bytes) {
+  constexpr std::uint64_t kMega = 1'000'000;
+  if (bytes != 0 && bytes % kMega == 0 && bytes % (std::uint64_t{1} << 20) != 0)
+    return fmt::format("{}MB", bytes / kMega);
   std::size_t unit = 0;
   while (bytes != 0 && bytes % 1024 == 0 && unit + 1 < kBinaryUnits.size()) {
     bytes /= 1024;

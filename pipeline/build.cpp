@@ -1,6 +1,7 @@
 #include "pipeline/build.h"
 
 #include "execution/allocator.h"
+#include "execution/threads.h"
 #include "hierarchy/error.h"
 #include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
@@ -39,7 +40,8 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
                         const StageContext& context);
 
 /// A failure that leaves work to go on with says so.
-Error with_resume_hint(const Error& error, const storage::WorkDirectory& work);
+Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
+                       const std::filesystem::path& output);
 
 /// What was imported goes while the work directory is locked.
 struct DropAtEnd {
@@ -90,7 +92,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
       work.keep(false);  // nothing to go on with
     if (!work.is_kept() || error.code() == ErrorCode::exists)
       throw;
-    throw with_resume_hint(error, work);
+    throw with_resume_hint(error, work, config.output);
   }
 }
 
@@ -158,7 +160,7 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
   if (refined)
     check_disk(*refined, context.config.output, context.files);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.
-  std::future<void> settled = std::async(std::launch::async, [&workshop, &context] {
+  std::future<void> settled = execution::run_beside([&workshop, &context] {
     workshop.tile_scratch.sync([&] { context.cancel.check(); });
     workshop.journal.sync();
     workshop.mesh_scratch.remove();
@@ -184,11 +186,12 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
   return need;
 }
 
-Error with_resume_hint(const Error& error, const storage::WorkDirectory& work) {
+Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
+                       const std::filesystem::path& output) {
   return {error.code(),
           fmt::format("{}\nWhat is done so far is kept in {}: the same build goes on with it "
-                      "(--restart begins anew, \"meshhier clean\" removes it)",
-                      error.what(), work.path().string())};
+                      "(--restart begins anew, \"meshhier clean --remove {}\" removes it)",
+                      error.what(), work.path().string(), output.string())};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 
+#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -127,7 +128,11 @@ void ConnectionQueue::watch() {
       if (schedule_.drop_timed_out(Clock::now()))
         has_room_.notify_one();
     }
-    poll_pending();
+    try {
+      poll_pending();
+    } catch (const std::bad_alloc&) {  // perhaps there is some in a moment
+      std::this_thread::sleep_for(kPollTime);
+    }
   }
 }
 

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exception>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -182,11 +183,21 @@ class HttpServer::Library final : public httplib::Server {
   std::size_t served() const { return queue_.served(); }
 
   void begin() {
-    for (std::size_t i = 0; i < options_.threads; ++i)
-      workers_.emplace_back([this] { work(); });
     thread_ = std::thread([this] { run(); });
+    add_workers();
     while (!is_running())
       std::this_thread::yield();
+  }
+
+  /// As many as there are to be had, and one at least.
+  void add_workers() {
+    try {
+      while (workers_.size() < options_.threads)
+        workers_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {
+      if (workers_.empty())
+        throw;
+    }
   }
 
   void end() {
@@ -271,22 +282,41 @@ class HttpServer::Library final : public httplib::Server {
           response.content_length_});
   }
 
+  /// Where memory runs out the connection ends, and the server goes on.
   bool process_and_close_socket(socket_t socket) override {
-    queue_.accept(std::make_unique<Connection>(
-        socket, options_.limits,
-        [this](const std::string& client) { return queue_.must_yield(client); },
-        [this] { return is_stopping_.load(); }));
+    bool is_owned = false;
+    try {
+      auto connection = std::make_unique<Connection>(
+          socket, options_.limits,
+          [this](const std::string& client) { return queue_.must_yield(client); },
+          [this] { return is_stopping_.load(); });
+      is_owned = true;
+      queue_.accept(std::move(connection));
+    } catch (const std::exception&) {
+      if (!is_owned)
+        ::close(socket);
+      return false;
+    }
     return true;
   }
 
   void work() {
     while (std::unique_ptr<Connection> connection = queue_.next()) {
-      if (serve_request(*connection)) {
+      if (serve_request_guarded(*connection)) {
         queue_.return_connection(std::move(connection));
       } else {
         connection->finish();
         queue_.close_connection(std::move(connection));
       }
+    }
+  }
+
+  /// Where memory runs out the connection ends, and the server goes on.
+  bool serve_request_guarded(Connection& connection) {
+    try {
+      return serve_request(connection);
+    } catch (const std::exception&) {
+      return false;
     }
   }
 

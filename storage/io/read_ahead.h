@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -45,8 +46,7 @@ class ReadAhead {
     std::erase_if(items_, [](const Item& item) { return item.state == State::waiting; });
     for (Key& key : keys)
       items_.push_back({std::move(key)});
-    while (workers_.size() < std::min(threads_, items_.size()))
-      workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    add_workers();
     changed_.notify_all();
   }
 
@@ -120,6 +120,16 @@ class ReadAhead {
     item.state = State::there;
     spent_ += item.cost;
     changed_.notify_all();
+  }
+
+  /// As many as are of use, and to be had: who asks for what nobody has begun loads it.
+  void add_workers() {
+    try {
+      while (workers_.size() < std::min(threads_, items_.size()))
+        workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    } catch (const std::system_error&) {
+      threads_ = workers_.size();
+    }
   }
 
   typename Items::iterator next_waiting() {
