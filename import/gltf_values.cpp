@@ -56,8 +56,7 @@ void GltfValues::add(const mesh_io::GltfDocument& document,
 }
 
 bool GltfValues::is_label(const std::string& name, ValueType type) const {
-  const bool is_feature = name.starts_with("FEATURE_ID_") || name == "BATCHID";
-  return choice_.is_label(name, type) || (!choice_.labels && is_feature);
+  return choice_.is_label(name, type) || (!choice_.labels && is_feature_name(name));
 }
 
 std::vector<GltfValue> GltfValues::values() const {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::importing {
@@ -19,6 +20,11 @@ struct GltfValue {
   std::string source;           ///< "_QUALITY"
   std::uint32_t component = 0;  ///< of its elements
 };
+
+/// Of attributes of glTF, without what marks them as an application's: ids of features.
+inline bool is_feature_name(std::string_view name) {
+  return name.starts_with("FEATURE_ID_") || name == "BATCHID";
+}
 
 /// Collects the attributes of applications that primitives have.
 class GltfValues {

@@ -10,6 +10,7 @@
 #include "import/place_vertices.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
+#include "import/stl_import.h"
 #include "import/text_blocks.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
@@ -18,8 +19,7 @@
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
-#include "mesh_io/stl_block.h"
-#include "mesh_io/stl_reader.h"
+#include "mesh_io/unpadded_stream.h"
 #include "storage/io/file_checksum.h"
 
 #include <algorithm>
@@ -93,13 +93,10 @@ class Import {
 
   void count(std::string_view name, std::uint64_t count) { add_count(facts_.counts, name, count); }
 
-  void count(const mesh_io::ZeroedCounts& zeroed) {
-    for (const SourceCount& one : source_counts(zeroed))
-      count(one.name, one.count);
-  }
-
-  void count(const mesh_io::PolygonCounts& polygons) {
-    for (const SourceCount& one : source_counts(polygons))
+  /// Whatever source_counts() knows.
+  template <class Counts>
+  void count(const Counts& counts) {
+    for (const SourceCount& one : source_counts(counts))
       count(one.name, one.count);
   }
 
@@ -116,6 +113,16 @@ class Import {
         });
     read(*stream);
     checksums_.push_back(checksum.complete(*file, [this] { env_.cancel.check(); }));
+  }
+
+  /// The same of a text.
+  template <class Read>
+  void read_text(const InputFileFacts& facts, const Read& read) {
+    read_stream(facts, [&](InputStream& stream) {
+      mesh_io::UnpaddedStream text(stream);
+      read(text);
+      count(mesh_io::OddSyntax{.bytes_behind = text.padding()});
+    });
   }
 
   /// When all is read. Pictures are read for their checksums, which is little beside decoding them.
@@ -177,18 +184,19 @@ class Import {
         added = add_ply(facts, ply.path());
         break;
       case MeshKind::obj:
-        read_stream(facts, [&](InputStream& stream) { added = add_obj(stream, facts.path); });
+        read_text(facts, [&](InputStream& stream) { added = add_obj(stream, facts.path); });
         break;
       case MeshKind::stl_binary:
-        read_stream(facts,
-                    [&](InputStream& stream) { added = add_stl<Vec3f>(stream, facts.path); });
+        read_stream(facts, [&](InputStream& stream) {
+          added = add_stl(StlForm::binary, stream, facts.path);
+        });
         break;
       case MeshKind::stl_text:
-        read_stream(facts,
-                    [&](InputStream& stream) { added = add_stl<Vec3d>(stream, facts.path); });
+        read_text(facts,
+                  [&](InputStream& stream) { added = add_stl(StlForm::text, stream, facts.path); });
         break;
       case MeshKind::off:
-        read_stream(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
+        read_text(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
         break;
       case MeshKind::tileset:  // its tiles are the files
         throw Error(ErrorCode::internal, facts.path.string() + " is a tileset");
@@ -230,7 +238,7 @@ class Import {
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
       const auto source = open_ply(input_.system().open(facts.path));
-      const Added added = add_plain_ply(*source, facts.path);
+      const Added added = add_open_ply(*source, facts.path);
       checksums_.push_back(source->checksum([this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
       return added;
@@ -238,7 +246,13 @@ class Import {
     TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
     unpack(facts, unpacked);
     const auto source = open_ply(mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
-    return add_plain_ply(*source, facts.path);
+    return add_open_ply(*source, facts.path);
+  }
+
+  Added add_open_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
+    Added added = add_plain_ply(source, path);
+    count(source.odd_syntax());
+    return added;
   }
 
   Added add_cornered_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
@@ -366,7 +380,15 @@ class Import {
     count("undefined_materials", import.undefined_materials);
     count("ignored_alpha_images", import.other_alphas);
     count("ignored_polypaint", import.ignored_polypaint);
+    count("libraries_with_colours_of_bytes", import.byte_libraries);
+    if (import.byte_libraries > 0) {
+      env_.progress.warn(mesh_io::file_message(
+          path,
+          "the colours (Kd) of its materials are whole numbers up to 255: they are taken for "
+          "bytes"));
+    }
     count(counts.zeroed);
+    count(counts.odd);
     count("groups", counts.groups);
     count("objects", counts.objects);
     count("material_uses", counts.materials);
@@ -378,38 +400,22 @@ class Import {
             import.material_colours, import.is_painted, counts.unplaced};
   }
 
-  /// Binary files hold floats.
-  template <class Point>
-  Added add_stl(InputStream& stream, const std::filesystem::path& path) {
-    storage::RecordSpool<Point> corners(env_.scratch, kImportSpoolBytes);
-    const auto take = [&](std::span<const mesh_io::SoupTriangle> triangles) {
-      for (const mesh_io::SoupTriangle& triangle : triangles) {
-        for (const Vec3d& p : triangle) {
-          if constexpr (std::is_same_v<Point, Vec3f>)
-            corners.append(to_float(p));
-          else
-            corners.append(p);
-        }
-      }
-    };
-    const mesh_io::StlCounts counts = std::is_same_v<Point, Vec3f>
-                                          ? mesh_io::read_binary_stl(stream, path, take)
-                                          : read_text_stl(stream, path, take);
-    const WeldCounts welded = weld_soup(corners, mesh_, room_);
+  Added add_stl(StlForm form, InputStream& stream, const std::filesystem::path& path) {
+    const StlImport import = import_stl(form, stream, path, mesh_, room_);
     checked_base(path, 0);
-    count("welded_corners", welded.merged);
+    const mesh_io::StlCounts& counts = import.counts;
+    count("welded_corners", import.welded_corners);
     count("ignored_facet_normals", counts.facets);
-    count("ignored_facet_attributes", counts.attributes);
+    count("ignored_facet_attributes", import.ignored_attributes);
     count("ignored_bytes_behind", counts.bytes_behind);
-    return {{}, counts.fits_float, counts.facets, welded.degenerate_triangles};
-  }
-
-  mesh_io::StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
-                                   const mesh_io::SoupVisitor& visit) const {
-    mesh_io::StlTextReader reader(path, visit);
-    return read_text_blocks<mesh_io::StlBlock>(mesh_io::LineBlocks(stream, mesh_io::whole_facets),
-                                               mesh_io::kStlBlockBytes, mesh_io::parse_facets,
-                                               reader, room_);
+    count(kFacesMadeWhite, import.white_facets);
+    count("dropped_facets", counts.dropped.count);
+    count(counts.odd);
+    if (counts.dropped.count > 0) {
+      env_.progress.warn(fmt::format("{}: {} left out", counts.dropped.first,
+                                     counted(counts.dropped.count, "such facets")));
+    }
+    return {import.layout, counts.fits_float, counts.facets, import.degenerate_triangles};
   }
 
   Added add_off(InputStream& stream, const std::filesystem::path& path) {
@@ -420,7 +426,7 @@ class Import {
     count(counts.faces.polygons);
     count("ignored_face_colours", import.ignored_colours);
     count(kFacesMadeWhite, import.white_faces);
-    count("ignored_lines_behind", counts.lines_behind);
+    count(counts.odd);
     count(counts.zeroed);
     return {.layout = import.layout,
             .fits_float = counts.fits_float,
@@ -442,7 +448,14 @@ class Import {
 
   RawMesh& place() {
     placed_.emplace(env_.scratch);
-    count(kDroppedUnplaced, drop_unplaced(mesh_, *placed_, unplaced_.first, room_));
+    const DroppedUnplaced dropped = drop_unplaced(mesh_, *placed_, unplaced_.first, room_);
+    count(kDroppedUnplaced, dropped.vertices);
+    count("dropped_unplaced_triangles", dropped.triangles);
+    if (dropped.triangles > 0) {
+      env_.progress.warn(fmt::format("{}; {} left out, which {} such vertices", unplaced_.first,
+                                     counted(dropped.triangles, "triangles"),
+                                     dropped.triangles == 1 ? "uses" : "use"));
+    }
     return *placed_;
   }
 

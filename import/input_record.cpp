@@ -78,17 +78,27 @@ void add_count(std::vector<SourceCount>& counts, std::string_view name, std::uin
 std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons) {
   std::vector<SourceCount> counts{{"concave_polygons", polygons.concave},
                                   {"crossed_polygons", polygons.crossed},
-                                  {"unchecked_polygons", polygons.large}};
+                                  {"unchecked_polygons", polygons.unchecked}};
   std::erase_if(counts, [](const SourceCount& one) { return one.count == 0; });
   return counts;
 }
 
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed) {
   std::vector<SourceCount> counts;
-  if (zeroed.normals > 0)
-    counts.push_back({std::string(kZeroedNormals), zeroed.normals});
-  if (zeroed.texcoords > 0)
-    counts.push_back({std::string(kZeroedTexcoords), zeroed.texcoords});
+  add_count(counts, kZeroedNormals, zeroed.normals);
+  add_count(counts, kRounded, zeroed.rounded);
+  add_count(counts, kZeroedTexcoords, zeroed.texcoords);
+  return counts;
+}
+
+std::vector<SourceCount> source_counts(const mesh_io::OddSyntax& odd) {
+  std::vector<SourceCount> counts;
+  add_count(counts, "ignored_bytes_behind", odd.bytes_behind);
+  add_count(counts, "ignored_lines_behind", odd.lines_behind);
+  add_count(counts, "integers_written_as_floats", odd.integers);
+  add_count(counts, "odd_header_lines", odd.header_lines);
+  add_count(counts, kRounded, odd.rounded);
+  add_count(counts, "rows_over_several_lines", odd.broken_rows);
   return counts;
 }
 

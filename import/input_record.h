@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "mesh_io/odd_syntax.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
@@ -72,18 +73,21 @@ inline constexpr std::string_view kMadeWhite = "vertices_made_white";
 inline constexpr std::string_view kFacesMadeWhite = "faces_made_white";
 /// Vertices that show no picture, and whose colour is not seen either, as others have both.
 inline constexpr std::string_view kHiddenColours = "vertices_with_hidden_colours";
-/// Vertices that no triangle uses, of which a coordinate is not finite.
+/// Vertices of which a coordinate is not finite.
 inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 
 /// SourceCounts of normals and texture coordinates that were no numbers.
 inline constexpr std::string_view kZeroedNormals = "normals_made_zero";
 inline constexpr std::string_view kZeroedTexcoords = "texcoords_made_zero";
+/// Of 64 bits, to doubles.
+inline constexpr std::string_view kRounded = "rounded_integers";
 
 /// Adds to the count of that name, which is made if there is none; nothing if `count` is 0.
 void add_count(std::vector<SourceCount>& counts, std::string_view name, std::uint64_t count);
 
 /// Those that are not 0, by name.
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed);
+std::vector<SourceCount> source_counts(const mesh_io::OddSyntax& odd);
 /// The same of polygons.
 std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons);
 

@@ -54,6 +54,7 @@ class LibraryReader {
         companions_(companions),
         cancel_(cancel) {
     read_.materials.resize(names.all().size());
+    ranks_.resize(names.all().size(), UINT64_MAX);
     for (std::size_t i = 0; i < names.all().size(); ++i) {
       const auto& name = names.all()[i].name;
       if (!name)
@@ -65,8 +66,8 @@ class LibraryReader {
   }
 
   Libraries read(const std::vector<std::string>& statements) {
-    for (const std::string& statement : statements)
-      read_statement(statement);
+    for (statement_ = 0; statement_ < statements.size(); ++statement_)
+      read_statement(statements[statement_]);
     use_other_cases();
     if (has_undefined())
       read_namesake();
@@ -172,28 +173,46 @@ class LibraryReader {
                                            "{}",
                                            kMostLibraryBytes, file->size()));
     }
-    const auto stream =
-        mesh_io::open_stream({*file, file->size()}, [this](std::uint64_t) { cancel_.check(); });
-    mesh_io::read_mtl(*stream, path,
-                      [&](const mesh_io::MtlMaterial& material) { define(material, path); });
+    mesh_io::MtlColours colours;
+    read_materials(*file, path, [&](const auto& material) { colours.add(material); });
+    read_.of_bytes += colours.are_bytes() ? 1 : 0;
+    read_materials(*file, path, [&](const auto& material) { define(material, colours, path); });
   }
 
-  void define(const mesh_io::MtlMaterial& read, const fs::path& library) {
+  template <class Visit>
+  void read_materials(const storage::File& file, const fs::path& path, const Visit& visit) const {
+    const auto stream =
+        mesh_io::open_stream({file, file.size()}, [this](std::uint64_t) { cancel_.check(); });
+    mesh_io::read_mtl(*stream, path, visit);
+  }
+
+  /// Least for the definition that a use means.
+  std::uint64_t rank_of(const MaterialNames::Use& use) const {
+    const std::uint64_t libraries = names_.libraries().size();
+    const bool is_before = use.library != MaterialNames::kNoLibrary && statement_ <= use.library;
+    return is_before ? use.library - statement_ : libraries + statement_;
+  }
+
+  void define(const mesh_io::MtlMaterial& read, const mesh_io::MtlColours& colours,
+              const fs::path& library) {
     const bool is_first = defined_.size() < 2 && defined_.insert(read.name).second;
     if (is_first && defined_.size() == 1)
-      only_ = made_of(read, library);
-    define_loosely(read, library);
+      only_ = made_of(read, colours, library);
+    define_loosely(read, colours, library);
     const auto wanted = wanted_.find(read.name);
     if (wanted == wanted_.end())
       return;
     for (const std::size_t number : wanted->second) {
-      LibraryMaterial& material = read_.materials[number];
-      if (!material.is_defined)
-        material = made_of(read, library);
+      const std::uint64_t rank = rank_of(names_.all()[number]);
+      if (rank >= ranks_[number])
+        continue;
+      ranks_[number] = rank;
+      read_.materials[number] = made_of(read, colours, library);
     }
   }
 
-  void define_loosely(const mesh_io::MtlMaterial& read, const fs::path& library) {
+  void define_loosely(const mesh_io::MtlMaterial& read, const mesh_io::MtlColours& colours,
+                      const fs::path& library) {
     const auto found = loose_.find(small_letters(read.name));
     if (found == loose_.end())
       return;
@@ -201,15 +220,16 @@ class LibraryReader {
     if (loose.material)
       loose.is_clear = loose.is_clear && loose.material->material.name == read.name;
     else
-      loose.material = made_of(read, library);
+      loose.material = made_of(read, colours, library);
   }
 
-  static LibraryMaterial made_of(const mesh_io::MtlMaterial& read, const fs::path& library) {
+  static LibraryMaterial made_of(const mesh_io::MtlMaterial& read,
+                                 const mesh_io::MtlColours& colours, const fs::path& library) {
     LibraryMaterial made;
     made.is_defined = true;
     made.defined_in = library;
     made.map = read.picture;
-    const auto& [red, green, blue] = read.colour;
+    const auto [red, green, blue] = colours.shown(read);
     made.material.name = read.name;
     made.material.colour = {red, green, blue, read.opacity};
     if (read.picture && read.picture->clamp)
@@ -232,6 +252,8 @@ class LibraryReader {
   std::map<std::string, Loose> loose_;                      ///< what is wanted, in small letters
   std::set<std::string> defined_;                           ///< names, two at most
   std::optional<LibraryMaterial> only_;
+  std::uint64_t statement_ = 0;       ///< whose files are read
+  std::vector<std::uint64_t> ranks_;  ///< of what each use means so far
   std::set<fs::path> done_;
   Libraries read_;
 };
@@ -248,7 +270,10 @@ void MaterialNames::limit(std::size_t count, std::size_t more_bytes) {
 }
 
 void MaterialNames::add_libraries(const std::string& statement) {
-  if (!known_libraries_.insert(statement).second)
+  const auto next = static_cast<std::uint32_t>(libraries_.size());
+  const auto [known, is_new] = known_libraries_.emplace(statement, next);
+  library_ = known->second;
+  if (!is_new)
     return;
   limit(libraries_.size(), statement.size());
   libraries_.push_back(statement);
@@ -259,8 +284,8 @@ std::uint32_t MaterialNames::use(bool has_texcoords) {
     const auto next = static_cast<std::uint32_t>(uses_.size());
     const auto [known, is_new] = numbers_.emplace(current_, next);
     if (is_new) {
-      limit(uses_.size(), current_ ? current_->size() : 0);
-      uses_.push_back({current_});
+      limit(uses_.size(), current_.first ? current_.first->size() : 0);
+      uses_.push_back({current_.first, current_.second});
     }
     number_ = known->second;
   }

@@ -32,19 +32,21 @@ class MaterialNames {
   void add_libraries(const std::string& statement);
   /// Different ones, in their order.
   const std::vector<std::string>& libraries() const { return libraries_; }
+  static constexpr std::uint32_t kNoLibrary = UINT32_MAX;
 
   /// Of the triangles from here on.
   void begin(std::string name) {
-    current_ = std::move(name);
+    current_ = {std::move(name), library_};
     number_.reset();
   }
-  /// Of one more triangle: the number of its name, by first use. A triangle before the first name
-  /// has one like any other.
+  /// Of one more triangle: the number of its name behind this library, by first use. A triangle
+  /// before the first name has one like any other.
   std::uint32_t use(bool has_texcoords);
 
   struct Use {
     std::optional<std::string> name;
-    bool has_texcoords = false;  ///< of a triangle at least
+    std::uint32_t library = kNoLibrary;  ///< the last one that was named before the name
+    bool has_texcoords = false;          ///< of a triangle at least
   };
   const std::vector<Use>& all() const { return uses_; }
   /// A triangle has a name, or a statement one of a library.
@@ -59,10 +61,13 @@ class MaterialNames {
   std::filesystem::path obj_;
   std::size_t bytes_ = 0;
   std::vector<std::string> libraries_;
-  std::set<std::string> known_libraries_;
-  std::optional<std::string> current_;
+  std::map<std::string, std::uint32_t> known_libraries_;
+  /// A name, and the number of the library before it.
+  using Named = std::pair<std::optional<std::string>, std::uint32_t>;
+  std::uint32_t library_ = kNoLibrary;
+  Named current_{std::nullopt, kNoLibrary};
   std::optional<std::uint32_t> number_;  ///< of current_, once it was used
-  std::map<std::optional<std::string>, std::uint32_t> numbers_;
+  std::map<Named, std::uint32_t> numbers_;
   std::vector<Use> uses_;
 };
 
@@ -85,13 +90,16 @@ struct Libraries {
   std::size_t defined = 0;                 ///< names that the libraries define
   std::uint64_t missing = 0;               ///< libraries that are not there
   std::string first_missing;               ///< as the file names it
+  std::uint64_t of_bytes = 0;              ///< libraries whose colours are (mesh_io::MtlColours)
 };
 
 /// Reads the libraries that an OBJ file names, and if materials are not defined then, the one
-/// beside it that has its name. The first definition of a name counts; one that nobody defines is
-/// that whose name differs by the case of letters alone, if there is one such. If no triangle has a
-/// name and the libraries define one material alone, all have that. Throws as mesh_io::read_mtl,
-/// and Error(input) if a library is too large. `companions` gets the libraries.
+/// beside it that has its name. Of several definitions of a name the one counts whose library was
+/// the last to be named before the name, else before that one, else the first behind it; of one
+/// statement the first. One that nobody defines is that whose name differs by the case of letters
+/// alone, if there is one such. If no triangle has a name and the libraries define one material
+/// alone, all have that. Throws as mesh_io::read_mtl, and Error(input) if a library is too large.
+/// `companions` gets the libraries.
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
                          Companions& companions, const execution::CancelToken& cancel);
 

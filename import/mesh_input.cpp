@@ -2,9 +2,11 @@
 
 #include "execution/parallel.h"
 #include "import/find_copies.h"
+#include "import/gltf_values.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/renamed_file.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace meshhier::importing {
@@ -66,6 +68,14 @@ void MeshInput::recall(const mesh_io::MeshDescription& found) {
   if (needs_import())
     description_ = found;
   description_.place_count = found.place_count;
+}
+
+bool MeshInput::is_sure_label(const std::string& name) const {
+  const auto is_gltf = [](const InputFileFacts& file) {
+    return mesh_io::is_gltf(file.format.kind);
+  };
+  return facts_.label_names.contains(name) ||
+         (is_feature_name(name) && std::ranges::any_of(input_.all(), is_gltf));
 }
 
 void MeshInput::drop() {

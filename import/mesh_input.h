@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace meshhier::importing {
 
@@ -61,6 +62,9 @@ class MeshInput {
   std::unique_ptr<mesh_io::MeshSource> open();
   /// What AttributeLayout::material of the description numbers; empty if it was recalled.
   const images::MaterialList& materials() const { return facts_.materials; }
+  /// Whether an attribute is a label whatever its values are: the input has names for these, or
+  /// says that they are features of a glTF.
+  bool is_sure_label(const std::string& name) const;
   /// Adds what the PLY does not say.
   void complete(SourceSummary& summary) const { facts_.complete(summary); }
   /// Of the files; `checksum`: of a mesh that is read in place.

@@ -15,6 +15,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -262,10 +264,13 @@ std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& im
   Libraries libraries =
       read_libraries(parts.names, files, mesh.materials.companions(), room.cancel);
   import.missing_libraries = libraries.missing;
+  import.byte_libraries = libraries.of_bytes;
   const std::vector<MaterialNames::Use>& uses = parts.names.all();
+  std::set<std::string> undefined;
   for (std::size_t i = 0; i < uses.size(); ++i) {
     const LibraryMaterial& material = libraries.materials[i];
-    const bool is_undefined = uses[i].name && !material.is_defined;
+    const bool is_undefined =
+        uses[i].name && !material.is_defined && undefined.insert(*uses[i].name).second;
     import.undefined_materials += is_undefined ? 1 : 0;
     if (is_undefined && libraries.missing == 0 && is_name(*uses[i].name))
       mesh.materials.miss_material(*uses[i].name, parts.names.obj());

@@ -26,6 +26,7 @@ struct ObjImport {
   std::uint64_t missing_libraries = 0;    ///< that a file names whose materials are looked for
   std::uint64_t ignored_polypaint = 0;    ///< colours of #MRGB that are not one a vertex
   std::uint64_t undefined_materials = 0;  ///< likewise; they are white
+  std::uint64_t byte_libraries = 0;       ///< whose colours are numbers up to 255
   std::uint64_t other_alphas = 0;  ///< materials whose map_d is another picture than map_Kd: unused
 };
 

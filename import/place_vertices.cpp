@@ -51,23 +51,27 @@ void count_unplaced(const mesh_io::VertexBlock& block, const std::filesystem::pa
   std::ranges::for_each(block.exact, count);
 }
 
-std::uint64_t drop_unplaced(RawMesh& mesh, RawMesh& placed, const std::string& first,
-                            const ImportRoom& room) {
+DroppedUnplaced drop_unplaced(RawMesh& mesh, RawMesh& placed, const std::string& first,
+                              const ImportRoom& room) {
   placed.layout = mesh.layout;
   placed.fits_float = mesh.fits_float;
   storage::RecordSpool<std::uint32_t> numbers(room.scratch, kImportSpoolBytes);
   move_vertices(mesh, placed, numbers, room);
   mesh.positions.clear();
   mesh.attributes.clear();
+  DroppedUnplaced dropped{.vertices = numbers.size() - placed.vertex_count()};
   renumber_triangles(mesh.triangles, numbers, room, [&](const Triangle<std::uint32_t>& t) {
-    if (std::ranges::find(t, kDropped) != t.end()) {
-      throw Error(ErrorCode::input,
-                  first + "; that is so of vertices that faces use, so the mesh cannot be built");
-    }
-    placed.triangles.append(t);
+    const bool is_placed = std::ranges::find(t, kDropped) == t.end();
+    dropped.triangles += is_placed ? 0 : 1;
+    if (is_placed)
+      placed.triangles.append(t);
   });
   mesh.triangles.clear();
-  return numbers.size() - placed.vertex_count();
+  if (dropped.triangles > placed.triangles.size()) {
+    throw Error(ErrorCode::input,
+                first + "; most triangles use such vertices, so the mesh cannot be built");
+  }
+  return dropped;
 }
 
 }  // namespace meshhier::importing

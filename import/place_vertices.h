@@ -14,11 +14,16 @@ namespace meshhier::importing {
 void count_unplaced(const mesh_io::VertexBlock& block, const std::filesystem::path& path,
                     mesh_io::UnplacedVertices& unplaced);
 
-/// Fills `placed` with `mesh`, whose spools are cleared, without the vertices that have no place.
-/// The order of vertices stays, and that of triangles but for those that wait for a part of a large
-/// table. Returns how many vertices went. Throws Error(input) if a triangle uses one of them;
-/// `first`: UnplacedVertices::first, for the message. O(n).
-std::uint64_t drop_unplaced(RawMesh& mesh, RawMesh& placed, const std::string& first,
-                            const ImportRoom& room);
+struct DroppedUnplaced {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;  ///< that use one of them
+};
+
+/// Fills `placed` with `mesh`, whose spools are cleared, without the vertices that have no place
+/// and the triangles that use one. The order of vertices stays, and that of triangles but for those
+/// that wait for a part of a large table. Throws Error(input) if most triangles go; `first`:
+/// UnplacedVertices::first, for the message. O(n).
+DroppedUnplaced drop_unplaced(RawMesh& mesh, RawMesh& placed, const std::string& first,
+                              const ImportRoom& room);
 
 }  // namespace meshhier::importing

@@ -6,7 +6,7 @@
 #include "partition/external_sort.h"
 
 #include <bit>
-#include <type_traits>
+#include <optional>
 
 namespace meshhier::importing {
 namespace {
@@ -171,11 +171,23 @@ std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
 
 }  // namespace
 
-template <class Scalar>
-WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners, RawMesh& mesh,
-                     const ImportRoom& room) {
-  constexpr std::size_t kWords = 3 * sizeof(Scalar) / sizeof(std::uint32_t);
+namespace {
+
+std::uint32_t number_of(const FacetColour& colour) {
+  return std::uint32_t{colour[0]} << 16 | std::uint32_t{colour[1]} << 8 | colour[2];
+}
+
+/// A number below 2^24 is exact as a float, which a word holds.
+template <std::size_t Words, class Scalar>
+WeldCounts weld_soup_of(const storage::RecordSpool<Vec3<Scalar>>& corners,
+                        const storage::RecordSpool<FacetColour>* colours, RawMesh& mesh,
+                        const ImportRoom& room) {
   execution::SpoolCursor items(corners, room.cancel), kept(corners, room.cancel);
+  std::optional<execution::SpoolCursor<FacetColour>> item_colours, kept_colours;
+  if (colours != nullptr) {
+    item_colours.emplace(*colours, room.cancel);
+    kept_colours.emplace(*colours, room.cancel);
+  }
   const std::uint64_t base = mesh.vertex_count();
   WeldCounts counts;
   Triangle<std::uint32_t> triangle{};
@@ -190,24 +202,45 @@ WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners, RawMesh&
     else
       mesh.triangles.append(triangle);
   };
-  const std::uint64_t stay = number_equals<kWords>(
+  const std::uint64_t stay = number_equals<Words>(
       corners.size(),
-      [&](std::uint64_t i, ItemBits<kWords>& bits) {
+      [&](std::uint64_t i, ItemBits<Words>& bits) {
         const Vec3<Scalar>& p = items.at(i);
         for (int axis = 0; axis < 3; ++axis)
           bits.add(p[axis]);
+        if (item_colours)
+          bits.add(static_cast<float>(number_of(item_colours->at(i / 3))));
       },
       [&](std::uint64_t i) {
         const Vec3<Scalar>& p = kept.at(i);
         mesh.positions.append({double{p.x}, double{p.y}, double{p.z}});
+        if (!kept_colours)
+          return;
+        for (const std::uint8_t part : kept_colours->at(i / 3))
+          mesh.attributes.append(static_cast<float>(part));
       },
       take, room);
   counts.merged = corners.size() - stay;
   return counts;
 }
 
-template WeldCounts weld_soup(const storage::RecordSpool<Vec3f>&, RawMesh&, const ImportRoom&);
-template WeldCounts weld_soup(const storage::RecordSpool<Vec3d>&, RawMesh&, const ImportRoom&);
+}  // namespace
+
+template <class Scalar>
+WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners,
+                     const storage::RecordSpool<FacetColour>* colours, RawMesh& mesh,
+                     const ImportRoom& room) {
+  constexpr std::size_t kWords = 3 * sizeof(Scalar) / sizeof(std::uint32_t);
+  return colours == nullptr ? weld_soup_of<kWords>(corners, colours, mesh, room)
+                            : weld_soup_of<kWords + 1>(corners, colours, mesh, room);
+}
+
+template WeldCounts weld_soup(const storage::RecordSpool<Vec3f>&,
+                              const storage::RecordSpool<FacetColour>*, RawMesh&,
+                              const ImportRoom&);
+template WeldCounts weld_soup(const storage::RecordSpool<Vec3d>&,
+                              const storage::RecordSpool<FacetColour>*, RawMesh&,
+                              const ImportRoom&);
 
 WeldCounts weld_vertices(RawMesh& mesh, RawMesh& welded, const ImportRoom& room) {
   welded.layout = mesh.layout;

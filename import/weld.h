@@ -7,6 +7,7 @@
 
 #include "import/raw_mesh.h"
 
+#include <array>
 #include <cstdint>
 
 namespace meshhier::importing {
@@ -16,11 +17,16 @@ struct WeldCounts {
   std::uint64_t degenerate_triangles = 0;  ///< dropped: two corners became one
 };
 
+/// Red, green and blue, from 0 to 255.
+using FacetColour = std::array<std::uint8_t, 3>;
+
 /// Appends the triangles of a soup to `mesh`: `corners` are three a triangle. Corners of equal
-/// coordinates are one vertex (-0 equals 0; the first one's bits stay); vertices are numbered by
+/// coordinates, and of equal colours if each triangle has one, which vertices have then, are one
+/// vertex (-0 equals 0; the first one's bits stay); vertices are numbered by
 /// first appearance. Deterministic. Throws Error(input) if there are 2^32 vertices or more.
 template <class Scalar>
-WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners, RawMesh& mesh,
+WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners,
+                     const storage::RecordSpool<FacetColour>* colours, RawMesh& mesh,
                      const ImportRoom& room);
 
 /// Fills `welded` with `mesh`, whose spools are cleared: vertices of equal position and equal

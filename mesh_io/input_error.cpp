@@ -42,4 +42,11 @@ std::string in_quotes(std::string_view text) {
   return shown + (text.size() > kShownBytes ? "...'" : "'");
 }
 
+std::string number_in_quotes(std::string_view word) {
+  const bool has_comma = word.find(',') != std::string_view::npos;
+  return in_quotes(word) + (has_comma ? " (numbers have a decimal point, not a comma; write them "
+                                        "again with points)"
+                                      : "");
+}
+
 }  // namespace meshhier::mesh_io

@@ -24,5 +24,7 @@ std::string line_message(const std::filesystem::path& path, std::uint64_t line,
 
 /// Text of a file made fit for a message: in quotes, at most 40 bytes, '?' for what is not ASCII.
 std::string in_quotes(std::string_view text);
+/// The same of what should be a number; says so if it has a decimal comma.
+std::string number_in_quotes(std::string_view word);
 
 }  // namespace meshhier::mesh_io

@@ -210,17 +210,10 @@ void VertexBlocks::flush() {
 }
 
 void TriangleBlocks::add_polygon_corner(std::uint32_t corner) {
-  if (place_of_ == nullptr || corner_count_ > PolygonCut::kMostCorners)
+  if (place_of_ == nullptr)
     return add_fan_corner(corner);
   corners_.push_back(corner);
   ++corner_count_;
-  if (corner_count_ > PolygonCut::kMostCorners) {
-    ++counts_.polygons.large;
-    corner_count_ = 0;
-    for (const std::uint32_t known : corners_)
-      add_fan_corner(known);
-    corners_.clear();
-  }
 }
 
 void TriangleBlocks::add_fan_corner(std::uint32_t corner) {

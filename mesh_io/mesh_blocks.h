@@ -105,8 +105,7 @@ class TriangleBlocks {
     add(a, b, c);
   }
 
-  /// A polygon corner by corner, of any number: of a large one only the first and the last corner
-  /// are kept.
+  /// A polygon corner by corner, of any number without places, else of PolygonCut::kMostCorners.
   void begin_polygon() {
     corner_count_ = 0;
     corners_.clear();

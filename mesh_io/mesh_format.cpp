@@ -1,5 +1,6 @@
 #include "mesh_io/mesh_format.h"
 
+#include "hierarchy/small_letters.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
@@ -93,6 +94,23 @@ bool is_ply(std::string_view start) {
   return start.starts_with("ply") && start.size() > 3 && kBlanks.find(start[3]) != kBlanks.npos;
 }
 
+/// A PLY that does not begin at once, or in capitals: a line of the word alone.
+bool is_odd_ply(std::string_view start) {
+  start = without_byte_order_mark(start);
+  start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
+  const std::size_t end = start.find_first_of("\r\n");
+  const std::string_view line = start.substr(0, end);
+  return end != std::string_view::npos &&
+         small_letters(line.substr(0, line.find_last_not_of(kBlanks) + 1)) == "ply";
+}
+
+/// Of a text what is before the zeros that fill it up.
+std::string_view without_padding(std::string_view start) {
+  const std::string_view text = start.substr(0, start.find_last_not_of('\0') + 1);
+  const bool has_lines = text.find_first_of("\r\n") != std::string_view::npos;
+  return has_lines ? text : start;
+}
+
 /// An object of JSON that has what tiles have.
 bool is_tileset(std::string_view start) {
   start = without_byte_order_mark(start);
@@ -124,7 +142,7 @@ bool begins_as_gltf(std::string_view start) {
 }
 
 std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes, bool is_gzip) {
-  if (is_ply(start))
+  if (is_ply(start) || is_odd_ply(start))
     return MeshKind::ply;
   const auto size = stl_size(start);
   if (!is_gzip && size == file_bytes)
@@ -136,7 +154,7 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
     return MeshKind::tileset;
   if (begins_as_gltf(start))
     return MeshKind::gltf;
-  if (is_text(start)) {
+  if (is_text(without_padding(start))) {
     if (is_stl_keyword(word, "solid"))
       return MeshKind::stl_text;
     if (is_off_keyword(word))

@@ -8,6 +8,7 @@
 #include "hierarchy/vec.h"
 #include "mesh_io/attribute_choice.h"
 #include "mesh_io/block_runner.h"
+#include "mesh_io/odd_syntax.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
@@ -132,6 +133,9 @@ class MeshSource {
   virtual FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit,
                                          const BlockRunner& runner) = 0;
 
+  /// What was read although the format has it otherwise; known once all was read.
+  virtual OddSyntax odd_syntax() const = 0;
+
   /// The file's storage::FileChecksum: reads what of the file was not read so far. `check` is
   /// called before each read and may throw.
   virtual std::uint64_t checksum(const std::function<void()>& check) = 0;
@@ -148,7 +152,7 @@ class MeshSource {
 /// declares can fit into the file; nothing is sized by a count before that.
 ///
 /// PLY, ASCII and binary little and big endian: ply_header.h and ply_plan.h say what is read. In
-/// text a row is a line; in binary a line end may follow the data (ply_body.h). Coordinates and
+/// text a row begins a line; in binary a line end may follow the data (ply_body.h). Coordinates and
 /// colours that are not finite are errors, as no average or bound can be made of them; normals and
 /// texture coordinates become 0 (zeroed.h), and values stay as they are. Errors are also a negative
 /// list length, and an index that is no vertex's. read_triangles() also checks everything behind

@@ -118,23 +118,27 @@ class MtlReader {
     std::string_view rest = text;
     if (rest.starts_with("spectral") || rest.starts_with("xyz"))
       return;
-    std::array<float, 3>& colour = material_.colour;
+    std::array<float, 3>& colour = material_.colour.emplace();
     for (std::size_t i = 0; i < colour.size(); ++i, drop_head(rest)) {
       const bool is_missing = rest.empty() || rest.front() == '#';
       if (is_missing && i == 1) {
         colour[1] = colour[2] = colour[0];
         return;
       }
-      colour[i] = share_of(head_of(rest), "a colour");
+      colour[i] = static_cast<float>(number_of(head_of(rest), "a colour"));
     }
   }
 
   float share_of(std::string_view word, std::string_view what) const {
+    return static_cast<float>(std::clamp(number_of(word, what), 0.0, 1.0));
+  }
+
+  double number_of(std::string_view word, std::string_view what) const {
     const auto number = finite_number(word);
     if (!number)
       words_.fail("expected a finite number for " + std::string(what) + ", found " +
-                  in_quotes(word));
-    return static_cast<float>(std::clamp(*number, 0.0, 1.0));
+                  number_in_quotes(word));
+    return *number;
   }
 
   void read_opacity() {
@@ -209,6 +213,23 @@ class MtlReader {
 };
 
 }  // namespace
+
+void MtlColours::add(const MtlMaterial& material) {
+  if (!material.colour)
+    return;
+  for (const float number : *material.colour) {
+    all_whole_ = all_whole_ && number >= 0 && number <= 255 && number == std::floor(number);
+    most_ = std::max(most_, number);
+  }
+}
+
+std::array<float, 3> MtlColours::shown(const MtlMaterial& material) const {
+  std::array<float, 3> colour = material.colour.value_or(std::array<float, 3>{1, 1, 1});
+  const bool are_divided = material.colour && are_bytes();
+  for (float& number : colour)
+    number = std::clamp(are_divided ? number / 255 : number, 0.0F, 1.0F);
+  return colour;
+}
 
 void read_mtl(InputStream& stream, const std::filesystem::path& path,
               const std::function<void(const MtlMaterial&)>& visit) {

@@ -21,17 +21,32 @@ struct MtlMap {
 };
 
 struct MtlMaterial {
-  std::string name;                      ///< the rest of the line of newmtl; may be empty
-  std::array<float, 3> colour{1, 1, 1};  ///< Kd, 0 ... 1
-  float opacity = 1;                     ///< d, else 1 - Tr, up to 1; 1 if that is 0
-  std::optional<MtlMap> picture;         ///< map_Kd, else map_Ke, else map_Ka
-  std::optional<MtlMap> alpha;           ///< map_d
+  std::string name;                            ///< the rest of the line of newmtl; may be empty
+  std::optional<std::array<float, 3>> colour;  ///< Kd as it is, which a MtlColours reads
+  float opacity = 1;                           ///< d, else 1 - Tr, up to 1; 1 if that is 0
+  std::optional<MtlMap> picture;               ///< map_Kd, else map_Ke, else map_Ka
+  std::optional<MtlMap> alpha;                 ///< map_d
+};
+
+/// What the colours of a library are: numbers from 0 to 1, or bytes if all are whole numbers from 0
+/// to 255 of which some go beyond 2, as a few programs write them.
+class MtlColours {
+ public:
+  void add(const MtlMaterial& material);
+  /// Once all were added.
+  bool are_bytes() const { return all_whole_ && most_ > 2; }
+  /// From 0 to 1; white if it has none. What is beyond becomes 0 or 1.
+  std::array<float, 3> shown(const MtlMaterial& material) const;
+
+ private:
+  bool all_whole_ = true;
+  float most_ = 0;
 };
 
 /// Visits the materials of a library in their order. Reads
 ///
 ///   newmtl NAME                 NAME may have spaces
-///   Kd r [g b]                  numbers beyond 0 ... 1 become 0 or 1
+///   Kd r [g b]
 ///   d [-halo] a | Tr a
 ///   map_Kd [options] FILE       FILE may have spaces, and stand in quotes; without it map_Ke or
 ///                               map_Ka: some programs write nothing else

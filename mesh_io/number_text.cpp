@@ -115,6 +115,13 @@ std::optional<Scalar> parse_real(std::string_view word) {
   return value;
 }
 
+std::optional<std::int64_t> parse_whole(std::string_view word) {
+  constexpr double kMost = 9007199254740992;
+  const auto value = parse_real<double>(word);
+  const bool is_whole = value && *value == std::floor(*value) && std::abs(*value) <= kMost;
+  return is_whole ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt;
+}
+
 std::optional<DecimalNumber> parse_decimal(std::string_view word) {
   const auto value = parse_real<double>(word);
   if (!value)

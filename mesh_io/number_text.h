@@ -10,6 +10,9 @@ namespace meshhier::mesh_io {
 /// A decimal integer with an optional sign that fits int64; nothing else in `word`.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
+/// An integer that is written as a float: "3.0", of at most 2^53.
+std::optional<std::int64_t> parse_whole(std::string_view word);
+
 /// A decimal number with optional sign, fraction and exponent, or "inf" or "nan" in any case;
 /// nothing else in `word`. "-nan(ind)", "1.#QNAN" and the like of Windows are no numbers, too.
 /// Correctly rounded to `Scalar` (float or double); too large becomes infinite, too small zero.

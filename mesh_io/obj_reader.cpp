@@ -316,35 +316,16 @@ class ObjReader::Impl {
     visitor_.add_normal({normal[0], normal[1], normal[2]});
   }
 
-  /// Of a face with very many corners only the first and the last one are kept.
   void read_face() {
     corners_.clear();
-    std::uint64_t count = 0;
-    for (; words_.to_word(); ++count) {
-      if (corners_.size() > PolygonCut::kMostCorners) {
-        const ObjCorner corner = parse_corner(words_.take_word());
-        add({corners_.front(), corners_.back(), corner});
-        corners_.back() = corner;
-      } else {
-        corners_.push_back(parse_corner(words_.take_word()));
-        if (corners_.size() > PolygonCut::kMostCorners)
-          begin_large_face();
-      }
+    while (words_.to_word()) {
+      corners_.push_back(parse_corner(words_.take_word()));
+      if (corners_.size() > PolygonCut::kMostCorners)
+        words_.fail(PolygonCut::limit_text());
     }
     ++counts_.faces;
-    counts_.degenerate_triangles += count < 3 ? 1 : 0;
-    if (count <= PolygonCut::kMostCorners)
-      add_polygon();
-  }
-
-  void begin_large_face() {
-    ++counts_.polygons.large;
-    add_fan();
-  }
-
-  void add_fan() {
-    for (std::size_t i = 1; i + 1 < corners_.size(); ++i)
-      add({corners_[0], corners_[i], corners_[i + 1]});
+    counts_.degenerate_triangles += corners_.size() < 3 ? 1 : 0;
+    add_polygon();
   }
 
   void add_polygon() {
@@ -390,7 +371,11 @@ class ObjReader::Impl {
   }
 
   std::uint32_t resolve(std::string_view text, Kind& kind, std::string_view corner) {
-    const auto index = parse_integer(text);
+    auto index = parse_integer(text);
+    if (!index) {
+      index = parse_whole(text);
+      counts_.odd.integers += index ? 1 : 0;
+    }
     const auto count = static_cast<std::int64_t>(kind.count);
     constexpr auto kMost = static_cast<std::int64_t>(kMostElements);
     if (!index || *index == 0 || *index >= kMost || *index < -count) {

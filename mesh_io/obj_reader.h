@@ -4,6 +4,7 @@
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/obj_block.h"
+#include "mesh_io/odd_syntax.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/unplaced.h"
 #include "mesh_io/zeroed.h"
@@ -62,7 +63,7 @@ struct ObjCounts {
   std::uint64_t triangles = 0;
   std::uint64_t degenerate_triangles = 0;  ///< dropped: a position twice, or fewer than 3 corners
   std::uint64_t corners = 0;               ///< of the triangles
-  PolygonCounts polygons;  ///< large ones, and those before their vertices, are fans
+  PolygonCounts polygons;                  ///< those before their vertices are fans
   std::uint64_t textured_corners = 0;
   std::uint64_t normal_corners = 0;
   std::uint64_t groups = 0;            ///< statements g
@@ -74,6 +75,7 @@ struct ObjCounts {
   bool fits_float = true;              ///< all coordinates do (DecimalNumber)
   UnplacedVertices unplaced;           ///< are visited
   ZeroedCounts zeroed;                 ///< among normals and texcoords
+  OddSyntax odd;
 };
 
 /// Reads the blocks of a file, which were parsed apart from each other, in their order.

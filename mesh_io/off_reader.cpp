@@ -27,10 +27,11 @@ struct Keyword {
   bool colours = false;
   bool normals = false;
   bool more_dimensions = false;  ///< 4 or n
+  bool is_odd = false;           ///< in small letters
   std::string_view glued;        ///< digits right behind it: the count of vertices, as in ModelNet
 };
 
-Keyword parse_keyword(std::string_view word) {
+Keyword parse_capitals(std::string_view word) {
   Keyword keyword;
   const auto take = [&](std::string_view prefix) {
     const bool is_there = word.starts_with(prefix);
@@ -48,6 +49,20 @@ Keyword parse_keyword(std::string_view word) {
     keyword.is_off = word.find_first_not_of("0123456789") == std::string_view::npos;
   }
   return keyword;
+}
+
+/// Also in other letters, but for "noff", which may be NOFF or nOFF.
+Keyword parse_keyword(std::string_view word) {
+  const Keyword given = parse_capitals(word);
+  std::string capitals(word);
+  for (char& c : capitals)
+    c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  if (given.is_off || capitals.find('N') != std::string::npos)
+    return given;
+  Keyword odd = parse_capitals(capitals);
+  odd.glued = word.substr(word.size() - odd.glued.size());
+  odd.is_odd = true;
+  return odd;
 }
 
 bool is_byte_integer(std::string_view word) {
@@ -116,7 +131,7 @@ class OffReader {
     if (is_wrapped_ && words_.to_row())
       words_.fail("expected the end of the file behind the faces, found " +
                   in_quotes(words_.take_word()));
-    for (; words_.to_row(); ++counts_.lines_behind)
+    for (; words_.to_row(); ++counts_.odd.lines_behind)
       words_.skip_line();
     counts_.faces = blocks.finish();
     return counts_;
@@ -261,10 +276,23 @@ class OffReader {
         fail_truncated("the counts of vertices and faces");
       counts_.vertices = take_count("vertices", UINT32_MAX);
     }
+    const bool is_split = !words_.to_word() && words_.to_row();
     face_count_ = take_count("faces", UINT64_MAX >> 2);
+    const bool has_line_of_edges = !words_.to_word() && are_edges_next(is_split);
+    if (has_line_of_edges)
+      words_.to_row();
     if (words_.to_word())
       words_.take_word();  // edges, which nobody counts
     words_.expect_line_end();
+    counts_.odd.header_lines += (keyword.is_odd ? 1 : 0) + (is_split || has_line_of_edges ? 1 : 0);
+  }
+
+  /// Whether the next line is the count of edges: a number alone, in front of a vertex or behind
+  /// other counts alone.
+  bool are_edges_next(bool is_split) {
+    constexpr std::size_t kPosition = 3;
+    return words_.words_ahead(2, 1) == 1 &&
+           (is_split || words_.words_ahead(kPosition, 2) == kPosition);
   }
 
   [[noreturn]] void fail_truncated(const std::string& what) const {
@@ -318,7 +346,7 @@ class OffReader {
       const std::string_view word = words_.take_word();
       const auto value = parse_real<float>(word);
       if (!value)
-        words_.fail("expected a number for an attribute, found " + in_quotes(word));
+        words_.fail("expected a number for an attribute, found " + number_in_quotes(word));
       are_bytes[channel_count_] = is_byte_integer(word);
       channels_[channel_count_++] = *value;
     }
@@ -348,9 +376,11 @@ class OffReader {
     if (!words_.to_row())
       fail_truncated(fmt::format("face {} of {}", number, face_count_));
     const std::string_view length = words_.take_word();
-    const auto corners = parse_integer(length);
+    const auto corners = take_integer(length);
     if (!corners || *corners < 0)
       words_.fail("expected the number of a face's corners, found " + in_quotes(length));
+    if (static_cast<std::uint64_t>(*corners) > PolygonCut::kMostCorners)
+      words_.fail(PolygonCut::limit_text());
     if (number == 0 && !is_wrapped_)
       look_at_first_face(static_cast<std::uint64_t>(*corners));
     blocks.begin_polygon();
@@ -390,11 +420,19 @@ class OffReader {
       join_lines();
   }
 
+  std::optional<std::int64_t> take_integer(std::string_view word) {
+    if (const auto integer = parse_integer(word))
+      return integer;
+    const auto odd = parse_whole(word);
+    counts_.odd.integers += odd ? 1 : 0;
+    return odd;
+  }
+
   std::uint32_t take_corner(std::uint64_t face) {
     if (!words_.to_word())
       words_.fail(fmt::format("expected a corner of face {}, found the end of the line", face));
     const std::string_view word = words_.take_word();
-    const auto corner = parse_integer(word);
+    const auto corner = take_integer(word);
     if (!corner || *corner < 0 || static_cast<std::uint64_t>(*corner) >= counts_.vertices) {
       words_.fail(fmt::format("expected a vertex from 0 to {} in face {}, found {}",
                               static_cast<std::int64_t>(counts_.vertices) - 1, face,

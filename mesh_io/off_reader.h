@@ -7,6 +7,7 @@
 #include "mesh_io/input_stream.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/odd_syntax.h"
 #include "mesh_io/off_lines.h"
 #include "mesh_io/unplaced.h"
 
@@ -27,11 +28,11 @@ struct OffCounts {
   std::uint64_t vertices = 0;
   FaceCounts faces;
   std::uint64_t unknown_colours = 0;  ///< of faces: not three or four finite numbers
-  std::uint64_t lines_behind = 0;     ///< with words, behind the last face
   AttributeLayout attributes;  ///< colours are u8 if all are integers from 0 to 255, else f32
   bool fits_float = true;      ///< all coordinates do (DecimalNumber)
   UnplacedVertices unplaced;   ///< are visited
   ZeroedCounts zeroed;
+  OddSyntax odd;
 };
 
 /// One vertex; `attributes`: its channels in the order of AttributeLayout.
@@ -58,8 +59,9 @@ using OffFaceVisitor =
 /// Colours may also stand in a file whose first line does not say so: if the first vertex has three
 /// or four numbers behind its coordinates. If the first vertex of such a file has a line of
 /// fewer than three or more than seven numbers, or the first face a line that is too long for it
-/// and a colour, lines may end anywhere, there are no colours, and nothing may follow. What else
-/// lies behind the last face is counted. Corners are below the count of vertices, numbers finite.
+/// and a colour, lines may end anywhere, there are no colours, and nothing may follow. The keyword
+/// may be in small letters, but for "noff", and each count on a line of its own. What else lies
+/// behind the last face is counted. Corners are below the count of vertices, numbers finite.
 /// Files of four dimensions or in binary are refused. Throws Error(input) naming the line,
 /// Error(io).
 ///

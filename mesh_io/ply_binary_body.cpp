@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,7 @@ class BinaryBody final : public PlyBody {
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
+  OddSyntax take_odd() override { return std::exchange(odd_, {}); }
 
  private:
   struct Row {
@@ -53,10 +55,12 @@ class BinaryBody final : public PlyBody {
                  const Take& take);
   void take_property(const Row& row, std::size_t property, std::vector<double>& values);
   std::int64_t load_integer(PlyType type) const;
+  double load_number(PlyType type);
 
   ByteWindow window_;
   RowChecks checks_;
   std::uint64_t vertex_count_ = 0;
+  OddSyntax odd_;
 };
 
 /// Makes `bytes` (at most a buffer) available, or fails as truncated.
@@ -73,6 +77,8 @@ void BinaryBody<Swap>::require(const Row& row, const PlyProperty& property, std:
 /// Takes a list's length; the list fits into the rest of the file.
 template <bool Swap>
 std::uint64_t BinaryBody<Swap>::take_count(const Row& row, const PlyProperty& property) {
+  if (!property.count_type)
+    return property.fixed_count;
   const PlyType type = *property.count_type;
   require(row, property, size_of(type));
   const std::uint64_t offset = window_.offset();
@@ -135,9 +141,7 @@ void BinaryBody<Swap>::read_vertex_row(const Row& row, VertexBlocks& blocks) {
       continue;
     }
     require(row, property, size_of(property.type));
-    blocks.set(row.plan.slots[i], with_type(property.type, [&](auto zero) {
-                 return static_cast<double>(load<decltype(zero), Swap>(window_.begin()));
-               }));
+    blocks.set(row.plan.slots[i], load_number(property.type));
     window_.advance(size_of(property.type));
   }
   if (const auto bad = blocks.commit(checks_))
@@ -186,7 +190,10 @@ template <bool Swap>
 void BinaryBody<Swap>::take_corners(const Row& row, const PlyProperty& property,
                                     TriangleBlocks& blocks) {
   const bool strip = row.plan.role == Role::strips;
+  const std::uint64_t start = window_.offset();
   const std::uint64_t count = take_count(row, property);
+  if (!strip && count > PolygonCut::kMostCorners)
+    fail(start, PolygonCut::limit_text());
   strip ? blocks.begin_strip() : blocks.begin_polygon();
   take_list(row, property, count, [&] {
     const std::int64_t index = load_integer(property.type);
@@ -223,6 +230,15 @@ std::int64_t BinaryBody<Swap>::load_integer(PlyType type) const {
 }
 
 template <bool Swap>
+double BinaryBody<Swap>::load_number(PlyType type) {
+  return with_type(type, [&](auto zero) {
+    const auto value = load<decltype(zero), Swap>(window_.begin());
+    odd_.rounded += is_rounded(value) ? 1 : 0;
+    return static_cast<double>(value);
+  });
+}
+
+template <bool Swap>
 void BinaryBody<Swap>::read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) {
   PlyRow taken;
   taken.values.resize(plan.element.properties.size());
@@ -251,11 +267,7 @@ void BinaryBody<Swap>::take_property(const Row& row, std::size_t index,
   if (count > most_items(row.plan, index))
     fail(start, corners_text(row.plan, row.number, count));
   values.clear();
-  take_list(row, property, count, [&] {
-    values.push_back(with_type(property.type, [&](auto zero) {
-      return static_cast<double>(load<decltype(zero), Swap>(window_.begin()));
-    }));
-  });
+  take_list(row, property, count, [&] { values.push_back(load_number(property.type)); });
 }
 
 /// Some writers end every file with a line end, also behind zeros that fill up to a multiple of

@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "mesh_io/byte_window.h"
 #include "mesh_io/mesh_blocks.h"
+#include "mesh_io/odd_syntax.h"
 #include "mesh_io/ply_faces.h"
 #include "mesh_io/ply_plan.h"
 
@@ -38,15 +39,18 @@ class PlyBody {
   /// 2 * PlyFace::kMostCorners items, of corners half as many. Vertex indices of any value.
   virtual void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) = 0;
   /// Requires that nothing follows but one line end, perhaps behind up to two zeros (binary), or
-  /// blanks and blank lines (text).
+  /// lines of which none could be one more row of an element (text).
   virtual void expect_end() = 0;
+  /// What was odd since the last call.
+  virtual OddSyntax take_odd() = 0;
 };
 
 /// Both refer to the file and the plan. Memory: one ByteWindow.
 std::unique_ptr<PlyBody> make_binary_body(const InputFile& input, const PlyPlan& plan,
                                           PlyPosition start);
-/// One row is one line, as the format has it: rows that are longer or shorter than the header says
-/// are errors. Numbers that are not read are not looked at.
+/// A row begins a line, as the format has it, and may go on in the next ones; rows that are longer
+/// or shorter than the header says are errors. Integers may be written as floats. Numbers that are
+/// not read are not looked at.
 std::unique_ptr<PlyBody> make_text_body(const InputFile& input, const PlyPlan& plan,
                                         PlyPosition start);
 /// The one that the file has.

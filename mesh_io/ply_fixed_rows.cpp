@@ -50,6 +50,17 @@ void gather_column(PlyType type, const std::byte* from, std::size_t from_stride,
   });
 }
 
+template <bool Swap>
+std::uint64_t count_rounded(PlyType type, const std::byte* from, std::size_t stride,
+                            std::size_t rows) {
+  return with_type(type, [&](auto zero) {
+    std::uint64_t rounded = 0;
+    for (std::size_t i = 0; i < rows; ++i)
+      rounded += is_rounded(load<decltype(zero), Swap>(from + i * stride)) ? 1 : 0;
+    return rounded;
+  });
+}
+
 }  // namespace
 
 RowBlocks::RowBlocks(std::uint64_t offset, std::uint64_t stride, std::uint64_t rows)
@@ -117,7 +128,9 @@ bool PlyVertexBlocks::has_plain_positions() const {
   return !swapped_ && !mesh_.wide_coordinates;
 }
 
-void PlyVertexBlocks::decode(const std::byte* rows, std::size_t count, VertexRows& to) const {
+/// Returns how many numbers were rounded.
+std::uint64_t PlyVertexBlocks::decode(const std::byte* rows, std::size_t count,
+                                      VertexRows& to) const {
   const std::size_t stride = blocks_.stride();
   if (first_gathered_ == 3) {
     const VertexRows::Column column = to.column(0, 0);
@@ -129,12 +142,17 @@ void PlyVertexBlocks::decode(const std::byte* rows, std::size_t count, VertexRow
         std::memcpy(column.data + i * sizeof(Vec3f), from + i * stride, sizeof(Vec3f));
     }
   }
+  std::uint64_t rounded = 0;
   for (const Field& field : std::span(fields_).subspan(first_gathered_)) {
     const VertexRows::Column column = to.column(0, field.slot);
     const std::byte* from = rows + field.offset;
     swapped_ ? gather_column<true>(field.type, from, stride, column, count)
              : gather_column<false>(field.type, from, stride, column, count);
+    if (has_64_bits(field.type))
+      rounded += swapped_ ? count_rounded<true>(field.type, from, stride, count)
+                          : count_rounded<false>(field.type, from, stride, count);
   }
+  return rounded;
 }
 
 void PlyVertexBlocks::fail_truncated(const InputFile& input, std::uint64_t row) const {
@@ -169,8 +187,9 @@ VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
   if (block.rows == 0)
     fail_truncated(input, block.first);
   VertexRows rows(mesh_, block.rows, memory);
-  decode(bytes, block.rows, rows);
-  const ZeroedCounts zeroed = rows.zero_what_is_not_finite(0, block.rows);
+  const std::uint64_t rounded = decode(bytes, block.rows, rows);
+  ZeroedCounts zeroed = rows.zero_what_is_not_finite(0, block.rows);
+  zeroed.rounded = rounded;
   if (const auto bad = rows.find_defect(0, block.rows, plan_.checks)) {
     const auto field = std::find_if(fields_.begin(), fields_.end(),
                                     [&](const Field& f) { return f.slot == bad->slot; });

@@ -67,7 +67,7 @@ class PlyVertexBlocks {
     PlyType type{};
     std::size_t offset = 0;  ///< in the row
   };
-  void decode(const std::byte* rows, std::size_t count, VertexRows& to) const;
+  std::uint64_t decode(const std::byte* rows, std::size_t count, VertexRows& to) const;
   bool has_plain_positions() const;
   [[noreturn]] void fail_truncated(const InputFile& input, std::uint64_t row) const;
 

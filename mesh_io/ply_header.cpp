@@ -2,6 +2,8 @@
 
 #include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/ply_names.h"
+#include "mesh_io/text_chars.h"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +23,8 @@ struct TypeName {
   PlyType type;
 };
 
-/// The names of the 1994 paper first, in the order of PlyType, then the sized ones.
-constexpr std::array<TypeName, 16> kTypeNames{{{"char", PlyType::i8},
+/// One name each in the order of PlyType, those of the 1994 paper first, then the sized ones.
+constexpr std::array<TypeName, 18> kTypeNames{{{"char", PlyType::i8},
                                                {"uchar", PlyType::u8},
                                                {"short", PlyType::i16},
                                                {"ushort", PlyType::u16},
@@ -30,6 +32,8 @@ constexpr std::array<TypeName, 16> kTypeNames{{{"char", PlyType::i8},
                                                {"uint", PlyType::u32},
                                                {"float", PlyType::f32},
                                                {"double", PlyType::f64},
+                                               {"int64", PlyType::i64},
+                                               {"uint64", PlyType::u64},
                                                {"int8", PlyType::i8},
                                                {"uint8", PlyType::u8},
                                                {"int16", PlyType::i16},
@@ -66,12 +70,16 @@ class HeaderParser {
 
   PlyHeader parse() {
     check_magic();
-    while (!parse_line(next_line())) {
+    for (bool has_ended = false; !has_ended;) {
+      is_odd_ = false;
+      has_ended = parse_line(next_line());
+      header_.odd_lines += is_odd_ ? 1 : 0;
     }
     if (!has_format_)
       fail("expected a 'format' line before 'end_header', found none");
     header_.data_offset = position_;
     header_.data_line = line_ + 1;
+    header_.odd_lines += settle_ply_names(header_.elements);
     return std::move(header_);
   }
 
@@ -79,13 +87,15 @@ class HeaderParser {
   [[noreturn]] void fail(const std::string& message) const { fail_at_line(path_, line_, message); }
 
   void check_magic();
+  void skip_to_magic();
   std::string_view next_line();
   bool parse_line(std::string_view line);
   void parse_comment(std::string_view rest);
   void parse_format(std::string_view rest);
   void parse_element(std::string_view rest);
   void parse_property(std::string_view rest);
-  PlyType parse_type(std::string_view word) const;
+  PlyType parse_type(std::string_view word);
+  std::string keyword_of(std::string_view word);
 
   std::string_view start_;
   const std::filesystem::path& path_;
@@ -93,6 +103,8 @@ class HeaderParser {
   std::size_t position_ = 0;
   std::uint64_t line_ = 0;
   bool has_format_ = false;
+  bool in_capitals_ = false;  ///< begins with "PLY"
+  bool is_odd_ = false;       ///< the line is
   std::set<std::string, std::less<>> names_;
   PlyHeader header_;
 };
@@ -102,9 +114,10 @@ class HeaderParser {
 void HeaderParser::check_magic() {
   if (start_.empty())
     fail_file(path_, "expected a PLY file, found an empty file");
-  const std::size_t end = start_.find_first_of("\r\n");
-  const std::string_view first = start_.substr(0, end);
-  if (trimmed(first) != "ply") {
+  skip_to_magic();
+  const std::size_t end = start_.find_first_of("\r\n", position_);
+  const std::string_view first = start_.substr(position_, end - position_);
+  if (small_letters(trimmed(first)) != "ply") {
     const bool gzip = start_.starts_with("\x1f\x8b");
     fail_file(path_, fmt::format("expected a PLY file, which starts with the line 'ply', found {}",
                                  gzip ? "gzip data (unpack it first)" : in_quotes(first)));
@@ -113,7 +126,19 @@ void HeaderParser::check_magic() {
   const bool carriage_return_only =
       has_end && start_[end] == '\r' && (end + 1 == start_.size() || start_[end + 1] != '\n');
   line_end_ = carriage_return_only ? '\r' : '\n';
+  in_capitals_ = trimmed(first) != "ply";
+  header_.odd_lines += position_ > 0 || in_capitals_ ? 1 : 0;
   next_line();
+}
+
+/// Over a byte order mark, blanks and blank lines.
+void HeaderParser::skip_to_magic() {
+  const std::size_t begin = start_.size() - without_byte_order_mark(start_).size();
+  position_ = std::min(start_.find_first_not_of(kHeaderBlanks, begin), start_.size());
+  for (std::size_t at = begin; at < position_; ++at) {
+    const bool is_half = start_[at] == '\r' && start_[at + 1] == '\n';
+    line_ += is_line_end(start_[at]) && !is_half ? 1 : 0;
+  }
 }
 
 std::string_view HeaderParser::next_line() {
@@ -133,10 +158,17 @@ std::string_view HeaderParser::next_line() {
   return line;
 }
 
+/// The word, in small letters if the header is in capitals.
+std::string HeaderParser::keyword_of(std::string_view word) {
+  std::string small = in_capitals_ ? small_letters(word) : std::string(word);
+  is_odd_ = is_odd_ || small != word;
+  return small;
+}
+
 /// True for the last line of the header.
 bool HeaderParser::parse_line(std::string_view line) {
   std::string_view rest = line;
-  const std::string_view keyword = take_word(rest);
+  const std::string keyword = keyword_of(take_word(rest));
   if (keyword.empty() || keyword == "obj_info")
     return false;
   if (keyword == "comment") {
@@ -154,6 +186,7 @@ bool HeaderParser::parse_line(std::string_view line) {
       fail("expected a line end after 'end_header', found " + in_quotes(rest));
     return true;
   } else if (has_format_ && header_.elements.empty() && !looks_like_statement(keyword)) {
+    is_odd_ = false;
     return false;  // a remark without its keyword, as old versions of Blender write it
   } else {
     fail(
@@ -174,7 +207,7 @@ void HeaderParser::parse_format(std::string_view rest) {
   if (has_format_)
     fail("expected one 'format' line, found a second one");
   has_format_ = true;
-  const std::string_view format = take_word(rest);
+  const std::string format = keyword_of(take_word(rest));
   if (format == "ascii") {
     header_.encoding = PlyEncoding::ascii;
   } else if (format == "binary_little_endian") {
@@ -185,8 +218,10 @@ void HeaderParser::parse_format(std::string_view rest) {
     fail("expected the format 'ascii', 'binary_little_endian' or 'binary_big_endian', found " +
          in_quotes(format));
   }
-  if (rest != "1.0")
+  const bool is_first = rest.empty() || rest == "1" || rest.starts_with("1.");
+  if (!is_first || rest.find_first_not_of("0123456789.") != std::string_view::npos)
     fail("expected format version '1.0', found " + in_quotes(rest));
+  is_odd_ = is_odd_ || rest != "1.0";
 }
 
 void HeaderParser::parse_element(std::string_view rest) {
@@ -210,7 +245,8 @@ void HeaderParser::parse_property(std::string_view rest) {
     fail("expected an 'element' before the first 'property'");
   PlyProperty property;
   std::string_view type = take_word(rest);
-  if (type == "list") {
+  if (small_letters(type) == "list") {
+    is_odd_ = is_odd_ || type != "list";
     property.count_type = parse_type(take_word(rest));
     if (!is_integer(*property.count_type)) {
       fail(fmt::format("expected an integer type for a list's length, found '{}'",
@@ -225,11 +261,13 @@ void HeaderParser::parse_property(std::string_view rest) {
   header_.elements.back().properties.push_back(std::move(property));
 }
 
-PlyType HeaderParser::parse_type(std::string_view word) const {
-  const auto known = std::find_if(kTypeNames.begin(), kTypeNames.end(),
-                                  [&](const TypeName& entry) { return entry.name == word; });
-  if (known != kTypeNames.end())
+PlyType HeaderParser::parse_type(std::string_view word) {
+  const std::string name = small_letters(word);
+  const auto known = std::ranges::find(kTypeNames, std::string_view(name), &TypeName::name);
+  if (known != kTypeNames.end()) {
+    is_odd_ = is_odd_ || name != word || has_64_bits(known->type);
     return known->type;
+  }
   fail(
       "expected a type (char, uchar, short, ushort, int, uint, float, double or int8 to "
       "float64), found " +

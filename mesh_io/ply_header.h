@@ -14,12 +14,13 @@ namespace meshhier::mesh_io {
 
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 
-/// char uchar short ushort int uint float double, or int8 ... float64.
-enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+/// char uchar short ushort int uint float double, or int8 ... float64; and int64, uint64, which the
+/// format does not have.
+enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64, i64, u64 };
 
-/// They have one order.
+/// They have one order; integers of 64 bits are kept as doubles.
 constexpr ValueType value_type(PlyType type) {
-  return static_cast<ValueType>(type);
+  return type > PlyType::f64 ? ValueType::f64 : static_cast<ValueType>(type);
 }
 constexpr PlyType ply_type(ValueType type) {
   return static_cast<PlyType>(type);
@@ -27,14 +28,18 @@ constexpr PlyType ply_type(ValueType type) {
 static_assert(value_type(PlyType::f64) == ValueType::f64 && ply_type(ValueType::i8) == PlyType::i8);
 
 constexpr std::uint64_t size_of(PlyType type) {
-  constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8};
   return kSizes[static_cast<std::size_t>(type)];
 }
 constexpr bool is_integer(PlyType type) {
-  return type < PlyType::f32;
+  return type != PlyType::f32 && type != PlyType::f64;
+}
+constexpr bool has_64_bits(PlyType type) {
+  return type == PlyType::i64 || type == PlyType::u64;
 }
 constexpr bool is_unsigned(PlyType type) {
-  return type == PlyType::u8 || type == PlyType::u16 || type == PlyType::u32;
+  return type == PlyType::u8 || type == PlyType::u16 || type == PlyType::u32 ||
+         type == PlyType::u64;
 }
 /// The type's name as most files write it: "uchar".
 std::string_view name_of(PlyType type);
@@ -45,8 +50,9 @@ struct PlyProperty {
   std::string name;
   PlyType type{};                     ///< of the value, or of each item of the list
   std::optional<PlyType> count_type;  ///< of a list's length, an integer type; none: one value
+  std::uint8_t fixed_count = 0;  ///< of a list whose length stands in no row (settle_ply_names)
 
-  bool is_list() const { return count_type.has_value(); }
+  bool is_list() const { return count_type.has_value() || fixed_count > 0; }
 };
 
 struct PlyElement {
@@ -61,6 +67,7 @@ struct PlyHeader {
   std::vector<std::string> texture_files;  ///< NAME of each "comment TextureFile NAME", in any case
   std::uint64_t data_offset = 0;           ///< byte behind the line end of end_header
   std::uint64_t data_line = 0;  ///< number of the line at data_offset; the first of a file is 1
+  std::uint64_t odd_lines = 0;  ///< that the format has otherwise
 };
 
 /// Real headers have less than 2 KiB, but some writers put metadata (cameras, JSON) into comments.
@@ -74,8 +81,10 @@ inline constexpr std::size_t kMaxHeaderLineBytes = std::size_t{1} << 16;
 /// bytes; `path` is for messages only. Lines end with LF, CRLF, or (if the first line does) CR
 /// alone; blanks around lines and blank lines are allowed; a property's name is the rest of its
 /// line, so names with spaces, which some writers produce, are read. Lines of no known keyword
-/// between the format and the first element are passed over. Throws Error(input) naming the
-/// line. Pure.
+/// between the format and the first element are passed over. Read and counted as odd are: a byte
+/// order mark or blank lines first; "PLY", with keywords in any case then; types in any case;
+/// versions 1, 1.1 and none; types of 64 bits; names that mean the format's (settle_ply_names).
+/// Throws Error(input) naming the line. Pure.
 PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path);
 
 }  // namespace meshhier::mesh_io

@@ -138,17 +138,19 @@ class RowParser {
     return word ? number_of(type, *word) : std::nullopt;
   }
   /// At most as many as a line of sense has.
-  std::optional<std::size_t> take_count(PlyType type) {
+  std::optional<std::size_t> take_count(const PlyProperty& list) {
     constexpr std::int64_t kMost = 1 << 16;
+    if (!list.count_type)
+      return list.fixed_count;
     const auto word = take_word();
-    const auto count = word ? integer_of(type, *word) : std::nullopt;
+    const auto count = word ? integer_of(*list.count_type, *word) : std::nullopt;
     return count && *count >= 0 && *count <= kMost ? std::optional(static_cast<std::size_t>(*count))
                                                    : std::nullopt;
   }
   bool skip(const PlyProperty& property) {
     std::size_t words = 1;
     if (property.is_list()) {
-      const auto count = take_count(*property.count_type);
+      const auto count = take_count(property);
       if (!count)
         return false;
       words = *count;
@@ -264,7 +266,7 @@ class PolygonLines {
 
   bool take_corners(RowParser& parser, const PlyProperty& property, Block& block,
                     std::size_t row) const {
-    const auto count = parser.take_count(*property.count_type);
+    const auto count = parser.take_count(property);
     if (!count)
       return false;
     if (*count != 3 && block.lengths.empty())

@@ -26,6 +26,7 @@ class Planner {
 
   PlyPlan plan() {
     plan_.encoding = header_.encoding;
+    plan_.odd_header_lines = header_.odd_lines;
     for (const PlyElement& element : header_.elements)
       plan_.elements.push_back(measure(element));
     plan_vertices();
@@ -77,8 +78,10 @@ PlyElementPlan Planner::measure(const PlyElement& element) const {
   const bool text = header_.encoding == PlyEncoding::ascii;
   bool fixed = !text;
   for (const PlyProperty& property : element.properties) {
-    plan.min_row_bytes += text ? 2 : size_of(property.count_type.value_or(property.type));
-    fixed = fixed && !property.is_list();
+    const std::uint64_t values = std::max<std::uint64_t>(property.fixed_count, 1);
+    plan.min_row_bytes +=
+        values * (text ? 2 : size_of(property.count_type.value_or(property.type)));
+    fixed = fixed && !property.count_type;
   }
   if (fixed)
     plan.stride = plan.min_row_bytes;
@@ -110,7 +113,7 @@ void Planner::plan_vertices() {
     const auto property = static_cast<std::size_t>(found[axis]);
     vertices->slots[property] = static_cast<int>(axis);
     const PlyType type = element.properties[property].type;
-    plan_.wide_coordinates |= type == PlyType::f64 || type == PlyType::i32 || type == PlyType::u32;
+    plan_.wide_coordinates |= takes_two_channels(value_type(type));
   }
   vertices->role = Role::vertices;
   plan_.vertex_element = static_cast<std::size_t>(vertices - plan_.elements.begin());

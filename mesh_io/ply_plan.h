@@ -74,6 +74,7 @@ struct PlyPlan {
   std::vector<std::string> unused;  ///< what is skipped: "vertex.intensity", or an element: "edge"
   bool has_unnamed_texcoords = false;        ///< faces have them, and no picture is named
   std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
+  std::uint64_t odd_header_lines = 0;        ///< as PlyHeader's
 };
 
 /// Of files that the import writes, what stands before the names of values: no other property has a
@@ -111,7 +112,8 @@ enum class Unplaced : std::uint8_t { refused, visited };
 ///                                                        and numbers of textures
 ///   element tristrips    list vertex_indices | vertex_index
 ///
-/// and, if comments name texture files (TextureFile NAME), of polygons also
+/// of which settle_ply_names() has made what means the same, and, if comments name texture files
+/// (TextureFile NAME), of polygons also
 ///
 ///   list texcoord        or texcoords, texture_coordinates, ...: u v of each corner, or nothing;
 ///                        any scalar type
@@ -127,10 +129,11 @@ enum class Unplaced : std::uint8_t { refused, visited };
 /// Attributes of which not all parts are there are values like others. The parts of a colour must
 /// be of one type, else they are values: uchar is u8, ushort is u16, float and double are f32; the
 /// other integer types are read as u8, as 0 to 255 is what files mean by them (other values are
-/// errors). Of values that have no sound name (is_attribute_name()), one that is taken, or do not
-/// fit kMaxValueChannels, none is read. Everything else is skipped, and listed. Throws Error(input)
-/// if the vertices or faces cannot be read, if there are 2^32 vertices or more, or if the declared
-/// counts do not fit into `file_bytes`. Allocates nothing that a count sizes.
+/// errors). Integers of 64 bits are values of f64, and labels as other integers are. Of values that
+/// have no sound name (is_attribute_name()), one that is taken, or do not fit kMaxValueChannels,
+/// none is read. Everything else is skipped, and listed. Throws Error(input) if the vertices or
+/// faces cannot be read, if there are 2^32 vertices or more, or if the declared counts do not fit
+/// into `file_bytes`. Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
                       const std::filesystem::path& path, PlyWrittenBy writer = PlyWrittenBy::anyone,
                       const AttributeChoice& attributes = {});

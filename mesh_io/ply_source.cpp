@@ -22,9 +22,16 @@ namespace {
 class PlyFileSource final : public PlySource {
  public:
   PlyFileSource(std::unique_ptr<storage::File> file, const PlyReading& reading)
-      : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
+      : file_(std::move(file)),
+        file_bytes_(file_->size()),
+        content_bytes_(file_bytes_),
+        checksum_(file_bytes_) {
     const PlyHeader header = read_header();
-    plan_ = make_ply_plan(header, file_bytes_, file_->path(), reading.writer, reading.attributes);
+    if (header.encoding == PlyEncoding::ascii)
+      content_bytes_ = text_end(header.data_offset);
+    plan_ =
+        make_ply_plan(header, content_bytes_, file_->path(), reading.writer, reading.attributes);
+    odd_.resize(plan_.elements.size() + 1);
     plan_.checks.places = reading.unplaced == Unplaced::refused;
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
@@ -55,6 +62,7 @@ class PlyFileSource final : public PlySource {
   void read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) override;
   void read_texture_faces(const PlyTextureFaceVisitor& visit) override;
   Vec3d place_of(std::uint32_t vertex) override { return places().at(vertex); }
+  OddSyntax odd_syntax() const override;
   std::uint64_t checksum(const std::function<void()>& check) override {
     return checksum_.complete(*file_, check);
   }
@@ -62,8 +70,11 @@ class PlyFileSource final : public PlySource {
   bool add_sums(const storage::BlockSums& sums) override { return checksum_.add(sums); }
 
  private:
-  InputFile input() const { return {*file_, file_bytes_, &checksum_}; }
+  InputFile input() const { return {*file_, content_bytes_, &checksum_}; }
   PlyHeader read_header() const;
+  std::uint64_t text_end(std::uint64_t begin) const;
+  void expect_end(PlyBody& body);
+  void note_odd(std::size_t element, PlyBody& body);
   void locate_fixed_elements();
   void describe();
   void plan_blocks();
@@ -75,10 +86,12 @@ class PlyFileSource final : public PlySource {
 
   std::unique_ptr<storage::File> file_;
   std::uint64_t file_bytes_;
+  std::uint64_t content_bytes_;             ///< without the zeros behind a text
   mutable storage::FileChecksum checksum_;  ///< thread-safe
   PlyPlan plan_;
   /// Where each element starts, as far as known, and the end: what was scanned once is not again.
   std::vector<std::optional<PlyPosition>> starts_;
+  std::vector<OddSyntax> odd_;  ///< of each element, and behind them
   MeshDescription description_;
   std::optional<PlyVertexBlocks> vertex_blocks_;
   std::optional<PlyPlaces> places_;
@@ -90,6 +103,41 @@ PlyHeader PlyFileSource::read_header() const {
   start.resize(file_->read_at(0, std::as_writable_bytes(std::span(start))));
   checksum_.add(0, std::as_bytes(std::span(start)));
   return parse_ply_header(start, file_->path());
+}
+
+/// Where a text ends: some programs fill files up with zeros.
+std::uint64_t PlyFileSource::text_end(std::uint64_t begin) const {
+  std::string part;
+  std::uint64_t end = file_bytes_;
+  while (end > begin) {
+    part.resize(std::min<std::uint64_t>(end - begin, 4096));
+    file_->read_exact(end - part.size(), std::as_writable_bytes(std::span(part)));
+    const std::size_t last = part.find_last_not_of('\0');
+    if (last != std::string::npos)
+      return end - part.size() + last + 1;
+    end -= part.size();
+  }
+  return end;
+}
+
+OddSyntax PlyFileSource::odd_syntax() const {
+  OddSyntax all{.header_lines = plan_.odd_header_lines,
+                .bytes_behind = file_bytes_ - content_bytes_};
+  for (const OddSyntax& one : odd_)
+    all += one;
+  return all;
+}
+
+/// Of an element of faces, or one behind them that is skipped.
+void PlyFileSource::note_odd(std::size_t element, PlyBody& body) {
+  const OddSyntax odd = body.take_odd();
+  if (element != plan_.vertex_element)
+    odd_[element] = odd;
+}
+
+void PlyFileSource::expect_end(PlyBody& body) {
+  body.expect_end();
+  odd_.back() = body.take_odd();
 }
 
 /// No overflow: make_ply_plan has checked that the rows fit the file.
@@ -138,6 +186,7 @@ std::unique_ptr<PlyBody> PlyFileSource::body_at(std::size_t element) {
     body->skip(plan_.elements[known]);
     starts_[known + 1] = body->position();
   }
+  body->take_odd();  // what is skipped is read later, or not at all
   return body;
 }
 
@@ -188,6 +237,7 @@ void PlyFileSource::read_vertices(const VertexVisitor& visit, const BlockRunner&
   }
   VertexBlocks blocks(description_, visit, first);
   body->read_vertices(plan_.elements[element], first, blocks);
+  odd_[element] = body->take_odd();
   starts_[element + 1] = body->position();
   blocks.finish();
 }
@@ -212,9 +262,10 @@ FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const Triangle
     } else {
       body->read_faces(element, i == first ? face : 0, blocks);
     }
+    note_odd(i, *body);
     starts_[i + 1] = body->position();
   }
-  body->expect_end();
+  expect_end(*body);
   return blocks.finish();
 }
 
@@ -255,9 +306,10 @@ FaceCounts PlyFileSource::read_faces(const PlyFaceVisitor& visit) {
     } else {
       body->skip(element);
     }
+    note_odd(i, *body);
     starts_[i + 1] = body->position();
   }
-  body->expect_end();
+  expect_end(*body);
   return counts;
 }
 

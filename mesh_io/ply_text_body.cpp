@@ -5,10 +5,12 @@
 #include "mesh_io/text_cursor.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,10 +19,14 @@ namespace {
 
 using Role = PlyElementPlan::Role;
 
+/// Beyond it doubles do not hold all integers.
+constexpr double kMostExact = 9007199254740992;
+
 class TextBody final : public PlyBody {
  public:
   TextBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
       : cursor_(input, start.offset, start.line),
+        plan_(plan),
         vertex_count_(plan.elements[plan.vertex_element].element.count),
         checks_(plan.checks) {}
 
@@ -31,6 +37,7 @@ class TextBody final : public PlyBody {
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
+  OddSyntax take_odd() override { return std::exchange(odd_, {}); }
 
  private:
   struct Row {
@@ -43,23 +50,38 @@ class TextBody final : public PlyBody {
   }
   [[noreturn]] void fail_number(const Row& row, const PlyProperty& property, PlyType type,
                                 std::string_view word) const;
+  [[noreturn]] void fail_short(const Row& row) const;
   void begin_row(const Row& row);
   void end_row(const Row& row);
   std::string_view take_word(const Row& row, const PlyProperty& property);
   std::int64_t take_integer(const Row& row, const PlyProperty& property, PlyType type);
   double take_number(const Row& row, const PlyProperty& property);
+  double odd_integer(const Row& row, const PlyProperty& property, PlyType type,
+                     std::string_view word);
   std::uint64_t take_count(const Row& row, const PlyProperty& property);
   void skip_property(const Row& row, const PlyProperty& property);
   void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
   std::int64_t take_index(const Row& row, const PlyProperty& property);
   void take_property(const Row& row, std::size_t property, std::vector<double>& values);
+  bool could_be_row(const std::vector<double>& numbers) const;
+
+  /// Where a line ends before its row.
+  struct Break {
+    std::uint64_t line = 0;
+    const PlyProperty* property = nullptr;  ///< that is next
+    bool ends_file = false;
+  };
 
   TextCursor cursor_;
+  const PlyPlan& plan_;
   std::uint64_t vertex_count_;
   RowChecks checks_;
+  std::optional<Break> break_;  ///< the first one in this row
+  OddSyntax odd_;
 };
 
 void TextBody::begin_row(const Row& row) {
+  break_.reset();
   if (cursor_.to_row())
     return;
   fail(
@@ -68,22 +90,36 @@ void TextBody::begin_row(const Row& row) {
                   row_name(row.plan, row.number)));
 }
 
+/// A row that was broken ends with a line: else it has lost a number, and what follows is another
+/// row.
 void TextBody::end_row(const Row& row) {
-  if (!cursor_.to_word())
+  if (!cursor_.to_word()) {
+    odd_.broken_rows += break_ ? 1 : 0;
     return;
+  }
+  if (break_)
+    fail_short(row);
   fail(
       fmt::format("expected the end of the line behind {}, found {} (the row has more numbers "
                   "than the header declares)",
                   row_name(row.plan, row.number), in_quotes(cursor_.take_word())));
 }
 
+/// At the row's first break.
+void TextBody::fail_short(const Row& row) const {
+  fail_at_line(cursor_.file().path(), break_->line,
+               fmt::format("expected a number for {} in {}, found the end of the {} (the row has "
+                           "fewer numbers than the header declares)",
+                           in_quotes(break_->property->name), row_name(row.plan, row.number),
+                           break_->ends_file ? "file" : "line"));
+}
+
 std::string_view TextBody::take_word(const Row& row, const PlyProperty& property) {
   if (!cursor_.to_word()) {
-    fail(
-        fmt::format("expected a number for {} in {}, found the end of the {} (the row has fewer "
-                    "numbers than the header declares)",
-                    in_quotes(property.name), row_name(row.plan, row.number),
-                    cursor_.remaining() == 0 ? "file" : "line"));
+    if (!break_)
+      break_ = {cursor_.line(), &property, cursor_.remaining() == 0};
+    if (!cursor_.to_row())
+      fail_short(row);
   }
   const std::string_view word = cursor_.take_word();
   if (word.empty()) {
@@ -102,27 +138,39 @@ void TextBody::fail_number(const Row& row, const PlyProperty& property, PlyType 
     expected = fmt::format("an integer from {} to {}", range.low, range.high);
   }
   fail(fmt::format("expected {} ('{}') for {} in {}, found {}", expected, name_of(type),
-                   in_quotes(property.name), row_name(row.plan, row.number), in_quotes(word)));
+                   in_quotes(property.name), row_name(row.plan, row.number),
+                   number_in_quotes(word)));
 }
 
 std::int64_t TextBody::take_integer(const Row& row, const PlyProperty& property, PlyType type) {
   const std::string_view word = take_word(row, property);
   const auto value = integer_of(type, word);
+  return value ? *value : static_cast<std::int64_t>(odd_integer(row, property, type, word));
+}
+
+/// Requires that it is not as it should be.
+double TextBody::odd_integer(const Row& row, const PlyProperty& property, PlyType type,
+                             std::string_view word) {
+  const auto value = odd_integer_of(type, word);
   if (!value)
     fail_number(row, property, type, word);
+  ++(has_64_bits(type) && std::abs(*value) >= kMostExact ? odd_.rounded : odd_.integers);
   return *value;
 }
 
 double TextBody::take_number(const Row& row, const PlyProperty& property) {
   const std::string_view word = take_word(row, property);
-  const auto value = number_of(property.type, word);
-  if (!value)
-    fail_number(row, property, property.type, word);
-  return *value;
+  if (const auto value = number_of(property.type, word))
+    return *value;
+  if (is_integer(property.type))
+    return odd_integer(row, property, property.type, word);
+  fail_number(row, property, property.type, word);
 }
 
 /// Takes a list's length: not more than can follow, at two characters an item.
 std::uint64_t TextBody::take_count(const Row& row, const PlyProperty& property) {
+  if (!property.count_type)
+    return property.fixed_count;
   const std::int64_t count = take_integer(row, property, *property.count_type);
   const std::uint64_t fitting = cursor_.remaining() / 2;
   if (count < 0 || static_cast<std::uint64_t>(count) > fitting) {
@@ -188,6 +236,8 @@ void TextBody::read_faces(const PlyElementPlan& plan, std::uint64_t first, Trian
 void TextBody::take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks) {
   const bool strip = row.plan.role == Role::strips;
   const std::uint64_t count = take_count(row, property);
+  if (!strip && count > PolygonCut::kMostCorners)
+    fail(PolygonCut::limit_text());
   strip ? blocks.begin_strip() : blocks.begin_polygon();
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t index = take_index(row, property);
@@ -207,9 +257,8 @@ void TextBody::take_corners(const Row& row, const PlyProperty& property, Triangl
 std::int64_t TextBody::take_index(const Row& row, const PlyProperty& property) {
   const std::string_view word = take_word(row, property);
   const auto index = parse_integer(word);
-  if (!index)
-    fail_number(row, property, property.type, word);
-  return *index;
+  return index ? *index
+               : static_cast<std::int64_t>(odd_integer(row, property, property.type, word));
 }
 
 void TextBody::read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) {
@@ -246,12 +295,42 @@ void TextBody::take_property(const Row& row, std::size_t index, std::vector<doub
 }
 
 void TextBody::expect_end() {
-  if (!cursor_.to_row())
-    return;
-  fail(
-      fmt::format("expected the end of the file behind the last row the header declares, found {} "
-                  "(the header's counts do not match the data)",
-                  in_quotes(cursor_.take_word())));
+  for (; cursor_.to_row(); ++odd_.lines_behind) {
+    constexpr std::size_t kMost = std::size_t{1} << 16;  // what a line of sense has
+    std::string first;
+    std::vector<double> numbers;
+    for (bool is_number = true; is_number && cursor_.to_word() && numbers.size() < kMost;) {
+      const std::string_view word = cursor_.take_word();
+      if (first.empty())
+        first = word;
+      const auto number = parse_real<double>(word);
+      is_number = number.has_value();
+      is_number ? numbers.push_back(*number) : numbers.clear();
+    }
+    if (could_be_row(numbers)) {
+      fail(
+          fmt::format("expected the end of the file behind the last row the header declares, "
+                      "found {} (the header's counts do not match the data)",
+                      in_quotes(first)));
+    }
+    cursor_.skip_line();
+  }
+}
+
+/// Whether a line of these numbers, and nothing else, could be one more row of any element.
+bool TextBody::could_be_row(const std::vector<double>& numbers) const {
+  return std::ranges::any_of(plan_.elements, [&](const PlyElementPlan& plan) {
+    std::size_t taken = 0;
+    for (const PlyProperty& property : plan.element.properties) {
+      double items = property.is_list() ? property.fixed_count : 1;
+      if (property.count_type && taken < numbers.size())
+        items = numbers[taken++];
+      if (!(items >= 1 && items <= static_cast<double>(numbers.size() - taken)))
+        return false;
+      taken += static_cast<std::size_t>(items);
+    }
+    return taken > 0 && taken == numbers.size();
+  });
 }
 
 }  // namespace

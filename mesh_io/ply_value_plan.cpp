@@ -36,7 +36,9 @@ std::vector<int> known_properties(const PlyElement& element, const std::filesyst
 std::optional<ScalarAttribute> value_of(const PlyProperty& property, const AttributeChoice& choice,
                                         PlyWrittenBy writer, const AttributeLayout& known) {
   const ValueType type = value_type(property.type);
-  ScalarAttribute value{property.name, type, choice.is_label(property.name, type)};
+  const bool is_label =
+      choice.labels ? choice.is_label(property.name, type) : is_integer(property.type);
+  ScalarAttribute value{property.name, type, is_label};
   if (writer == PlyWrittenBy::import) {
     value.is_label = property.name.starts_with(kImportedLabel);
     const std::string_view prefix = value.is_label ? kImportedLabel : kImportedQuantity;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <type_traits>
 
 namespace meshhier::mesh_io {
 
@@ -48,8 +49,24 @@ auto with_type(PlyType type, Visit visit) {
       return visit(float{});
     case PlyType::f64:
       break;
+    case PlyType::i64:
+      return visit(std::int64_t{});
+    case PlyType::u64:
+      return visit(std::uint64_t{});
   }
   return visit(double{});
+}
+
+/// Whether a double does not hold all numbers of that size.
+template <class T>
+constexpr bool is_rounded(T value) {
+  constexpr std::int64_t kMostExact = std::int64_t{1} << 53;
+  if constexpr (std::is_same_v<T, std::uint64_t>)
+    return value > static_cast<std::uint64_t>(kMostExact);
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return value > kMostExact || value < -kMostExact;
+  else
+    return false;
 }
 
 /// The usual faces, `list uchar int` (or uint) and perhaps scalars around it: the rows of those

@@ -1,8 +1,13 @@
 #include "mesh_io/polygon_cut.h"
 
+#include "mesh_io/polygon_cover.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace meshhier::mesh_io {
 namespace {
@@ -26,7 +31,21 @@ int widest_axis(const Vec3d& area) {
 PolygonCut::Kind PolygonCut::cut(std::span<const Vec3d> corners) {
   if (!project(corners) || is_fan())
     return Kind::fan;
-  return cut_ears() ? Kind::ears : Kind::crossed;
+  const bool is_cut = points_.size() <= kMostEars ? cut_ears() : cut_many();
+  return is_cut ? Kind::cut : Kind::crossed;
+}
+
+bool PolygonCut::cut_many() {
+  auto triangles = cover_polygon(points_, sign_);
+  if (triangles)
+    triangles_ = *std::move(triangles);
+  return triangles.has_value();
+}
+
+std::string PolygonCut::limit_text() {
+  return fmt::format(
+      "expected faces of at most {} corners, found a larger one; cut it into several",
+      kMostCorners);
 }
 
 /// False if it has no area.

@@ -1,6 +1,7 @@
 // Polygons as triangles that cover their shape.
 #pragma once
 
+#include "hierarchy/error.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "mesh_io/polygon_counts.h"
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -18,51 +20,63 @@ namespace meshhier::mesh_io {
 /// area is largest; so they need not lie in a plane.
 class PolygonCut {
  public:
-  /// One with more corners is a fan, whatever its shape: cutting takes the square of them.
-  static constexpr std::size_t kMostCorners = 1024;
+  /// Of what has more, ears take too long, as they do the square of it: cover_polygon() cuts it.
+  static constexpr std::size_t kMostEars = 1024;
+  /// A polygon is held in memory as a whole: of that many corners in 40 MiB.
+  static constexpr std::size_t kMostCorners = std::size_t{1} << 17;
+
+  /// What is said of a face of more.
+  static std::string limit_text();
 
   enum class Kind : std::uint8_t {
     fan,     ///< (0, i, i + 1) covers it: convex, or near enough; or it has no area
-    ears,    ///< triangles() do (Meisters, "Polygons have ears", 1975), exactly
+    cut,     ///< triangles() do, exactly: ears (Meisters, "Polygons have ears", 1975), or many
     crossed  ///< no triangles do: it crosses itself, or winds more than once
   };
 
-  /// Requires 3 to kMostCorners finite corners. O(n) if a fan will do, else O(n^2).
+  /// Requires 3 corners or more. O(n) if a fan will do, else O(n log n) beyond kMostEars.
   Kind cut(std::span<const Vec3d> corners);
-  /// n - 2 of numbers of corners, as the last polygon of `ears` turns.
+  /// Of numbers of corners, as the last polygon of `cut` turns.
   std::span<const Triangle<std::uint32_t>> triangles() const { return triangles_; }
 
   /// Calls visit(a, b, c) for each triangle of a polygon, by numbers of its corners, and counts
-  /// what it is. `place_at(i)`: of corner i; none: not known, then it is a fan.
+  /// what it is. `place_at(i)`: of corner i; none: not known, then it is a fan. If a place is not
+  /// finite, all triangles have that corner. Throws Error(input) beyond kMostCorners.
   template <class PlaceAt, class Visit>
   void for_each_triangle(std::size_t corners, const PlaceAt& place_at, PolygonCounts& counts,
                          const Visit& visit) {
+    hub_ = 0;
     const Kind kind = corners > 3 ? kind_of(corners, place_at, counts) : Kind::fan;
-    if (kind == Kind::ears) {
+    if (kind == Kind::cut) {
       for (const Triangle<std::uint32_t>& t : triangles_)
         visit(t[0], t[1], t[2]);
       return;
     }
+    const auto from_hub = [&](std::size_t i) { return (hub_ + i) % corners; };
     for (std::size_t i = 1; i + 1 < corners; ++i)
-      visit(0, i, i + 1);
+      visit(hub_, from_hub(i), from_hub(i + 1));
   }
 
  private:
   template <class PlaceAt>
   Kind kind_of(std::size_t corners, const PlaceAt& place_at, PolygonCounts& counts) {
+    if (corners > kMostCorners)
+      throw Error(ErrorCode::input, limit_text());
     places_.clear();
-    for (std::size_t i = 0; i < corners && corners <= kMostCorners; ++i) {
+    for (std::size_t i = 0; i < corners; ++i) {
       const std::optional<Vec3d> place = place_at(i);
-      if (!place)
-        break;
+      if (!place) {
+        ++counts.unchecked;
+        return Kind::fan;
+      }
+      if (!is_finite(*place)) {
+        hub_ = i;
+        return Kind::fan;
+      }
       places_.push_back(*place);
     }
-    if (places_.size() < corners) {
-      ++counts.large;
-      return Kind::fan;
-    }
     const Kind kind = cut(places_);
-    counts.concave += kind == Kind::ears ? 1 : 0;
+    counts.concave += kind == Kind::cut ? 1 : 0;
     counts.crossed += kind == Kind::crossed ? 1 : 0;
     return kind;
   }
@@ -78,8 +92,10 @@ class PolygonCut {
   std::size_t find_flat() const;
   void cut_off(std::size_t place);
   bool cut_ears();
+  bool cut_many();
 
   std::vector<Vec3d> places_;
+  std::size_t hub_ = 0;  ///< the corner that all triangles of a fan have
   std::vector<Point2> points_;
   int sign_ = 1;                     ///< of the polygon's area
   std::vector<std::uint32_t> left_;  ///< corners that are not cut off yet

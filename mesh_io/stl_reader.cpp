@@ -31,31 +31,34 @@ char lower(char c) {
 
 class BinaryStl {
  public:
-  BinaryStl(InputStream& stream, const std::filesystem::path& path)
-      : stream_(stream), path_(path), bytes_(kBlockFacets * kStlFacetBytes) {}
+  BinaryStl(InputStream& stream, const std::filesystem::path& path, const SoupVisitor& visit,
+            const StlAttributeVisitor& visit_attributes)
+      : stream_(stream),
+        path_(path),
+        visit_(visit),
+        visit_attributes_(visit_attributes),
+        bytes_(kBlockFacets * kStlFacetBytes) {}
 
-  StlCounts read(const SoupVisitor& visit) {
+  StlCounts read() {
     if (stream_.read(std::span(bytes_).first(kStlHeaderBytes)) < kStlHeaderBytes)
       fail_file(path_, "expected the header of a binary STL, found the end of the data");
     counts_.facets = load<std::uint32_t, kSwap>(bytes_.data() + kStlHeaderBytes - 4);
+    counts_.header_colour = stl_header_colour(std::span(bytes_).first(kStlHeaderBytes - 4));
     if (counts_.facets == 0)
-      return read_all(visit);
-    while (done_ < counts_.facets) {
+      return read_all();
+    while (done_ < counts_.facets)
       read_block();
-      visit(block_);
-    }
     while (const std::size_t more = stream_.read(bytes_))
       counts_.bytes_behind += more;
     return counts_;
   }
 
  private:
-  StlCounts read_all(const SoupVisitor& visit) {
+  StlCounts read_all() {
     for (bool is_full = true; is_full;) {
       const std::size_t size = stream_.read(bytes_);
       is_full = size == bytes_.size();
       take_facets(size);
-      visit(block_);
       counts_.bytes_behind = size % kStlFacetBytes;
     }
     counts_.facets = done_;
@@ -65,10 +68,11 @@ class BinaryStl {
   std::uint64_t offset() const { return kStlHeaderBytes + done_ * kStlFacetBytes; }
 
   void read_block() {
+    const std::uint64_t first = done_;
     const std::size_t wanted = std::min<std::uint64_t>(kBlockFacets, counts_.facets - done_);
     const std::size_t size = stream_.read(std::span(bytes_).first(wanted * kStlFacetBytes));
     take_facets(size);
-    if (block_.size() < wanted) {
+    if (done_ - first < wanted) {
       fail_at_byte(path_, offset(),
                    fmt::format("expected facet {} of {}, found the end of the data (truncated)",
                                done_, counts_.facets));
@@ -78,30 +82,49 @@ class BinaryStl {
   /// Of the first bytes of the buffer.
   void take_facets(std::size_t bytes) {
     block_.clear();
+    attributes_.clear();
     for (std::size_t i = 0; i < bytes / kStlFacetBytes; ++i, ++done_)
-      block_.push_back(facet(bytes_.data() + i * kStlFacetBytes));
+      take_facet(bytes_.data() + i * kStlFacetBytes);
+    visit_(block_);
+    if (visit_attributes_)
+      visit_attributes_(attributes_);
   }
 
-  SoupTriangle facet(const std::byte* bytes) {
+  void take_facet(const std::byte* bytes) {
     std::array<double, 9> values{};
+    std::optional<std::size_t> bad;  // the first that is no coordinate
+    bool is_finite = true;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto value = load<float, kSwap>(bytes + 12 + 4 * i);
-      values[i] = double{value};
-      if (!is_coordinate(values[i])) {
-        fail_at_byte(
-            path_, offset() + 12 + 4 * i,
-            fmt::format("expected {} in facet {}, found {}", kCoordinateRange, done_, value));
-      }
+      values[i] = double{load<float, kSwap>(bytes + 12 + 4 * i)};
+      is_finite = is_finite && std::isfinite(values[i]);
+      if (!bad && !is_coordinate(values[i]))
+        bad = i;
     }
-    counts_.attributes += load<std::uint16_t, kSwap>(bytes + 48) != 0 ? 1 : 0;
-    return {Vec3d{values[0], values[1], values[2]}, Vec3d{values[3], values[4], values[5]},
-            Vec3d{values[6], values[7], values[8]}};
+    if (bad)
+      return take_bad_facet(offset() + 12 + 4 * *bad, values[*bad], is_finite);
+    attributes_.push_back(load<std::uint16_t, kSwap>(bytes + 48));
+    counts_.attributes += attributes_.back() != 0 ? 1 : 0;
+    block_.push_back({Vec3d{values[0], values[1], values[2]},
+                      Vec3d{values[3], values[4], values[5]},
+                      Vec3d{values[6], values[7], values[8]}});
+  }
+
+  void take_bad_facet(std::uint64_t offset, double value, bool is_finite) {
+    const std::string message = fmt::format("byte {}: expected {} in facet {}, found {}", offset,
+                                            kCoordinateRange, done_, value);
+    if (is_finite)
+      fail_file(path_, message);
+    if (counts_.dropped.count++ == 0)
+      counts_.dropped.first = file_message(path_, message);
   }
 
   InputStream& stream_;
   const std::filesystem::path& path_;
+  const SoupVisitor& visit_;
+  const StlAttributeVisitor& visit_attributes_;
   std::vector<std::byte> bytes_;
   std::vector<SoupTriangle> block_;
+  std::vector<std::uint16_t> attributes_;  ///< of the block
   std::uint64_t done_ = 0;
   StlCounts counts_;
 };
@@ -113,8 +136,8 @@ bool is_stl_keyword(std::string_view word, std::string_view keyword) {
 }
 
 StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
-                          const SoupVisitor& visit) {
-  return BinaryStl(stream, path).read(visit);
+                          const SoupVisitor& visit, const StlAttributeVisitor& visit_attributes) {
+  return BinaryStl(stream, path, visit, visit_attributes).read();
 }
 
 class StlTextReader::Impl {
@@ -163,7 +186,12 @@ class StlTextReader::Impl {
   }
 
   void begin_solid() {
-    expect("solid");
+    const std::string word(words_.take_word());
+    if (counts_.solids > 0 && ends_solid(word)) {
+      ++counts_.odd.header_lines;
+      return words_.skip_line();
+    }
+    expect(word, "solid");
     words_.skip_line();
     ++counts_.solids;
     in_solid_ = true;
@@ -172,6 +200,11 @@ class StlTextReader::Impl {
   /// False at the end of the solid.
   bool read_facet() {
     const std::string word(words_.take_word());
+    if (is_stl_keyword(word, "solid")) {
+      ++counts_.odd.header_lines;
+      words_.skip_line();
+      return true;
+    }
     if (!is_stl_keyword(word, "facet")) {
       if (!ends_solid(word))
         words_.fail("expected 'facet' or 'endsolid', found " + in_quotes(word));
@@ -181,13 +214,20 @@ class StlTextReader::Impl {
     words_.skip_line();  // the normal
     expect_row("outer");
     words_.skip_line();
-    facets_.emplace_back();
-    for (Vec3d& corner : facets_.back())
-      corner = read_vertex();
+    SoupTriangle facet;
+    UnplacedVertices unplaced;
+    for (Vec3d& corner : facet)
+      corner = read_vertex(unplaced);
     expect_row("endloop");
     expect_row("endfacet");
+    unplaced.count > 0 ? drop(unplaced) : facets_.push_back(facet);
     ++counts_.facets;
     return true;
+  }
+
+  void drop(const UnplacedVertices& unplaced) {
+    if (counts_.dropped.count++ == 0)
+      counts_.dropped.first = fmt::format("{} (facet {})", unplaced.first, counts_.facets);
   }
 
   /// `word` begins the line.
@@ -199,9 +239,9 @@ class StlTextReader::Impl {
            is_stl_keyword(words_.take_word(), "solid");
   }
 
-  Vec3d read_vertex() {
+  Vec3d read_vertex(UnplacedVertices& unplaced) {
     expect_row("vertex");
-    const Vec3d corner = words_.take_position(counts_.fits_float);
+    const Vec3d corner = words_.take_position(counts_.fits_float, &unplaced);
     words_.expect_line_end();
     return corner;
   }
@@ -209,11 +249,10 @@ class StlTextReader::Impl {
   void expect_row(std::string_view keyword) {
     if (!words_.to_row())
       words_.fail(fmt::format("expected '{}', found the end of the file (truncated)", keyword));
-    expect(keyword);
+    expect(words_.take_word(), keyword);
   }
 
-  void expect(std::string_view keyword) {
-    const std::string_view word = words_.take_word();
+  void expect(std::string_view word, std::string_view keyword) const {
     if (!is_stl_keyword(word, keyword))
       words_.fail(fmt::format("expected '{}', found {}", keyword, in_quotes(word)));
   }

@@ -3,13 +3,17 @@
 
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/odd_syntax.h"
+#include "mesh_io/stl_colours.h"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace meshhier::mesh_io {
@@ -21,14 +25,24 @@ inline constexpr std::size_t kStlFacetBytes = 50;
 
 using SoupTriangle = std::array<Vec3d, 3>;
 using SoupVisitor = std::function<void(std::span<const SoupTriangle>)>;
+/// Of the same facets as the call of SoupVisitor before.
+using StlAttributeVisitor = std::function<void(std::span<const std::uint16_t>)>;
+
+/// Facets of which a coordinate is not finite: they are not handed out.
+struct DroppedFacets {
+  std::uint64_t count = 0;
+  std::string first;  ///< for messages: file, place, which facet, and what was found
+};
 
 struct StlCounts {
   std::uint64_t facets = 0;
-  std::uint64_t solids = 0;  ///< of a text
-  std::uint64_t attributes =
-      0;  ///< facets of a binary file whose last two bytes are not 0: ignored
+  std::uint64_t solids = 0;      ///< of a text
+  std::uint64_t attributes = 0;  ///< facets of a binary file whose last two bytes are not 0
+  std::optional<StlColour> header_colour;
+  DroppedFacets dropped;
   std::uint64_t bytes_behind = 0;  ///< the last facet of a binary file: ignored
   bool fits_float = true;          ///< all coordinates do (DecimalNumber)
+  OddSyntax odd;
 };
 
 /// Words of an ASCII file are in any case.
@@ -36,10 +50,11 @@ bool is_stl_keyword(std::string_view word, std::string_view keyword);
 
 /// Hands out all facets in order, in blocks; their normals, which follow from the corners, are
 /// ignored. A count of 0 in the header means all facets up to the end: some programs do not go back
-/// to write it. Coordinates are finite. Throws Error(input) naming the byte of the content,
+/// to write it. Facets number from 0. Throws Error(input) naming the byte of the content,
 /// Error(io).
 StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
-                          const SoupVisitor& visit);
+                          const SoupVisitor& visit,
+                          const StlAttributeVisitor& visit_attributes = {});
 
 struct StlBlock;
 
@@ -63,7 +78,8 @@ class StlTextReader {
 };
 
 /// The same as read_binary_stl() of an ASCII file; errors name the line. A solid's end may be glued
-/// to its name, or be two words.
+/// to its name, or be two words. A solid may begin where another one has not ended, and end twice:
+/// these lines are counted as odd.
 StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                         const SoupVisitor& visit);
 

@@ -16,4 +16,16 @@ bool TextCursor::to_row() {
   return true;
 }
 
+void TextCursor::skip_line() {
+  while (look_ahead()) {
+    const std::byte* at = window_.begin();
+    while (at != window_.end() && kind_of(*at) != Kind::line_end)
+      ++at;
+    const bool found = at != window_.end();
+    window_.advance(static_cast<std::size_t>(at - window_.begin()));
+    if (found)
+      return;
+  }
+}
+
 }  // namespace meshhier::mesh_io

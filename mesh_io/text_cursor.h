@@ -30,6 +30,9 @@ class TextCursor {
   /// Goes on to the next word, over line ends; false at the end of the file.
   bool to_row();
 
+  /// Goes on to the end of this line.
+  void skip_line();
+
   /// Goes on to the next word of this line; false if there is none.
   bool to_word() {
     while (look_ahead()) {

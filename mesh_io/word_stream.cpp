@@ -20,7 +20,7 @@ constexpr std::size_t kCapacity = std::size_t{1} << 18;
 constexpr std::size_t kLookAhead = std::size_t{1} << 16;
 
 std::string not_finite(const char* what, std::string_view word) {
-  return fmt::format("expected a finite number for {}, found {}", what, in_quotes(word));
+  return fmt::format("expected a finite number for {}, found {}", what, number_in_quotes(word));
 }
 
 }  // namespace
@@ -83,11 +83,26 @@ bool WordStream::to_word() {
   return is_one_line_ ? to_row() : to_word_of_line();
 }
 
-std::size_t WordStream::words_ahead(std::size_t most) {
+/// Over the rest of a line, and blank lines and comments behind it.
+std::size_t WordStream::row_behind(std::size_t at) const {
+  for (bool in_comment = false, in_row = true; at != end_; ++at) {
+    const char c = buffer_[at];
+    in_comment = !is_line_end(c) && (in_comment || c == '#');
+    in_row = in_row && !is_line_end(c);
+    if (!in_row && !in_comment && !is_blank(c) && !is_line_end(c))
+      break;
+  }
+  return at;
+}
+
+std::size_t WordStream::words_ahead(std::size_t most, std::size_t rows) {
   look_ahead(kLookAhead);
+  std::size_t begin = begin_;
+  for (; rows > 0; --rows)
+    begin = row_behind(begin);
   std::size_t words = 0;
   bool in_word = false;
-  for (std::size_t at = begin_; at != end_ && !is_line_end(buffer_[at]); ++at) {
+  for (std::size_t at = begin; at != end_ && !is_line_end(buffer_[at]); ++at) {
     if (buffer_[at] == '#' && (!in_word || rules_.cuts_words))
       break;
     const bool begins = !is_blank(buffer_[at]) && !in_word;
@@ -211,7 +226,7 @@ float WordStream::take_any_float(const char* what) {
   const std::string_view word = take_word_for(what);
   const auto number = parse_real<float>(word);
   if (!number)
-    fail(fmt::format("expected a number for {}, found {}", what, in_quotes(word)));
+    fail(fmt::format("expected a number for {}, found {}", what, number_in_quotes(word)));
   return *number;
 }
 

@@ -45,8 +45,8 @@ class WordStream {
   /// From now on lines go on in the next one: to_word() is to_row().
   void join_all_lines() { is_one_line_ = true; }
   /// How many words there are from here to the end of the line, up to `most`, which is at most 64;
-  /// of what has no more than 64 KiB. Takes none.
-  std::size_t words_ahead(std::size_t most);
+  /// of what has no more than 64 KiB. Takes none. `rows`: of the line with words so many behind.
+  std::size_t words_ahead(std::size_t most, std::size_t rows = 0);
   /// The word here, valid until the next call. Requires that to_row() or to_word() was true just
   /// before. A word that is too long is an error.
   std::string_view take_word();
@@ -72,6 +72,7 @@ class WordStream {
  private:
   void skip_byte_order_mark();
   bool look_ahead(std::size_t bytes);
+  std::size_t row_behind(std::size_t at) const;
   bool to_word_of_line();
   bool begins_kept_comment();
   std::string_view take_word_for(const char* what);

@@ -1,4 +1,5 @@
-// Normals and texture coordinates that are no numbers.
+// Attributes that are not kept as the file has them: normals and texture coordinates that are no
+// numbers, integers that no double holds.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -8,14 +9,16 @@
 
 namespace meshhier::mesh_io {
 
-/// How many became 0.
+/// How many became 0, or another number.
 struct ZeroedCounts {
   std::uint64_t normals = 0;
   std::uint64_t texcoords = 0;
+  std::uint64_t rounded = 0;  ///< integers of 64 bits
 
   ZeroedCounts& operator+=(const ZeroedCounts& other) {
     normals += other.normals;
     texcoords += other.texcoords;
+    rounded += other.rounded;
     return *this;
   }
   friend bool operator==(const ZeroedCounts&, const ZeroedCounts&) = default;

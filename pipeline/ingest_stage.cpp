@@ -29,15 +29,22 @@ std::vector<ValueTally> tallies_of(const AttributeLayout& layout) {
   return {layout.values.begin(), layout.values.end()};
 }
 
+std::vector<LabelGuess> guesses_of(const AttributeLayout& layout) {
+  return {layout.values.begin(), layout.values.end()};
+}
+
 /// `attributes`: of vertices one after another.
 void add_values(std::span<const float> attributes, const AttributeLayout& layout,
-                std::span<ValueTally> tallies) {
+                std::span<ValueTally> tallies, std::span<LabelGuess> guesses) {
   if (tallies.empty())
     return;
   const auto stride = static_cast<std::size_t>(layout.channels());
   const std::vector<PlacedValue> values = placed_values(layout);
-  for (std::size_t i = 0; i < tallies.size(); ++i)
-    tallies[i].add(attributes.data() + values[i].channel, stride, attributes.size() / stride);
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    const float* const first = attributes.data() + values[i].channel;
+    tallies[i].add(first, stride, attributes.size() / stride);
+    guesses[i].add(first, stride, attributes.size() / stride);
+  }
 }
 
 /// What is learnt of one block of vertices.
@@ -49,6 +56,7 @@ struct BlockScan {
   mesh_io::ZeroedCounts zeroed;
   ColourRange colours;
   std::vector<ValueTally> values;
+  std::vector<LabelGuess> guesses;
 
   void look_at(const mesh_io::VertexBlock& block, const AttributeLayout& layout,
                const partition::SampleIds& ids) {
@@ -56,7 +64,8 @@ struct BlockScan {
     colours = {};
     colours.add(block.attributes, layout);
     values = tallies_of(layout);
-    add_values(block.attributes, layout, values);
+    guesses = guesses_of(layout);
+    add_values(block.attributes, layout, values, guesses);
     float_exact = block.fits_float();
     block.exact.empty() ? look_at(block.first, block.positions, ids)
                         : look_at(block.first, block.exact, ids);
@@ -130,8 +139,8 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
     mesh.summary_.counts = importing::source_counts(mesh.scan(context));
   } catch (const mesh_io::UnplacedVertexError& error) {
     throw Error(ErrorCode::input, std::string(error.what()) +
-                                      "; if no face uses such vertices, \"topology\": \"place\" "
-                                      "leaves them out");
+                                      "; \"topology\": \"place\" leaves them out, and faces "
+                                      "that use such vertices");
   }
   mesh.choose_colour_type(context.progress);
   mesh.choose_origin(context);
@@ -156,11 +165,14 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   const AttributeLayout layout = summary_.attributes;
   mesh_io::ZeroedCounts zeroed;
   std::vector<ValueTally> values = tallies_of(layout);
+  std::vector<LabelGuess> guesses = guesses_of(layout);
   const auto take = [&](const BlockScan& block) {
     zeroed += block.zeroed;
     colours_.add(block.colours);
-    for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t i = 0; i < values.size(); ++i) {
       values[i].add(block.values[i]);
+      guesses[i].add(block.guesses[i]);
+    }
     summary_.bounds.add(block.bounds);
     float_exact_ = float_exact_ && block.float_exact;
     sample_positions_.insert(sample_positions_.end(), block.sample.begin(), block.sample.end());
@@ -178,7 +190,7 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
           slot.scan.look_at(source_->read_vertex_block(i, slot.memory), layout, ids);
         },
         [&](const Slot& slot) { return take(slot.scan); });
-    note_values(values);
+    note_values(values, std::move(guesses));
     return zeroed;
   }
   BlockScan scan;
@@ -193,13 +205,47 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
         spooled_attributes_.append(std::as_bytes(block.attributes));
       },
       importing::parallel_blocks(context.memory().blocks_in_flight, context.cancel));
-  note_values(values);
+  note_values(values, std::move(guesses));
   return zeroed;
 }
 
-void SourceMesh::note_values(std::span<const ValueTally> values) {
+void SourceMesh::note_values(std::span<const ValueTally> values, std::vector<LabelGuess> guesses) {
   for (const ValueTally& value : values)
     summary_.values.push_back(value.statistics());
+  guesses_ = std::move(guesses);
+}
+
+void SourceMesh::guess_labels(const std::function<bool(const std::string&)>& is_sure,
+                              execution::Progress& progress) {
+  std::vector<ScalarAttribute>& all = summary_.attributes.values;
+  std::vector<std::string> labels, quantities, possible;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_none = guesses_[i].is_quantity() && !is_sure(all[i].name);
+    all[i].is_label = all[i].is_label && !is_none;
+    if (all[i].is_label)
+      labels.push_back(all[i].name);
+    if (is_none)
+      quantities.push_back(all[i].name);
+    if (!guesses_[i].classes().empty())
+      possible.push_back(all[i].name);
+  }
+  const auto line_with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> names = labels;
+    names.insert(names.end(), more.begin(), more.end());
+    return labels_line(names);
+  };
+  if (!quantities.empty()) {
+    progress.warn(
+        fmt::format("the values of {} differ from nearly each vertex to the next: they are taken "
+                    "for quantities, of which simplified tiles have means; {} makes labels of them",
+                    fmt::join(quantities, ", "), line_with(quantities)));
+  }
+  if (!possible.empty()) {
+    progress.warn(fmt::format(
+        "the values of {} are few whole numbers: if they name something, as classes do, {} in the "
+        "config keeps simplified tiles from having means of them",
+        fmt::join(possible, ", "), line_with(possible)));
+  }
 }
 
 void SourceMesh::choose_colour_type(execution::Progress& progress) {

@@ -11,6 +11,7 @@
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
 #include "pipeline/colour_range.h"
+#include "pipeline/label_guess.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "storage/io/spool.h"
@@ -66,6 +67,12 @@ class SourceMesh {
     summary_.unused = std::move(unused);
   }
 
+  /// Where the config leaves it to types which attributes are labels: those are none any more of
+  /// which LabelGuess says so, and a warning names what may be one. `is_sure(name)`: of labels that
+  /// stay. Once, behind ingest().
+  void guess_labels(const std::function<bool(const std::string&)>& is_sure,
+                    execution::Progress& progress);
+
   /// Add to positions to get input coordinates: choose_origin() of the vertices that triangles use.
   Vec3d origin() const { return origin_; }
 
@@ -108,6 +115,8 @@ class SourceMesh {
                                           const Sink& sink,
                                           const std::function<void(Slot&)>& after = {});
 
+  /// As MeshSource.
+  mesh_io::OddSyntax odd_syntax() const { return source_->odd_syntax(); }
   /// The input's storage::FileChecksum; cheap when all has been read.
   std::uint64_t checksum(const execution::CancelToken& cancel) {
     return source_->checksum([&] { cancel.check(); });
@@ -125,7 +134,7 @@ class SourceMesh {
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
   mesh_io::ZeroedCounts scan(const StageContext& context);
-  void note_values(std::span<const ValueTally> values);
+  void note_values(std::span<const ValueTally> values, std::vector<LabelGuess> guesses);
   void choose_colour_type(execution::Progress& progress);
   void choose_origin(const StageContext& context);
   mesh_io::VertexBlock read_input_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
@@ -136,6 +145,7 @@ class SourceMesh {
   SourceSummary summary_;
   Vec3d origin_;
   bool float_exact_ = true;
+  std::vector<LabelGuess> guesses_;  ///< of each value
   ColourRange colours_;
   std::vector<Vec3d> sample_positions_;
 };

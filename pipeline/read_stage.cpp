@@ -14,6 +14,9 @@ namespace {
 SourceMesh read_vertices(importing::MeshInput& input, storage::ScratchFile& scratch,
                          const StageContext& context) {
   SourceMesh mesh = ingest(input.open(), input.files().name(), scratch, context);
+  if (!context.config.attributes.labels)
+    mesh.guess_labels([&](const std::string& name) { return input.is_sure_label(name); },
+                      context.progress);
   mesh.note(input.files().units(), input.files().unused());
   for (const std::string& warning : input.files().warnings())
     context.progress.warn(warning);
@@ -28,8 +31,11 @@ SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
   summary.faces = counts.faces;
   summary.triangles = counts.triangles;
   summary.degenerate_triangles = counts.degenerate_triangles;
-  const std::vector<SourceCount> polygons = importing::source_counts(counts.polygons);
-  summary.counts.insert(summary.counts.end(), polygons.begin(), polygons.end());
+  for (const auto& all :
+       {importing::source_counts(counts.polygons), importing::source_counts(mesh.odd_syntax())}) {
+    for (const SourceCount& one : all)
+      importing::add_count(summary.counts, one.name, one.count);
+  }
   std::ranges::sort(summary.counts, {}, &SourceCount::name);
   if (input.needs_import()) {
     input.complete(summary);

@@ -229,7 +229,7 @@ const std::vector<ThirdParty>& third_parties() {
                         "storage/format", "storage/io"})},
       {"CLI/", in({"app", "bench"})},
       {"CGAL/", of({"inspection/plan_region.cpp", "inspection/triangle_search.cpp",
-                    "mesh_io/polygon_turns.cpp"})},
+                    "mesh_io/polygon_cover.cpp", "mesh_io/polygon_turns.cpp"})},
       {"boost/", of({"inspection/plan_region.cpp"})},
       {"benchmark/", in({"bench"})},
       {"proj.h", of({"geodesy/proj_library.h"})},

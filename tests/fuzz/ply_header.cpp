@@ -4,6 +4,7 @@
 #include "fuzz/targets.h"
 #include "mesh_io/ply_plan.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -30,11 +31,11 @@ std::string header_text(const PlyHeader& header) {
   for (const PlyElement& element : header.elements) {
     text += fmt::format("element {} {}\n", element.name, element.count);
     for (const PlyProperty& property : element.properties) {
-      text += "property ";
-      if (property.is_list())
-        text += fmt::format("list {} ", name_of(*property.count_type));
+      const std::string list =
+          property.count_type ? fmt::format("list {} ", name_of(*property.count_type)) : "";
       feeds = feeds || property.name.find('\n') != std::string::npos;
-      text += fmt::format("{} {}\n", name_of(property.type), property.name);
+      for (int i = 0; i < std::max<int>(property.fixed_count, 1); ++i)
+        text += fmt::format("property {}{} {}\n", list, name_of(property.type), property.name);
     }
   }
   text += "end_header\n";
@@ -43,7 +44,8 @@ std::string header_text(const PlyHeader& header) {
 
 bool is_same(const PlyHeader& a, const PlyHeader& b) {
   const auto same_property = [](const PlyProperty& p, const PlyProperty& q) {
-    return p.name == q.name && p.type == q.type && p.count_type == q.count_type;
+    return p.name == q.name && p.type == q.type && p.count_type == q.count_type &&
+           p.fixed_count == q.fixed_count;
   };
   const auto same_element = [&](const PlyElement& e, const PlyElement& f) {
     return e.name == f.name && e.count == f.count &&
@@ -61,7 +63,7 @@ void check_header(const PlyHeader& header, std::size_t size) {
     require(!element.name.empty() && names.insert(element.name).second, "names are unique");
     for (const PlyProperty& property : element.properties) {
       require(!property.name.empty(), "properties have names");
-      require(!property.is_list() || is_integer(*property.count_type), "lengths are integers");
+      require(!property.count_type || is_integer(*property.count_type), "lengths are integers");
     }
   }
   const std::string text = header_text(header);

@@ -359,14 +359,32 @@ TEST_F(ImportTest, VerticesWithoutAPlaceThatNoFaceUsesGo) {
   EXPECT_THAT(problems(joined, joined.input), IsEmpty());
 }
 
-TEST_F(ImportTest, VerticesWithoutAPlaceThatFacesUseAreRefused) {
+TEST_F(ImportTest, TrianglesOfVerticesWithoutAPlaceGo) {
   TestMesh mesh = with_unplaced(tests::sphere(500));
-  mesh.triangles.push_back({2, 3, 0});
+  put_ply("good.ply", mesh);
+  const auto expected = made(config({"good.ply"}));
+  mesh.triangles.insert(mesh.triangles.begin() + 7, {2, 3, 0});
+  put_ply("mesh.ply", mesh);
+  put("text.ply", ply_text(mesh));
+  put("mesh.obj", obj_text(mesh));
+  put("mesh.off", off_text(mesh));
+  for (const char* name : {"mesh.ply", "text.ply", "mesh.obj", "mesh.off"}) {
+    const config::Config with = config({name});
+    EXPECT_EQ(made(with), expected) << name;
+    EXPECT_EQ(count_of(with, "dropped_unplaced_triangles"), 1U) << name;
+    EXPECT_THAT(problems(with, with.input), IsEmpty()) << name;
+  }
+}
+
+TEST_F(ImportTest, MeshesOfWhichMostTrianglesHaveNoPlaceAreRefused) {
+  TestMesh mesh = with_unplaced(tests::sphere(500));
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = 0; i <= count; ++i)
+    mesh.triangles.push_back({2, 3, 0});
   put_ply("mesh.ply", mesh);
   put("mesh.obj", obj_text(mesh));
   put("mesh.off", off_text(mesh));
-  constexpr const char* kWhy =
-      "; that is so of vertices that faces use, so the mesh cannot be built";
+  constexpr const char* kWhy = "; most triangles use such vertices, so the mesh cannot be built";
   EXPECT_EQ(failure(config({"mesh.ply"})).what(),
             std::string("w/in/mesh.ply: vertex 0 has the coordinates nan nan nan, which are not "
                         "finite") +

@@ -82,6 +82,31 @@ TEST_F(MaterialColoursTest, VerticesAtABorderHaveBothColours) {
   EXPECT_FALSE(mesh.summary.textures);
 }
 
+TEST_F(MaterialColoursTest, ANameMeansTheLastLibraryBeforeIt) {
+  put("a.mtl", "newmtl m\nKd 1 0 0\nnewmtl own\nKd 0.5 0 0\n");
+  put("b.mtl", "newmtl m\nKd 0 0 1\nnewmtl late\nKd 0 1 0\n");
+  put("a.obj", std::string("usemtl m\n") + kCorners +
+                   "f 1 2 3\nmtllib a.mtl\nusemtl m\nf 1 2 3\nusemtl late\nf 1 2 3\n"
+                   "mtllib b.mtl\nusemtl m\nf 1 2 3\nusemtl own\nf 1 2 3\n"
+                   "mtllib a.mtl\nusemtl m\nf 1 2 3\n");
+  const Imported mesh = import_of({"a.obj"});
+  std::vector<std::string> colours;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    colours.push_back(corner_colours(mesh, i)[0]);
+  EXPECT_THAT(colours,
+              ElementsAre("255 0 0", "255 0 0", "0 255 0", "0 0 255", "128 0 0", "255 0 0"));
+  EXPECT_EQ(mesh.count("undefined_materials"), 0U);
+}
+
+TEST_F(MaterialColoursTest, ColoursUpTo255AreBytesAndTold) {
+  const Imported mesh = import_square("newmtl red\nKd 200 40 41\nnewmtl blue\nKd 1 0 40\n");
+  EXPECT_THAT(corner_colours(mesh, 0), Each("200 40 41"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("1 0 40"));
+  EXPECT_EQ(mesh.count("libraries_with_colours_of_bytes"), 1U);
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("whole numbers up to 255")));
+  EXPECT_THAT(import_square("newmtl red\nKd 1.5 0 0\nnewmtl blue\nKd 0 0 1\n").warnings, IsEmpty());
+}
+
 TEST_F(MaterialColoursTest, MaterialsOfOneColourSplitNothing) {
   const Imported mesh = import_square("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 1 0 0\n");
   EXPECT_EQ(mesh.layout, kColoured);

@@ -45,6 +45,19 @@ TEST(MeshFormat, IsKnownByTheContent) {
   EXPECT_EQ(format_of(binary_stl("", 0, 0)), "binary STL");
 }
 
+TEST(MeshFormat, IsKnownWithSmallSins) {
+  for (const char* start : {"\xEF\xBB\xBFply\n", "\n\r\n ply \r\n", "PLY\n", "Ply\r"}) {
+    EXPECT_EQ(format_of(std::string(start) + "format ascii 1.0\n"), "PLY") << start;
+    EXPECT_EQ(format_of(gzip(std::string(start) + "format ascii 1.0\n")), "PLY (gzip)") << start;
+  }
+  EXPECT_NE(format_refusal("PLY by somebody\n"), "");
+  EXPECT_EQ(format_of("off\n1 0 0\n0 0 0\n"), "OFF");
+  for (const std::size_t zeros : {1, 1000, 200'000}) {
+    EXPECT_EQ(format_of("solid a\nendsolid\n" + std::string(zeros, '\0')), "ASCII STL") << zeros;
+    EXPECT_EQ(format_of("v 0 0 0\n" + std::string(zeros, '\0')), "OBJ") << zeros;
+  }
+}
+
 TEST(MeshFormat, ATilesetBeginsAsAGltf) {
   const std::string text = R"({"asset": {"version": "1.1"}, "geometricError": 1, "root": {}})";
   EXPECT_EQ(format_of(text), "3D Tiles");

@@ -2,6 +2,7 @@
 
 #include "mesh_io/streams.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,17 @@ MtlMaterial read_one(const std::string& lines) {
   return all.at(0);
 }
 
+/// Of materials that are a library.
+std::vector<std::array<float, 3>> shown(const std::vector<MtlMaterial>& all) {
+  MtlColours colours;
+  for (const MtlMaterial& material : all)
+    colours.add(material);
+  std::vector<std::array<float, 3>> shown;
+  for (const MtlMaterial& material : all)
+    shown.push_back(colours.shown(material));
+  return shown;
+}
+
 std::string message_of(const std::string& text) {
   return input_error_of([&] { read_library(text); });
 }
@@ -38,20 +50,20 @@ TEST(MtlReader, ReadsMaterialsInTheirOrder) {
       "map_Kd a b.png\nnewmtl red wall\nKd 0.25");
   ASSERT_THAT(all, SizeIs(3));
   EXPECT_EQ(all[0].name, "red wall");
-  EXPECT_THAT(all[0].colour, ElementsAre(1, 0.5F, 0));
+  EXPECT_THAT(shown(all)[0], ElementsAre(1, 0.5F, 0));
   EXPECT_EQ(all[0].opacity, 0.5F);
   EXPECT_FALSE(all[0].picture);
   EXPECT_EQ(all[1].name, "");
-  EXPECT_THAT(all[1].colour, ElementsAre(1, 1, 1));
+  EXPECT_THAT(shown(all)[1], ElementsAre(1, 1, 1));
   EXPECT_EQ(all[1].picture.value().file, "a b.png");
-  EXPECT_THAT(all[2].colour, ElementsAre(0.25F, 0.25F, 0.25F));
+  EXPECT_THAT(shown(all)[2], ElementsAre(0.25F, 0.25F, 0.25F));
 }
 
 TEST(MtlReader, WordsAreOfAnyCaseAndOthersArePassedOver) {
   const MtlMaterial material = read_one(
       "\tKA 1 0 0\n  KD 2 -1 0.5 # bright\nmap_kd A.png\nmap_Kd b.png\nMAP_D c.png\nillum 2\n"
       "Pr 0.5\nbump -bm 1 n.png\nrefl -type sphere x\n\\\n\nKd xyz 1 2 3\nKd spectral a.rfl 1\n");
-  EXPECT_THAT(material.colour, ElementsAre(1, 0, 0.5F));
+  EXPECT_THAT(shown({material})[0], ElementsAre(1, 0, 0.5F));
   EXPECT_EQ(material.picture.value().file, "A.png");
   EXPECT_EQ(material.alpha.value().file, "c.png");
 }
@@ -64,10 +76,22 @@ TEST(MtlReader, ABackslashEndsNoComment) {
           read_library("newmtl a\n" + std::string(before) + end + "newmtl b\nKd 0 1 0\n");
       ASSERT_THAT(all, SizeIs(2)) << before;
       EXPECT_EQ(all[1].name, "b");
-      EXPECT_THAT(all[1].colour, ElementsAre(0, 1, 0));
+      EXPECT_THAT(shown(all)[1], ElementsAre(0, 1, 0));
     }
   }
   EXPECT_EQ(read_library("newmtl a # C:\\\nnewmtl b\n").size(), 2U);
+}
+
+TEST(MtlReader, ColoursOfALibraryAreBytesIfAllAreAndSomeGoBeyondTwo) {
+  const auto colours = [](const std::string& library) { return shown(read_library(library)); };
+  EXPECT_THAT(
+      colours("newmtl a\nKd 255 51 0\nnewmtl b\nKd 1 0 0\nnewmtl c\n"),
+      ElementsAre(ElementsAre(1, 0.2F, 0), ElementsAre(1 / 255.0F, 0, 0), ElementsAre(1, 1, 1)));
+  EXPECT_THAT(colours("newmtl a\nKd 200\n"), ElementsAre(::testing::Each(200 / 255.0F)));
+  for (const char* lights :
+       {"newmtl a\nKd 2 1 0\n", "newmtl a\nKd 5.5 1 0\n", "newmtl a\nKd 256 1 0\n",
+        "newmtl b\nKd 0.5 0 0\nnewmtl a\nKd 9 1 0\n"})
+    EXPECT_THAT(colours(lights).back(), ElementsAre(1, 1, 0)) << lights;
 }
 
 TEST(MtlReader, OpacityIsWhatDSaysElseTr) {
@@ -98,6 +122,7 @@ TEST(MtlReader, OptionsStandBeforeTheFile) {
 TEST(MtlReader, FailuresNameTheLine) {
   EXPECT_EQ(message_of("newmtl a\n\nKd 1 2 three"),
             "a.mtl: line 3: expected a finite number for a colour, found 'three'");
+  EXPECT_THAT(message_of("newmtl a\nKd 0,5 0 1"), HasSubstr("decimal point, not a comma"));
   EXPECT_THAT(message_of("newmtl a\nKd 1 2"), HasSubstr("line 2: expected a finite number"));
   EXPECT_THAT(message_of("newmtl a\nd"), HasSubstr("line 2: expected a finite number"));
   EXPECT_THAT(message_of("newmtl a\nTr nan"), HasSubstr("for a transparency, found 'nan'"));

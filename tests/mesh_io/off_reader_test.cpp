@@ -121,7 +121,7 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(off_refusal("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
   EXPECT_THAT(off_refusal("OFF\n"), HasSubstr("expected the counts of vertices and faces"));
   EXPECT_THAT(off_refusal("OFF\n-1 0 0\n"), HasSubstr("line 2: expected the count of vertices"));
-  EXPECT_THAT(off_refusal("OFF\n1\n"), HasSubstr("line 2: expected the count of faces"));
+  EXPECT_THAT(off_refusal("OFF\n1\n"), HasSubstr("expected the count of faces"));
   EXPECT_THAT(off_refusal("OFF\n4294967296 0 0\n"), HasSubstr("expected the count of vertices"));
   EXPECT_THAT(off_refusal("OFF\n1 0 0 0\n1 2 3\n"),
               HasSubstr("line 2: expected the end of the line"));
@@ -148,7 +148,9 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(faces("3 0 1 4\n"), HasSubstr("expected a vertex from 0 to 3 in face 0, found '4'"));
   EXPECT_THAT(faces("3 0 1 -1\n"), HasSubstr("found '-1'"));
   EXPECT_THAT(faces("-3 0 1 2\n"), HasSubstr("expected the number of a face's corners"));
-  EXPECT_THAT(faces("99999999999 0 1 2\n"), HasSubstr("expected a corner of face 0"));
+  EXPECT_THAT(faces("99999999999 0 1 2\n"), HasSubstr("faces of at most 131072 corners"));
+  EXPECT_THAT(faces("3 0 1,0 2\n"), HasSubstr("found '1,0'"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1,5 2 3\n"), HasSubstr("decimal point, not a comma"));
 }
 
 TEST(OffReader, TheCountOfVerticesMayStandRightBehindTheKeyword) {
@@ -179,7 +181,7 @@ TEST(OffReader, LinesMayEndAnywhere) {
     const OffTaken taken(text);
     EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0")) << text;
     EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "0 2 3")) << text;
-    EXPECT_EQ(taken.counts.lines_behind, 0U) << text;
+    EXPECT_EQ(taken.counts.odd.lines_behind, 0U) << text;
   }
   const OffTaken faces("OFF\n4 3 0\n" + std::string(kOffSquare) + "3 0 1 2 3 0 2 3 3\n3 2 1\n");
   EXPECT_THAT(faces.triangles, ElementsAre("0 1 2", "0 2 3", "3 2 1"));
@@ -190,11 +192,31 @@ TEST(OffReader, LinesMayEndAnywhere) {
               HasSubstr("expected a corner of face 0"));
 }
 
+TEST(OffReader, SmallSinsAreReadAndCounted) {
+  const std::string square(kOffSquare);
+  for (const std::string& start :
+       {std::string("off\n4 1 0\n"), std::string("Off 4 1 0\n"), std::string("off4 1 0\n"),
+        std::string("OFF\n4\n1\n0\n"), std::string("OFF\n4\n1 0\n"), std::string("OFF 4\n1\n"),
+        std::string("OFF\n4 1\n0\n"), std::string("OFF\n4\n# c\n\n1\n\n0\n")}) {
+    const OffTaken taken(start + square + "3 0 1 2\n");
+    EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0")) << start;
+    EXPECT_THAT(taken.triangles, ElementsAre("0 1 2")) << start;
+    EXPECT_EQ(taken.counts.odd, OddSyntax{.header_lines = 1}) << start;
+  }
+  const OffTaken coloured("coff\n3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n");
+  EXPECT_EQ(coloured.counts.attributes.colour, ColourType::u8);
+  EXPECT_FALSE(is_off_keyword("noff")) << "NOFF or nOFF";
+  EXPECT_TRUE(is_off_keyword("off"));
+  const OffTaken floats("OFF\n4 1 0\n" + square + "3.0 0.0 1.0 2.0\n");
+  EXPECT_THAT(floats.triangles, ElementsAre("0 1 2"));
+  EXPECT_EQ(floats.counts.odd, OddSyntax{.integers = 4});
+}
+
 TEST(OffReader, CountsWhatLiesBehindTheFaces) {
   const std::string square = "OFF\n4 1 0\n" + std::string(kOffSquare) + "3 0 1 2\n";
-  EXPECT_EQ(OffTaken(square).counts.lines_behind, 0U);
-  EXPECT_EQ(OffTaken(square + "\n  \n# end\n").counts.lines_behind, 0U);
-  EXPECT_EQ(OffTaken(square + "3 0 1 2\n\nthe end\n").counts.lines_behind, 2U);
+  EXPECT_EQ(OffTaken(square).counts.odd.lines_behind, 0U);
+  EXPECT_EQ(OffTaken(square + "\n  \n# end\n").counts.odd.lines_behind, 0U);
+  EXPECT_EQ(OffTaken(square + "3 0 1 2\n\nthe end\n").counts.odd.lines_behind, 2U);
 }
 
 }  // namespace

@@ -198,7 +198,10 @@ TEST(PlyErrors, TextNumbers) {
   EXPECT_EQ(vertex_row("float", "1 abc 3"),
             "mesh.ply: line 8: expected a number ('float') for 'y' in row 0 of 1 of element "
             "'vertex', found 'abc'");
-  EXPECT_THAT(vertex_row("float", "1 2,5 3"), HasSubstr("found '2,5'"));
+  for (const char* type : {"float", "double", "int"}) {
+    EXPECT_THAT(vertex_row(type, "1 2,5 3"),
+                HasSubstr("found '2,5' (numbers have a decimal point, not a comma"));
+  }
   EXPECT_THAT(vertex_row("uchar", "1 256 3"),
               HasSubstr("expected an integer from 0 to 255 ('uchar') for 'y'"));
   EXPECT_THAT(vertex_row("char", "1 2 -129"), HasSubstr("from -128 to 127 ('char') for 'z'"));
@@ -206,7 +209,7 @@ TEST(PlyErrors, TextNumbers) {
   EXPECT_THAT(vertex_row("int", "1.5 2 3"), HasSubstr("from -2147483648 to 2147483647 ('int')"));
   EXPECT_THAT(vertex_row("float", "1 2 " + std::string(5000, '1')),
               HasSubstr("found a word of more than 4096 bytes"));
-  PlyText face = with_faces(PlyEncoding::ascii, 1).line("3 0 1.0 2");
+  PlyText face = with_faces(PlyEncoding::ascii, 1).line("3 0 1.5 2");
   EXPECT_THAT(error_of(face.bytes()), HasSubstr("line 13: expected an integer from"));
   PlyText count = with_faces(PlyEncoding::ascii, 1).line("x 0 1 2");
   EXPECT_THAT(error_of(count.bytes()), HasSubstr("for 'vertex_indices' in row 0 of 1"));
@@ -217,7 +220,7 @@ TEST(PlyErrors, TextRowsThatContradictTheHeader) {
   EXPECT_EQ(error_of(header + "1 2 3 4\n5 6 7 8\n"),
             "mesh.ply: line 8: expected the end of the line behind row 0 of 2 of element "
             "'vertex', found '4' (the row has more numbers than the header declares)");
-  EXPECT_EQ(error_of(header + "1 2 3\n\n5 6\n7\n"),
+  EXPECT_EQ(error_of(header + "1 2 3\n\n5 6\n7 8\n"),
             "mesh.ply: line 10: expected a number for 'z' in row 1 of 2 of element 'vertex', found "
             "the end of the line (the row has fewer numbers than the header declares)");
   EXPECT_THAT(error_of(header + "1 2 3  \r\n5 6"), HasSubstr("line 9: expected a number for 'z'"));
@@ -309,6 +312,11 @@ TEST(PlyErrors, Overlong) {
   EXPECT_EQ(error_of(tetrahedron(PlyEncoding::ascii) + "3 0 1 2\n"),
             "mesh.ply: line 18: expected the end of the file behind the last row the header "
             "declares, found '3' (the header's counts do not match the data)");
+  for (const char* rest : {"1.5 2 3\n", "no row\n0 0 0\n", "4 0 1 2 3\n"}) {
+    EXPECT_THAT(error_of(tetrahedron(PlyEncoding::ascii) + rest),
+                HasSubstr("the header's counts do not match the data"))
+        << rest;
+  }
   for (const PlyEncoding encoding : {PlyEncoding::little_endian, PlyEncoding::big_endian}) {
     const Bytes whole = tetrahedron(encoding);
     for (const Bytes& rest : {Bytes("x"), Bytes("\0", 1), Bytes("x\n"), Bytes("\n\0", 2),

@@ -52,6 +52,7 @@ TEST(PlyHeader, KnowsOldAndSizedTypeNames) {
                              names[i] + " p\nend_header\n";
     const PlyHeader header = parse_ply_header(text, "h.ply");
     EXPECT_EQ(header.elements[0].properties[0].type, static_cast<PlyType>(i / 2)) << names[i];
+    EXPECT_EQ(header.odd_lines, 0U) << names[i];
   }
 }
 
@@ -101,6 +102,82 @@ TEST(PlyHeader, MayEndTheFileWithoutALineEnd) {
   EXPECT_EQ(parse_ply_header(text, "h").data_offset, text.size());
 }
 
+/// A header of one face element, whose lines stand in `lines`.
+PlyHeader header_of(const std::string& lines,
+                    const std::string& start = "ply\nformat ascii 1.0\n") {
+  return parse_ply_header(start + lines + "end_header\n", "h.ply");
+}
+
+TEST(PlyHeader, SmallSinsAreReadAndCounted) {
+  const std::string vertex = "element vertex 1\nproperty float x\n";
+  for (const char* start :
+       {"\xEF\xBB\xBFply\nformat ascii 1.0\n", "\n \r\nply\nformat ascii 1.0\n",
+        "PLY\nformat ascii 1.0\n", "Ply\nformat ascii 1.0\n", "ply\nformat ascii 1.1\n",
+        "ply\nformat ascii 1\n", "ply\nformat ascii\n"}) {
+    const PlyHeader header = header_of(vertex, start);
+    EXPECT_EQ(header.odd_lines, 1U) << start;
+    EXPECT_EQ(header.elements[0].name, "vertex") << start;
+  }
+  EXPECT_EQ(header_of(vertex).odd_lines, 0U);
+  const PlyHeader capitals = parse_ply_header(
+      "PLY\nFORMAT ASCII 1.0\nELEMENT VERTEX 1\nPROPERTY FLOAT X\nEND_HEADER\n", "h.ply");
+  EXPECT_EQ(capitals.odd_lines, 6U);
+  EXPECT_EQ(capitals.elements[0].name, "vertex");
+  EXPECT_EQ(header_of("element vertex 1\nproperty Float x\nproperty INT64 id\n").odd_lines, 2U);
+}
+
+TEST(PlyHeader, LinesAreCountedBehindWhatComesFirst) {
+  const PlyHeader header = parse_ply_header("\n\nply\nformat ascii 1.0\nend_header\n", "h.ply");
+  EXPECT_EQ(header.data_line, 6U);
+}
+
+TEST(PlyHeader, NamesThatMeanTheFormatsAreThese) {
+  for (const char* name : {"vertices", "Vertex", "VERTICES", "vertexes"}) {
+    const PlyHeader header = header_of("element " + std::string(name) + " 1\nproperty float x\n");
+    EXPECT_EQ(header.elements[0].name, "vertex") << name;
+    EXPECT_EQ(header.odd_lines, 1U) << name;
+  }
+  for (const char* name : {"vertex_indexes", "Vertex_Indices", "vertexIndex", "indices"}) {
+    const PlyHeader header =
+        header_of("element faces 1\nproperty list uchar int " + std::string(name) + "\n");
+    EXPECT_EQ(header.elements[0].name, "face") << name;
+    EXPECT_EQ(header.elements[0].properties[0].name, "vertex_indices") << name;
+    EXPECT_EQ(header.odd_lines, 2U) << name;
+  }
+  const PlyHeader both =
+      header_of("element vertices 1\nproperty float a\nelement vertex 1\nproperty float x\n");
+  EXPECT_EQ(both.elements[0].name, "vertices") << "another one is there";
+  const PlyHeader unclear = header_of(
+      "element face 1\nproperty list uchar int indices\nproperty list uchar int vertices\n");
+  EXPECT_EQ(unclear.elements[0].properties[0].name, "indices") << "either may be meant";
+}
+
+TEST(PlyHeader, ScalarsSideBySideAreTheCornersOfFacesWithoutALists) {
+  const auto face = [](const std::vector<std::string>& names, const std::string& type = "int") {
+    std::string lines = "element face 1\nproperty uchar tag\n";
+    for (const std::string& name : names)
+      lines += "property " + type + " " + name + "\n";
+    return header_of(lines + "property float area\n").elements[0].properties;
+  };
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"v1", "v2", "v3"},
+        {"v0", "v1", "v2"},
+        {"a", "b", "c"},
+        {"i", "j", "k"},
+        {"vertex_index_0", "vertex_index_1", "vertex_index_2"},
+        {"vertex_indices", "vertex_indices", "vertex_indices"},
+        {"V1", "V2", "V3", "V4"}}) {
+    const std::vector<PlyProperty> properties = face(names);
+    ASSERT_EQ(properties.size(), 3U) << names[0];
+    EXPECT_EQ(properties[1].name, "vertex_indices");
+    EXPECT_EQ(properties[1].fixed_count, names.size());
+    EXPECT_TRUE(properties[1].is_list());
+  }
+  EXPECT_EQ(face({"v1", "v2", "v3"}, "float").size(), 5U) << "no numbers of vertices";
+  EXPECT_EQ(face({"v1", "v3", "v2"}).size(), 5U);
+  EXPECT_EQ(face({"red", "green", "blue"}).size(), 5U);
+}
+
 TEST(PlyHeader, SaysWhatAForeignFileIs) {
   EXPECT_EQ(error_of(""), "h.ply: expected a PLY file, found an empty file");
   EXPECT_EQ(error_of("solid x\n"),
@@ -118,7 +195,7 @@ TEST(PlyHeader, EveryErrorNamesItsLine) {
        "line 2: expected the format 'ascii', 'binary_little_endian' or "
        "'binary_big_endian', found 'text'"},
       {"ply\nformat ascii 2.0\n", "line 2: expected format version '1.0', found '2.0'"},
-      {"ply\nformat ascii\n", "line 2: expected format version '1.0', found ''"},
+      {"ply\nformat ascii 1.0 x\n", "line 2: expected format version '1.0', found '1.0 x'"},
       {"ply\nformat ascii 1.0\nformat ascii 1.0\n", "line 3: expected one 'format' line"},
       {"ply\nend_header\n", "line 2: expected a 'format' line before 'end_header', found none"},
       {"ply\nformat ascii 1.0\nelements vertex 3\n", "line 3: expected 'format', 'comment'"},

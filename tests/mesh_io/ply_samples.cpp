@@ -212,7 +212,8 @@ PlyText& PlyText::value(PlyType type, double number) {
   constexpr Append kAppend[] = {append_raw<std::int8_t>,  append_raw<std::uint8_t>,
                                 append_raw<std::int16_t>, append_raw<std::uint16_t>,
                                 append_raw<std::int32_t>, append_raw<std::uint32_t>,
-                                append_raw<float>,        append_raw<double>};
+                                append_raw<float>,        append_raw<double>,
+                                append_raw<std::int64_t>, append_raw<std::uint64_t>};
   kAppend[static_cast<std::size_t>(type)](bytes_, number, big);
   return *this;
 }

@@ -1,6 +1,8 @@
 // What is read: the same mesh in every encoding, type and order.
 #include "mesh_io/ply_source.h"
 
+#include "hierarchy/scalar_value.h"
+#include "mesh_io/polygon_cut.h"
 #include "ply_samples.h"
 
 #include <algorithm>
@@ -9,9 +11,12 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace meshhier::mesh_io::tests {
@@ -426,6 +431,108 @@ TEST(PlySource, WhatMayFollowTheData) {
   }
 }
 
+OddSyntax odd_of(const Bytes& bytes) {
+  MemoryFiles files;
+  files.put("m", bytes);
+  const auto source = open_mesh(files, "m");
+  read_mesh(*source);  // several times
+  return source->odd_syntax();
+}
+
+TEST(PlySource, SmallSinsOfATextAreReadAndCounted) {
+  const Bytes whole = tetrahedron(PlyEncoding::ascii);
+  EXPECT_EQ(odd_of(whole), OddSyntax());
+  EXPECT_EQ(odd_of(whole + Bytes(1, '\0')), OddSyntax{.bytes_behind = 1});
+  expect_tetrahedron(whole.substr(0, whole.size() - 1) + Bytes(5000, '\0'));
+  EXPECT_EQ(odd_of(whole + "end of file\n\n{}\n"), OddSyntax{.lines_behind = 2});
+  EXPECT_EQ(odd_of(whole + "0\n"), OddSyntax{.lines_behind = 1});
+  expect_tetrahedron(whole + "end of file");
+  EXPECT_EQ(odd_of("\n\n" + whole), OddSyntax{.header_lines = 1});
+  expect_tetrahedron("\xEF\xBB\xBF" + whole);
+}
+
+TEST(PlySource, IntegersMayBeWrittenAsFloats) {
+  const Bytes header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const Bytes rows = "0 0 0 200.0 1e2 0\n1 0 0 1 2 3\n0 1 0 1 2 3.000\n3.0 0 1.0 2\n";
+  const ReadMesh mesh = read_bytes(header + rows);
+  EXPECT_EQ(mesh.attributes, (std::vector<float>{200, 100, 0, 1, 2, 3, 1, 2, 3}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Corners>{{0, 1, 2}}));
+  EXPECT_EQ(odd_of(header + rows), OddSyntax{.integers = 5});
+  EXPECT_THAT(error_of(header + "0 0 0 200.5 1 1\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n"),
+              ::testing::HasSubstr("expected an integer from 0 to 255"));
+}
+
+TEST(PlySource, RowsMayGoOnInTheNextLine) {
+  const Bytes header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "property int tag\nend_header\n";
+  for (const char* rows : {"0 0\n0\n1\n0\n\n0\n0 1 0\n3\n0 1\n2 7\n",
+                           "0\r\n0 0\r\n1 0 \r\n 0\r\n0 1 0\r\n3 0 1\r\n2\r\n7"}) {
+    const ReadMesh mesh = read_bytes(header + rows, {.which = AttributeChoice::Which::none});
+    EXPECT_EQ(mesh.positions, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << rows;
+    EXPECT_EQ(mesh.triangles, (std::vector<Corners>{{0, 1, 2}})) << rows;
+    EXPECT_EQ(odd_of(header + rows), OddSyntax{.broken_rows = 3}) << rows;
+  }
+  EXPECT_THAT(error_of(header + "0 0\n1 0 0\n0 1 0\n3 0 1 2 7\n"),
+              ::testing::HasSubstr("line 11: expected a number for 'z' in row 0"))
+      << "a number is missing";
+}
+
+TEST(PlySource, IntegersOf64BitsInEveryEncoding) {
+  for (const PlyEncoding encoding : kEncodings) {
+    for (const PlyType type : {PlyType::i64, PlyType::u64}) {
+      PlyText ply(encoding);
+      ply.line("element vertex 3").line("property " + std::string(name_of(type)) + " x");
+      ply.line("property float y").line("property float z");
+      ply.line("property " + std::string(name_of(type)) + " id").line("element face 1");
+      ply.line("property list " + std::string(name_of(type)) + " " + std::string(name_of(type)) +
+               " vertex_indices");
+      ply.end_header();
+      for (const double x : {0.0, 1.0, 9007199254740994.0}) {
+        ply.value(type, x).value(PlyType::f32, x == 1 ? 1 : 0).value(PlyType::f32, 0);
+        ply.value(type, x == 0 ? 9007199254740996.0 : 7).end_row();
+      }
+      ply.list(type, type, {0, 1, 2});
+      const ReadMesh mesh = read_bytes(ply.bytes());
+      EXPECT_EQ(mesh.positions[2].x, 9007199254740994.0);
+      EXPECT_EQ(mesh.triangles, (std::vector<Corners>{{0, 1, 2}}));
+      ASSERT_EQ(mesh.description.attributes.values.size(), 1U);
+      EXPECT_EQ(mesh.description.attributes.values[0].type, ValueType::f64);
+      EXPECT_TRUE(mesh.description.attributes.values[0].is_label);
+      EXPECT_EQ(value_in(ValueType::f64, mesh.attributes.data()), 9007199254740996.0);
+      MemoryFiles files;
+      files.put("m", ply.bytes());
+      const auto source = open_mesh(files, "m");
+      std::uint64_t rounded = 0;
+      source->read_vertices([&](const VertexBlock& block) { rounded += block.zeroed.rounded; });
+      EXPECT_EQ(rounded + source->odd_syntax().rounded, 2U) << name_of(encoding);
+    }
+  }
+}
+
+TEST(PlySource, CornersMayBeScalarsInEveryEncoding) {
+  for (const PlyEncoding encoding : kEncodings) {
+    PlyText ply(encoding);
+    ply.line("element vertex 4").line("property uchar x").line("property uchar y");
+    ply.line("property uchar z").line("element face 2").line("property uchar tag");
+    ply.line("property int v1").line("property int v2").line("property int v3").end_header();
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      ply.value(PlyType::u8, x).value(PlyType::u8, y).value(PlyType::u8, 0).end_row();
+    for (const auto& [a, b, c] : {std::tuple{0, 1, 2}, {0, 2, 3}}) {
+      ply.value(PlyType::u8, 9).value(PlyType::i32, a).value(PlyType::i32, b);
+      ply.value(PlyType::i32, c).end_row();
+    }
+    const AttributeChoice none{.which = AttributeChoice::Which::none};
+    EXPECT_EQ(read_bytes(ply.bytes(), none).triangles,
+              (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(odd_of(ply.bytes()), OddSyntax{.header_lines = 3});
+  }
+}
+
 TEST(PlySource, PointCloudsAndNothingAreMeshes) {
   for (const PlyEncoding encoding : kEncodings) {
     const auto header = [&](int vertices, const std::string& faces) {
@@ -486,9 +593,58 @@ TEST(PlySource, ManyBlocksInEveryEncoding) {
   }
 }
 
-/// One polygon of a million corners is streamed like everything else.
+/// A comb of so many corners, whose area is 4.5 a tooth, or is refused.
 TEST(PlySource, AHugePolygon) {
-  constexpr std::uint32_t kCorners = 1'000'000;
+  for (const std::uint32_t corners : {100'002U, 1'000'002U}) {
+    for (const PlyEncoding encoding : kEncodings) {
+      PlyText ply(encoding);
+      ply.line("element face 1").line("property list uint uint vertex_indices");
+      ply.line(fmt::format("element vertex {}", corners)).line("property int x");
+      ply.line("property int y").line("property int z").end_header();
+      ply.value(PlyType::u32, corners);
+      for (std::uint32_t i = 0; i < corners; ++i)
+        ply.value(PlyType::u32, i);
+      ply.end_row();
+      ply.row(PlyType::i32, {0, -1, 0});
+      for (std::uint32_t i = 0; i + 2 < corners; ++i)
+        ply.row(PlyType::i32, {1.0 * i, i % 2 == 0 ? 0.0 : 10.0, 0});
+      ply.row(PlyType::i32, {corners - 3.0, -1, 0});
+      if (corners > PolygonCut::kMostCorners) {
+        EXPECT_THAT(error_of(ply.bytes()), ::testing::HasSubstr("at most 131072 corners"));
+        continue;
+      }
+      const ReadMesh mesh = read_bytes(ply.bytes());
+      EXPECT_EQ(mesh.counts.polygons.concave, 1U);
+      ASSERT_EQ(mesh.triangles.size(), corners - 2);
+      double area = 0;
+      for (const Corners& t : mesh.triangles) {
+        const Vec3d& a = mesh.positions[t[0]];
+        area += cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a).z / 2;
+      }
+      EXPECT_EQ(std::abs(area), 6.0 * (corners - 3)) << "the teeth and what they stand on";
+    }
+  }
+}
+
+/// Nothing of a polygon of which a corner is not finite is left when triangles without it are.
+TEST(PlySource, APolygonWithACornerThatIsNowhereIsAFanAroundIt) {
+  MemoryFiles files;
+  files.put("m",
+            "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            "end_header\n0 0 0\n1 0 0\nnan 1 0\n1 1 0\n0 1 0\n5 0 1 2 3 4\n");
+  const auto source = make_ply_source(files.open("m"), {.unplaced = Unplaced::visited});
+  source->read_vertices([](const VertexBlock&) {});
+  source->read_triangles([](std::span<const Triangle<VertexId>> triangles) {
+    EXPECT_EQ(triangles.size(), 3U);
+    for (const Triangle<VertexId>& t : triangles)
+      EXPECT_EQ(raw(t[0]), 2U);
+  });
+}
+
+/// As a bridge to a hole has them.
+TEST(PlySource, APolygonOfCornersAtOnePlaceIsAFan) {
+  constexpr std::uint32_t kCorners = 100'000;
   for (const PlyEncoding encoding : kEncodings) {
     PlyText ply(encoding);
     ply.line("element face 1").line("property list uint uint vertex_indices");

@@ -72,7 +72,10 @@ StlTaken take(const std::string& content, const Read& read) {
   return taken;
 }
 StlTaken take_binary(const std::string& content) {
-  return take(content, read_binary_stl);
+  return take(content,
+              [](InputStream& stream, const std::filesystem::path& path, const SoupVisitor& visit) {
+                return read_binary_stl(stream, path, visit);
+              });
 }
 StlTaken take_text(const std::string& content) {
   return take(content, read_text_stl);
@@ -257,6 +260,83 @@ TEST(StlReader, ASolidMayEndInOtherWords) {
   }
 }
 
+TEST(StlReader, SolidsMayBeginAndEndTwice) {
+  for (const std::string& text :
+       {"solid\nsolid x\n" + facet_text() + "endsolid",
+        "solid x\n" + facet_text() + "endsolid x\nendsolid\n",
+        "solid x\n" + facet_text() + "solid y\n" + facet_text() + "endsolid"}) {
+    const StlTaken taken = take_text(text);
+    EXPECT_EQ(taken.counts.odd, OddSyntax{.header_lines = 1}) << text;
+    EXPECT_EQ(taken.counts.solids, 1U) << text;
+    EXPECT_EQ(taken.facets.size(), taken.counts.facets) << text;
+  }
+}
+
+TEST(StlReader, FacetsThatAreNotFiniteAreLeftOutAndCounted) {
+  for (const float bad :
+       {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    std::vector<Facet> facets = many_facets(5);
+    facets[1][4] = facets[3][8] = bad;
+    const StlTaken taken = take_binary(binary_stl(facets));
+    EXPECT_EQ(taken.facets.size(), 3U);
+    EXPECT_EQ(taken.counts.facets, 5U);
+    EXPECT_EQ(taken.counts.dropped.count, 2U);
+    EXPECT_EQ(taken.counts.dropped.first,
+              fmt::format("mesh: byte {}: expected a coordinate from -8.5e37 to 8.5e37 (2^126) in "
+                          "facet 1, found {}",
+                          84 + 50 + 12 + 16, bad));
+  }
+  const StlTaken text =
+      take_text("solid\n" + facet_text() + facet_text("1 nan 3") + facet_text() + "endsolid");
+  EXPECT_EQ(text.facets.size(), 2U);
+  EXPECT_EQ(text.counts.facets, 3U);
+  EXPECT_EQ(text.counts.dropped.count, 1U);
+  EXPECT_THAT(text.counts.dropped.first, HasSubstr("mesh: line 13: expected a finite number"));
+  EXPECT_THAT(text.counts.dropped.first, HasSubstr("(facet 1)"));
+}
+
+TEST(StlReader, ColoursOfFacetsAreOfTwoKinds) {
+  StlColours viscam;
+  viscam.add(std::array<std::uint16_t, 3>{0xfc00, 0x801f, 0});
+  ASSERT_TRUE(viscam.any());
+  EXPECT_EQ(viscam.colour_of(0xfc00), (StlColour{255, 0, 0}));
+  EXPECT_EQ(viscam.colour_of(0x83e0), (StlColour{0, 255, 0}));
+  EXPECT_EQ(viscam.colour_of(0x801f), (StlColour{0, 0, 255}));
+  EXPECT_EQ(viscam.colour_of(0x8010), (StlColour{0, 0, 132}));
+  EXPECT_EQ(viscam.colour_of(0), std::nullopt);
+
+  StlColours magics;
+  magics.set_header(StlColour{10, 20, 30});
+  magics.add(std::array<std::uint16_t, 2>{0x8000, 0x001f});
+  EXPECT_EQ(magics.colour_of(0xffff), (StlColour{10, 20, 30}));
+  EXPECT_EQ(magics.colour_of(0x001f), (StlColour{255, 0, 0}));
+  EXPECT_EQ(magics.colour_of(0x7c00), (StlColour{0, 0, 255}));
+  EXPECT_EQ(magics.colour_of(0), (StlColour{0, 0, 0}));
+
+  StlColours whole;
+  whole.set_header(StlColour{10, 20, 30});
+  whole.add(std::array<std::uint16_t, 2>{0, 0});
+  EXPECT_EQ(whole.colour_of(0), (StlColour{10, 20, 30})) << "nobody has chosen black";
+}
+
+TEST(StlReader, NumbersOfOtherKindsAreNoColours) {
+  for (const std::array<std::uint16_t, 3>& numbers : {std::array<std::uint16_t, 3>{0, 0, 0},
+                                                      {1, 2, 3},
+                                                      {0x8000, 0x8000, 0x8000},
+                                                      {0xfc00, 7, 0}}) {
+    StlColours colours;
+    colours.add(numbers);
+    EXPECT_FALSE(colours.any()) << numbers[0];
+  }
+}
+
+TEST(StlReader, TheColourOfAllStandsInTheHeader) {
+  std::string file = binary_stl(many_facets(1));
+  EXPECT_EQ(take_binary(file).counts.header_colour, std::nullopt);
+  file.replace(20, 10, std::string("COLOR=\x01\x02\xff\xff"));
+  EXPECT_EQ(take_binary(file).counts.header_colour, (StlColour{1, 2, 255}));
+}
+
 TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhere) {
   const std::string file = binary_stl(many_facets(2));
   const auto refusal = [](const std::string& content) {
@@ -271,8 +351,8 @@ TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhere) {
   EXPECT_THAT(refusal(lying), HasSubstr("mesh: byte 184: expected facet 2 of 213070"));
 }
 
-TEST(StlReader, RefusesCoordinatesThatAreNotFiniteOrOutOfRange) {
-  for (const float bad : {std::numeric_limits<float>::infinity(), -3e38F}) {
+TEST(StlReader, RefusesCoordinatesOutOfRange) {
+  for (const float bad : {3e38F, -3e38F}) {
     std::vector<Facet> facets = many_facets(2);
     facets[1][4] = bad;
     EXPECT_EQ(input_error_of([&] { take_binary(binary_stl(facets)); }),
@@ -298,7 +378,7 @@ TEST(StlReader, RefusesTextThatIsNoneAndNamesTheLine) {
             "mesh: line 5: expected 'vertex', found 'endloop'");
   EXPECT_THAT(refusal("solid\n" + facet_text("1 2")), HasSubstr("line 6: expected a number"));
   EXPECT_THAT(refusal("solid\n" + facet_text("1 2 3 4")), HasSubstr("line 6: expected the end of"));
-  EXPECT_THAT(refusal("solid\n" + facet_text("1 2 nan")), HasSubstr("expected a finite number"));
+  EXPECT_THAT(refusal("solid\n" + facet_text("1 2 x")), HasSubstr("expected a finite number"));
   EXPECT_THAT(refusal("solid\nfacet\nouter loop\nvertex 1 2 3\nvertex 1 2 3\nvertex 1 2 3\nvertex "
                       "1 2 3\n"),
               HasSubstr("line 7: expected 'endloop', found 'vertex'"));

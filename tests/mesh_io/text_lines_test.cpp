@@ -216,7 +216,7 @@ Numbers off_numbers(const std::string& content, const BlockRunner& runner) {
         runner);
     all.faces = counts.faces.faces;
     all.zeroed = counts.zeroed.normals + 1000 * counts.unplaced.count +
-                 1'000'000 * counts.unknown_colours + 1'000'000'000 * counts.lines_behind +
+                 1'000'000 * counts.unknown_colours + 1'000'000'000 * counts.odd.lines_behind +
                  (counts.fits_float ? 1 : 0) +
                  100 * static_cast<std::uint64_t>(counts.attributes.colour);
   });

@@ -129,6 +129,32 @@ std::string text_header(
   return text.str();
 }
 
+TEST_F(SourceMeshTest, WhichAttributesAreLabelsIsGuessedFromTheirValues) {
+  constexpr int kVertices = 6000;
+  std::string text = text_header(kVertices, 0,
+                                 "property float x\nproperty float y\nproperty float z\n"
+                                 "property ushort intensity\nproperty int object\n"
+                                 "property float scalar_Classification\nproperty float quality\n");
+  for (int i = 0; i < kVertices; ++i)
+    text +=
+        fmt::format("{} 0 0 {} {} {} {}\n", i, i * 7 % 4096, i / 10, i % 3 == 0 ? 6 : 2, 0.5 * i);
+  SourceMesh mesh = open_text(text);
+  tests::Warnings progress;
+  mesh.guess_labels([](const std::string&) { return false; }, progress);
+  std::vector<std::string> labels;
+  for (const ScalarAttribute& value : mesh.summary().attributes.values) {
+    if (value.is_label)
+      labels.push_back(value.name);
+  }
+  EXPECT_THAT(labels, ElementsAre("object"));
+  EXPECT_THAT(progress.all,
+              ElementsAre(HasSubstr(R"("labels": ["object", "intensity"] makes labels of them)"),
+                          HasSubstr(R"("labels": ["object", "scalar_Classification"] in the)")));
+  SourceMesh sure = open_text(text);
+  sure.guess_labels([](const std::string& name) { return name == "intensity"; }, progress);
+  EXPECT_TRUE(sure.summary().attributes.values[0].is_label) << "the input has names for them";
+}
+
 TEST_F(SourceMeshTest, FloatCoordinatesComeThroughAsTheyAre) {
   const tests::TestMesh sphere = tests::sphere(200'000, 0.01F);  // more than one block
   ASSERT_GT(sphere.positions.size(), mesh_io::MeshSource::kBlockSize);

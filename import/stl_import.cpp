@@ -1,0 +1,103 @@
+#include "import/stl_import.h"
+
+#include "execution/spool_cursor.h"
+#include "hierarchy/error.h"
+#include "import/text_blocks.h"
+#include "import/weld.h"
+#include "mesh_io/stl_block.h"
+#include "mesh_io/stl_colours.h"
+
+#include <optional>
+#include <span>
+#include <type_traits>
+
+namespace meshhier::importing {
+namespace {
+
+/// Binary files hold floats.
+template <class Point>
+class StlImporter {
+ public:
+  explicit StlImporter(const ImportRoom& room)
+      : room_(room),
+        corners_(room.scratch, kImportSpoolBytes),
+        attributes_(room.scratch, kImportSpoolBytes),
+        colours_(room.scratch, kImportSpoolBytes) {}
+
+  StlImport import(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh) {
+    read(stream, path);
+    if (made_.counts.dropped.count > made_.counts.facets / 2) {
+      throw Error(ErrorCode::input, made_.counts.dropped.first +
+                                        "; that is so of most facets, so the mesh cannot be built");
+    }
+    find_colours();
+    const WeldCounts welded = weld_soup(corners_, has_colours_ ? &colours_ : nullptr, mesh, room_);
+    made_.welded_corners = welded.merged;
+    made_.degenerate_triangles = welded.degenerate_triangles;
+    return made_;
+  }
+
+ private:
+  void read(mesh_io::InputStream& stream, const std::filesystem::path& path) {
+    const mesh_io::SoupVisitor take = [&](std::span<const mesh_io::SoupTriangle> triangles) {
+      room_.cancel.check();
+      for (const mesh_io::SoupTriangle& triangle : triangles)
+        append(triangle);
+    };
+    if constexpr (std::is_same_v<Point, Vec3f>) {
+      made_.counts = mesh_io::read_binary_stl(stream, path, take,
+                                              [&](std::span<const std::uint16_t> attributes) {
+                                                attributes_.append(attributes);
+                                                known_.add(attributes);
+                                              });
+    } else {
+      mesh_io::StlTextReader reader(path, take);
+      made_.counts = read_text_blocks<mesh_io::StlBlock>(
+          mesh_io::LineBlocks(stream, mesh_io::whole_facets), mesh_io::kStlBlockBytes,
+          mesh_io::parse_facets, reader, room_);
+    }
+  }
+
+  void append(const mesh_io::SoupTriangle& triangle) {
+    for (const Vec3d& p : triangle) {
+      if constexpr (std::is_same_v<Point, Vec3f>)
+        corners_.append(to_float(p));
+      else
+        corners_.append(p);
+    }
+  }
+
+  void find_colours() {
+    known_.set_header(made_.counts.header_colour);
+    has_colours_ = std::is_same_v<Point, Vec3f> && known_.any();
+    made_.ignored_attributes = has_colours_ ? 0 : made_.counts.attributes;
+    if (!has_colours_)
+      return;
+    made_.layout.colour = ColourType::u8;
+    execution::SpoolCursor attributes(attributes_, room_.cancel);
+    for (std::uint64_t i = 0; i < attributes.size(); ++i) {
+      const std::optional<mesh_io::StlColour> colour = known_.colour_of(attributes.at(i));
+      made_.white_facets += colour ? 0 : 1;
+      colours_.append(colour.value_or(mesh_io::StlColour{255, 255, 255}));
+    }
+    attributes_.clear();
+  }
+
+  const ImportRoom& room_;
+  storage::RecordSpool<Point> corners_;
+  storage::RecordSpool<std::uint16_t> attributes_;  ///< of each facet of a binary file
+  storage::RecordSpool<FacetColour> colours_;       ///< the same
+  mesh_io::StlColours known_;
+  bool has_colours_ = false;
+  StlImport made_;
+};
+
+}  // namespace
+
+StlImport import_stl(StlForm form, mesh_io::InputStream& stream, const std::filesystem::path& path,
+                     RawMesh& mesh, const ImportRoom& room) {
+  return form == StlForm::binary ? StlImporter<Vec3f>(room).import(stream, path, mesh)
+                                 : StlImporter<Vec3d>(room).import(stream, path, mesh);
+}
+
+}  // namespace meshhier::importing
