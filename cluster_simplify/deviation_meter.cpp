@@ -23,6 +23,11 @@ constexpr float kLargeFan = 0.5F;
 // and memory: at this one half a millisecond.
 constexpr std::size_t kHighValence = 128;
 
+/// Whether nothing is left around the edge once it is gone.
+bool is_lost(const StarCollapse& c) {
+  return all_at(c.around_from, c.to) && all_at(c.around_to, c.from);
+}
+
 /// A float that is not below `value`.
 float rounded_up(double value) {
   return static_cast<float>(value * (1 + 0x1p-22));
@@ -39,23 +44,51 @@ DeviationMeter::DeviationMeter(const CollapseMesh& mesh, std::span<const float> 
       weights_[v] = 0;
     weight_sum_ += double{weights_[v]};
   }
+  if (is_two_sided(mesh))
+    one_side_.emplace();
 }
 
 void DeviationMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
   const StarCollapse c{star.from(), star.to(), place, star.around_from(), star.around_to()};
+  if (one_side_ && !is_lost(c) && one_side_->find(star))
+    note_one_side(positions, c);
+  else
+    note_star(positions, star, c);
+  weights_[c.to] += weights_[c.from];
+}
+
+/// A triangle and its reverse are off alike: by what the one is that is off by more.
+void DeviationMeter::note_one_side(std::span<const Vec3f> positions, const StarCollapse& whole) {
+  const auto level = [&] {
+    for (const auto& [triangle, reverse] : one_side_->pairs()) {
+      const float more = std::max(deviations_[triangle], deviations_[reverse]);
+      deviations_[triangle] = deviations_[reverse] = more;
+    }
+  };
+  level();
+  EdgeStar& star = one_side_->star();
+  if (star.is_disc())
+    star.look_from(whole.place, positions);
+  note_star(positions, star,
+            {whole.from, whole.to, whole.place, star.around_from(), star.around_to()});
+  for (const auto& [triangle, reverse] : one_side_->pairs())
+    deviations_[reverse] = deviations_[triangle];
+}
+
+void DeviationMeter::note_star(std::span<const Vec3f> positions, const EdgeStar& star,
+                               const StarCollapse& c) {
   if (const std::optional<DiscGap> disc = measure(positions, star, c)) {
     for (std::size_t i = 0; i < disc->triangles.size(); ++i)
       set_deviation(disc->triangles[i], disc->deviations[i]);
     add_square(c.from, disc->from);
     add_square(c.to, disc->to);
-  } else if (all_at(c.around_from, c.to) && all_at(c.around_to, c.from)) {
+  } else if (is_lost(c)) {
     note_lost(positions, c);
   } else if (c.around_from.size() + c.around_to.size() <= kHighValence) {
     note_any(positions, c);
   } else {
     note_high_valence(positions, c);
   }
-  weights_[c.to] += weights_[c.from];
 }
 
 /// The deviations on a disc, if they can be told and are not worth a closer look.

@@ -6,6 +6,7 @@
 #include "cluster_simplify/disc_gap.h"
 #include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/fan_gap.h"
+#include "cluster_simplify/one_side.h"
 
 #include <array>
 #include <cstdint>
@@ -22,7 +23,8 @@ class DeviationMeter {
   DeviationMeter(const CollapseMesh& mesh, std::span<const float> weights);
 
   /// Takes note that an edge is about to collapse to `place`; `positions` as they are before,
-  /// `star` as seen from there if it is a disc. O(triangles around the edge).
+  /// `star` as seen from there if it is a disc. O(triangles around the edge). Of a mesh that has
+  /// each triangle twice, once reversed, one side is measured.
   void note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
 
   /// A triangle around which nothing was left: what lay on it lies nowhere.
@@ -60,6 +62,8 @@ class DeviationMeter {
     std::uint32_t triangle;
   };
 
+  void note_star(std::span<const Vec3f> positions, const EdgeStar& star, const StarCollapse& c);
+  void note_one_side(std::span<const Vec3f> positions, const StarCollapse& whole);
   std::optional<DiscGap> measure(std::span<const Vec3f> positions, const EdgeStar& star,
                                  const StarCollapse& c);
   void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
@@ -73,6 +77,7 @@ class DeviationMeter {
 
   DiscGapMeter discs_;
   FanGapMeter fans_;
+  std::optional<OneSide> one_side_;  ///< of a mesh with two
   CoverDistance cover_distance_;
   std::vector<float> deviations_;  ///< per triangle
   std::vector<float> weights_;     ///< per own vertex

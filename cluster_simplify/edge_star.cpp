@@ -13,6 +13,15 @@ void EdgeStar::gather(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to) 
   is_disc_ = around_from_.size() + around_to_.size() <= kMostLinks && trace();
 }
 
+void EdgeStar::take(const EdgeStar& other, Fans around_from, Fans around_to) {
+  from_ = other.from_;
+  to_ = other.to_;
+  place_.resize(other.place_.size());
+  around_from_ = around_from;
+  around_to_ = around_to;
+  is_disc_ = around_from.size() + around_to.size() <= kMostLinks && trace();
+}
+
 bool EdgeStar::trace() {
   size_ = 0;
   if (!append_links(around_from_, to_, at_edge_))

@@ -36,6 +36,9 @@ class EdgeStar {
   /// Collects the triangles around both ends of an edge. O(triangles).
   void gather(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to);
 
+  /// Takes some of the triangles of another star, which must stay where they are.
+  void take(const EdgeStar& other, Fans around_from, Fans around_to);
+
   std::uint32_t from() const { return from_; }
   std::uint32_t to() const { return to_; }
   Fans around_from() const { return around_from_; }

@@ -76,6 +76,14 @@ tests::TestMesh spike() {
   return mesh;
 }
 
+/// Each triangle twice, once reversed.
+tests::TestMesh two_sided(tests::TestMesh mesh) {
+  const std::vector<tests::MeshTriangle> one = mesh.triangles;
+  for (const tests::MeshTriangle& t : one)
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+  return mesh;
+}
+
 /// A sphere, and far away vertices that no triangle uses.
 tests::TestMesh far_loose_vertices() {
   tests::TestMesh mesh = tests::sphere(1200, 0.01F);
@@ -104,6 +112,9 @@ std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
           {"specks", specks},
           {"hung on corners", hung_on_corners()},
           {"without area", line},
+          {"two-sided terrain", two_sided(tests::open_grid(30, 30, 0.3F))},
+          {"two-sided moebius", two_sided(tests::moebius(1200, 0.01F))},
+          {"two-sided, non-manifold", two_sided(tests::non_manifold(900, 0.02F))},
           {"spike", spike()}};
 }
 
@@ -123,6 +134,21 @@ TEST_F(ErrorBoundsTest, FarLooseVerticesTakeNoDigitsFromCollapses) {
       continue;
     SCOPED_TRACE(method);
     expect_bounds_hold(measure(far_loose_vertices(), simplify));
+  }
+}
+
+TEST_F(ErrorBoundsTest, OfATwoSidedSheetTheyAreAsGoodAsOfOneSide) {
+  for (const auto& [method, simplify] : tests::all_simplify_methods()) {
+    if (simplify.method == config::SimplifyMethod::cluster)
+      continue;  // it does not ask for triangles
+    SCOPED_TRACE(method);
+    const tests::TestMesh sheet = tests::open_grid(50, 50, 0.2F);
+    const auto one = measure(sheet, simplify), both = measure(two_sided(sheet), simplify);
+    ASSERT_EQ(one.size(), both.size());
+    for (std::size_t l = 0; l < one.size(); ++l) {
+      EXPECT_LE(both[l].bound, 1.5 * one[l].bound) << one[l].name;
+      EXPECT_LE(both[l].error, 1.2 * one[l].error) << one[l].name;
+    }
   }
 }
 
