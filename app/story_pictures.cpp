@@ -3,6 +3,7 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "server/url_path.h"
+#include "storage/format/layout.h"
 #include "storage/io/folder.h"
 #include "storage/io/http_client.h"
 
@@ -32,6 +33,12 @@ constexpr std::chrono::seconds kForOne{20}, kForAll{120};
 }
 
 void require_room(std::uint64_t bytes, std::uint64_t most) {
+  constexpr std::uint64_t kMostPicture = storage::kMostStoryBytes / 4 * 3;  // in base64
+  if (bytes > kMostPicture) {
+    leave_out(fmt::format("it has {}, more than a story can hold ({})",
+                          execution::rounded_size_text(bytes),
+                          execution::rounded_size_text(kMostPicture)));
+  }
   if (bytes > most) {
     leave_out(
         fmt::format("it has {}, and of the half of the page that pictures have {} are left: give a "
