@@ -8,13 +8,16 @@
 #include "inspection/compare.h"
 #include "inspection/piece_mesh.h"
 #include "pipeline/build.h"
+#include "storage/io/output_file.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -98,12 +101,19 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
   options.is_signed = !arguments.has_no_sign;
   if (!arguments.transform.empty())
     options.transform = read_transform(environment.files, arguments.transform);
+  options.inputs.emplace_back(arguments.transform);
   require_no_terminal(environment, arguments.output);
   const auto open = [&](const std::string& name) {
     return std::make_unique<ComparedHierarchy>(environment, name, arguments.web,
                                                options.memory_budget, *progress);
   };
   const auto from = open(arguments.from), to = open(arguments.to);
+  for (const auto& compared : {std::cref(*from), std::cref(*to)}) {
+    const std::vector<std::filesystem::path>& read = compared.get().read();
+    options.inputs.insert(options.inputs.end(), read.begin(), read.end());
+  }
+  if (!arguments.output.empty())
+    storage::require_apart(environment.files, arguments.output, options.inputs);
   std::optional<DifferenceHierarchy> difference;
   if (inspection::is_hierarchy_name(arguments.output))
     difference.emplace(from->place(), arguments.output, options, environment);
@@ -150,8 +160,7 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
   command->add_option("TO", arguments->to, "The one that distances are measured to")->required();
   add_web_options(*command, arguments->web);
 
-  CLI::App* what =
-      command->add_option_group("What", "At most one of these; else the original surfaces");
+  CLI::App* what = add_group(*command, "What", "At most one of these; else the original surfaces");
   add_integer_option(*what, {"--level", "Of both this level; the root is 0", 0, kDeepestLevel},
                      [arguments](std::uint64_t level) {
                        arguments->options.selection = static_cast<Level>(level);

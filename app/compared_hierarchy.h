@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshhier::app {
 
@@ -21,6 +22,8 @@ class ComparedHierarchy {
                     std::uint64_t memory_budget, execution::Progress& progress);
 
   inspection::ComparedPlace place() const;
+  /// All files that were read: the hierarchy, or the mesh and what belongs to it.
+  const std::vector<std::filesystem::path>& read() const { return read_; }
   /// As HierarchyPlace.
   std::string account() const { return given_.account(); }
 
@@ -43,6 +46,7 @@ class ComparedHierarchy {
   Environment& environment_;
   HierarchyPlace given_;
   std::optional<BuiltFolder> folder_;  ///< of what was built
+  std::vector<std::filesystem::path> read_;
 };
 
 }  // namespace meshhier::app

@@ -104,7 +104,7 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
       parser.add_subcommand("export", "Write part of a hierarchy as a PLY, GLB or OBJ file");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
 
-  CLI::App* what = command->add_option_group("What", "Exactly one of these");
+  CLI::App* what = add_group(*command, "What", "Exactly one of these");
   add_place_options(*what, arguments->level, arguments->node);
   what->add_option("--cut", arguments->cut, "The cut that this file lists")
       ->type_name("FILE")

@@ -4,6 +4,8 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/text_mark.h"
+#include "storage/io/process.h"
 
 #include <algorithm>
 #include <cctype>
@@ -36,7 +38,8 @@ void require_header(const std::string& line) {
 
 std::vector<std::string> lines_of(storage::FileSystem& files, const std::string& file) {
   const auto bytes = storage::read_file(files, file, kMostHeaderBytes);
-  std::istringstream text(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  std::istringstream text(
+      std::string(without_mark({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) {
     if (line.ends_with('\r'))
@@ -63,8 +66,7 @@ storage::HttpOptions http_options(storage::FileSystem& files, const WebOptions& 
 
 std::filesystem::path temporary_path(std::string_view prefix) {
   std::random_device chance;
-  return std::filesystem::temp_directory_path() /
-         fmt::format("{}{:08x}{:08x}", prefix, chance(), chance());
+  return storage::temporary_folder() / fmt::format("{}{:08x}{:08x}", prefix, chance(), chance());
 }
 
 void add_web_options(CLI::App& command, WebOptions& web) {
@@ -78,11 +80,9 @@ void add_web_options(CLI::App& command, WebOptions& web) {
                   web.bytes_per_second);
 }
 
-void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web) {
-  command
-      .add_option("HIERARCHY", hierarchy,
-                  "A directory, a 3tz archive, or the address of one of them")
-      ->required();
+void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web,
+                           const char* help) {
+  command.add_option("HIERARCHY", hierarchy, help)->required();
   add_web_options(command, web);
 }
 

@@ -26,7 +26,9 @@ std::filesystem::path temporary_path(std::string_view prefix);
 /// --header and --limit-rate
 void add_web_options(CLI::App& command, WebOptions& web);
 /// HIERARCHY, and these
-void add_hierarchy_options(CLI::App& command, std::string& hierarchy, WebOptions& web);
+void add_hierarchy_options(
+    CLI::App& command, std::string& hierarchy, WebOptions& web,
+    const char* help = "A directory, a 3tz archive, or the address of one of them");
 
 /// Throws Error(usage) for a header that is none, Error(io) for a file of some that cannot be read.
 class HierarchyPlace {

@@ -1,12 +1,16 @@
 // meshhier: the command line.
 #include "app/command.h"
+#include "app/parser_walk.h"
 #include "app/process.h"
 #include "config/suggest.h"
+#include "execution/threads.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "storage/io/output_file.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -18,6 +22,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -63,6 +68,9 @@ Exit codes:
   70   a defect in meshhier
   130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was (serve: 0)
 )";
+
+constexpr const char* kNoMemory =
+    "the system has no more memory; lower memory_budget or close other programs";
 
 int exit_code(ErrorCode code) {
   return static_cast<int>(code);
@@ -137,10 +145,9 @@ void flush_results() {
     throw Error(ErrorCode::io, "standard output could not be written");
 }
 
-int execute(const Invocation& invocation) {
-  static execution::CancelToken cancel;  // signal handlers reach it to the end of the process
-  cancel_on_signals(cancel);
+int execute(const Invocation& invocation, const execution::CancelToken& cancel) {
   const std::unique_ptr<storage::FileSystem> files = storage::make_posix_file_system();
+  execution::limit_threads_to_startable();
   Environment environment{*files,    cancel,           std::cout,
                           std::cerr, error_terminal(), invocation.program};
   const int code = invocation.run(environment);
@@ -148,28 +155,68 @@ int execute(const Invocation& invocation) {
   return code;
 }
 
+/// Whatever command it is: nothing that it is told to write takes the place of what it is told to
+/// read. What its files name, a command knows itself.
+void require_inputs_stay(const CLI::App& command, storage::FileSystem& files) {
+  const std::vector<std::filesystem::path> read = files_named(command, FileUse::read);
+  for (const std::filesystem::path& output : files_named(command, FileUse::written)) {
+    const bool is_stream = storage::is_standard_output(files, output) ||
+                           files.kind(output) == storage::FileKind::stream;
+    if (!is_stream)
+      storage::require_apart(files, output, read);
+  }
+}
+
 /// The one place where failures end.
-int execute_guarded(const Invocation& invocation) {
+int execute_guarded(const Invocation& invocation, const execution::CancelToken& cancel) {
   const auto fail = [&](ErrorCode code, const std::string& message) {
     return report_failure(code, message, invocation.progress);
   };
   try {
-    return execute(invocation);
+    return execute(invocation, cancel);
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::budget,
-                "the system has no more memory; lower memory_budget or close other programs");
+    return fail(ErrorCode::budget, kNoMemory);
   } catch (const std::filesystem::filesystem_error& error) {
+    const std::string path = error.path1().string();
     return fail(ErrorCode::io,
-                "cannot use " + error.path1().string() + ": " + error.code().message());
+                path.empty() ? error.what() : "cannot use " + path + ": " + error.code().message());
   } catch (const std::exception& error) {
+    if (const std::string what = execution::thread_failure(error); !what.empty())
+      return fail(ErrorCode::budget, what);
     return fail(ErrorCode::internal,
                 std::string("a defect in meshhier, please report it: ") + json_fault(error.what()));
   }
 }
 
-int run(int argc, char** argv) {
+/// What cannot be caught, as it left a thread or came while another failure was on its way: the
+/// process ends as if it had been, but for what it leaves on disk, as after a kill.
+[[noreturn]] void end_told() {
+  const auto end = [](ErrorCode code, const char* message) {
+    std::fprintf(stderr, "meshhier: %s\n", message);
+    std::_Exit(exit_code(code));
+  };
+  try {
+    if (std::current_exception())
+      std::rethrow_exception(std::current_exception());
+    end(ErrorCode::internal,
+        "a defect in meshhier, please report it: it was ended without a cause");
+  } catch (const Error& error) {
+    end(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    end(ErrorCode::budget, kNoMemory);
+  } catch (const std::exception& error) {
+    const std::string what = execution::thread_failure(error);
+    end(what.empty() ? ErrorCode::internal : ErrorCode::budget,
+        what.empty() ? error.what() : what.c_str());
+  } catch (...) {
+    end(ErrorCode::internal, "a defect in meshhier, please report it: an unknown failure");
+  }
+  std::_Exit(exit_code(ErrorCode::internal));
+}
+
+int run(int argc, char** argv, const execution::CancelToken& cancel) {
   Invocation invocation;
   if (argc > 0)
     invocation.program = argv[0];
@@ -205,9 +252,14 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() != 0)
       return report_mistake(error.what(), as_json);
     invocation.run = [&](Environment&) { return parser.exit(error); };  // --help and --version
-    return execute_guarded(invocation);
+    return execute_guarded(invocation, cancel);
   }
-  return execute_guarded(invocation);
+  invocation.run = [&parser, chosen = std::move(invocation.run)](Environment& environment) {
+    for (const CLI::App* command : std::as_const(parser).get_subcommands())
+      require_inputs_stay(*command, environment.files);
+    return chosen(environment);
+  };
+  return execute_guarded(invocation, cancel);
 }
 
 }  // namespace
@@ -215,6 +267,7 @@ int run(int argc, char** argv) {
 }  // namespace meshhier::app
 
 int main(int argc, char** argv) {
+  std::set_terminate(meshhier::app::end_told);
   meshhier::app::reserve_standard_descriptors();
-  return meshhier::app::run(argc, argv);
+  return meshhier::app::run(argc, argv, meshhier::app::signal_token());
 }

@@ -42,12 +42,18 @@ void print_argument(std::ostream& out, const CLI::Option& option, const std::str
   out << '\n' << escaped(option.get_description()) << '\n';
 }
 
+/// "--help-config" of "--help-config{text}": what it means without a value is in its help.
+std::string name_of(const CLI::Option& option) {
+  const std::string name = option.get_name(false, true);
+  return name.substr(0, name.find('{'));
+}
+
 void print_arguments(std::ostream& out, const CLI::App& command) {
   const Arguments arguments = arguments_of(command);
   for (const CLI::Option* positional : arguments.positionals)
     print_argument(out, *positional, positional->get_name(true));
   for (const CLI::Option* option : arguments.options)
-    print_argument(out, *option, option->get_name(false, true));
+    print_argument(out, *option, name_of(*option));
 }
 
 void print_command(std::ostream& out, const CLI::App& command) {

@@ -60,11 +60,17 @@ CLI::Option* add_error_option(CLI::App& command, const std::function<void(double
       ->type_name("LENGTH");
 }
 
+CLI::App* add_group(CLI::App& command, const char* name, const char* help) {
+  CLI::App* group = command.add_option_group(name, help);
+  group->set_help_flag();
+  return group;
+}
+
 CLI::App* add_region_options(CLI::App& command, inspection::RegionRequest& region) {
   const auto take = [&region](const std::vector<std::string>& corners) {
     region.box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
   };
-  CLI::App* group = command.add_option_group("Where", "A piece; else all");
+  CLI::App* group = add_group(command, "Where", "A piece; else all");
   CLI::Option* box = group->add_option_function<std::vector<std::string>>(
       "--box", take, "What lies between these two corners, in the input's coordinates");
   box->type_name("X,Y,Z")->expected(2);

@@ -73,6 +73,9 @@ struct PlaceOptions {
 PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
                                std::optional<NodeId>& node);
 
+/// A group of options of a command, without a --help of its own.
+CLI::App* add_group(CLI::App& command, const char* name, const char* help);
+
 /// --error LENGTH: the coarsest tiles that are no farther from the original
 CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
 /// --box X,Y,Z X,Y,Z, --polygon FILE and --crs CRS, as a group.

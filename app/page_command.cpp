@@ -7,11 +7,11 @@
 #include "inspection/page_file.h"
 #include "server/static_site.h"
 #include "storage/io/http_client.h"
-#include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -47,8 +47,7 @@ ViewerPlace viewer_of(Environment& environment, const PageArguments& arguments) 
 }
 
 /// The page that a hierarchy is put into.
-std::string single_page(Environment& environment, const PageArguments& arguments) {
-  const ViewerPlace viewer = viewer_of(environment, arguments);
+std::string single_page(const ViewerPlace& viewer) {
   const auto file = viewer.folder->open("single.html");
   if (!file) {
     throw Error(ErrorCode::io,
@@ -60,6 +59,20 @@ std::string single_page(Environment& environment, const PageArguments& arguments
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Whoever gets the page reads the address: it must hold no secret.
+void require_link(const std::string& link) {
+  if (link.empty())
+    return;
+  if (!storage::is_web_address(link))
+    throw Error(ErrorCode::usage,
+                "--link: expected the address of the whole hierarchy, https://...");
+  const std::size_t host = link.find("://") + 3;
+  if (link.substr(host, link.find_first_of("/?#\\", host) - host).find('@') != std::string::npos)
+    throw Error(ErrorCode::usage,
+                "--link: the address has a user or a password in it, which everybody would read "
+                "in the page; give it without");
+}
+
 /// "david" of "models/david.hier/".
 std::string name_of(const fs::path& hierarchy) {
   return storage::without_last_slash(hierarchy).stem().string();
@@ -68,16 +81,6 @@ std::string name_of(const fs::path& hierarchy) {
 bool is_page_name(const std::string& output) {
   const std::string ending = storage::lower_extension(output);
   return ending == ".html" || ending == ".htm";
-}
-
-/// Throws Error(usage) for a name that says that it is something else.
-void require_page_name(storage::FileSystem& files, const std::string& output) {
-  if (!is_page_name(output) && !storage::lower_extension(output).empty() &&
-      !storage::is_standard_output(files, output)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("-o {}: the page is an HTML file; name one that ends in .html", output));
-  }
 }
 
 /// Throws Error(usage) for what is said of one HTML file.
@@ -96,13 +99,10 @@ void require_folder(const PageArguments& arguments) {
 
 std::string make_page(const PageArguments& arguments, const HierarchyPlace& place,
                       execution::Progress& progress, Environment& environment) {
-  if (!arguments.link.empty() && !storage::is_web_address(arguments.link))
-    throw Error(ErrorCode::usage,
-                "--link: expected the address of the whole hierarchy, https://...");
-  require_page_name(environment.files, arguments.output);
-  const std::string viewer = single_page(environment, arguments);
+  require_link(arguments.link);
+  const ViewerPlace viewer = viewer_of(environment, arguments);
   return inspection::write_page(
-      place.files(), place.path(), viewer,
+      place.files(), place.path(), single_page(viewer),
       {.output = arguments.output,
        .replace = arguments.force,
        .size = arguments.size,
@@ -111,7 +111,8 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
        .looks_for_story = !place.is_remote(),
        .open_picture = open_story_pictures(
            {storage::without_last_slash(place.path()).parent_path(), arguments.fetches_pictures},
-           environment.cancel)},
+           environment.cancel),
+       .inputs = {viewer.folder->path()}},
       progress, environment.cancel);
 }
 
@@ -165,7 +166,9 @@ void add_page_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<PageArguments>();
   CLI::App* command = parser.add_subcommand(
       "page", "Make one HTML file of a hierarchy, or a site of a folder of them");
-  add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
+  add_hierarchy_options(*command, arguments->hierarchy, arguments->web,
+                        "A directory, a 3tz archive, or the address of one of them; or a folder of "
+                        "hierarchies, of which a site is made");
   add_file_output_options(*command, "The HTML file, or the folder of the site", arguments->output,
                           arguments->force);
   arguments->size_option =

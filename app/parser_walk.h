@@ -1,6 +1,7 @@
 // What the parser has, in the order in which --help lists it.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,13 @@ Arguments arguments_of(const CLI::App& command);
 std::vector<std::string> choices_of(const CLI::Option& option);
 
 bool takes_value(const CLI::Option& option);
+
+/// What a command does with the files that an argument names.
+enum class FileUse { none, read, written };
+/// By the name of its type, and by its own if it is written. Requires that `option` is of a command
+/// that writes: of others positionals may be anything.
+FileUse file_use_of(const CLI::Option& option);
+/// The paths that arguments of that use were given; addresses are none.
+std::vector<std::filesystem::path> files_named(const CLI::App& command, FileUse use);
 
 }  // namespace meshhier::app

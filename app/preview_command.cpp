@@ -161,7 +161,7 @@ CLI::Option* add_parsed_option(CLI::App& command, const char* name, const char* 
 }
 
 void add_what(CLI::App& command, PreviewArguments& arguments) {
-  CLI::App* what = command.add_option_group("What", "At most one of these");
+  CLI::App* what = add_group(command, "What", "At most one of these");
   PreviewOptions& options = arguments.options;
   add_integer_option(
       *what, {"--level", "All tiles of this level; the root is 0", 0, kDeepestLevel},

@@ -1,6 +1,5 @@
 #include "app/process.h"
 
-#include <atomic>
 #include <csignal>
 #include <cstddef>
 
@@ -13,12 +12,11 @@ namespace meshhier::app {
 namespace {
 
 /// What a signal handler can reach: it gets no argument of ours.
-std::atomic<execution::CancelToken*> token_to_cancel{nullptr};
+constinit execution::CancelToken token_to_cancel;
 
 /// Only what POSIX allows in a handler: lock-free atomics and signal().
 extern "C" void on_signal(int) {
-  if (execution::CancelToken* token = token_to_cancel.load())
-    token->cancel();
+  token_to_cancel.cancel();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
 }
@@ -37,6 +35,19 @@ bool is_ignored(int signal_number) {
   return sigaction(signal_number, nullptr, &current) == 0 && current.sa_handler == SIG_IGN;
 }
 
+/// Nothing is set up yet, but for the C library.
+void handle_signals() {
+  handle(SIGINT);
+  handle(SIGTERM);
+  if (!is_ignored(SIGHUP))
+    handle(SIGHUP);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then a failed write, told and cleaned up
+}
+
+// The loader calls what is listed here before all else: OpenSSL reads its configuration before
+// main().
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = handle_signals;
+
 }  // namespace
 
 void reserve_standard_descriptors() {
@@ -49,13 +60,8 @@ void reserve_standard_descriptors() {
   }
 }
 
-void cancel_on_signals(execution::CancelToken& token) {
-  token_to_cancel = &token;
-  handle(SIGINT);
-  handle(SIGTERM);
-  if (!is_ignored(SIGHUP))
-    handle(SIGHUP);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then a failed write, told and cleaned up
+const execution::CancelToken& signal_token() {
+  return token_to_cancel;
 }
 
 execution::Terminal error_terminal() {

@@ -11,10 +11,10 @@ namespace meshhier::app {
 /// are opened, which would then take what is printed. From now on printing there fails.
 void reserve_standard_descriptors();
 
-/// From now on the first SIGINT or SIGTERM (SIGHUP too, unless it is ignored, as nohup does)
-/// cancels `token`, which must live to the end of the process; the second kills the process at
-/// once.
-void cancel_on_signals(execution::CancelToken& token);
+/// The first SIGINT or SIGTERM (SIGHUP too, unless it is ignored, as nohup does) cancels it; the
+/// second kills the process at once. That is so from before main() on, and before libraries begin,
+/// which takes milliseconds.
+const execution::CancelToken& signal_token();
 
 /// What standard error is.
 execution::Terminal error_terminal();

@@ -124,7 +124,8 @@ void add_worker_options(CLI::App& command, TaskArguments& arguments) {
         arguments.worker.index = static_cast<std::uint32_t>(index);
       });
   add_integer_option(
-      command, {"--of", "Workers that share the stage: this one does every so manieth", 1, kMost},
+      command,
+      {"--of", "Workers that share the stage: of N, this one does every Nth task", 1, kMost},
       [&arguments](std::uint64_t of) { arguments.worker.of = static_cast<std::uint32_t>(of); });
 }
 

@@ -1,6 +1,7 @@
 #include "app/upload_token.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/text_mark.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -27,6 +28,7 @@ std::string read_upload_token(storage::FileSystem& files, const std::filesystem:
   const std::unique_ptr<storage::File> file = files.open(path);
   std::string token(std::min(file->size(), kMostBytes + 1), '\0');
   file->read_exact(0, std::as_writable_bytes(std::span(token)));
+  token = without_mark(token);
   token.erase(token.find_last_not_of(" \t\r\n") + 1);
   if (token.size() >= kFewestCharacters && token.size() <= kMostBytes &&
       std::all_of(token.begin(), token.end(), is_visible))

@@ -6,6 +6,7 @@
 #include "hierarchy/plain_text.h"
 #include "inspection/verify.h"
 #include "inspection/verify_error.h"
+#include "storage/io/process.h"
 
 #include <limits>
 #include <memory>
@@ -103,7 +104,7 @@ int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environm
   if (!arguments.options.region.crs.empty())
     require_region(arguments.options.region, "--crs");
   if (place.is_remote())
-    arguments.options.scratch_folder = std::filesystem::temp_directory_path();
+    arguments.options.scratch_folder = storage::temporary_folder();
   const inspection::VerifyReport report = inspection::verify_hierarchy(
       place.files(), place.path(), arguments.options, *progress, environment.cancel);
   progress->finish(verdict(report.problems.size()));

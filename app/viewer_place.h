@@ -23,7 +23,7 @@ ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path&
 inline constexpr const char* kServedWithoutPage =
     "models.json and the models' files are served without it.";
 
-/// The same for who asks for the page: not where things lie on this machine.
+/// The same for who asks a server for the page: not where things lie on this machine.
 std::string page_without_viewer();
 
 }  // namespace meshhier::app

@@ -5,12 +5,15 @@
 #include "config/suggest.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -364,6 +367,19 @@ void check_output(const Config& config, const Draft& draft) {
                          in_quotes(config.output.string()), in_quotes(input.string())));
     }
   }
+  require_true_ending(config.output.string(),
+                      config.storage.container == Container::archive
+                          ? std::initializer_list<std::string_view>{".3tz", ".hier", ".zip"}
+                          : std::initializer_list<std::string_view>{".3tz", ".hier"},
+                      "a build makes a hierarchy, a directory or one file that ends in .3tz; of "
+                      "that `meshhier export` makes meshes, `meshhier page` an HTML file");
+}
+
+/// Whether what is moved by it has no volume left, but for rounding.
+bool is_flat(const Transform& m) {
+  constexpr double kRounding = 1e-14;
+  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+  return !(std::abs(dot(x, cross(y, z))) > kRounding * length(x) * length(y) * length(z));
 }
 
 /// There are three ways to place a model; each stands alone.
@@ -385,6 +401,8 @@ void check_placement(const Config& config, const Draft& draft) {
   if (place.anchor && !by_degrees && !by_map) {
     refuse(where, "\"anchor\" needs \"longitude\" and \"latitude\", \"crs\" or \"metadata\"");
   }
+  if (place.transform && is_flat(*place.transform))
+    refuse(where, "\"transform\" makes all flat: its first three columns lie in a plane");
 }
 
 void check_crop(const Config& config, const Draft& draft) {

@@ -1,6 +1,7 @@
 #include "config/map_file.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/text_mark.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
 
@@ -148,9 +149,7 @@ MapFile parse_lines(std::string_view text) {
 }  // namespace
 
 MapFile parse_map_file(std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf"))
-    text.remove_prefix(3);
-  text = trimmed(text);
+  text = trimmed(without_mark(text));
   if (text.empty())
     refuse("expected a CRS or an offset, found an empty file");
   if (text.starts_with('<'))

@@ -3,6 +3,7 @@
 #include "config/input_frame.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
+#include "hierarchy/text_mark.h"
 #include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/mesh_format.h"
@@ -24,8 +25,7 @@ std::string first_bytes(const storage::File& file) {
   constexpr std::size_t kLookedAt = 1024;
   std::string start(kLookedAt, '\0');
   start.resize(file.read_at(0, std::as_writable_bytes(std::span(start))));
-  if (start.starts_with("\xef\xbb\xbf"))
-    start.erase(0, 3);
+  start = without_mark(start);
   return start.erase(0, std::min(start.find_first_not_of(" \t\r\n"), start.size()));
 }
 

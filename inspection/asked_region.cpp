@@ -67,7 +67,7 @@ std::string RegionRequest::name() const {
 }
 
 Region region_of(storage::FileSystem& files, const HierarchyReader& reader,
-                 const RegionRequest& request) {
+                 const RegionRequest& request, const execution::CancelToken& cancel) {
   const storage::Manifest& manifest = reader.manifest();
   if (request.box)
     require_box(*request.box);
@@ -90,7 +90,8 @@ Region region_of(storage::FileSystem& files, const HierarchyReader& reader,
   }
   if (!polygons.empty()) {
     move(polygons, reader, map);
-    region.plan = std::make_shared<const PlanRegion>(polygons, manifest.up);
+    region.plan =
+        std::make_shared<const PlanRegion>(polygons, manifest.up, [&cancel] { cancel.check(); });
   }
   return region;
 }

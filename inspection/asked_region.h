@@ -1,6 +1,7 @@
 // The region that options of commands ask for.
 #pragma once
 
+#include "execution/cancel.h"
 #include "hierarchy/bounds.h"
 #include "inspection/region.h"
 #include "storage/format/hierarchy_reader.h"
@@ -24,9 +25,10 @@ struct RegionRequest {
 };
 
 /// Relative to the hierarchy's origin. `files`: where the polygon lies. Throws Error(usage) if the
-/// box is none, and as read_polygons() and config::MapPlaces.
+/// box is none, and as read_polygons() and config::MapPlaces. The region looks at `cancel`, which
+/// must outlive it, while it cuts.
 Region region_of(storage::FileSystem& files, const storage::HierarchyReader& reader,
-                 const RegionRequest& request);
+                 const RegionRequest& request, const execution::CancelToken& cancel);
 
 /// Throws Error(usage): nothing of the mesh lies there, and where it does.
 [[noreturn]] void fail_empty(const storage::HierarchyReader& reader, const RegionRequest& request);

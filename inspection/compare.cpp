@@ -2,7 +2,9 @@
 
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/text_mark.h"
 #include "inspection/cut_surface.h"
 #include "inspection/farthest_bound.h"
 #include "inspection/surface_distance.h"
@@ -371,8 +373,9 @@ class Comparer {
         bound_.add(std::abs(distances[i]));
         result_.unknown_sides += sides[i] == Side::unknown ? 1 : 0;
       }
+      // Vertices of triangles without area weigh nothing; they can be the farthest ones.
       const double weight = is_cloud && is_own ? 1 : weights[i];
-      if (weight > 0)
+      if (weight > 0 || (is_own && tile.is_used[i]))
         result_.distances.add(distances[i], weight);
     }
   }
@@ -444,9 +447,18 @@ void check_options(const Opened& from, const Opened& to, const CompareOptions& o
   }
 }
 
+/// Whether what is moved by it has no volume left, but for rounding.
+bool is_flat(const PlaceTransform& m) {
+  constexpr double kRounding = 1e-14;
+  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+  const double volume = std::abs(dot(x, cross(y, z)));
+  return !(volume > kRounding * length(x) * length(y) * length(z));
+}
+
 }  // namespace
 
 PlaceTransform parse_transform(std::string_view text, const std::string& name) {
+  text = without_mark(text);
   std::vector<double> numbers;
   const auto fail = [&](const std::string& found) {
     throw Error(ErrorCode::usage, fmt::format("{}: expected 16 numbers, a 4 x 4 matrix with rows "
@@ -473,6 +485,8 @@ PlaceTransform parse_transform(std::string_view text, const std::string& name) {
   std::ranges::copy(numbers, transform.begin());
   if (transform[12] != 0 || transform[13] != 0 || transform[14] != 0 || transform[15] != 1)
     fail("another last row");
+  if (is_flat(transform))
+    fail("one that makes all flat: its first three rows lie in a plane");
   return transform;
 }
 
@@ -495,9 +509,11 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
   if (!options.output.empty()) {
     if (!storage::is_standard_output(files, options.output))
       storage::require_outside(files, options.output);
-    output = std::make_unique<DifferencePly>(
-        files, storage::OutputRequest{options.output, options.replace, {from.path, to.path}},
-        spare_bytes(options) / 8, check);
+    require_true_ending(options.output.string(), {".ply"},
+                        "compare writes .ply, .hier and .3tz; choose one of these");
+    storage::OutputRequest request{options.output, options.replace, options.inputs};
+    request.inputs.insert(request.inputs.end(), {from.path, to.path});
+    output = std::make_unique<DifferencePly>(files, request, spare_bytes(options) / 8, check);
   }
   SurfaceComparison comparison =
       Comparer(opened_from, opened_to, options, progress, cancel).run(output.get());

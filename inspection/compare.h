@@ -28,8 +28,9 @@ struct Originals {};
 /// 4 x 4, rows first; the last row is 0 0 0 1.
 using PlaceTransform = std::array<double, 16>;
 
-/// Sixteen numbers between blanks, commas and brackets. `name` begins messages. Throws
-/// Error(usage) if they are not so many, not finite, or no affine map.
+/// Sixteen numbers between blanks, commas and brackets, perhaps behind a byte order mark. `name`
+/// begins messages. Throws Error(usage) if they are not so many, not finite, no affine map, or one
+/// that makes all flat.
 PlaceTransform parse_transform(std::string_view text, const std::string& name);
 
 struct CompareOptions {
@@ -40,11 +41,12 @@ struct CompareOptions {
   /// Bound each triangle by the one of `to` that is nearest to its middle: distances to it are
   /// convex. Else bounds are loose where distances are less than edges. Two more points a vertex.
   bool bounds_triangles = false;
-  std::optional<double> tolerance{};          ///< >= 0
-  std::optional<Unit> tolerance_unit{};       ///< none: that of the second surface's coordinates
-  std::optional<PlaceTransform> transform{};  ///< of the first surface, before it is compared
-  std::uint64_t memory_budget = 1U << 30;     ///< bytes
-  std::filesystem::path output{};             ///< a PLY; empty: none
+  std::optional<double> tolerance{};            ///< >= 0
+  std::optional<Unit> tolerance_unit{};         ///< none: that of the second surface's coordinates
+  std::optional<PlaceTransform> transform{};    ///< of the first surface, before it is compared
+  std::uint64_t memory_budget = 1U << 30;       ///< bytes
+  std::filesystem::path output{};               ///< a PLY; empty: none
+  std::vector<std::filesystem::path> inputs{};  ///< files and folders that stay, besides the two
   bool replace = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/text_mark.h"
 
 #include <algorithm>
 #include <charconv>
@@ -69,6 +70,7 @@ std::vector<NodeId> parse_json_nodes(std::string_view text, const std::string& n
 }  // namespace
 
 std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name) {
+  text = without_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start != std::string_view::npos && text[start] == '[')
     return parse_json_nodes(text, name);

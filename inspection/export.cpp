@@ -2,6 +2,7 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
@@ -173,18 +174,11 @@ ExportFormat format_of(const fs::path& output) {
                             : ExportFormat::ply;
 }
 
-/// Another mesh's ending would name a PLY that nobody can open under it.
-void require_no_other_ending(const fs::path& output) {
-  constexpr std::array<std::string_view, 12> kOthers{".3ds",  ".3mf", ".dae", ".fbx",
-                                                     ".gltf", ".off", ".stl", ".usd",
-                                                     ".usdz", ".wrl", ".x3d", ".zip"};
-  const std::string ending = storage::lower_extension(output);
-  const bool is_packed = ending == ".gz";
-  if (!is_packed && std::ranges::find(kOthers, ending) == kOthers.end())
-    return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: export writes .ply, .glb and .obj; {}", output.string(),
-                          is_packed ? "pack it yourself: -o - | gzip" : "choose one of these"));
+void require_own_ending(const fs::path& output) {
+  require_true_ending(output.string(), {".ply", ".glb", ".obj"},
+                      storage::lower_extension(output) == ".gz"
+                          ? "export packs nothing; pack it yourself: -o - | gzip"
+                          : "export writes .ply, .glb, .obj, .hier and .3tz; choose one of these");
 }
 
 VertexArray first_vertices(const VertexArray& from, std::size_t count) {
@@ -291,9 +285,9 @@ std::string export_parts_of_piece(const PartsJob& job, Piece& piece, const Regio
   return fmt::format("{}, {}", text_of(piece), write_parts(job, exported, format));
 }
 
-Piece piece_of(storage::FileSystem& files, const storage::HierarchyReader& reader, Cut cut,
-               const ExportOptions& options) {
-  return {reader, std::move(cut), region_of(files, reader, options.region),
+template <class Job>
+Piece piece_of(const Job& job, Cut cut, const ExportOptions& options) {
+  return {job.reader, std::move(cut), region_of(job.files, job.reader, options.region, job.cancel),
           options.clip ? Clipping::at_border : Clipping::whole_triangles,
           options.memory_budget / 4};
 }
@@ -327,7 +321,7 @@ std::string export_parts(const PartsJob& job, const ExportOptions& options, Expo
                                       ": the outline is lines, which are exported as a PLY alone");
   }
   if (options.region.is_any()) {
-    Piece piece = piece_of(job.files, job.reader, std::move(cut->cut), options);
+    Piece piece = piece_of(job, std::move(cut->cut), options);
     return fmt::format("{}, {}: {}", cut->name, options.region.name(),
                        export_parts_of_piece(job, piece, options.region, format));
   }
@@ -342,7 +336,7 @@ std::string export_selection(const ExportJob& job, const ExportOptions& options)
   if (!cut)
     return export_outline(job);
   if (options.region.is_any()) {
-    Piece piece = piece_of(job.files, job.reader, std::move(cut->cut), options);
+    Piece piece = piece_of(job, std::move(cut->cut), options);
     return export_piece(job, piece, options.region, cut->name + ", " + options.region.name());
   }
   return export_cut(job, std::move(cut->cut), cut->name);
@@ -360,20 +354,24 @@ void require_cut(const ExportOptions& options) {
 
 }  // namespace
 
+std::vector<fs::path> files_named(const ExportOptions& options) {
+  std::vector<fs::path> files{options.region.polygon};
+  if (const auto* cut = std::get_if<fs::path>(&options.selection))
+    files.push_back(*cut);
+  return files;
+}
+
 std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel) {
-  require_no_other_ending(options.output);
-  require_cut(options);
-  storage::OutputRequest request{options.output, options.replace, {hierarchy}};
-  if (const auto* cut = std::get_if<fs::path>(&options.selection))
-    request.inputs.push_back(*cut);
-  if (!options.region.polygon.empty())
-    request.inputs.push_back(options.region.polygon);
-  const storage::HierarchyFiles place(files, hierarchy);
-  const storage::HierarchyReader reader(place.files(), hierarchy);
   if (!storage::is_standard_output(files, options.output))
     storage::require_outside(files, options.output);
+  require_own_ending(options.output);
+  require_cut(options);
+  storage::OutputRequest request{options.output, options.replace, files_named(options)};
+  request.inputs.push_back(hierarchy);
+  const storage::HierarchyFiles place(files, hierarchy);
+  const storage::HierarchyReader reader(place.files(), hierarchy);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
   const ExportFormat format = format_of(options.output);
   if (format != ExportFormat::ply) {

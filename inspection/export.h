@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace meshhier::inspection {
 
@@ -34,6 +35,9 @@ struct ExportOptions {
   RegionRequest region{};
   bool clip = false;  ///< triangles end where the region does; else those that touch it come whole
 };
+
+/// The files that an export reads besides the hierarchy: none takes their place.
+std::vector<std::filesystem::path> files_named(const ExportOptions& options);
 
 /// Assembles the selection seamlessly, tile by tile, into options.output.
 ///

@@ -55,6 +55,7 @@ class ObjPictures {
                    [&job] { job.cancel.check(); }),
         text_(*materials_.file()) {
     require_free();
+    storage::require_apart(files_, folder_, job.request.inputs);
     files_.remove_all(unfinished_);
     files_.make_directories(unfinished_);
   }

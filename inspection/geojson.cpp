@@ -1,10 +1,14 @@
 #include "inspection/geojson.h"
 
+#include "hierarchy/text_mark.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -102,6 +106,71 @@ class PolygonReader {
   std::vector<PlanPolygon> polygons_;
 };
 
+/// Throws if it is one GeoJSON text a line, as GeoJSONSeq and the exports of databases are: the
+/// first line is whole, and so is what begins the next one.
+void refuse_lines(std::string_view text, const std::filesystem::path& path) {
+  constexpr char kRecord = '\x1e';
+  if (text.starts_with(kRecord))
+    text.remove_prefix(1);
+  const std::string_view first = text.substr(0, text.find('\n'));
+  text.remove_prefix(first.size());
+  const std::size_t next = text.find_first_not_of(" \t\r\n\x1e");
+  if (next == std::string_view::npos || text[next] != '{' || !GeoJson::accept(first))
+    return;
+  mesh_io::fail_file(path,
+                     "has one GeoJSON text a line, expected one for all; join them: ogr2ogr -f "
+                     "GeoJSON new.geojson FILE, or jq -s "
+                     "'{type: \"FeatureCollection\", features: .}' FILE");
+}
+
+/// What a text in capitals that begins so is, in place of GeoJSON.
+struct OtherFormat {
+  std::string_view begins, what;
+};
+constexpr std::string_view kConvert = "; convert it: ogr2ogr -f GeoJSON new.geojson FILE";
+constexpr auto kOtherFormats = std::to_array<OtherFormat>({
+    {"POLYGON", "is WKT"},
+    {"MULTIPOLYGON", "is WKT"},
+    {"GEOMETRYCOLLECTION", "is WKT"},
+    {"CURVEPOLYGON", "is WKT"},
+    {"MULTISURFACE", "is WKT"},
+    {"LINESTRING", "is WKT, and a line"},
+    {"MULTILINESTRING", "is WKT, and lines"},
+    {"POINT", "is WKT, and a point"},
+    {"MULTIPOINT", "is WKT, and points"},
+    {"SRID=", "is WKT"},
+    {"SQLITE FORMAT 3", "is a GeoPackage, or another database of SQLite"},
+    {std::string_view("\0\0\x27\x0a", 4), "is a shapefile"},
+    {"PK\x03\x04", "is a zip archive (perhaps KMZ, or a shapefile)"},
+    {"<", "is XML (perhaps KML or GML)"},
+});
+
+/// As long as the longest of these.
+constexpr std::size_t kLookedAt = 32;
+
+[[noreturn]] void fail_other(const std::filesystem::path& path, std::string_view what) {
+  const bool is_wkt = what.starts_with("is WKT");
+  mesh_io::fail_file(
+      path,
+      fmt::format("{}, expected GeoJSON{}", what,
+                  is_wkt ? R"(: {"type": "Polygon", "coordinates": [[[X, Y], ...]]})" : kConvert));
+}
+
+/// Throws if the text is something else that has polygons.
+void refuse_other(std::string_view text, const std::filesystem::path& path) {
+  text = without_mark(text);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  std::string start(text.substr(0, kLookedAt));
+  for (char& c : start)
+    c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  for (const OtherFormat& other : kOtherFormats) {
+    if (start.starts_with(other.begins))
+      fail_other(path, other.what);
+  }
+  if (text.starts_with('{') || text.starts_with('\x1e'))
+    refuse_lines(text, path);
+}
+
 }  // namespace
 
 std::vector<PlanPolygon> read_polygons(storage::FileSystem& files,
@@ -113,6 +182,7 @@ std::vector<PlanPolygon> read_polygons(storage::FileSystem& files,
         path, fmt::format("has {} bytes, expected a GeoJSON of at most {}", bytes, kMostBytes));
   std::string text(bytes, '\0');
   file->read_exact(0, std::as_writable_bytes(std::span(text)));
+  refuse_other(text, path);
   const GeoJson document = mesh_io::parse_gltf_json(std::move(text), path, kMostMemory);
   return PolygonReader(path).read(document);
 }

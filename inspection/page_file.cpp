@@ -1,6 +1,7 @@
 #include "inspection/page_file.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/byte_stream.h"
 #include "inspection/page_tiles.h"
@@ -253,11 +254,16 @@ std::string story_text(const PageStory& story, execution::Progress& progress) {
 std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel) {
+  require_true_ending(options.output.string(), {".html", ".htm"},
+                      "of a hierarchy page makes one HTML file; name it .html");
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   const PageSource source{place.files(), reader, options, progress, cancel};
-  storage::OutputFile output(files, {options.output, options.replace, {hierarchy}},
-                             [&] { cancel.check(); });
+  storage::OutputRequest request{options.output, options.replace, options.inputs};
+  request.inputs.push_back(hierarchy);
+  if (options.looks_for_story)
+    request.inputs.push_back(storage::story_path(storage::without_last_slash(hierarchy)));
+  storage::OutputFile output(files, request, [&] { cancel.check(); });
   const std::uint64_t size = std::min(options.size, kMostPageBytes);
   const PageStory story =
       story_of(files, hierarchy, options, size > viewer.size() ? size - viewer.size() : 0);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace meshhier::inspection {
 
@@ -21,6 +22,7 @@ struct PageOptions {
   std::string name;                 ///< of the model
   bool looks_for_story = false;     ///< beside the hierarchy: then the page tells it
   OpenPicture open_picture{};       ///< of the story; required if it looks for one
+  std::vector<std::filesystem::path> inputs{};  ///< files and folders that stay, too
 };
 
 /// Writes `viewer` (viewer/vite.single.config.ts) with the manifest, the root and more tiles:

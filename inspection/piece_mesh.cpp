@@ -11,18 +11,16 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace meshhier::inspection {
 namespace {
 
 namespace fs = std::filesystem;
 
-void require_apart(storage::FileSystem& files, const fs::path& hierarchy,
-                   const ExportOptions& options, const storage::FileSystem& local) {
+void require_no_outline(const ExportOptions& options) {
   if (std::holds_alternative<OutlineSelection>(options.selection))
     throw Error(ErrorCode::usage, "the outline is lines, of which no hierarchy is made");
-  if (&files == &local)
-    storage::require_apart(files, options.output, {&hierarchy, 1});
 }
 
 }  // namespace
@@ -59,7 +57,10 @@ config::Config config_like(storage::FileSystem& files, const fs::path& hierarchy
 PieceMesh::PieceMesh(storage::FileSystem& files, const fs::path& hierarchy,
                      const ExportOptions& options, storage::FileSystem& local,
                      execution::Progress& progress, const execution::CancelToken& cancel) {
-  require_apart(files, hierarchy, options, local);
+  require_no_outline(options);
+  std::vector<fs::path> inputs = files_named(options);
+  inputs.push_back(hierarchy);
+  storage::require_apart(files, options.output, inputs);
   config_ =
       config_like(files, hierarchy, options.output, options.replace, options.memory_budget, local);
   const storage::HierarchyFiles place(files, hierarchy);

@@ -1,14 +1,19 @@
 #include "inspection/plan_region.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <variant>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/intersections.h>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -59,10 +64,14 @@ Exact::FT part_of_way(const ExactPoint& a, const ExactPoint& b, const ExactPoint
                         : Exact::FT((p.y() - a.y()) / (b.y() - a.y()));
 }
 
+/// Of a face of a cut triangle.
+enum class Side : std::uint8_t { unknown, outside, inside };
+
+using Face =
+    CGAL::Triangulation_face_base_with_info_2<Side, Exact,
+                                              CGAL::Constrained_triangulation_face_base_2<Exact>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
-    Exact,
-    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_2<Exact>,
-                                         CGAL::Constrained_triangulation_face_base_2<Exact>>,
+    Exact, CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_2<Exact>, Face>,
     CGAL::Exact_intersections_tag>;
 
 /// A triangle seen from above.
@@ -75,30 +84,114 @@ struct PlanTriangle {
   CGAL::Orientation turn;  ///< COLLINEAR: it is vertical
 };
 
-/// The sides of a triangle, split where parts of borders end on them, and these parts. Nothing that
-/// is inserted crosses another, unless polygons cross themselves or each other: points are made of
-/// the input's alone, and their numbers stay short.
-void insert_outline(const PlanTriangle& triangle, const std::vector<Exact::Segment_2>& parts,
-                    Triangulation& plan) {
-  for (std::size_t side = 0; side < 3; ++side) {
-    const ExactPoint& a = triangle.corners[side];
-    const ExactPoint& b = triangle.corners[(side + 1) % 3];
-    std::vector<ExactPoint> stops{a, b};
-    for (const Exact::Segment_2& part : parts) {
-      for (const ExactPoint& end : {part.source(), part.target()}) {
-        if (CGAL::orientation(a, b, end) == CGAL::COLLINEAR)
-          stops.push_back(end);
-      }
+/// What of a border lies in a triangle.
+struct Part {
+  Exact::Segment_2 segment;  ///< perhaps a point
+  std::uint32_t polygon = 0;
+};
+
+/// Polygons whose borders run along an edge, an odd number of times each.
+class BordersOfEdges {
+ public:
+  using Vertex = Triangulation::Vertex_handle;
+
+  void add(const Triangulation& plan, Vertex from, Vertex to, std::uint32_t polygon) {
+    Triangulation::Face_handle ignored;
+    int side = 0;
+    for (Vertex next; from != to; from = next) {
+      if (!plan.includes_edge(from, to, next, ignored, side))
+        throw Error(ErrorCode::internal, "a border is not among the edges of a cut triangle");
+      toggle(polygons_[ends(from, next)], polygon);
     }
-    std::ranges::sort(stops);
-    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i)
-      plan.insert_constraint(stops[i], stops[i + 1]);
   }
-  for (const Exact::Segment_2& part : parts) {
-    if (!part.is_degenerate())
-      plan.insert_constraint(part.source(), part.target());
+  const std::vector<std::uint32_t>& of(Triangulation::Face_handle face, int side) const {
+    static const std::vector<std::uint32_t> none;
+    const auto found = polygons_.find(
+        ends(face->vertex(Triangulation::cw(side)), face->vertex(Triangulation::ccw(side))));
+    return found == polygons_.end() ? none : found->second;
   }
+
+ private:
+  using Ends = std::pair<const void*, const void*>;
+
+  static Ends ends(Vertex a, Vertex b) { return std::minmax<const void*>(&*a, &*b, std::less<>()); }
+  static void toggle(std::vector<std::uint32_t>& polygons, std::uint32_t polygon) {
+    if (std::erase(polygons, polygon) == 0)
+      polygons.push_back(polygon);
+  }
+
+  std::map<Ends, std::vector<std::uint32_t>> polygons_;
+};
+
+/// Triangulates a triangle together with these parts. Nothing that is inserted crosses another,
+/// unless polygons cross themselves or each other: points are made of the input's alone, and their
+/// numbers stay short. Points follow each other, so that each is found from the last one.
+BordersOfEdges triangulate(const PlanTriangle& triangle, const std::vector<Part>& parts,
+                           const std::function<void()>& check, Triangulation& plan) {
+  std::array<Triangulation::Vertex_handle, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i)
+    corners[i] = plan.insert(triangle.corners[i]);
+  for (std::size_t i = 0; i < 3; ++i)
+    plan.insert_constraint(corners[i], corners[(i + 1) % 3]);
+  std::vector<std::array<Triangulation::Vertex_handle, 2>> ends;
+  Triangulation::Vertex_handle last = corners[0];
+  for (const Part& part : parts) {
+    check();
+    const auto from = plan.insert(part.segment.source(), last->face());
+    last = plan.insert(part.segment.target(), from->face());
+    ends.push_back({from, last});
+    if (from != last)
+      plan.insert_constraint(from, last);
+  }
+  BordersOfEdges borders;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    borders.add(plan, ends[i][0], ends[i][1], parts[i].polygon);
+  return borders;
+}
+
+/// Tells of all faces whether they lie in a polygon: from face to face, by the borders between
+/// them. `open`: polygons that the first finite face lies in.
+void tell_sides(const Triangulation& plan, const BordersOfEdges& borders,
+                std::set<std::uint32_t> open) {
+  struct Step {
+    Triangulation::Face_handle face;
+    int came = -1;  ///< by this side
+    int next = 0;   ///< side to look at
+  };
+  const auto cross = [&](Triangulation::Face_handle face, int side) {
+    for (const std::uint32_t polygon : borders.of(face, side)) {
+      if (open.erase(polygon) == 0)
+        open.insert(polygon);
+    }
+  };
+  std::vector<Step> way;
+  const auto enter = [&](Triangulation::Face_handle face, int came) {
+    face->info() = open.empty() ? Side::outside : Side::inside;
+    way.push_back({face, came});
+  };
+  for (const auto face : plan.all_face_handles())
+    face->info() = Side::unknown;  // CGAL leaves it open
+  enter(plan.finite_faces_begin(), -1);
+  while (!way.empty()) {
+    Step& at = way.back();
+    if (at.next == 3) {
+      if (at.came >= 0)
+        cross(at.face, at.came);
+      way.pop_back();
+      continue;
+    }
+    const Triangulation::Face_handle from = at.face;
+    const int side = at.next++;
+    const Triangulation::Face_handle to = from->neighbor(side);
+    if (plan.is_infinite(to) || to->info() != Side::unknown)
+      continue;
+    cross(from, side);
+    enter(to, to->index(from));
+  }
+}
+
+std::array<ExactPoint, 3> corners_of(Triangulation::Face_handle face) {
+  return {face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point()};
 }
 
 /// A point of doubles within a triangle that turns left, by its middle: numbers that are quick to
@@ -167,6 +260,7 @@ class CutVertices {
 
 struct PlanRegion::Parts {
   UpAxis up;
+  std::function<void()> check;
   std::vector<Edge> edges;
   Rtree tree;
 
@@ -179,9 +273,9 @@ struct PlanRegion::Parts {
     return found;
   }
 
-  /// Counts the borders that a ray to the east crosses, those of each polygon.
+  /// The polygons around `p`, ascending: by the borders that a ray to the east crosses.
   template <class Kernel>
-  bool contains(const typename Kernel::Point_2& p, const RtreeBox& ray) const {
+  std::vector<std::uint32_t> around(const typename Kernel::Point_2& p, const RtreeBox& ray) const {
     std::vector<std::uint32_t> crossed;
     for (const std::uint32_t number : edges_in(ray)) {
       const Edge& edge = edges[number];
@@ -192,40 +286,47 @@ struct PlanRegion::Parts {
         crossed.push_back(edge.polygon);
     }
     std::ranges::sort(crossed);
+    std::vector<std::uint32_t> around;
     for (auto run = crossed.begin(); run != crossed.end();) {
       const auto end = std::upper_bound(run, crossed.end(), *run);
       if ((end - run) % 2 == 1)
-        return true;
+        around.push_back(*run);
       run = end;
     }
-    return false;
+    return around;
   }
   double east_end() const {
     return tree.empty() ? 0 : boost::geometry::get<0>(tree.bounds().max_corner());
   }
-  bool contains(PlanPoint p) const {
+  std::vector<std::uint32_t> around(PlanPoint p) const {
     if (p.x > east_end())
-      return false;
-    return contains<Doubles>(point<Doubles>(p), {{p.x, p.y}, {east_end(), p.y}});
+      return {};
+    return around<Doubles>(point<Doubles>(p), {{p.x, p.y}, {east_end(), p.y}});
   }
-  bool contains(const ExactPoint& p) const {
+  std::vector<std::uint32_t> around(const ExactPoint& p) const {
     const double west = CGAL::to_interval(p.x()).first;
     const auto [south, north] = CGAL::to_interval(p.y());
     if (west > east_end())
-      return false;
-    return contains<Exact>(p, {{west, south}, {east_end(), north}});
+      return {};
+    return around<Exact>(p, {{west, south}, {east_end(), north}});
+  }
+  template <class Place>
+  bool contains(const Place& p) const {
+    return !around(p).empty();
   }
 
   TriangleCut cut_into_strips(const PlanTriangle& triangle,
                               const std::vector<std::uint32_t>& borders) const;
-  std::vector<Exact::Segment_2> parts_within(const PlanTriangle& triangle,
-                                             const std::vector<std::uint32_t>& borders) const;
+  std::vector<Part> parts_within(const PlanTriangle& triangle,
+                                 const std::vector<std::uint32_t>& borders) const;
   TriangleCut cut_by(const PlanTriangle& triangle, const std::vector<std::uint32_t>& borders) const;
 };
 
-PlanRegion::PlanRegion(const std::vector<PlanPolygon>& polygons, UpAxis up) {
+PlanRegion::PlanRegion(const std::vector<PlanPolygon>& polygons, UpAxis up,
+                       std::function<void()> check) {
   auto parts = std::make_unique<Parts>();
   parts->up = up;
+  parts->check = std::move(check);
   std::vector<RtreeEntry> entries;
   for (std::uint32_t polygon = 0; polygon < polygons.size(); ++polygon) {
     for (const PlanRing& ring : polygons[polygon]) {
@@ -258,6 +359,7 @@ bool PlanRegion::may_meet(const BoundsD& box) const {
 }
 
 TriangleCut PlanRegion::cut(const std::array<Vec3d, 3>& corners) const {
+  parts_->check();
   std::array<PlanPoint, 3> places;
   std::ranges::transform(corners, places.begin(), [&](Vec3d p) { return plan_of(p, parts_->up); });
   std::vector<std::uint32_t> borders = parts_->edges_in(box_of(places));
@@ -278,19 +380,21 @@ TriangleCut PlanRegion::cut(const std::array<Vec3d, 3>& corners) const {
 }
 
 /// What of the borders lies in the triangle.
-std::vector<Exact::Segment_2> PlanRegion::Parts::parts_within(
-    const PlanTriangle& triangle, const std::vector<std::uint32_t>& borders) const {
+std::vector<Part> PlanRegion::Parts::parts_within(const PlanTriangle& triangle,
+                                                  const std::vector<std::uint32_t>& borders) const {
   const Exact::Triangle_2 shape(triangle.corners[0], triangle.corners[1], triangle.corners[2]);
-  std::vector<Exact::Segment_2> parts;
+  std::vector<Part> parts;
   for (const std::uint32_t number : borders) {
-    const auto common = CGAL::intersection(
-        shape, Exact::Segment_2(point<Exact>(edges[number].from), point<Exact>(edges[number].to)));
+    check();
+    const Edge& edge = edges[number];
+    const auto common =
+        CGAL::intersection(shape, Exact::Segment_2(point<Exact>(edge.from), point<Exact>(edge.to)));
     if (!common)
       continue;
     if (const auto* p = boost::get<ExactPoint>(&*common))
-      parts.emplace_back(*p, *p);
+      parts.push_back({Exact::Segment_2(*p, *p), edge.polygon});
     else if (const auto* segment = boost::get<Exact::Segment_2>(&*common))
-      parts.push_back(*segment);
+      parts.push_back({*segment, edge.polygon});
   }
   return parts;
 }
@@ -299,16 +403,19 @@ std::vector<Exact::Segment_2> PlanRegion::Parts::parts_within(
 TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
                                       const std::vector<std::uint32_t>& borders) const {
   Triangulation plan;
-  insert_outline(triangle, parts_within(triangle, borders), plan);
+  const BordersOfEdges along = triangulate(triangle, parts_within(triangle, borders), check, plan);
+  const std::array<ExactPoint, 3> first = corners_of(plan.finite_faces_begin());
+  const ExactPoint middle = CGAL::centroid(first[0], first[1], first[2]);
+  const std::optional<PlanPoint> near = rounded_within(first, middle);
+  const std::vector<std::uint32_t> open = near ? around(*near) : around(middle);
+  tell_sides(plan, along, {open.begin(), open.end()});
   CutVertices vertices(triangle);
   TriangleCut cut;
   for (const auto face : plan.finite_face_handles()) {
-    const std::array<ExactPoint, 3> corners{face->vertex(0)->point(), face->vertex(1)->point(),
-                                            face->vertex(2)->point()};
-    const ExactPoint middle = CGAL::centroid(corners[0], corners[1], corners[2]);
-    const std::optional<PlanPoint> near = rounded_within(corners, middle);
-    if (!(near ? contains(*near) : contains(middle)))
+    check();
+    if (face->info() != Side::inside)
       continue;
+    const std::array<ExactPoint, 3> corners = corners_of(face);
     std::array<std::uint32_t, 3> t{vertices.at(corners[0]), vertices.at(corners[1]),
                                    vertices.at(corners[2])};
     if (triangle.turn == CGAL::RIGHT_TURN)

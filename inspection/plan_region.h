@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,8 +53,10 @@ struct TriangleCut {
 /// rounding.
 class PlanRegion {
  public:
-  /// Finite numbers. O(n log n).
-  PlanRegion(const std::vector<PlanPolygon>& polygons, UpAxis up);
+  /// Finite numbers. `check` is called before each cut and again and again in one, by any thread,
+  /// and may throw. O(n log n).
+  PlanRegion(
+      const std::vector<PlanPolygon>& polygons, UpAxis up, std::function<void()> check = [] {});
   ~PlanRegion();
   PlanRegion(PlanRegion&&) noexcept;
   PlanRegion& operator=(PlanRegion&&) noexcept;
@@ -63,8 +66,8 @@ class PlanRegion {
   bool contains(Vec3d p) const;
   /// Cuts a triangle where borders of polygons run over it, seen from above. Two triangles that
   /// share an edge are cut at the same places of it, and edges only where a border crosses them: no
-  /// gap opens. A vertical triangle is cut into strips. O((k + log n)^2) at worst for k borders in
-  /// its box.
+  /// gap opens. A vertical triangle is cut into strips. O(n + k log k) for k borders in its box, as
+  /// long as no corner is that of many borders.
   TriangleCut cut(const std::array<Vec3d, 3>& corners) const;
 
  private:

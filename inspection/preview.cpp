@@ -235,8 +235,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     if (const auto* cut = std::get_if<std::filesystem::path>(&*options.selection))
       request.inputs.push_back(*cut);
   }
-  if (!options.region.polygon.empty())
-    request.inputs.push_back(options.region.polygon);
+  request.inputs.push_back(options.region.polygon);
   require_room(options);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
@@ -246,7 +245,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
 
   std::optional<Region> region;
   if (options.region.is_any())
-    region = region_of(files, reader, options.region);
+    region = region_of(files, reader, options.region, cancel);
   const std::uint64_t cache_bytes = options.memory_budget / 8;
   std::optional<AttributePainter> painter;
   if (options.attribute)

@@ -38,7 +38,7 @@ std::size_t verify_with_neighbours(const VerifyJob& job, const TileRecord& recor
 void verify_piece(const VerifyJob& job) {
   if (!job.options.input.empty())
     throw Error(ErrorCode::usage, "a piece is verified without its input");
-  const Region region = region_of(job.files, job.reader, job.options.region);
+  const Region region = region_of(job.files, job.reader, job.options.region, job.cancel);
   std::vector<NodeId> nodes;
   for (const TileRecord& record : job.reader.records()) {
     if (region.may_meet({to_double(record.bounds.min), to_double(record.bounds.max)}))

@@ -5,6 +5,7 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "progressive/detail_writer.h"
 #include "progressive/foreign_corners.h"
@@ -264,6 +265,8 @@ std::string summary_of(const fs::path& output, const progressive::ProgressiveInd
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel) {
+  require_true_ending(options.output.string(), {},
+                      "progressive makes a directory of its own kind; name it NAME.prog");
   const storage::Output output{storage::followed(files, options.output), storage::Container::files,
                                storage::Content::progressive_stream};
   storage::check_output(files, output, options.replace);
@@ -288,8 +291,8 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
     work.keep(true);
     throw Error(ErrorCode::exists,
                 fmt::format("{} holds what a stopped build has done; go on with it, or remove it "
-                            "(meshhier clean)",
-                            work.path().string()));
+                            "(meshhier clean --remove {})",
+                            work.path().string(), output.path.string()));
   }
   require_disk(files, work.path(), disk_need(reader, sector));
   work.clear();  // what a killed run may have left

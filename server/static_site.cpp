@@ -1,6 +1,7 @@
 #include "server/static_site.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "server/folder_scan.h"
 #include "server/gallery.h"
@@ -192,7 +193,7 @@ class SiteMaker {
 };
 
 void require_place(storage::FileSystem& files, const SiteJob& job) {
-  storage::require_apart(files, job.output, std::array{job.models->path()});
+  storage::require_apart(files, job.output, std::array{job.models->path(), job.viewer.path()});
   const storage::FileKind kind = files.kind(job.output);
   if (kind == storage::FileKind::none)
     return;
@@ -210,6 +211,8 @@ std::string write_site(storage::FileSystem& files, const SiteJob& given,
                        const SiteProgress& progress) {
   const SiteJob job{given.models, given.viewer, storage::without_last_slash(given.output),
                     given.replace};
+  require_true_ending(job.output.string(), {},
+                      "of a folder page makes a folder, the site; name it without an ending");
   require_place(files, job);
   const fs::path part = storage::unfinished_path(job.output);
   files.remove_all(part);

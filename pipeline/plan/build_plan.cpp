@@ -91,7 +91,8 @@ std::uint64_t memory_budget(const config::Config& config) {
   constexpr std::uint64_t kLeast = std::uint64_t{512} << 20;
   constexpr std::uint64_t kMost = std::uint64_t{16} << 30;
   static const std::uint64_t usable = storage::usable_memory();
-  return config.memory_budget.value_or(std::clamp(usable / 4, kLeast, kMost));
+  constexpr std::uint64_t kGrain = std::uint64_t{1} << 20;  // messages tell it: "6026MiB"
+  return config.memory_budget.value_or(std::clamp(usable / 4 / kGrain * kGrain, kLeast, kMost));
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
@@ -171,16 +172,14 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
 
 namespace {
 
-void require_none_within(const std::vector<std::filesystem::path>& inputs,
-                         const std::filesystem::path& asked, storage::FileSystem& files) {
-  const std::filesystem::path output = files.canonical(asked);
-  for (const std::filesystem::path& path : inputs) {
-    const std::filesystem::path input = files.canonical(path);
-    if (storage::is_within(input, output)) {
-      throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",
-                                                input.string(), output.string()));
-    }
-  }
+/// What is replaced is removed, and what lies in the work directory goes with it.
+void require_stay(std::span<const std::filesystem::path> inputs,
+                  const std::filesystem::path& output, storage::FileSystem& files) {
+  constexpr std::size_t kLongestName = 255;  // longer ones are check_place()'s to tell
+  storage::require_apart(files, output, inputs);
+  const std::filesystem::path work = storage::work_path(output);
+  if (work.filename().native().size() <= kLongestName)
+    storage::require_apart(files, work, inputs);
 }
 
 }  // namespace
@@ -192,11 +191,11 @@ void check_apart(const importing::Companions& companions, const config::Config& 
     paths.push_back(file.path);
   for (const std::filesystem::path& other : others)
     storage::require_apart(files, other, paths);
-  require_none_within(paths, config.output, files);
+  require_stay(paths, config.output, files);
 }
 
 void check_apart(const config::Config& config, storage::FileSystem& files) {
-  require_none_within(config::read_by(config), config.output, files);
+  require_stay(config::read_by(config), config.output, files);
 }
 
 }  // namespace meshhier::pipeline

@@ -4,6 +4,8 @@
 #include "storage/io/paths.h"
 #include "storage/io/process.h"
 
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,6 +54,38 @@ Error already_there(const fs::path& path, const char* state) {
   return {ErrorCode::exists, fmt::format("{} {}; --force replaces it", path.string(), state)};
 }
 
+/// Where a path leads to, and where its name is, if that is a link.
+std::vector<fs::path> places_of(FileSystem& files, const fs::path& path) {
+  const fs::path name = without_last_slash(path);
+  std::vector<fs::path> places{files.canonical(name)};
+  if (files.is_link(name)) {
+    const fs::path folder = name.parent_path();
+    places.push_back(files.canonical(folder.empty() ? "." : folder) / name.filename());
+  }
+  return places;
+}
+
+/// Files have several names by hard links, directories by mounts.
+bool is_one_place(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  return a == b || fs::equivalent(a, b, ignored);
+}
+
+bool lies_in(FileSystem& files, const fs::path& path, const fs::path& folder) {
+  const FileKind kind = files.kind(folder);
+  if (kind != FileKind::directory && kind != FileKind::none)
+    return false;  // nothing lies in a file
+  if (is_within(path, folder))
+    return true;
+  if (kind == FileKind::none)
+    return false;
+  for (fs::path at = path.parent_path(); at != at.parent_path(); at = at.parent_path()) {
+    if (is_one_place(at, folder))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_standard_output(FileSystem& files, const fs::path& path) {
@@ -59,14 +93,22 @@ bool is_standard_output(FileSystem& files, const fs::path& path) {
 }
 
 void require_apart(FileSystem& files, const fs::path& output, std::span<const fs::path> inputs) {
-  const fs::path file = files.canonical(output);
-  for (const fs::path& input : inputs) {
-    const fs::path place = files.canonical(input);
-    if (!is_within(file, place))
-      continue;
+  const std::vector<fs::path> places = places_of(files, output);
+  const auto refuse = [&](const std::string& why) {
     throw Error(ErrorCode::usage,
-                fmt::format("cannot write {}: it {} {}; name another output", output.string(),
-                            file == place ? "would replace" : "lies in", input.string()));
+                fmt::format("cannot write {}: {}; name another output", output.string(), why));
+  };
+  for (const fs::path& input : inputs) {
+    if (input.empty())
+      continue;
+    for (const fs::path& place : places_of(files, input)) {
+      if (is_one_place(places.front(), place))
+        refuse("it would replace " + input.string());
+      if (lies_in(files, places.front(), place))
+        refuse("it lies in " + input.string());
+      if (lies_in(files, place, places.front()))
+        refuse(fmt::format("the input {} lies in it", input.string()));
+    }
   }
 }
 
@@ -123,6 +165,9 @@ void OutputFile::open_regular(const OutputRequest& request) {
   const fs::path target = files_.canonical(request.path);
   require_parent(files_, request, target);
   require_short_name(request, target);
+  for (const fs::path& own :
+       {unfinished_path(target), scratch_path(target), output_lock_path(target)})
+    require_apart(files_, own, request.inputs);
   lock_ = files_.try_lock(output_lock_path(target));
   if (!lock_) {
     throw Error(ErrorCode::exists,

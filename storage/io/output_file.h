@@ -24,7 +24,9 @@ struct OutputRequest {
 /// Whether all that is written there goes to standard output, which then can take nothing else.
 bool is_standard_output(FileSystem& files, const std::filesystem::path& path);
 
-/// Throws Error(usage) if the output is one of the inputs, or lies in one.
+/// The one rule for all that is written: nothing takes the place of what was read. Throws
+/// Error(usage) if the output is one of the inputs, lies in one or holds one, by whatever name: a
+/// link, another spelling, a second name of the file. An empty path is none.
 void require_apart(FileSystem& files, const std::filesystem::path& output,
                    std::span<const std::filesystem::path> inputs);
 
@@ -38,8 +40,8 @@ std::filesystem::path output_lock_path(const std::filesystem::path& file);
 /// written to.
 class OutputFile {
  public:
-  /// Refuses what can be refused: Error(usage) if the path is no file's, or if it is one of the
-  /// inputs or lies in one; Error(exists) if there is a file that is not to be replaced, or if
+  /// Refuses what can be refused: Error(usage) if the path is no file's, and as require_apart();
+  /// Error(exists) if there is a file that is not to be replaced, or if
   /// another process is writing it; Error(io) if it cannot be written. `check` is called now and
   /// then while a reader is waited for, and may throw.
   OutputFile(

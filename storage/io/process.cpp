@@ -87,16 +87,31 @@ bool is_unique_name(std::string_view name) {
          name.find_first_not_of("0123456789-", kDigits) == std::string_view::npos;
 }
 
-std::filesystem::path make_temporary_directory() {
+std::filesystem::path temporary_folder() {
+  const char* const given = std::getenv("TMPDIR");
+  const bool is_given = given != nullptr && *given != '\0';
+  const std::filesystem::path folder = is_given ? given : "/tmp";
   std::error_code error;
-  const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+  const bool is_folder = std::filesystem::is_directory(folder, error);
+  if (is_folder)
+    return folder;
+  throw Error(ErrorCode::io,
+              fmt::format("temporary files go to {}{}, which {}; set TMPDIR to another place",
+                          folder.string(), is_given ? " (TMPDIR)" : "",
+                          error && error != std::errc::no_such_file_or_directory
+                              ? "cannot be used: " + error.message()
+                          : std::filesystem::exists(folder, error) ? "is no directory"
+                                                                   : "is not there"));
+}
+
+std::filesystem::path make_temporary_directory() {
+  const std::filesystem::path parent = temporary_folder();
   std::string name = (parent / "meshhier-XXXXXX").string();
-  if (error || ::mkdtemp(name.data()) == nullptr) {
+  if (::mkdtemp(name.data()) == nullptr) {
     throw Error(ErrorCode::io,
                 fmt::format("cannot make a directory for temporary files in {}: {}; set TMPDIR to "
                             "another place",
-                            parent.empty() ? "TMPDIR" : parent.string(),
-                            error ? error.message() : std::strerror(errno)));
+                            parent.string(), std::strerror(errno)));
   }
   return name;
 }

@@ -31,6 +31,10 @@ std::string unique_name();
 /// Whether it looks like one.
 bool is_unique_name(std::string_view name);
 
+/// The system's for temporary files: TMPDIR, else /tmp. Throws Error(io), which names it, if it is
+/// no directory.
+std::filesystem::path temporary_folder();
+
 /// Makes a directory that only this user can enter, in the system's for temporary files. Throws
 /// Error(io).
 std::filesystem::path make_temporary_directory();

@@ -1,4 +1,6 @@
 // The real program as a process: exit codes, messages, and what it leaves on disk.
+#include "tests/app/program.h"
+#include "tests/support/gzip.h"
 #include "tests/support/http_host.h"
 
 #include <algorithm>
@@ -24,8 +26,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace meshhier::app {
 namespace {
 
@@ -35,8 +35,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
-using Path = std::filesystem::path;
-using Arguments = std::vector<std::string>;
 
 constexpr int kUsage = 2;
 constexpr int kInput = 3;
@@ -45,44 +43,6 @@ constexpr int kExists = 5;
 constexpr int kBudget = 6;
 constexpr int kCorrupt = 7;
 constexpr int kInterrupted = 130;
-
-std::string text_of(const Path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  EXPECT_TRUE(stream) << path;
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-void write_text(const Path& path, const std::string& text) {
-  std::ofstream stream(path, std::ios::binary);
-  stream << text;
-  ASSERT_TRUE(stream.flush()) << path;
-}
-
-/// Throws if it does not start: a signal to "process -1" would reach every process there is.
-pid_t spawn(const Arguments& arguments, posix_spawn_file_actions_t& actions) {
-  std::vector<char*> words{const_cast<char*>(MESHHIER_BINARY)};
-  for (const std::string& argument : arguments)
-    words.push_back(const_cast<char*>(argument.c_str()));
-  words.push_back(nullptr);
-  pid_t process = -1;
-  if (posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ) != 0)
-    throw std::runtime_error("cannot start " MESHHIER_BINARY);
-  return process;
-}
-
-/// The exit code; 1000 + n after death by signal n.
-int wait_for(pid_t process) {
-  int status = 0;
-  while (waitpid(process, &status, 0) == -1 && errno == EINTR) {
-  }
-  return WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string messages;
-};
 
 class CommandLine : public ::testing::Test {
  protected:
@@ -97,18 +57,7 @@ class CommandLine : public ::testing::Test {
   Path work() const { return directory_ / "work"; }
 
   Outcome run(const Arguments& arguments, const std::string& out = "") const {
-    const std::string out_path = out.empty() ? (directory_ / "out").string() : out;
-    const std::string message_path = (directory_ / "messages").string();
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_path.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, message_path.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int code = wait_for(spawn(arguments, actions));
-    posix_spawn_file_actions_destroy(&actions);
-    return {code, out.empty() ? text_of(out_path) : "", text_of(message_path)};
+    return run_program(arguments, directory_, out);
   }
 
   /// A bumpy square of 50 x 50 vertices. The last face's last corner is `last_corner`.
@@ -267,7 +216,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"export", "x", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
-      {{"export", "x", "--level", "0", "-o", "y.STL"}, "y.STL: export writes .ply, .glb and .obj"},
+      {{"export", "x", "--level", "0", "-o", "y.STL"}, "y.STL: export writes .ply, .glb, .obj, "},
       {{"export", "x", "--level", "0", "-o", "y.ply.gz"}, "pack it yourself: -o - | gzip"},
       {{"preview", "x"}, "--output"},
       {{"preview", "x", "-o", "y.jpg"}, ".png or .webp"},
@@ -640,6 +589,89 @@ TEST_F(WithCompanions, AnOutputThatHoldsWhatAMeshNamesIsNotReplaced) {
   const Outcome outcome = run({"build", obj(), "--force"});
   EXPECT_NE(outcome.code, 0);
   EXPECT_TRUE(std::filesystem::exists(Path(hierarchy()) / "tiles/a.png"));
+}
+
+TEST_F(CommandLine, AHierarchyHasNoNameOfAnotherFormat) {
+  const std::string mesh = write_mesh("a.ply").string();
+  for (const char* name : {"a.glb", "a.HTML", "a.zip", "a.obj", "a.ply.gz", "a.json", "a.png"}) {
+    for (const Arguments& words :
+         {Arguments{"build", mesh, "-o", name},
+          {"build", mesh, "-o", name, "--dry-run"},
+          {"build", "--set", "input=" + mesh, std::string("output=") + name},
+          {"plan", mesh, "-o", name, "--work", (work() / "w").string(), "--tasks", "2"}}) {
+      const Outcome outcome = run(words);
+      EXPECT_EQ(outcome.code, kUsage) << name;
+      EXPECT_THAT(outcome.messages, HasSubstr(": a build makes a hierarchy, a directory or one"));
+    }
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"a.ply"}));
+  const std::string dotted = (work() / "a.v2").string();
+  EXPECT_EQ(run({"build", mesh, "-o", dotted, "--set", "preview=false"}).code, 0);
+}
+
+// ---- a system that gives little
+
+/// The program by a shell that has set something before.
+class Limited : public CommandLine {
+ protected:
+  Outcome run_after(const std::string& setting, const Arguments& arguments) const {
+    Arguments words{"-c", setting + "; exec \"$0\" \"$@\"", MESHHIER_BINARY};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run_program(words, work().parent_path(), "", "/bin/bash");
+  }
+};
+
+TEST_F(Limited, AFolderForTemporaryFilesThatIsNotThereIsNamed) {
+  build();
+  const std::string mesh = (work() / "a.ply").string();
+  const Outcome outcome = run_after("TMPDIR=/nonexistent; export TMPDIR", {"compare", mesh, mesh});
+  EXPECT_EQ(outcome.code, kIo);
+  EXPECT_THAT(outcome.messages, AllOf(HasSubstr("/nonexistent (TMPDIR)"), HasSubstr("set TMPDIR")));
+  const Outcome file = run_after("TMPDIR=" + mesh + "; export TMPDIR", {"compare", mesh, mesh});
+  EXPECT_EQ(file.code, kIo);
+  EXPECT_THAT(file.messages, HasSubstr("is no directory"));
+}
+
+TEST_F(Limited, LittleMemoryIsToldAndNothingElse) {
+  build();
+  const std::string mesh = (work() / "a.ply").string();
+  const std::vector<Arguments> calls{
+      {"build", mesh, "-o", (work() / "b.hier").string(), "--force", "--restart"},
+      {"verify", hierarchy()},
+      {"export", hierarchy(), "--level", "0", "-o", (work() / "b.ply").string(), "--force"}};
+  int enough = 0;
+  for (int kilobytes = 40'000; kilobytes <= 400'000; kilobytes = kilobytes * 9 / 8) {
+    for (const Arguments& call : calls) {
+      const Outcome outcome = run_after("ulimit -v " + std::to_string(kilobytes), call);
+      constexpr int kNotStarted = 127;  // by the loader
+      EXPECT_THAT(outcome.code, ::testing::AnyOf(0, kBudget, kNotStarted))
+          << kilobytes << ' ' << call[0] << ": " << outcome.messages;
+      enough += outcome.code == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(enough, 0);
+}
+
+TEST_F(Limited, FewerThreadsDo) {
+  build();
+  const std::string mesh = (work() / "a.ply").string();
+  std::filesystem::permissions(work().parent_path(), std::filesystem::perms::all);
+  std::filesystem::permissions(work(), std::filesystem::perms::all);
+  const auto before = contents(hierarchy());
+  const std::string made = (work() / "b.hier").string();
+  for (const int most : {1, 2, 3, 4}) {
+    // The system limits no user 0, and counts all processes of others: nobody has none.
+    const std::string as_nobody =
+        ::geteuid() == 0 ? "exec setpriv --reuid=65534 --regid=65534 --clear-groups bash -c 'ulimit "
+                           "-u " +
+                               std::to_string(most) + " && exec \"$0\" \"$@\"' \"$0\" \"$@\""
+                         : "ulimit -u " + std::to_string(most);
+    const Outcome outcome = run_after(
+        as_nobody,
+        {"build", mesh, "-o", made, "--set", "partition.vertices=500", "preview=false", "--force"});
+    EXPECT_EQ(outcome.code, 0) << most << ": " << outcome.messages;
+    EXPECT_EQ(contents(made), before) << most;
+  }
 }
 
 TEST_F(CommandLine, TheAccountAndTheNoteAreTwoFiles) {
@@ -1362,15 +1394,18 @@ TEST_F(CommandLinePage, WhatIsWrongIsTold) {
   };
   says({hierarchy(), "-o", file, "--size", "1000"}, kUsage, "give --size ");
   says({hierarchy(), "-o", file, "--link", "david.3tz"}, kUsage, "--link: expected the address");
+  for (const char* secret : {"https://me:word@h/a.3tz", "https://me@h/a.hier", "HTTP://:w@h"})
+    says({hierarchy(), "-o", file, "--link", secret}, kUsage, "a user or a password in it");
   says({(work() / "none.hier").string(), "-o", file}, kIo, "none.hier");
-  says({work().string(), "-o", file, "--link", "https://h/"}, kUsage,
+  const std::string elsewhere = (work().parent_path() / "c.html").string();
+  says({work().string(), "-o", elsewhere, "--link", "https://h/"}, kUsage,
        "--link is for the page of one");
   says({work().string(), "-o", file, "--fetch-pictures"}, kUsage,
        "--fetch-pictures is for the page of one");
   says({work().string(), "-o", (work() / "site").string(), "--size", "20MB"}, kUsage,
        "--size is for the page of one");
   says({work().string(), "-o", file}, kUsage, "the name of an HTML file is for the page of one");
-  says({hierarchy(), "-o", (work() / "b.glb").string()}, kUsage, "name one that ends in .html");
+  says({hierarchy(), "-o", (work() / "b.glb").string()}, kUsage, "name it .html");
   std::filesystem::remove(viewer() / "single.html");
   says({hierarchy(), "-o", file}, kIo, "has no single.html");
 }
@@ -1407,7 +1442,7 @@ TEST_F(CommandLinePage, AFolderBecomesASite) {
   std::filesystem::remove_all(models / "a.hier");
   ASSERT_EQ(page({models.string(), "-o", site.string(), "--force"}).code, 0);
   EXPECT_FALSE(std::filesystem::exists(site / "models/a.hier"));
-  EXPECT_EQ(page({models.string(), "-o", viewer().string(), "--force"}).code, kExists);
+  EXPECT_EQ(page({models.string(), "-o", viewer().string(), "--force"}).code, kUsage);
   EXPECT_EQ(page({models.string(), "-o", (models / "site").string()}).code, kUsage);
   EXPECT_EQ(page({viewer().string(), "-o", (work() / "none").string()}).code, kUsage);
   EXPECT_EQ(names(), (std::set<std::string>{"a.ply", "models", "site", "viewer"}));
@@ -1633,7 +1668,7 @@ TEST_F(Streams, FailuresHaveTheirCodes) {
   make_stream();
   EXPECT_EQ(run({"progressive", hierarchy(), "-o", stream()}).code, kExists);
   EXPECT_EQ(run({"progressive", hierarchy(), "-o", stream(), "--force"}).code, 0);
-  EXPECT_EQ(run({"progressive", hierarchy(), "-o", hierarchy(), "--force"}).code, kExists);
+  EXPECT_EQ(run({"progressive", hierarchy(), "-o", hierarchy(), "--force"}).code, kUsage);
   const std::string other = (work() / "b.prog").string();
   EXPECT_EQ(run({"progressive", hierarchy(), "-o", other, "--steps", "4"}).code, kUsage);
   EXPECT_EQ(run({"progressive", hierarchy(), "-o", other, "--node", "4/0"}).code, kUsage);

@@ -268,7 +268,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"execution/allocator.cpp", {"malloc.h"}},
       {"app/process.cpp", {"csignal", "fcntl.h", "signal.h", "sys/ioctl.h", "unistd.h"}},
       // It is there before any library of the project's.
-      {"packaging/portable/launcher.cpp", {"unistd.h"}},
+      {"packaging/portable/launcher.cpp", {"sys/auxv.h", "unistd.h"}},
       // The library's sockets, with limits that it does not have.
       {"server/connection.cpp", {"poll.h", "sys/socket.h", "unistd.h"}},
       {"server/connection_queue.cpp", {"poll.h", "sys/eventfd.h", "unistd.h"}},
@@ -279,6 +279,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/link_free_paths.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/posix_file.h", {"fcntl.h", "sys/stat.h", "unistd.h"}},
+      {"storage/io/own_program.cpp", {"sys/auxv.h"}},
       {"storage/io/process.cpp", {"fcntl.h", "sys/resource.h", "unistd.h"}},
       {"storage/io/usable_memory.cpp", {"sys/resource.h", "unistd.h"}},
       {"storage/io/shared_library.cpp", {"dlfcn.h"}},

@@ -768,6 +768,11 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
     case KeyKind::choice:
       EXPECT_EQ(schema.at("enum"), Json(key.choices));
       break;
+    case KeyKind::names:
+      EXPECT_EQ(schema.at("oneOf").at(0).at("enum"), Json(key.choices));
+      EXPECT_EQ(schema.at("oneOf").at(1).at("items").at("type"), "string");
+      EXPECT_EQ(schema.at("oneOf").at(1).at("maxItems"), key.maximum);
+      break;
   }
 }
 

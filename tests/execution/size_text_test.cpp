@@ -60,13 +60,14 @@ TEST(ParseSize, RefusesWhatIsTooLargeToBeExact) {
 TEST(ExactSizeText, IsShortAndReadsBack) {
   EXPECT_EQ(exact_size_text(0), "0");
   EXPECT_EQ(exact_size_text(1000), "1000");
+  EXPECT_EQ(exact_size_text(20'000'000), "20MB");
   EXPECT_EQ(exact_size_text(1024), "1KiB");
   EXPECT_EQ(exact_size_text(512 * kMebi), "512MiB");
   EXPECT_EQ(exact_size_text(1024 * kMebi), "1GiB");
   EXPECT_EQ(exact_size_text(1536 * kMebi), "1536MiB");
   EXPECT_EQ(exact_size_text(2048 * kMebi * kMebi), "2048TiB");
   for (const std::uint64_t bytes :
-       {std::uint64_t{1}, std::uint64_t{1023}, std::uint64_t{1025}, 7 * kMebi, kMebi * kMebi,
+       {std::uint64_t{1}, std::uint64_t{1023}, std::uint64_t{1025}, 7 * kMebi, kMebi * kMebi, std::uint64_t{15'000'000},
         kMebi + 1, (std::uint64_t{1} << 53) - 1}) {
     EXPECT_EQ(parse_size(exact_size_text(bytes)), bytes);
   }

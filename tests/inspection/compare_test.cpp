@@ -263,6 +263,31 @@ TEST(TransformTest, IsSixteenNumbersOfAnAffineMap) {
   }
 }
 
+TEST(TransformTest, AMarkOfUtf8IsNoNumber) {
+  EXPECT_EQ(parse_transform("\xef\xbb\xbf"
+                            "1 0 0 0\r\n0 1 0 0\r\n0 0 1 0.5\r\n0 0 0 1\r\n",
+                            "t"),
+            (PlaceTransform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1}));
+}
+
+TEST(TransformTest, LeavesAVolume) {
+  for (const char* flat : {"0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1", "1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1",
+                           "1 2 3 0 2 4 6 0 0 0 1 0 0 0 0 1", "1 2 3 0 4 5 6 0 7 8 9 0 0 0 0 1"}) {
+    try {
+      parse_transform(flat, "t.txt");
+      ADD_FAILURE() << flat;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      EXPECT_THAT(error.what(), HasSubstr("t.txt: expected 16 numbers"));
+      EXPECT_THAT(error.what(), HasSubstr("makes all flat"));
+    }
+  }
+  for (const char* small :
+       {"1e-30 0 0 0 0 1e-30 0 0 0 0 1e-30 0 0 0 0 1", "-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
+        "1e-9 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"})
+    EXPECT_NO_THROW(parse_transform(small, "t")) << small;
+}
+
 TEST_F(CompareTest, TolerancesSayHowMuchIsWithin) {
   tests::TestMesh flat = tests::open_grid(20, 20), dented = flat;
   for (Vec3f& p : dented.positions)
@@ -314,6 +339,22 @@ TEST_F(CompareTest, VerticesOfNoTriangleAreNoSurface) {
   EXPECT_EQ(result.lone_vertices, 1U);
   EXPECT_EQ(result.farthest, 0);
   EXPECT_TRUE(result.is_within());
+}
+
+TEST_F(CompareTest, VerticesOfTrianglesWithoutAreaCountAsOthersDo) {
+  tests::TestMesh mesh = tests::open_grid(6, 6);
+  const fs::path to = write("to", mesh);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  const SurfaceComparison result =
+      compare(write("from", mesh), to, {.is_signed = false, .tolerance = 1.0});
+  EXPECT_EQ(result.lone_vertices, 0U);
+  EXPECT_EQ(result.farthest, 2);
+  EXPECT_EQ(result.distances.largest(), 2);
+  EXPECT_EQ(result.distances.least(), 0);
+  EXPECT_EQ(result.distances.mean(), 0) << "they have no area";
+  EXPECT_FALSE(result.is_within());
 }
 
 TEST_F(CompareTest, PointsAndSurfacesWithoutTriangles) {

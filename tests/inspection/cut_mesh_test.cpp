@@ -62,6 +62,14 @@ TEST(ParseNodes, ReadsJson) {
   EXPECT_THAT(parse_nodes(R"(  ["1/0", "2/2"] )", "cut.json"), ElementsAre(node(1, 0), node(2, 2)));
 }
 
+TEST(ParseNodes, AMarkOfUtf8IsNoNode) {
+  EXPECT_THAT(parse_nodes("\xef\xbb\xbf"
+                          "1/0\r\n1/1\r\n",
+                          "cut.txt"),
+              ElementsAre(node(1, 0), node(1, 1)));
+  EXPECT_THAT(parse_nodes("\xef\xbb\xbf[\"1/0\"]", "cut.txt"), ElementsAre(node(1, 0)));
+}
+
 TEST(ParseNodes, NamesLineOrEntryOfAMistake) {
   const auto error = [](std::string_view text) {
     return usage_error([&] { parse_nodes(text, "cut.txt"); });

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <random>
 #include <set>
@@ -280,7 +282,8 @@ TEST(GeoJson, WhatIsNoneIsTold) {
     }
     return "";
   };
-  EXPECT_THAT(refused("POLYGON ((0 0, 1 0))"), HasSubstr("a.geojson: is not valid JSON"));
+  EXPECT_THAT(refused("polygon (0 0)"), HasSubstr("a.geojson: is WKT"));
+  EXPECT_THAT(refused("(0 0, 1 0)"), HasSubstr("a.geojson: is not valid JSON"));
   EXPECT_THAT(refused("[1]"), HasSubstr("expected an object, found array"));
   EXPECT_THAT(refused("{}"), HasSubstr("no \"type\""));
   EXPECT_THAT(refused(R"({"type": 7})"), HasSubstr("no \"type\""));
@@ -301,6 +304,99 @@ TEST(GeoJson, WhatIsNoneIsTold) {
   for (int i = 0; i < 100; ++i)
     deep += R"({"type": "GeometryCollection", "geometries": [)";
   EXPECT_THAT(refused(deep), HasSubstr("nested deeper than 64 levels"));
+}
+
+TEST(GeoJson, OtherFormatsAreNamedWithWhatToDo) {
+  tests::MemoryFiles files;
+  const std::string polygon =
+      R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})";
+  const auto refused = [&](const std::string& text) -> std::string {
+    files.put("a", text);
+    try {
+      read_polygons(files, "a");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* wkt : {"POLYGON ((0 0, 1 0, 1 1, 0 0))", " multipolygon (((0 0, 1 0)))",
+                          "SRID=4326;POLYGON((0 0, 1 0))", "\xef\xbb\xbfPolygon Z ((0 0 0))",
+                          "LINESTRING (0 0, 1 1)", "GEOMETRYCOLLECTION EMPTY"})
+    EXPECT_THAT(refused(wkt), HasSubstr("is WKT")) << wkt;
+  EXPECT_THAT(refused("POLYGON ((0 0))"), HasSubstr(R"({"type": "Polygon", "coordinates")"));
+  for (const std::string& lines :
+       {polygon + '\n' + polygon + '\n', polygon + "\r\n\r\n" + polygon,
+        "\x1e" + polygon + "\n\x1e" + polygon + '\n', "\xef\xbb\xbf" + polygon + '\n' + polygon})
+    EXPECT_THAT(refused(lines), HasSubstr("one GeoJSON text a line")) << lines;
+  EXPECT_THAT(refused("<?xml version='1.0'?><kml>"), HasSubstr("is XML"));
+  EXPECT_THAT(refused(std::string("\0\0\x27\x0a\0\0", 6)), HasSubstr("is a shapefile"));
+  EXPECT_THAT(refused(std::string("SQLite format 3\0", 16)), HasSubstr("ogr2ogr"));
+  EXPECT_EQ(refused(polygon + '\n'), "");
+  EXPECT_THAT(refused(polygon + "\nx"), HasSubstr("is not valid JSON"));
+}
+
+/// From the left to the right, up and down.
+PlanPolygon zigzag(std::size_t corners) {
+  PlanRing ring;
+  for (std::size_t i = 0; i < corners; ++i)
+    ring.push_back({static_cast<double>(i) / static_cast<double>(corners), i % 2 == 0 ? 0.0 : 1.0});
+  ring.push_back({1, -1});
+  ring.push_back({0, -1});
+  return {ring};
+}
+
+TEST(PlanRegion, ManyCornersInOneTriangleTakeLittleMoreThanThemselves) {
+  const Corners large{Vec3d{-3, -3, 0}, Vec3d{6, -3, 0}, Vec3d{0, 8, 0}};
+  const auto seconds = [&](std::size_t corners) {
+    const PlanRegion region({zigzag(corners)}, UpAxis::z);
+    const auto begun = std::chrono::steady_clock::now();
+    const TriangleCut cut = region.cut(large);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    EXPECT_NEAR(area_of(large, cut), 1.5 - 0.5 / static_cast<double>(corners), 1e-6);
+    return took.count();
+  };
+  const auto least = [&](std::size_t corners) {
+    return std::min({seconds(corners), seconds(corners), seconds(corners)});
+  };
+  EXPECT_LT(least(4000), 7 * least(1000));
+}
+
+TEST(PlanRegion, ACutOfManyCornersCanBeEnded) {
+  std::atomic<int> left{100};
+  const PlanRegion region({zigzag(1000)}, UpAxis::z, [&left] {
+    if (--left < 0)
+      throw Error(ErrorCode::interrupted, "interrupted");
+  });
+  EXPECT_THROW(region.cut({Vec3d{-3, -3, 0}, {6, -3, 0}, {0, 8, 0}}), Error);
+}
+
+TEST(PlanRegion, BordersThatMeetAndCrossAreCountedAsOften) {
+  // Two squares with a common side, a hole that is filled by another polygon, and a star.
+  const PlanPolygon left{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}}, right{{{2, 0}, {4, 0}, {4, 2}, {2, 2}}};
+  const PlanPolygon holed{{{0, 3}, {4, 3}, {4, 7}, {0, 7}}, {{1, 4}, {3, 4}, {3, 6}, {1, 6}}};
+  const PlanPolygon filling{{{1, 4}, {3, 4}, {3, 6}, {1, 6}}};
+  const PlanPolygon star{{{5, 0}, {7, 4}, {9, 0}, {5, 3}, {9, 3}}};
+  const Corners large{Vec3d{-9, -9, 0}, {40, -9, 0}, {-9, 40, 0}};
+  const auto area = [&](const std::vector<PlanPolygon>& polygons) {
+    return area_of(large, PlanRegion(polygons, UpAxis::z).cut(large));
+  };
+  EXPECT_NEAR(area({left, right}), 8, 1e-9);
+  EXPECT_NEAR(area({left, left}), 4, 1e-9) << "in any of them";
+  EXPECT_NEAR(area({holed}), 12, 1e-9);
+  EXPECT_NEAR(area({holed, filling}), 16, 1e-9);
+  EXPECT_NEAR(area({left, holed, right, filling}), 24, 1e-9);
+  PlanRing twice = left[0];
+  twice.insert(twice.end(), left[0].begin(), left[0].end());
+  EXPECT_NEAR(area({{twice}}), 0, 1e-9) << "around twice is outside";
+  const PlanRegion region({star}, UpAxis::z);
+  Chance chance;
+  for (int i = 0; i < 200; ++i) {
+    const Corners small{chance.corner(false), chance.corner(false), chance.corner(false)};
+    const TriangleCut cut = region.cut(small);
+    const double whole = std::abs(twice_area(plan(small)[0], plan(small)[1], plan(small)[2])) / 2;
+    EXPECT_LE(area_of(small, cut), whole + 1e-9);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 
+#include <array>
 #include <climits>
 #include <fstream>
 #include <iterator>
@@ -178,7 +179,44 @@ TEST_F(OutputFileTest, AnInputIsNeverReplaced) {
   }
   EXPECT_EQ(refusal({parent_ / "here" / "new.ply", true, {parent_}}), ErrorCode::usage);
   EXPECT_THAT(message_, HasSubstr("lies in"));
+  fs::create_hard_link(scan, parent_ / "second.ply");
+  EXPECT_EQ(refusal({parent_ / "second.ply", true, {scan}}), ErrorCode::usage);
+  EXPECT_EQ(refusal({scan, true, {parent_ / "second.ply"}}), ErrorCode::usage);
+  EXPECT_THAT(message_, HasSubstr("would replace"));
   EXPECT_EQ(text(scan), "a scan");
+}
+
+TEST_F(OutputFileTest, AFolderThatHoldsAnInputIsNotReplaced) {
+  fs::create_directories(parent_ / "site/models");
+  put(parent_ / "site/models/a", "a model");
+  fs::create_directory_symlink(parent_ / "site", parent_ / "link");
+  const auto refused = [&](const fs::path& output, const fs::path& input) {
+    try {
+      require_apart(files_, output, std::array{input});
+    } catch (const Error& error) {
+      message_ = error.what();
+      return error.code() == ErrorCode::usage;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused(parent_ / "site", parent_ / "site/models/a"));
+  EXPECT_THAT(message_, HasSubstr("a lies in it"));
+  EXPECT_TRUE(refused(parent_ / "link", parent_ / "site/models"));
+  EXPECT_TRUE(refused(parent_ / "site/", parent_ / "link/models/a"));
+  fs::create_symlink(parent_ / "elsewhere", parent_ / "site/models/b");
+  EXPECT_TRUE(refused(parent_ / "site", parent_ / "site/models/b")) << "the link would go";
+  EXPECT_FALSE(refused(parent_ / "sites", parent_ / "site/models/a"));
+  EXPECT_FALSE(refused(parent_ / "site", ""));
+}
+
+TEST_F(OutputFileTest, NamesThatItTakesMeanwhileAreNoInputs) {
+  for (const fs::path& own :
+       {unfinished_path(path_), scratch_path(path_), output_lock_path(path_)}) {
+    put(own, "an input");
+    EXPECT_EQ(refusal({path_, false, {own}}), ErrorCode::usage) << own;
+    EXPECT_EQ(text(own), "an input");
+    fs::remove(own);
+  }
 }
 
 TEST_F(OutputFileTest, OneWriterAtATime) {

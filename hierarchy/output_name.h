@@ -1,0 +1,14 @@
+// What the name of an output promises to whoever opens it by its name.
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+
+namespace meshhier {
+
+/// Throws Error(usage), "NAME: ADVICE", if the name ends as files of a known format do, other than
+/// those of `own` (in small letters, with the dot). Capitals and small letters are the same.
+void require_true_ending(std::string_view name, std::initializer_list<std::string_view> own,
+                         std::string_view advice);
+
+}  // namespace meshhier

@@ -1,0 +1,34 @@
+#include "hierarchy/output_name.h"
+
+#include "hierarchy/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier {
+namespace {
+
+std::string refusal(std::string_view name) {
+  try {
+    require_true_ending(name, {".ply"}, "name it .ply");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OutputNameTest, OtherFormatsEndingsAreRefused) {
+  for (const char* name : {"a.glb", "models/a.ZIP", "a.ply.gz", "a.html", "a.obj", "a.3tz", ".png"})
+    EXPECT_NE(refusal(name), "") << name;
+  EXPECT_EQ(refusal("a.GLB"), "a.GLB: name it .ply");
+}
+
+TEST(OutputNameTest, AnythingElseIsAName) {
+  for (const char* name :
+       {"a.ply", "a.PLY", "a", "a.v2", "-", "/dev/stdout", "a.glb/b", "zip", "a."})
+    EXPECT_EQ(refusal(name), "") << name;
+}
+
+}  // namespace
+}  // namespace meshhier
