@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Hierarchies that another build takes the place of while they are read.
+import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { gunzipSync } from 'node:zlib';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
-import type { ViewOptions } from '../src/index.js';
-import { fetchFrom, hasProgram, withoutQuery, Workshop } from './support/meshhier.js';
+import { HierarchyView, type ViewOptions } from '../src/index.js';
+import { fetchFrom, hasProgram, MESHHIER, withoutQuery, Workshop } from './support/meshhier.js';
+import { RangedHost } from './support/ranged_host.js';
 import { Session } from './support/session.js';
 
 type Colour = 'red' | 'blue';
@@ -48,8 +50,8 @@ describe.skipIf(!hasProgram)('a hierarchy that is replaced', () => {
     return directory;
   }
 
-  function begin(fetch: Fetch, options: ViewOptions = {}): Session & { replaced: number } {
-    const session = Object.assign(new Session(fetch, { settings: { threshold: 0.5 }, ...options }), { replaced: 0 });
+  function begin(fetch: Fetch, options: ViewOptions = {}, url = ''): Session & { replaced: number } {
+    const session = Object.assign(new Session(fetch, { settings: { threshold: 0.5 }, ...options }, url), { replaced: 0 });
     session.view.addEventListener('replaced', () => { ++session.replaced; });
     session.look([0.6, 0.7, 1.2], [0.5, 0, 0.5]);
     sessions.push(session);
@@ -141,6 +143,43 @@ describe.skipIf(!hasProgram)('a hierarchy that is replaced', () => {
     expect(await session.settle(60)).toBe(true);
     expect(colours(session)).toEqual(new Set(['blue']));
     expect([session.replaced, session.problems]).toEqual([0, []]);
+  });
+
+  function archive(colour: Colour): Uint8Array<ArrayBuffer> {
+    build(50, colour, plain); // makes the mesh
+    const output = path.join(workshop.directory, `${colour}.3tz`);
+    if (!existsSync(output)) execFileSync(MESHHIER, ['build', path.join(workshop.directory, `50_${colour}.ply`), '-o', output, '--set', 'partition.vertices=60', '--progress', 'none']);
+    return new Uint8Array(readFileSync(output));
+  }
+
+  it.each([['seen', false], ['not seen', true]])('in an archive is never mixed, whose versions are %s', async (_, hidesHeaders) => {
+    const [red, blue] = [archive('red'), archive('blue')];
+    const host = new RangedHost(red, { hidesHeaders });
+    const session = begin(host.fetch, { requests: 2 }, 'a.3tz');
+    await session.view.opened;
+    await refine(session, 6);
+    [host.file, host.tag] = [blue, '"2"'];
+    for (let frames = 0; frames < 400 && session.replaced === 0; ++frames) {
+      await session.frame();
+      expect(colours(session)).toEqual(new Set(['red']));
+    }
+    expect(session.replaced).toBe(1);
+    await session.view.reload();
+    expect(await session.settle(60)).toBe(true);
+    expect(colours(session)).toEqual(new Set(['blue']));
+    expect(session.problems).toEqual([]);
+  });
+
+  it('in an archive before its root has come begins anew by itself', async () => {
+    const host = new RangedHost(archive('red'));
+    let asked = 0;
+    const fetch: Fetch = (url, init) => {
+      if (++asked === 2) [host.file, host.tag] = [archive('blue'), '"2"'];
+      return host.fetch(url, init);
+    };
+    const view = new HierarchyView('a.3tz', { fetch });
+    await view.opened;
+    view.dispose();
   });
 
   it('is not what a damaged tile is', async () => {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { TileStore, type ResidentTile, type StoreHost, type Wanted } from '../src/cut/tile_store.js';
+import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import type { Tile } from '../src/hierarchy/tile.js';
 import type { TileRecord } from '../src/hierarchy/tile_index.js';
 import { Tree, keyOf, type Node } from '../src/hierarchy/tree.js';
@@ -161,6 +162,41 @@ describe('TileStore', () => {
     expect(tiles.want(wanted(LEFT), 300_000)).toBe(1);
     expect(host.calls).toHaveLength(1);
     expect(tiles.usedBytes).toBe(3 * BYTES);
+  });
+
+  it('asks by itself for what the host could not give, and at once when another tile has come, but that once only', async () => {
+    const host = new SlowHost();
+    const tiles = store(host, 1e6);
+    const fails = async (now: number): Promise<number> => {
+      tiles.want(wanted(LEFT), now);
+      const asked = host.calls.length;
+      for (const { reject } of host.calls.splice(0)) reject(new HierarchyProblem('a.glb', 'down', true));
+      await new Promise((resolve) => setTimeout(resolve));
+      return asked;
+    };
+    for (const now of [0, 2000, 6000, 14_000]) expect(await fails(now)).toBe(1); // after 2, 4 and 8 seconds
+    expect(tiles.isGivenUp(key(LEFT), 20_000)).toBe(true);
+    expect(tiles.nextTry).toBe(34_000);
+    tiles.want(wanted(RIGHT), 20_000);
+    await host.answerAll();
+    expect(tiles.has(key(RIGHT))).toBe(true);
+    expect(await fails(20_100)).toBe(1); // the host is back
+    tiles.want(wanted(LEFT), 22_200);
+    await host.answerAll();
+    expect([tiles.has(key(LEFT)), tiles.nextTry]).toEqual([true, Infinity]);
+  });
+
+  it('that is frozen keeps what it has, and asks for nothing', async () => {
+    const host = new SlowHost();
+    const tiles = store(host, 1e6);
+    tiles.want(wanted(LEFT), 1);
+    await host.answerAll();
+    tiles.want(wanted(LEFT, RIGHT), 2);
+    const [call] = host.calls;
+    tiles.freeze();
+    expect([call.signal.aborted, tiles.pending, tiles.has(key(LEFT))]).toEqual([true, 0, true]);
+    expect(tiles.want(wanted(LEFT, RIGHT), 3)).toBe(0);
+    expect(host.calls).toHaveLength(1);
   });
 
   it('makes room when tiles take more than before, and counts what is left', async () => {

@@ -95,8 +95,8 @@ export class RemoteHierarchy {
   }
 
   /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into. `root`
-  /// must be the tile that the index has for it. Throws HierarchyReplaced where it is of another build.
-  async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
+  /// must be the tile that the index has for it; if it has to be fetched again, that waits for `drawn`. Throws HierarchyReplaced where it is of another build.
+  async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void, drawn?: Promise<void>): Promise<Directory> {
     this.build = new Build(this.files, manifest.build, this.signal);
     this.packedTiles = manifest.packedTiles;
     const tree = new Tree(manifest.partitions);
@@ -104,7 +104,7 @@ export class RemoteHierarchy {
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem, (node) => this.files.lacks?.(tilePath(node)) ?? false);
     await index.open();
     const record = index.record(ROOT);
-    if (record !== null) await this.checkRoot(record);
+    if (record !== null) await this.checkRoot(record, drawn);
     if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== ((root.picture ?? root.normalMap)?.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
     this.index = index;
@@ -133,18 +133,19 @@ export class RemoteHierarchy {
   }
 
   /// It came before anything told what it should be. A cache may have had it of an earlier build: then all begins anew.
-  private async checkRoot(record: TileRecord): Promise<void> {
+  private async checkRoot(record: TileRecord, drawn?: Promise<void>): Promise<void> {
     const { rootBytes: bytes } = this;
     this.rootBytes = null;
     const name = tilePath(ROOT);
     if (bytes === null || this.holds(name)) return;
-    const isFitting = fits(bytes, checksum(bytes), this.sealOf(record)) ?? (await this.isStillRoot(bytes));
+    const isFitting = fits(bytes, checksum(bytes), this.sealOf(record)) ?? (await this.isStillRoot(bytes, drawn));
     if (isFitting) return;
     throw this.isAnew ? await this.explained(new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged')) : new HierarchyReplaced(name);
   }
 
   /// Of one that a host has unpacked: whether it is what the host has now, and the build still the same.
-  private async isStillRoot(bytes: Uint8Array): Promise<boolean> {
+  private async isStillRoot(bytes: Uint8Array, drawn?: Promise<void>): Promise<boolean> {
+    await drawn;
     const now = await this.files.stored(tilePath(ROOT), MOST_ROOT, { cache: 'no-cache', signal: this.signal });
     await this.build?.confirm();
     return now.length === bytes.length && checksum(now) === checksum(bytes);

@@ -89,6 +89,7 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Nothing else will come.
   private isRootAll = false;
   private isFirstFrame = true;
+  private rootDrawn = (): void => undefined;
   private readonly outline = new OutlineLayer(this.tiles, { tell: (problem) => { this.tell('outline', problem); }, came: () => { this.recover('outline'); this.changed(); } });
 
   /// `url`: of the hierarchy's directory, or of its archive.
@@ -219,7 +220,13 @@ export class HierarchyView extends Group<ViewEvents> {
     const { opening } = this;
     const manifest = opening.remote.manifest();
     manifest.catch(() => undefined); // told when it is needed
-    const root = await opening.root();
+    let root: Tile;
+    try {
+      root = await opening.root();
+    } catch (problem) {
+      if (problem instanceof HierarchyReplaced && !opening.isAnew) return this.reload(); // nothing was seen of it
+      throw problem;
+    }
     if (this.root !== null) this.forget();
     this.root = root;
     this.silhouette = silhouetteOf(root);
@@ -228,7 +235,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.stand(root);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
-    void this.openDirectory(opening, root, manifest);
+    void this.openDirectory(opening, root, manifest, new Promise((resolve) => { this.rootDrawn = resolve; }));
   }
 
   /// All of an earlier opening; the manifest stays until there is another one.
@@ -255,10 +262,10 @@ export class HierarchyView extends Group<ViewEvents> {
     this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
   }
 
-  /// Without it there is the root and no more. `early`: the manifest was asked for already.
-  private async openDirectory(opening: Opening, root: Tile, early: Promise<Manifest>): Promise<void> {
+  /// Without it there is the root and no more. `early`: the manifest was asked for already. `drawn`: once there is a picture of the root.
+  private async openDirectory(opening: Opening, root: Tile, early: Promise<Manifest>, drawn?: Promise<void>): Promise<void> {
     try {
-      this.begin(await opening.directory(root, early, () => { this.changed(); }), root);
+      this.begin(await opening.directory({ root, early, drawn }, () => { this.changed(); }), root);
     } catch (problem) {
       if (opening.isClosed) return;
       if (problem instanceof HierarchyReplaced && !opening.isAnew) {
@@ -414,7 +421,10 @@ export class HierarchyView extends Group<ViewEvents> {
     for (const node of this.tiles.takeDamaged())
       this.tell(keyOf(node.level, node.index), new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
     if (this.isSettled()) this.settle();
-    if (this.isFirstFrame) this.changed();
+    if (this.isFirstFrame) {
+      this.rootDrawn();
+      this.changed();
+    }
     this.isFirstFrame = false;
     return isElse;
   }

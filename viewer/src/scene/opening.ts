@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One opening of a hierarchy: what all tiles need, however often the host or the line fails.
+import type { Manifest } from '../hierarchy/manifest.js';
 import type { RemoteFiles } from '../hierarchy/remote_files.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
@@ -10,6 +11,14 @@ const RETRY_MS = 1000; // twice as long each time
 const LONGEST_RETRY_MS = 30_000;
 /// After so many times there is no root.
 const MOST_TRIES = 5;
+
+export interface OpenRoot {
+  readonly root: Tile;
+  /// Was asked for already.
+  readonly early: Promise<Manifest>;
+  /// Once there is a picture of the root: nothing but the root is fetched of the mesh before.
+  readonly drawn?: Promise<void>;
+}
 
 export interface OpeningHost {
   /// A file failed; each failure but the last.
@@ -41,15 +50,15 @@ export class Opening {
     return this.persist('root', MOST_TRIES, () => this.remote.root());
   }
 
-  /// Tries until it is there, unless what failed will not pass. `early`: the manifest was asked for already. `onPage`: more of the index has come.
-  async directory(root: Tile, early: ReturnType<RemoteHierarchy['manifest']>, onPage: () => void): Promise<Directory> {
+  /// Tries until it is there, unless what failed will not pass. `onPage`: more of the index has come.
+  async directory({ root, early, drawn }: OpenRoot, onPage: () => void): Promise<Directory> {
     const onIndex = (): void => {
       if (!this.isClosed) this.host.recover('index');
       onPage();
     };
     return this.persist('directory', Infinity, async (tries) => {
       const manifest = await (tries === 1 ? early : this.remote.manifest());
-      return this.remote.directory(manifest, root, onIndex, (problem) => { if (!this.isClosed) this.host.tell('index', problem); });
+      return this.remote.directory(manifest, root, onIndex, (problem) => { if (!this.isClosed) this.host.tell('index', problem); }, drawn);
     });
   }
 

@@ -18,8 +18,8 @@ export class Session {
   readonly view: HierarchyView;
   private now = 0;
 
-  constructor(fetch: Fetch, options: ViewOptions = {}) {
-    this.view = new HierarchyView('', { fetch, ...options });
+  constructor(fetch: Fetch, options: ViewOptions = {}, url = '') {
+    this.view = new HierarchyView(url, { fetch, ...options });
     this.view.addEventListener('problem', ({ message, files }) => {
       this.problems.push(message);
       this.missing = files;
