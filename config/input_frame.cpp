@@ -1,9 +1,9 @@
 #include "config/input_frame.h"
 
 #include "config/placement.h"
+#include "hierarchy/mesh_name.h"
 #include "mesh_io/mesh_format.h"
 #include "mesh_io/tileset.h"
-#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,11 +11,9 @@
 namespace meshhier::config {
 namespace {
 
-/// What is not there is told when it is read.
+/// What is not there is told when it is read; what has the name of a mesh is not looked into.
 bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
-  const bool is_packed = storage::lower_extension(path) == ".gz";
-  if (storage::lower_extension(is_packed ? path.stem() : path) != ".json" ||
-      files.kind(path) != storage::FileKind::regular)
+  if (is_mesh_name(path.filename().string()) || files.kind(path) != storage::FileKind::regular)
     return false;
   const auto format = mesh_io::find_format(*files.open(path));
   return format && format->kind == mesh_io::MeshKind::tileset;

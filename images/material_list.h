@@ -20,6 +20,7 @@ struct ImageSource {
   std::uint64_t offset = 0;       ///< of its first byte in that file
   std::uint64_t bytes = 0;        ///< 0: to the end of the file
   std::vector<std::byte> data{};  ///< the encoded picture, decoded from a data URI
+  bool is_packed = false;         ///< the file is in gzip: offset and bytes are of what it holds
   friend bool operator==(const ImageSource&, const ImageSource&) = default;
 };
 
@@ -27,8 +28,10 @@ struct Material {
   std::string name;
   std::array<float, 4> colour{1, 1, 1, 1};  ///< sRGB and alpha, 0 ... 1; if it has no picture
   std::optional<std::uint32_t> image;       ///< in MaterialList::images
-  /// What the light and the alpha of its picture are multiplied by, 0 ... 1.
+  /// What the light and the alpha of its picture are multiplied by, from 0 on.
   std::array<float, 4> factor{1, 1, 1, 1};
+  /// What is added to the light of its picture then, from 0 on.
+  std::array<float, 3> light{0, 0, 0};
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   AlphaMode alpha = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;

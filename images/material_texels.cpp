@@ -26,9 +26,10 @@ std::uint8_t shown_alpha(const Material& material, std::size_t value) {
 std::uint8_t shown_value(const Material& material, std::size_t channel, std::size_t value) {
   if (channel == kAlpha)
     return shown_alpha(material, value);
-  if (material.factor[channel] == 1)
+  if (material.factor[channel] == 1 && material.light[channel] == 0)
     return static_cast<std::uint8_t>(value);
-  return screen_value(material.factor[channel] * light_of(static_cast<double>(value) / kMost));
+  return screen_value(material.factor[channel] * light_of(static_cast<double>(value) / kMost) +
+                      material.light[channel]);
 }
 
 }  // namespace

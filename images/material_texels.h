@@ -10,9 +10,9 @@
 
 namespace meshhier::images {
 
-/// Reads part of a picture with a material's wraps and factor. Alpha is full where the material is
-/// opaque; that of a mask is scaled so that its cutoff becomes 0.5, glTF's own. Requires a material
-/// with a picture.
+/// Reads part of a picture with a material's wraps, factor and light. Alpha is full where the
+/// material is opaque; that of a mask is scaled so that its cutoff becomes 0.5, glTF's own.
+/// Requires a material with a picture.
 class MaterialTexels {
  public:
   MaterialTexels(const Material& material, const ImageStore& pictures);

@@ -3,11 +3,13 @@
 #include "execution/spool_cursor.h"
 #include "hierarchy/angle.h"
 #include "import/append_value.h"
+#include "import/gltf_copies.h"
 #include "import/gltf_materials.h"
+#include "import/gltf_primitive.h"
+#include "import/gltf_skin.h"
 #include "import/gltf_values.h"
 #include "import/used_vertices.h"
 #include "mesh_io/coordinate_range.h"
-#include "mesh_io/gltf_draco.h"
 #include "mesh_io/gltf_elements.h"
 #include "mesh_io/gltf_scene.h"
 #include "mesh_io/mesh_blocks.h"
@@ -17,6 +19,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -65,55 +68,15 @@ class CommonLayout {
   AttributeLayout layout_;
 };
 
-/// A primitive's accessors, or what a codec made of them.
-class PrimitiveSources {
- public:
-  PrimitiveSources(GltfFile& file, const GltfPrimitive& primitive)
-      : file_(file), primitive_(primitive) {
-    if (primitive.draco)
-      draco_ = decode_draco(file, primitive);
-  }
+/// A mesh has up to 2^32 vertices, and about twice as many triangles.
+constexpr double kMostShown = 8589934592;
 
-  /// The attribute, of the types that it may have; nothing if the primitive does not have it.
-  std::optional<GltfElementSource> attribute(const std::string& name, std::uint32_t least,
-                                             std::uint32_t most) const {
-    const auto accessor = primitive_.attribute(name);
-    if (!accessor)
-      return std::nullopt;
-    const auto decoded = draco_.attributes.find(name);
-    GltfElementSource source =
-        decoded != draco_.attributes.end() ? decoded->second : gltf_elements_of(file_, *accessor);
-    if (source.components < least || source.components > most ||
-        (source.component == GltfComponent::u32 && !name.starts_with('_')))
-      file_.fail(fmt::format("{} is of no type that {} may have", source.name, name));
-    return source;
-  }
-
-  std::optional<GltfElementSource> indices() const {
-    if (primitive_.draco)
-      return draco_.indices;
-    if (!primitive_.indices)
-      return std::nullopt;
-    GltfElementSource source = gltf_elements_of(file_, *primitive_.indices);
-    const bool is_unsigned = source.component == GltfComponent::u8 ||
-                             source.component == GltfComponent::u16 ||
-                             source.component == GltfComponent::u32;
-    if (!is_unsigned || source.components != 1)
-      file_.fail(source.name + " is of no type that indices may have");
-    source.normalized = false;
-    return source;
-  }
-
-  /// Draco's triangles are a list of them, even if they were a strip.
-  GltfPrimitive::Mode mode() const {
-    return primitive_.draco ? GltfPrimitive::Mode::triangles : primitive_.mode;
-  }
-
- private:
-  GltfFile& file_;
-  const GltfPrimitive& primitive_;
-  mesh_io::GltfDracoMesh draco_;
-};
+/// Triangles at most, as its accessors say.
+double triangle_count(const mesh_io::GltfDocument& document, const GltfPrimitive& primitive) {
+  const auto corners = primitive.indices ? primitive.indices : primitive.attribute("POSITION");
+  const auto count = static_cast<double>(document.accessors[corners.value()].count);
+  return primitive.mode == GltfPrimitive::Mode::triangles ? count / 3 : count;
+}
 
 /// A texture coordinate of the picture; rotations are counter-clockwise with v pointing down, as
 /// viewers have them.
@@ -138,18 +101,17 @@ class GltfImporter {
 
   GltfImport run() {
     look();
-    if (textures_ == Textures::use && file_.document().requires_ktx2 && materials_.shows_ktx2()) {
-      file_.fail(
-          "requires KHR_texture_basisu: its pictures are in KTX2, which is not read; export them "
-          "as PNG or JPEG, or leave them out with \"texture\": {\"use\": false}");
-    }
+    require_readable_pictures();
     materials_.tell_missing(mesh_.materials);
     if (is_textured())
       materials_.add_to(mesh_.materials);
     for (const mesh_io::GltfInstance& instance : scene_.instances) {
-      for_each_copy(instance, [&](const GltfTransform& transform) {
+      const std::vector<GltfTransform>& joints = joints_of(instance);
+      skinned_ += joints.empty() ? 0 : 1;
+      for_each_copy(file_, instance, [&](const GltfTransform& transform) {
+        copies_ += instance.copies ? 1 : 0;
         for (const GltfPrimitive& primitive : primitives(instance))
-          append(primitive, transform);
+          append(primitive, transform, joints);
       });
     }
     return finish();
@@ -160,59 +122,55 @@ class GltfImporter {
     return file_.document().meshes[instance.mesh].primitives;
   }
 
-  /// Of EXT_mesh_gpu_instancing.
-  std::optional<GltfElements> placements(std::optional<std::uint32_t> accessor,
-                                         std::uint32_t components) const {
-    if (!accessor)
-      return std::nullopt;
-    GltfElementSource source = gltf_elements_of(file_, *accessor);
-    if (source.components != components)
-      file_.fail(fmt::format("{} has {} components, but places copies of a mesh by {}", source.name,
-                             source.components, components));
-    return GltfElements(file_, std::move(source));
-  }
-
-  template <class Visit>
-  void for_each_copy(const mesh_io::GltfInstance& instance, const Visit& visit) {
-    if (!instance.copies)
-      return visit(instance.transform);
-    std::array<std::optional<GltfElements>, 3> parts{placements(instance.copies->translation, 3),
-                                                     placements(instance.copies->rotation, 4),
-                                                     placements(instance.copies->scale, 3)};
-    std::optional<std::uint64_t> count;
-    for (const auto& part : parts) {
-      if (part && part->size() != count.value_or(part->size()))
-        file_.fail(fmt::format("{} places {} copies of a mesh, others place {}",
-                               part->source().name, part->size(), *count));
-      count = part ? part->size() : count;
-    }
-    const auto numbers = [&](std::size_t part, std::uint64_t i, std::array<double, 4> otherwise) {
-      if (parts[part])
-        std::ranges::copy(parts[part]->at(i), otherwise.begin());
-      return otherwise;
-    };
-    copies_ += count.value_or(1);
-    for (std::uint64_t i = 0; i < count.value_or(1); ++i) {
-      const auto t = numbers(0, i, {0, 0, 0, 0});
-      const auto turn = numbers(1, i, {0, 0, 0, 1});
-      const auto s = numbers(2, i, {1, 1, 1, 0});
-      if (turn == std::array<double, 4>{})
-        file_.fail(
-            fmt::format("{}: element {} is a rotation of zeros", parts[1]->source().name, i));
-      visit(instance.transform *
-            mesh_io::gltf_placement({t[0], t[1], t[2]}, turn, {s[0], s[1], s[2]}));
+  /// Of pictures that the file requires and nobody can read.
+  void require_readable_pictures() const {
+    if (textures_ == Textures::ignore)
+      return;
+    for (const mesh_io::GltfPictureFormat* format : materials_.unread_formats()) {
+      if (std::ranges::find(file_.document().required, format->extension) ==
+          file_.document().required.end())
+        continue;
+      file_.fail(
+          fmt::format("requires {}: its pictures are in {}, which is not read; export them "
+                      "as PNG or JPEG, or leave them out with \"texture\": {{\"use\": "
+                      "false}}",
+                      format->extension, format->name));
     }
   }
 
-  static bool is_shown(const GltfPrimitive& primitive) {
-    return primitive.has_triangles() && primitive.attribute("POSITION");
+  /// The matrices of the skin that places it; empty if its node does.
+  const std::vector<GltfTransform>& joints_of(const mesh_io::GltfInstance& instance) {
+    static const std::vector<GltfTransform> kNone;
+    if (!instance.skin)
+      return kNone;
+    const bool hangs_on_joints =
+        !instance.copies && std::ranges::any_of(primitives(instance), importing::is_skinned);
+    if (hangs_on_joints)
+      return joints_of_skin(*instance.skin);
+    ++ignored_skins_;
+    return kNone;
+  }
+
+  /// Many nodes may have it.
+  const std::vector<GltfTransform>& joints_of_skin(std::uint32_t skin) {
+    auto known = skins_.find(skin);
+    if (known == skins_.end())
+      known =
+          skins_.emplace(skin, joint_matrices(file_, file_.document().skins[skin], scene_)).first;
+    return known->second;
+  }
+
+  bool is_shown(const GltfPrimitive& primitive) const {
+    return primitive.has_triangles() && primitive.attribute("POSITION") && !is_invisible(primitive);
+  }
+  bool is_invisible(const GltfPrimitive& primitive) const {
+    return primitive.material && file_.document().materials[*primitive.material].is_invisible();
   }
 
   /// Those that the material's texture takes.
   std::string texcoords_of(const GltfPrimitive& primitive) const {
-    const std::uint32_t set =
-        primitive.material ? file_.document().materials[*primitive.material].texcoord : 0;
-    return fmt::format("TEXCOORD_{}", set);
+    const mesh_io::GltfTextureUse* shown = materials_.look(primitive.material).texture;
+    return fmt::format("TEXCOORD_{}", shown != nullptr ? shown->texcoord : 0);
   }
 
   bool is_textured() const { return textures_ == Textures::use && materials_.is_textured(); }
@@ -221,7 +179,11 @@ class GltfImporter {
   void look() {
     std::set<std::uint32_t> meshes;
     CommonLayout layout;
+    double shown = 0;
     for (const mesh_io::GltfInstance& instance : scene_.instances) {
+      const auto copies = static_cast<double>(copy_count(file_.document(), instance));
+      for (const GltfPrimitive& primitive : primitives(instance))
+        shown += is_shown(primitive) ? copies * triangle_count(file_.document(), primitive) : 0;
       if (!meshes.insert(instance.mesh).second) {
         ++repeated_;
         continue;
@@ -229,6 +191,11 @@ class GltfImporter {
       for (const GltfPrimitive& primitive : primitives(instance))
         look_at(primitive, layout);
     }
+    if (shown > kMostShown)
+      file_.fail(
+          fmt::format("shows {:.0f} triangles, as its nodes show meshes many times; up to "
+                      "{:.0f} are read",
+                      shown, kMostShown));
     import_.layout = layout.layout();
     values_ = found_values_.values();
     for (const GltfValue& value : values_)
@@ -239,7 +206,8 @@ class GltfImporter {
       import_.layout.colour = PlainColours::kType;
       import_.material_colours = materials_.colours().count();
       import_.is_painted = true;
-    } else if (import_.layout.colour != ColourType::none && materials_.colours().are_coloured()) {
+    } else if (import_.layout.colour != ColourType::none &&
+               (materials_.colours().are_coloured() || materials_.emit())) {
       import_.material_colours = materials_.colours().count();
       // Products of light with 8 bits would be bands.
       widens_colours_ = import_.layout.colour == ColourType::u8;
@@ -254,7 +222,7 @@ class GltfImporter {
   void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
     morph_targets_ += primitive.morph_targets;
     if (!is_shown(primitive)) {
-      ++ignored_primitives_;
+      ++(primitive.has_triangles() && is_invisible(primitive) ? invisible_ : ignored_primitives_);
       return;
     }
     const std::string texcoords = texcoords_of(primitive);
@@ -264,16 +232,23 @@ class GltfImporter {
       materials_.use(primitive.material, primitive.attribute(texcoords).has_value());
   }
 
-  void append(const GltfPrimitive& primitive, const GltfTransform& transform) {
+  /// `joints`: of the skin that places it; else `transform` does.
+  void append(const GltfPrimitive& primitive, const GltfTransform& transform,
+              const std::vector<GltfTransform>& joints) {
     if (!is_shown(primitive))
       return;
     const PrimitiveSources sources(file_, primitive);
     const GltfElementSource position = *sources.attribute("POSITION", 3, 3);
     storage::RecordSpool<std::uint32_t> used(room_.scratch, kImportSpoolBytes);
-    append_used(read_triangles(sources, position), position.count, is_mirrored(transform), mesh_,
-                used, room_);
+    const bool has_joints = !joints.empty() && importing::is_skinned(primitive);
+    const bool is_turned = has_joints ? are_mirrored(joints) : is_mirrored(transform);
+    append_used(read_triangles(sources, position), position.count, is_turned, mesh_, used, room_);
     left_out_ += position.count - used.size();
-    append_vertices(primitive, sources, position, used, transform);
+    std::optional<GltfSkinning> skin;
+    if (has_joints)
+      skin.emplace(file_, primitive, sources, joints, position.count);
+    append_vertices(primitive, sources, position, used,
+                    [&](std::uint32_t vertex) { return skin ? skin->at(vertex) : transform; });
   }
 
   using Triangles = storage::RecordSpool<Triangle<std::uint32_t>>;
@@ -352,7 +327,10 @@ class GltfImporter {
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
     std::vector<std::optional<GltfElements>> values;  ///< of values_
-    std::array<double, 4> factor{1, 1, 1, 1};  ///< of the material, if vertices have its colour
+    // Of the material, if vertices have its colour.
+    std::array<double, 4> factor{1, 1, 1, 1};
+    std::array<double, 3> light{};
+    bool is_untinted = false;  ///< the material's picture is shown as it is
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
   };
@@ -365,6 +343,9 @@ class GltfImporter {
       attributes.normals = elements(sources, "NORMAL", 3, 3, count);
     if (import_.material_colours > 0)
       attributes.factor = factor_of(primitive.material);
+    if (import_.material_colours > 0 && !import_.is_painted && primitive.material)
+      attributes.light = plain_light(file_.document().materials[*primitive.material]);
+    attributes.is_untinted = layout.material && materials_.look(primitive.material).is_untinted;
     if (layout.colour != ColourType::none)
       attributes.colours =
           elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
@@ -374,8 +355,8 @@ class GltfImporter {
       attributes.texcoords = elements(sources, texcoords_of(primitive), 2, 2, count);
     if (layout.material) {
       attributes.material = static_cast<float>(materials_.number(primitive.material));
-      if (primitive.material)
-        attributes.texture = &file_.document().materials[*primitive.material].transform;
+      if (const auto* shown = materials_.look(primitive.material).texture)
+        attributes.texture = &shown->transform;
     }
     return attributes;
   }
@@ -394,10 +375,11 @@ class GltfImporter {
     return factor;
   }
 
+  /// `place`: of a vertex.
+  template <class Place>
   void append_vertices(const GltfPrimitive& primitive, const PrimitiveSources& sources,
                        const GltfElementSource& position,
-                       const storage::RecordSpool<std::uint32_t>& used,
-                       const GltfTransform& transform) {
+                       const storage::RecordSpool<std::uint32_t>& used, const Place& place) {
     Attributes all = attributes(primitive, sources, position.count);
     count_filled(all, used.size());
     GltfElements positions(file_, position);
@@ -405,6 +387,7 @@ class GltfImporter {
     std::vector<float> channels;
     for (std::uint64_t i = 0; i < used.size(); ++i) {
       const std::uint32_t vertex = vertices.at(i);
+      const GltfTransform transform = place(vertex);
       append_position(positions, vertex, transform);
       channels.clear();
       add_normal(all, vertex, transform, channels);
@@ -480,15 +463,15 @@ class GltfImporter {
     const auto size = static_cast<std::size_t>(layout.colour_channels());
     const std::size_t end = channels.size() + size;
     const std::size_t begin = channels.size();
-    if (size > 0 && all.colours) {
+    if (size > 0 && all.colours && !all.is_untinted) {
       for (const double value : all.colours->at(vertex)) {
         if (channels.size() < end)
           channels.push_back(checked(*all.colours, vertex, value) * (widens_colours_ ? 257 : 1));
       }
     }
     channels.resize(end, full_number(layout.colour));
-    if (all.factor != std::array<double, 4>{1, 1, 1, 1})
-      multiply(std::span(channels).subspan(begin), all.factor);
+    if (all.factor != std::array<double, 4>{1, 1, 1, 1} || all.light != std::array<double, 3>{})
+      show_through(std::span(channels).subspan(begin), all);
   }
 
   void add_values(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
@@ -500,12 +483,15 @@ class GltfImporter {
     }
   }
 
-  /// Whole numbers stay whole.
-  void multiply(std::span<float> colour, const std::array<double, 4>& factor) const {
+  /// By the material's factor, and with its light. Whole numbers stay whole.
+  void show_through(std::span<float> colour, const Attributes& all) const {
     const bool is_whole = import_.layout.colour != ColourType::f32;
+    const double most = full_number(import_.layout.colour);
     for (std::size_t c = 0; c < colour.size(); ++c) {
-      const double product = double{colour[c]} * factor[c];
-      colour[c] = static_cast<float>(is_whole ? std::round(product) : product);
+      double shown = double{colour[c]} * all.factor[c];
+      if (c < all.light.size() && all.light[c] > 0)
+        shown = std::min(shown + all.light[c] * most, most);
+      colour[c] = static_cast<float>(is_whole ? std::round(shown) : shown);
     }
   }
 
@@ -526,12 +512,17 @@ class GltfImporter {
   GltfImport finish() {
     import_.counts = {{"ignored_animations", file_.document().animations},
                       {"ignored_cameras", scene_.cameras},
-                      {"ignored_points_and_lines", ignored_primitives_},
+                      {std::string(kPointsAndLines), ignored_primitives_},
+                      {std::string(kInvisibleParts), invisible_},
+                      {std::string(kMadeOpaque), is_textured() ? 0 : materials_.translucent()},
+                      {std::string(kIgnoredTechniques), materials_.unknown()},
+                      {"skinned_meshes", skinned_},
                       {"ignored_morph_targets", morph_targets_},
                       {"repeated_meshes", repeated_},
                       {"instanced_meshes", copies_},
                       {"hidden_meshes", scene_.hidden},
-                      {"ignored_skins", scene_.skinned},
+                      {"ignored_skins", ignored_skins_},
+                      {std::string(kIgnoredEmission), materials_.dropped_lights(is_textured())},
                       {"dropped_values", found_values_.dropped()},
                       {"vertices_left_out", left_out_},
                       {"vertices_without_normal", without_normal_},
@@ -550,6 +541,8 @@ class GltfImporter {
   std::vector<GltfValue> values_;  ///< of import_.layout
   bool widens_colours_ = false;    ///< from 8 bits to 16
   std::uint64_t copies_ = 0;       ///< of EXT_mesh_gpu_instancing
+  std::map<std::uint32_t, std::vector<GltfTransform>> skins_;
+  std::uint64_t skinned_ = 0, ignored_skins_ = 0, invisible_ = 0;
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
   std::uint64_t without_normal_ = 0, without_texcoord_ = 0;
 };

@@ -54,6 +54,7 @@ class Import {
       for (const InputFileFacts& file : input_.all())
         add(file, ply);
       facts_.faces = faces_;
+      require_triangles();
       join();
       RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
       RawMesh& piece = input_.crop() ? crop(placed) : placed;
@@ -69,6 +70,27 @@ class Import {
   }
 
  private:
+  /// What of glTF and tiles is left out may be all.
+  void require_triangles() const {
+    const auto has = [&](std::string_view name) {
+      return std::ranges::any_of(facts_.counts,
+                                 [&](const SourceCount& one) { return one.name == name; });
+    };
+    if (mesh_.vertex_count() > 0)
+      return;
+    if (has(kPointsAndLines)) {
+      throw Error(ErrorCode::input,
+                  input_.name() +
+                      " holds points or lines alone, no triangles; make a mesh of the "
+                      "points first, as by Poisson reconstruction");
+    }
+    if (has(kInvisibleParts)) {
+      throw Error(ErrorCode::input, input_.name() +
+                                        " holds nothing that is to be seen: the materials of all "
+                                        "its triangles have an alpha of 0");
+    }
+  }
+
   void join() {
     const JoinCounts counts = join_layouts(joined_, mesh_, room_);
     count("untextured_files", counts.untextured_files);
@@ -333,10 +355,8 @@ class Import {
 
   Added add_gltf(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const Added added = add_plain_gltf(facts, input_.system().open(facts.path));
-      const auto file = input_.system().open(facts.path);
-      checksums_.push_back(
-          storage::FileChecksum(file->size()).complete(*file, [this] { env_.cancel.check(); }));
+      const Added added = add_plain_gltf(facts, facts.content(input_.system()));
+      checksums_.push_back(checksum_of(facts.path));
       env_.progress.advance(facts.identity.bytes);
       return added;
     }
@@ -345,17 +365,35 @@ class Import {
     return add_plain_gltf(facts, mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
   }
 
+  /// Of a file that may hold many meshes, one behind the other.
+  std::uint64_t checksum_of(const std::filesystem::path& path) {
+    if (last_checked_.first != path) {
+      const auto file = input_.system().open(path);
+      last_checked_ = {path, storage::FileChecksum(file->size()).complete(*file, [this] {
+                         env_.cancel.check();
+                       })};
+    }
+    return last_checked_.second;
+  }
+
+  static mesh_io::GltfContent content_of(const InputFileFacts& facts) {
+    if (facts.tile && facts.tile->data)
+      return mesh_io::GltfContent::fleeting;
+    return facts.format.is_gzip ? mesh_io::GltfContent::packed : mesh_io::GltfContent::stored;
+  }
+
   Added add_plain_gltf(const InputFileFacts& facts, std::shared_ptr<const storage::File> content) {
     // While the reader decodes no sort runs.
     constexpr std::uint64_t kLeast = 4 * kImportMiB;
     const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
+    if (facts.tile && tile.offset + tile.bytes > content->size())
+      mesh_io::fail_file(facts.path, "ends within a tile (truncated?)");
     if (facts.tile)
       content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
     mesh_io::GltfFile file(
         std::move(content), facts.path.parent_path(),
-        {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
-         facts.format.is_gzip ? mesh_io::GltfContent::temporary : mesh_io::GltfContent::lasting,
-         [this] { env_.cancel.check(); }, tile.offset});
+        {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast), content_of(facts),
+         facts.path, [this] { env_.cancel.check(); }, tile.offset});
     const GltfImport import =
         import_gltf(file, tile.placement, mesh_, input_.textures(), input_.attributes(), room_);
     for (const SourceCount& one : import.counts)
@@ -393,7 +431,7 @@ class Import {
     count("objects", counts.objects);
     count("material_uses", counts.materials);
     count("material_libraries", counts.libraries);
-    count("ignored_points_and_lines", counts.points_and_lines);
+    count(kPointsAndLines, counts.points_and_lines);
     count(counts.polygons);
     count("ignored_statements", counts.others);
     return {import.layout,           import.fits_float, counts.faces,   counts.degenerate_triangles,
@@ -510,7 +548,8 @@ class Import {
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   std::vector<JoinedFile> joined_;
-  std::vector<std::uint64_t> checksums_;  ///< of the meshes that are read
+  std::vector<std::uint64_t> checksums_;                          ///< of the meshes that are read
+  std::pair<std::filesystem::path, std::uint64_t> last_checked_;  ///< of a file of glTF
   ImportFacts facts_;
 };
 

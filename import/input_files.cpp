@@ -5,6 +5,7 @@
 #include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/part_of_file.h"
 #include "mesh_io/ply_header.h"
 #include "mesh_io/ply_source.h"
 #include "storage/io/file_checksum.h"
@@ -35,6 +36,10 @@ std::optional<mesh_io::PlyPlan> plan_of(const storage::File& file,
 
 }  // namespace
 
+std::unique_ptr<storage::File> InputFileFacts::content(storage::FileSystem& files) const {
+  return tile && tile->data ? mesh_io::file_of_bytes(path, tile->data) : files.open(path);
+}
+
 std::filesystem::path without_gz(std::filesystem::path path) {
   return path.extension() == ".gz" ? path.replace_extension() : path;
 }
@@ -62,14 +67,15 @@ void InputFiles::add_mesh(const std::filesystem::path& path) {
   const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
   if (format.kind == mesh_io::MeshKind::tileset)
     return add_tileset(path);
-  add_file({path, format, files_.identity(path)}, *file);
+  add_file({path, format, files_.identity(path)});
 }
 
-void InputFiles::add_file(InputFileFacts facts, const storage::File& file) {
+void InputFiles::add_file(InputFileFacts facts) {
+  const auto content = facts.content(files_);
   if (facts.format.kind == mesh_io::MeshKind::ply)
-    look_into_ply(file, facts);
+    look_into_ply(*content, facts);
   all_.push_back(std::move(facts));
-  find_buffers(all_.back(), file);
+  find_buffers(all_.back(), *content);
 }
 
 void InputFiles::add_tileset(const std::filesystem::path& path) {
@@ -82,8 +88,7 @@ void InputFiles::add_tileset(const std::filesystem::path& path) {
   for (const std::filesystem::path& document : tileset.documents)
     companions_.add({document, InputPart::tileset, files_.identity(document)});
   for (const mesh_io::TilesetMesh& mesh : tileset.meshes)
-    add_file({mesh.file, mesh.format, files_.identity(mesh.file), false, mesh},
-             *files_.open(mesh.file));
+    add_file({mesh.file, mesh.format, files_.identity(mesh.file), false, mesh});
   if (tileset.is_hierarchy) {
     warnings_.push_back(
         plain_text(path.string(), kLongestPath) +

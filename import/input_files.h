@@ -50,6 +50,8 @@ struct InputFileFacts {
   std::size_t face_values = 0;                 ///< that faces have, a colour counts as one
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
+  /// The file, or the data that stand for it.
+  std::unique_ptr<storage::File> content(storage::FileSystem& files) const;
   /// What its content is called in messages when it is no longer packed.
   std::string unpacked_name() const { return path.string() + " (unpacked)"; }
 };
@@ -129,7 +131,7 @@ class InputFiles {
   bool is_changed() const { return use_.weld || use_.crop || has_unplaced_; }
   void add_mesh(const std::filesystem::path& path);
   void add_tileset(const std::filesystem::path& path);
-  void add_file(InputFileFacts facts, const storage::File& file);
+  void add_file(InputFileFacts facts);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);
   void find_buffers(const InputFileFacts& file, const storage::File& content);

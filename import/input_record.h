@@ -73,6 +73,16 @@ inline constexpr std::string_view kMadeWhite = "vertices_made_white";
 inline constexpr std::string_view kFacesMadeWhite = "faces_made_white";
 /// Vertices that show no picture, and whose colour is not seen either, as others have both.
 inline constexpr std::string_view kHiddenColours = "vertices_with_hidden_colours";
+/// Materials that emit light of which nothing is shown.
+inline constexpr std::string_view kIgnoredEmission = "ignored_emission";
+/// Materials of colours that light shines through, in a mesh without pictures.
+inline constexpr std::string_view kMadeOpaque = "materials_made_opaque";
+/// Materials that are shaders with several pictures, of which none is known to be the colour.
+inline constexpr std::string_view kIgnoredTechniques = "ignored_techniques";
+/// Parts of a mesh whose materials let all light through: they are left out.
+inline constexpr std::string_view kInvisibleParts = "invisible_parts";
+/// Parts that are no triangles: they are left out.
+inline constexpr std::string_view kPointsAndLines = "ignored_points_and_lines";
 /// Vertices of which a coordinate is not finite.
 inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 

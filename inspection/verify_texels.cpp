@@ -10,8 +10,8 @@
 #include "hierarchy/srgb.h"
 #include "images/image_store.h"
 #include "images/material_texels.h"
-#include "images/open_source.h"
 #include "import/mesh_input.h"
+#include "import/open_picture.h"
 #include "partition/external_sort.h"
 #include "storage/io/hash.h"
 
@@ -199,7 +199,7 @@ struct TexelCheck::Impl {
     for (const images::ImageSource& source : materials.images) {
       store_of.emplace_back();
       try {
-        const auto reader = images::open_source(source, job.files);
+        const auto reader = importing::open_picture(source, job.files);
         pictures.add(*reader, [&](std::uint64_t) { job.cancel.check(); });
         store_of.back() = static_cast<std::uint32_t>(pictures.size() - 1);
       } catch (const Error& error) {

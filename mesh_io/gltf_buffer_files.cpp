@@ -3,12 +3,10 @@
 #include "mesh_io/gltf_uri.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
-#include "storage/io/little_endian.h"
+#include "mesh_io/json_characters.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -19,111 +17,6 @@ namespace meshhier::mesh_io {
 namespace {
 
 constexpr std::size_t kMostBufferFiles = 65536;
-/// No path is longer; what is cut from a text is base64.
-constexpr std::size_t kMostTextBytes = 8192;
-/// No number is longer; a list of them without end would be one token.
-constexpr std::size_t kMostNumberBytes = 1024;
-
-/// The JSON of a glTF file, character by character: texts cut to kMostTextBytes.
-class JsonCharacters {
- public:
-  explicit JsonCharacters(InputStream& stream) : stream_(stream) {
-    std::array<std::byte, kGlbJsonOffset> head{};
-    const std::size_t got = stream_.read(head);
-    if (got == head.size() &&
-        std::string_view(reinterpret_cast<const char*>(head.data()), 4) == "glTF") {
-      left_ = storage::load_little<std::uint32_t>(head.data() + 12);
-    } else {
-      block_.assign(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(got));
-    }
-  }
-
-  /// -1 at the end.
-  int next() {
-    for (;;) {
-      const int c = next_stored();
-      if (!in_text_) {
-        in_text_ = c == '"';
-        token_ = is_number_part(c) ? token_ + 1 : 0;
-        return token_ > kMostNumberBytes ? -1 : c;
-      }
-      if (c < 0 || (c == '"' && !escaped_)) {
-        in_text_ = false;
-        token_ = 0;
-        return c;
-      }
-      // An escape is kept or cut as a whole; the longest has six characters.
-      const bool is_kept = escaped_ ? kept_ : token_ + (c == '\\' ? 6 : 0) < kMostTextBytes;
-      kept_ = is_kept;
-      escaped_ = !escaped_ && c == '\\';
-      ++token_;
-      if (is_kept)
-        return c;
-    }
-  }
-
- private:
-  static constexpr std::size_t kGlbJsonOffset = 20;
-  static constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
-
-  static bool is_number_part(int c) {
-    return c > ' ' && c != ',' && c != ':' && c != '[' && c != ']';
-  }
-
-  int next_stored() {
-    if (at_ == block_.size() && !load())
-      return -1;
-    return std::to_integer<int>(block_[at_++]);
-  }
-  bool load() {
-    block_.resize(std::min<std::uint64_t>(kBlockBytes, left_));
-    block_.resize(stream_.read(block_));
-    left_ -= block_.size();
-    at_ = 0;
-    return !block_.empty();
-  }
-
-  InputStream& stream_;
-  std::uint64_t left_ = UINT64_MAX;  ///< of the JSON chunk of a GLB
-  std::vector<std::byte> block_;
-  std::size_t at_ = 0;
-  bool in_text_ = false, escaped_ = false, kept_ = false;
-  std::size_t token_ = 0;
-};
-
-/// As an iterator, for the parser.
-class JsonIterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  JsonIterator() = default;
-  explicit JsonIterator(JsonCharacters& characters) : characters_(&characters) { ++*this; }
-  const char& operator*() const { return c_; }
-  JsonIterator& operator++() {
-    const int c = characters_->next();
-    c_ = static_cast<char>(c);
-    if (c < 0)
-      characters_ = nullptr;
-    return *this;
-  }
-  JsonIterator operator++(int) {
-    const JsonIterator before = *this;
-    ++*this;
-    return before;
-  }
-  friend bool operator==(const JsonIterator& a, const JsonIterator& b) {
-    return a.characters_ == b.characters_;
-  }
-
- private:
-  JsonCharacters* characters_ = nullptr;
-  char c_ = 0;
-};
-
 /// Takes buffers[...].uri.
 class BufferUris final : public nlohmann::json_sax<nlohmann::json> {
  public:

@@ -1,7 +1,9 @@
 #include "mesh_io/gltf_document.h"
 
 #include "hierarchy/plain_text.h"
+#include "mesh_io/gltf_extensions.h"
 #include "mesh_io/gltf_json.h"
+#include "mesh_io/gltf_techniques.h"
 
 #include <algorithm>
 #include <limits>
@@ -19,33 +21,9 @@ constexpr std::uint64_t kMostGltfElements = std::numeric_limits<std::uint32_t>::
 constexpr std::uint64_t kMostStride = 256;
 constexpr std::size_t kLongestGltfName = 255;
 
-/// Pictures in KTX2: whoever shows them finds that they cannot be read.
-constexpr const char* kBasisExtension = "KHR_texture_basisu";
-
-/// Extensions that a document may require: those that are read, and those that change neither
-/// geometry nor base colour. Other materials' extensions (kMaterialExtensions) are of these, too.
-constexpr std::array<std::string_view, 16> kKnownExtensions{"EXT_meshopt_compression",
-                                                            "EXT_texture_webp",
-                                                            "KHR_draco_mesh_compression",
-                                                            "KHR_mesh_quantization",
-                                                            "KHR_texture_transform",
-                                                            "KHR_lights_punctual",
-                                                            "KHR_animation_pointer",
-                                                            "KHR_node_visibility",
-                                                            "KHR_xmp",
-                                                            "KHR_xmp_json_ld",
-                                                            "CESIUM_primitive_outline",
-                                                            "EXT_mesh_features",
-                                                            "EXT_structural_metadata",
-                                                            "EXT_mesh_gpu_instancing",
-                                                            "CESIUM_RTC",
-                                                            kBasisExtension};
-constexpr std::string_view kMaterialExtensions = "KHR_materials_";
-
-bool is_known(std::string_view extension) {
-  return extension.starts_with(kMaterialExtensions) ||
-         std::ranges::find(kKnownExtensions, extension) != kKnownExtensions.end();
-}
+/// Whoever shows such a picture finds that it cannot be read.
+constexpr std::array<GltfPictureFormat, 3> kUnreadFormats{
+    {{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_avif", "AVIF"}, {"MSFT_texture_dds", "DDS"}}};
 
 /// The number of `text` in `names`.
 template <std::size_t size>
@@ -108,6 +86,7 @@ class DocumentReader {
     read_pictures();
     root_.for_each("materials", [&](const GltfObject& o) { read_material(o); });
     root_.for_each("meshes", [&](const GltfObject& o) { read_mesh(o); });
+    root_.for_each("skins", [&](const GltfObject& o) { read_skin(o); });
     root_.for_each("nodes", [&](const GltfObject& o) { read_node(o); });
     read_roots();
     document_.animations = root_.item_count("animations");
@@ -123,9 +102,9 @@ class DocumentReader {
   }
 
   void check_extensions() {
-    for (const std::string& name : root_.texts("extensionsRequired")) {
-      document_.requires_ktx2 = document_.requires_ktx2 || name == kBasisExtension;
-      if (!is_known(name)) {
+    document_.required = root_.texts("extensionsRequired");
+    for (const std::string& name : document_.required) {
+      if (!may_be_required(name)) {
         root_.fail(
             fmt::format("requires the extension {}, which is not read; export the mesh "
                         "without it",
@@ -222,30 +201,56 @@ class DocumentReader {
                           o.index("sampler", document_.samplers.size())};
       if (const auto webp = o.extension("EXT_texture_webp"))
         texture.image = webp->require_index("source", document_.images.size());
-      texture.is_ktx2 = o.extension(kBasisExtension).has_value();
+      for (const GltfPictureFormat& format : kUnreadFormats)
+        texture.unread = o.extension(format.extension) ? &format : texture.unread;
       document_.textures.push_back(texture);
     });
   }
 
-  void read_texture_use(const GltfObject& o, GltfMaterial& material) const {
-    material.texture = o.require_index("index", document_.textures.size());
-    material.texcoord =
-        static_cast<std::uint32_t>(o.count("texCoord", kMostGltfElements).value_or(0));
+  GltfTextureUse read_texture_use(const GltfObject& o) const {
+    GltfTextureUse use{
+        .texture = o.require_index("index", document_.textures.size()),
+        .texcoord = static_cast<std::uint32_t>(o.count("texCoord", kMostGltfElements).value_or(0))};
     const auto transform = o.extension("KHR_texture_transform");
     if (!transform)
-      return;
-    material.transform = {numbers<2>(*transform, "offset", {0, 0}),
-                          transform->number("rotation", 0),
-                          numbers<2>(*transform, "scale", {1, 1})};
+      return use;
+    use.transform = {numbers<2>(*transform, "offset", {0, 0}), transform->number("rotation", 0),
+                     numbers<2>(*transform, "scale", {1, 1})};
     if (const auto texcoord = transform->count("texCoord", kMostGltfElements))
-      material.texcoord = static_cast<std::uint32_t>(*texcoord);
+      use.texcoord = static_cast<std::uint32_t>(*texcoord);
+    return use;
   }
 
   void read_colour(const GltfObject& o, const char* factor, const char* texture,
                    GltfMaterial& material) const {
     material.factor = numbers<4>(o, factor, {1, 1, 1, 1});
     if (const auto use = o.object(texture))
-      read_texture_use(*use, material);
+      material.base = read_texture_use(*use);
+  }
+
+  /// A shader's texture or colour that its name tells to be the base colour, or its only texture.
+  void read_technique(const GltfObject& o, GltfMaterial& material) const {
+    const std::vector<GltfObject> values = technique_values(root_, o);
+    const auto texture = technique_texture(values);
+    material.is_unknown = texture.is_unknown;
+    if (texture.use)
+      material.base = read_texture_use(*texture.use);
+    else if (const auto colour = technique_colour(values))
+      material.factor = *colour;
+  }
+
+  /// An unlit material emits nothing besides what it shows.
+  void read_emission(const GltfObject& o, GltfMaterial& material) const {
+    constexpr double kMostLight = 1e6;
+    if (o.extension("KHR_materials_unlit"))
+      return;
+    const auto strength = o.extension("KHR_materials_emissive_strength");
+    const double times = strength ? strength->number("emissiveStrength", 1) : 1;
+    const auto factor = numbers<3>(o, "emissiveFactor", {0, 0, 0});
+    for (std::size_t c = 0; c < factor.size(); ++c)
+      material.emission[c] = std::clamp(factor[c] * times, 0.0, kMostLight);
+    if (const auto use = o.object("emissiveTexture"); use && material.emits())
+      material.glow = read_texture_use(*use);
   }
 
   void read_material(const GltfObject& o) {
@@ -259,11 +264,9 @@ class DocumentReader {
       read_colour(*metallic, "baseColorFactor", "baseColorTexture", material);
     else if (glossy)
       read_colour(*glossy, "diffuseFactor", "diffuseTexture", material);
-    if (const auto light = o.object("emissiveTexture"); light && !material.texture) {
-      const auto factor = numbers<3>(o, "emissiveFactor", {0, 0, 0});
-      material.factor = {factor[0], factor[1], factor[2], material.factor[3]};
-      read_texture_use(*light, material);
-    }
+    else if (const auto shader = o.extension("KHR_techniques_webgl"))
+      read_technique(*shader, material);
+    read_emission(o, material);
     material.alpha = static_cast<AlphaMode>(
         choice(o, "alphaMode", o.text("alphaMode").value_or("OPAQUE"), kAlphaModes));
     material.alpha_cutoff = o.number("alphaCutoff", material.alpha_cutoff);
@@ -274,7 +277,8 @@ class DocumentReader {
     GltfAttributes attributes;
     o.for_each_index(size, [&](const std::string& name, std::uint32_t number) {
       if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" ||
-          name.starts_with("TEXCOORD_") || name.starts_with('_'))
+          name.starts_with("TEXCOORD_") || name.starts_with("JOINTS_") ||
+          name.starts_with("WEIGHTS_") || name.starts_with('_'))
         attributes.emplace(name, number);
     });
     return attributes;
@@ -304,6 +308,14 @@ class DocumentReader {
     document_.meshes.push_back(std::move(mesh));
   }
 
+  void read_skin(const GltfObject& o) {
+    GltfSkin skin{o.indices("joints", root_.item_count("nodes")),
+                  o.index("inverseBindMatrices", document_.accessors.size())};
+    if (skin.joints.empty())
+      o.fail("has no joints");
+    document_.skins.push_back(std::move(skin));
+  }
+
   static GltfTransform read_transform(const GltfObject& o) {
     if (o.has("matrix"))
       return gltf_matrix(numbers<16>(o, "matrix", {}));
@@ -329,7 +341,7 @@ class DocumentReader {
     const auto visibility = o.extension("KHR_node_visibility");
     document_.nodes.push_back(
         {o.index("mesh", document_.meshes.size()), o.indices("children", root_.item_count("nodes")),
-         read_transform(o), o.has("skin"), o.has("camera"),
+         read_transform(o), o.index("skin", document_.skins.size()), o.has("camera"),
          !visibility || !visibility->has("visible") || visibility->flag("visible"),
          read_instancing(o)});
   }

@@ -97,11 +97,16 @@ struct GltfInstancing {
   std::optional<std::uint32_t> translation, rotation, scale;
 };
 
+struct GltfSkin {
+  std::vector<std::uint32_t> joints;             ///< nodes, one or more
+  std::optional<std::uint32_t> inverse_binds{};  ///< an accessor; none: all are the identity
+};
+
 struct GltfNode {
   std::optional<std::uint32_t> mesh;
   std::vector<std::uint32_t> children;
   GltfTransform transform;
-  bool is_skinned = false;
+  std::optional<std::uint32_t> skin{};  ///< of its mesh
   bool is_camera = false;
   bool is_visible = true;  ///< KHR_node_visibility; else neither it nor what is below it is shown
   std::optional<GltfInstancing> instancing{};
@@ -115,24 +120,47 @@ struct GltfTextureTransform {
   friend bool operator==(const GltfTextureTransform&, const GltfTextureTransform&) = default;
 };
 
+/// A texture as a material shows it.
+struct GltfTextureUse {
+  std::uint32_t texture = 0;
+  std::uint32_t texcoord = 0;  ///< that it takes
+  GltfTextureTransform transform{};
+};
+
 struct GltfMaterial {
   std::string name;
-  std::array<double, 4> factor{1, 1, 1, 1};  ///< linear, and alpha
-  std::optional<std::uint32_t> texture{};    ///< of the base colour
-  std::uint32_t texcoord = 0;                ///< that it takes
-  GltfTextureTransform transform{};
+  std::array<double, 4> factor{1, 1, 1, 1};  ///< of the base colour: linear, and alpha
+  std::optional<GltfTextureUse> base{};      ///< of the base colour
+  /// Linear, from 0 on: emissiveFactor by KHR_materials_emissive_strength.
+  std::array<double, 3> emission{};
+  std::optional<GltfTextureUse> glow{};  ///< what `emission` multiplies; none where that is 0
+  bool is_unknown =
+      false;  ///< KHR_techniques_webgl has pictures of which none is known to be `base`
   AlphaMode alpha = AlphaMode::opaque;
   double alpha_cutoff = 0.5;
+
+  bool emits() const { return emission != std::array<double, 3>{}; }
+  /// Whatever its picture and colours of vertices are.
+  bool is_invisible() const {
+    return (alpha == AlphaMode::blend && factor[3] <= 0) ||
+           (alpha == AlphaMode::mask && factor[3] < alpha_cutoff);
+  }
 };
 
 struct GltfSampler {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
+/// A format of pictures that is not read.
+struct GltfPictureFormat {
+  const char* extension;
+  const char* name;
+};
+
 struct GltfTexture {
   std::optional<std::uint32_t> image;  ///< none: of a format that is not read
   std::optional<std::uint32_t> sampler;
-  bool is_ktx2 = false;  ///< KHR_texture_basisu, which is not read, has a picture for it
+  const GltfPictureFormat* unread = nullptr;  ///< an extension has a picture for it
 };
 
 struct GltfImage {
@@ -146,6 +174,7 @@ struct GltfDocument {
   std::vector<GltfView> views;
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
+  std::vector<GltfSkin> skins;
   std::vector<GltfNode> nodes;
   std::vector<GltfMaterial> materials;
   std::vector<GltfTexture> textures;
@@ -155,7 +184,7 @@ struct GltfDocument {
   std::uint64_t animations = 0;
   /// CESIUM_RTC: what is added to all positions, in the document's own axes.
   Vec3d centre{};
-  bool requires_ktx2 = false;  ///< KHR_texture_basisu
+  std::vector<std::string> required;  ///< extensions
 };
 
 /// The document of a JSON text. The scene is the one that it names, else the first; if there is

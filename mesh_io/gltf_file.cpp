@@ -246,12 +246,12 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
     const Buffer& buffer = this->buffer(view.buffer);
     if (range.size == 0)
       fail(name + " has no bytes");
-    if (buffer.file == path() && room_.content == GltfContent::temporary)
-      fail(name + " lies in a packed GLB; unpack the file by gunzip first");
-    if (!buffer.file.empty()) {
-      picture.file = buffer.file;
-      picture.offset = buffer.offset + range.offset + (buffer.file == path() ? room_.begin : 0);
+    const bool is_own = buffer.file == path();
+    if (!buffer.file.empty() && !(is_own && room_.content == GltfContent::fleeting)) {
+      picture.file = is_own ? room_.stored_in : buffer.file;
+      picture.offset = buffer.offset + range.offset + (is_own ? room_.begin : 0);
       picture.bytes = range.size;
+      picture.is_packed = is_own && room_.content == GltfContent::packed;
     } else {
       require_memory(range.size, name);
       picture.data.resize(range.size);

@@ -18,17 +18,19 @@
 
 namespace meshhier::mesh_io {
 
-/// Whether a file is there as long as the pictures that lie in it are needed.
-enum class GltfContent : std::uint8_t { lasting, temporary };
+/// Where the bytes of a glTF are when its pictures are needed: in its file, in a file in gzip of
+/// which they are the content, or in none.
+enum class GltfContent : std::uint8_t { stored, packed, fleeting };
 
 /// What a reader works with.
 struct GltfRoom {
   storage::FileSystem& files;
   storage::ScratchFile& scratch;   ///< for what is decoded
   std::uint64_t memory_bytes = 0;  ///< for the JSON, and for what a codec decodes at once
-  GltfContent content = GltfContent::lasting;
-  std::function<void()> check;  ///< called often; may throw
-  std::uint64_t begin = 0;      ///< of the glTF in the file of its path
+  GltfContent content = GltfContent::stored;
+  std::filesystem::path stored_in{};  ///< that file
+  std::function<void()> check;        ///< called often; may throw
+  std::uint64_t begin = 0;            ///< of the glTF in it, or in its content
 };
 
 /// Where a picture lies.
@@ -37,6 +39,7 @@ struct GltfPicture {
   std::optional<std::filesystem::path> file{};  ///< none: it cannot be had, or `data` has it
   std::uint64_t offset = 0, bytes = 0;          ///< in the file; 0 bytes: all of it
   std::vector<std::byte> data{};
+  bool is_packed = false;  ///< the file is in gzip: offset and bytes are of its content
   std::vector<std::filesystem::path> sought{};  ///< where a file that is not there would be
 };
 
@@ -55,9 +58,9 @@ class GltfFile {
   /// Error(budget) if decoding takes more memory than there is, Error(io).
   GltfRange view(std::uint32_t index);
 
-  /// A file is found as NamedFiles finds it. Throws Error(input) if the picture lies in a
-  /// compressed view, or in a temporary file: no file has its bytes when they are needed. A file
-  /// that is not there, or no regular one, is none.
+  /// A file is found as NamedFiles finds it. One in a view of fleeting bytes is read. Throws
+  /// Error(input) if the picture lies in a compressed view. A file that is not there, or no regular
+  /// one, is none.
   GltfPicture picture(std::uint32_t image);
 
   [[noreturn]] void fail(const std::string& message) const;

@@ -4,6 +4,7 @@
 #include "hierarchy/plain_text.h"
 #include "mesh_io/input_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -228,6 +229,19 @@ std::vector<std::string> GltfObject::texts(const char* key) const {
   return texts;
 }
 
+std::vector<std::string> GltfObject::keys(std::size_t most) const {
+  std::vector<std::string> keys;
+  for (auto at = object_->begin(); at != object_->end() && keys.size() < most; ++at)
+    keys.push_back(at.key());
+  return keys;
+}
+
+bool GltfObject::has_numbers(const char* key, std::size_t size) const {
+  const Json* value = find(key);
+  return value != nullptr && value->is_array() && value->size() == size &&
+         std::all_of(value->begin(), value->end(), [](const Json& v) { return v.is_number(); });
+}
+
 std::optional<GltfObject> GltfObject::object(const char* key) const {
   const Json* value = find(key);
   return value == nullptr ? std::nullopt : std::optional(GltfObject(*value, *path_, place_of(key)));
@@ -249,7 +263,14 @@ void GltfObject::for_each(const char* key,
                           const std::function<void(const GltfObject&)>& visit) const {
   const Json* list = find_list(key);
   for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
-    visit(GltfObject((*list)[i], *path_, fmt::format("{}[{}]", place_of(key), i)));
+    visit(*item(key, i));
+}
+
+std::optional<GltfObject> GltfObject::item(const char* key, std::size_t number) const {
+  if (number >= item_count(key))
+    return std::nullopt;
+  return GltfObject((*find_list(key))[number], *path_,
+                    fmt::format("{}[{}]", place_of(key), number));
 }
 
 std::size_t GltfObject::item_count(const char* key) const {

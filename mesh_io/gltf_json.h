@@ -48,6 +48,10 @@ class GltfObject {
   std::optional<std::vector<double>> numbers(const char* key, std::size_t size) const;
   std::vector<std::uint32_t> indices(const char* key, std::size_t size) const;
   std::vector<std::string> texts(const char* key) const;
+  /// The first ones of its keys.
+  std::vector<std::string> keys(std::size_t most) const;
+  /// Whether there is a list of so many numbers.
+  bool has_numbers(const char* key, std::size_t size) const;
   std::optional<GltfObject> object(const char* key) const;
   GltfObject require_object(const char* key) const;
   /// The extension of that name of this object.
@@ -55,10 +59,14 @@ class GltfObject {
   /// Visits the objects of a list, if there is one.
   void for_each(const char* key, const std::function<void(const GltfObject&)>& visit) const;
   std::size_t item_count(const char* key) const;
+  /// An object of a list; nothing if the list has no such one.
+  std::optional<GltfObject> item(const char* key, std::size_t number) const;
   /// Calls `visit(key, index)` for each member, all of which are numbers of items of a list.
   void for_each_index(std::size_t size,
                       const std::function<void(const std::string&, std::uint32_t)>& visit) const;
 
+  /// Where it stands in the JSON: "accessors[3]"; empty of the whole.
+  const std::string& place() const { return place_; }
   [[noreturn]] void fail(const std::string& message) const;
 
  private:

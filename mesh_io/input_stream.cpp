@@ -61,4 +61,14 @@ std::unique_ptr<InputStream> open_stream(const InputFile& input, ReadWatch watch
   return std::make_unique<PlainStream>(input, std::move(watch));
 }
 
+std::uint64_t skip(InputStream& stream, std::uint64_t bytes) {
+  std::vector<std::byte> block(std::size_t{1} << 16);
+  std::uint64_t skipped = 0;
+  for (std::size_t got = block.size(); got == block.size() && skipped < bytes; skipped += got) {
+    block.resize(std::min<std::uint64_t>(block.size(), bytes - skipped));
+    got = stream.read(block);
+  }
+  return skipped;
+}
+
 }  // namespace meshhier::mesh_io

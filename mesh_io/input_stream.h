@@ -48,4 +48,7 @@ bool is_gzip(const storage::File& file);
 /// to its checksum, when read() has come to the end.
 std::unique_ptr<InputStream> open_stream(const InputFile& input, ReadWatch watch);
 
+/// Reads and forgets `bytes`, or up to the end; returns how many there were. Throws as read().
+std::uint64_t skip(InputStream& stream, std::uint64_t bytes);
+
 }  // namespace meshhier::mesh_io

@@ -4,6 +4,7 @@
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/json_characters.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
 #include "mesh_io/stl_reader.h"
@@ -19,6 +20,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace meshhier::mesh_io {
 namespace {
@@ -111,12 +113,64 @@ std::string_view without_padding(std::string_view start) {
   return has_lines ? text : start;
 }
 
-/// An object of JSON that has what tiles have.
-bool is_tileset(std::string_view start) {
+bool begins_as_object(std::string_view start) {
   start = without_byte_order_mark(start);
   start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
-  return start.starts_with('{') && start.find("\"geometricError\"") != std::string_view::npos;
+  return start.starts_with('{');
 }
+
+/// Looks at the keys of an object of JSON until they tell a glTF from a tileset.
+class JsonKeys final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  /// Of one that was read to its end or to its first defect, too.
+  std::optional<MeshKind> kind() const {
+    if (is_gltf_)
+      return MeshKind::gltf;
+    const bool is_tileset = has_error_ || (has_root_ && has_asset_);
+    return is_tileset ? std::optional(MeshKind::tileset) : std::nullopt;
+  }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool start_object(std::size_t) override { return ++depth_ <= kMostDepth; }
+  bool end_object() override { return end(); }
+  bool start_array(std::size_t) override { return ++depth_ <= kMostDepth; }
+  bool end_array() override { return end(); }
+  bool key(string_t& value) override {
+    if (depth_ == 1)
+      look_at(value);
+    return !is_gltf_ && !(has_root_ && has_asset_);
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kMostDepth = 1000;
+
+  void look_at(std::string_view key) {
+    static constexpr std::array<std::string_view, 14> kGltf{
+        "accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
+        "meshes",    "nodes",      "samplers",    "scene",   "scenes",  "skins",  "textures"};
+    is_gltf_ = std::ranges::find(kGltf, key) != kGltf.end();
+    has_root_ = has_root_ || key == "root";
+    has_asset_ = has_asset_ || key == "asset";
+    has_error_ = has_error_ || key == "geometricError";
+  }
+  bool end() {
+    --depth_;
+    return true;
+  }
+
+  std::size_t depth_ = 0;
+  bool is_gltf_ = false, has_root_ = false, has_asset_ = false;
+  bool has_error_ = false;  ///< a geometric one, which nothing but a tileset has
+};
 
 /// An object of JSON that begins as a glTF's.
 bool begins_as_gltf(std::string_view start) {
@@ -141,7 +195,19 @@ bool begins_as_gltf(std::string_view start) {
   return std::ranges::find(kKeys, key) != kKeys.end();
 }
 
-std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes, bool is_gzip) {
+/// Which of both an object of JSON is, wherever the keys stand that tell.
+std::optional<MeshKind> json_kind(const storage::File& file, std::string_view start) {
+  const auto stream = open_stream({file, file.size()}, {});
+  JsonCharacters characters(*stream);
+  JsonKeys keys;
+  nlohmann::json::sax_parse(JsonIterator(characters), JsonIterator(), &keys);
+  if (const auto kind = keys.kind())
+    return kind;
+  return begins_as_gltf(start) ? std::optional(MeshKind::gltf) : std::nullopt;
+}
+
+std::optional<MeshKind> kind_of(const storage::File& file, std::string_view start, bool is_gzip) {
+  const std::uint64_t file_bytes = file.size();
   if (is_ply(start) || is_odd_ply(start))
     return MeshKind::ply;
   const auto size = stl_size(start);
@@ -150,10 +216,8 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
   const std::string_view word = first_word(start);
   if (start.starts_with("glTF"))
     return MeshKind::glb;
-  if (is_tileset(start))
-    return MeshKind::tileset;
-  if (begins_as_gltf(start))
-    return MeshKind::gltf;
+  if (begins_as_object(start))
+    return json_kind(file, start);
   if (is_text(without_padding(start))) {
     if (is_stl_keyword(word, "solid"))
       return MeshKind::stl_text;
@@ -183,10 +247,10 @@ std::string start_of(const storage::File& file) {
   return start;
 }
 
-std::optional<MeshFormat> format_of(std::uint64_t file_bytes, bool is_gzip,
-                                    std::string_view start) {
-  const auto kind = kind_of(start, file_bytes, is_gzip);
-  return kind ? std::optional(MeshFormat{*kind, is_gzip}) : std::nullopt;
+std::optional<MeshFormat> format_of(const storage::File& file, std::string_view start) {
+  const bool packed = is_gzip(file);
+  const auto kind = kind_of(file, start, packed);
+  return kind ? std::optional(MeshFormat{*kind, packed}) : std::nullopt;
 }
 
 }  // namespace
@@ -199,14 +263,14 @@ std::string name_of(const MeshFormat& format) {
 }
 
 std::optional<MeshFormat> find_format(const storage::File& file) {
-  return format_of(file.size(), is_gzip(file), start_of(file));
+  return format_of(file, start_of(file));
 }
 
 MeshFormat detect_format(const storage::File& file) {
   const std::uint64_t bytes = file.size();
   const bool packed = is_gzip(file);
   const std::string start = start_of(file);
-  if (const auto format = format_of(bytes, packed, start))
+  if (const auto format = format_of(file, start))
     return *format;
   if (const std::string foreign = foreign_format(start); !foreign.empty()) {
     fail_file(file.path(),

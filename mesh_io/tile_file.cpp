@@ -4,6 +4,7 @@
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/part_of_file.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -28,6 +29,8 @@ constexpr std::uint64_t kTileHeaderBytes = 12;
 constexpr std::uint64_t kBatchedHeaderBytes = 28;
 constexpr std::uint64_t kCompositeHeaderBytes = 16;
 constexpr int kDeepestComposite = 8;
+/// Of tiles in a file; the least takes 12 bytes of it, and more to be remembered.
+constexpr std::uint64_t kMostComposed = 65536;
 
 /// A range of the file that is a tile.
 struct Extent {
@@ -48,14 +51,14 @@ class TileFileReader {
       : file_(file), most_bytes_(most_bytes) {}
 
   TileFile read() {
-    if (is_gzip(file_))
-      fail_file(file_.path(), "is packed by gzip; unpack the tiles by gunzip first");
     read_tile({0, file_.size()}, 0);
     return std::move(found_);
   }
 
  private:
   void read_tile(Extent tile, int depth) {
+    if (++tiles_ > kMostComposed)
+      fail_file(file_.path(), fmt::format("holds more than {} tiles", kMostComposed));
     const std::string magic = text(tile.begin, std::min<std::uint64_t>(4, tile.bytes()));
     if (magic == "b3dm") {
       read_batched(sized(tile));
@@ -204,13 +207,19 @@ class TileFileReader {
 
   const storage::File& file_;
   std::uint64_t most_bytes_;
+  std::uint64_t tiles_ = 0;
   TileFile found_;
 };
 
 }  // namespace
 
 TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes) {
-  return TileFileReader(file, most_bytes).read();
+  if (!is_gzip(file))
+    return TileFileReader(file, most_bytes).read();
+  const auto content = unpacked(file);
+  TileFile found = TileFileReader(*content, most_bytes).read();
+  found.is_packed = true;
+  return found;
 }
 
 }  // namespace meshhier::mesh_io

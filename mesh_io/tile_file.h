@@ -19,14 +19,16 @@ struct TileGltf {
 };
 
 struct TileFile {
-  std::vector<TileGltf> meshes;
+  std::vector<TileGltf> meshes{};
   std::uint64_t instanced = 0, points = 0;  ///< tiles of these kinds, which are no meshes
   bool is_tileset = false;                  ///< the JSON of another one
+  bool is_packed = false;                   ///< in gzip: offsets are of what it holds
 };
 
-/// Reads headers and feature tables. Throws Error(input) if the file is none of these, if it is
-/// packed by gzip, truncated, or if a cmpt holds itself deeper than 8 levels; Error(budget) if a
-/// feature table takes more than `most_bytes` of memory.
+/// Reads headers and feature tables, of a file that is packed by gzip or not. Throws Error(input)
+/// if the file is none of these, if it is truncated, or if tiles lie in each other deeper than 8
+/// levels or are more than 65,536; Error(budget) if a feature table takes more than `most_bytes` of
+/// memory.
 TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes);
 
 }  // namespace meshhier::mesh_io

@@ -5,13 +5,14 @@
 // before the point and no axis is up, are turned into a local frame: east, north, up.
 #pragma once
 
-#include "hierarchy/frame.h"
+#include "mesh_io/globe_frame.h"
 #include "mesh_io/gltf_transform.h"
 #include "mesh_io/mesh_format.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,16 +21,10 @@ namespace meshhier::mesh_io {
 /// Memory that the JSON of a tileset may take: 30 MB of text, a hundred thousand tiles.
 inline constexpr std::uint64_t kTilesetBytes = std::uint64_t{256} << 20;
 
-/// A local frame on the globe, rigid: from its coordinates to geocentric ones (WGS 84, EPSG:4978).
-struct GlobeFrame {
-  GltfTransform to_globe;
-
-  Transform matrix() const;
-  friend bool operator==(const GlobeFrame&, const GlobeFrame&) = default;
-};
-
 /// The transform of the root, if it is such a frame; else that of the middle of the root's bounding
-/// volume, rounded to metres. Nothing if that does not lie on the globe. Throws as read_tileset().
+/// volume, rounded to metres. Where that volume says little, as it is of the globe or a continent,
+/// the tiles that are shown decide: the transform of all, if it is such a frame, else the middle of
+/// their places. Nothing if that does not lie on the globe. Throws as read_tileset().
 std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::filesystem::path& path,
                                       std::uint64_t most_bytes);
 
@@ -37,8 +32,10 @@ std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::fil
 struct TilesetMesh {
   std::filesystem::path file;
   MeshFormat format;
-  std::uint64_t offset = 0, bytes = 0;  ///< of the glTF in the file
+  std::uint64_t offset = 0, bytes = 0;  ///< of the glTF in the file, or in what it holds in gzip
   GltfTransform placement;              ///< from the coordinates of its scene to the frame's
+  /// What stands for the file: it holds the tile as a data URI.
+  std::shared_ptr<const std::vector<std::byte>> data{};
 };
 
 struct Tileset {
@@ -50,12 +47,14 @@ struct Tileset {
   std::uint64_t instanced = 0, points = 0;       ///< tiles that are no meshes
 };
 
-/// Reads the tileset and all external ones, and the headers of tiles, each document once. Of tiles
-/// that refine by replacement those without children are taken, of others all. Contents are files
-/// below the folder of `path`. `frame`: of another tileset, for both; null: its own, as
-/// globe_frame() has it. `most_bytes`: memory for a JSON. Throws Error(input) naming file and place
-/// if a document is no tileset, if tiles are implicit, if a content is on the web, not there or no
-/// tile, or if tilesets hold each other; Error(budget), Error(io).
+/// Reads the tileset and all external ones, and the headers of tiles, each once. Of tiles that
+/// refine by replacement those without children are taken, of others all; a tile, and the root of
+/// an external tileset, that says nothing refines as its parent. Contents are files below the
+/// folder of `path`, packed by gzip or not, or data URIs. `frame`: of another tileset, for both;
+/// null: its own, as globe_frame() has it. `most_bytes`: memory for a JSON. Throws Error(input)
+/// naming file and place if a document is no tileset, if tiles are implicit, if a content is on the
+/// web, not there or no tile, if tilesets hold each other, or if they have more than kMostTiles
+/// tiles; Error(budget), Error(io).
 Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
                      const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes);
 

@@ -67,7 +67,15 @@ constexpr std::array kCountWarnings{
     CountWarning{importing::kMadeWhite, "vertices", kBecameWhite},
     CountWarning{importing::kFacesMadeWhite, "faces", kBecameWhite},
     CountWarning{importing::kHiddenColours, "vertices",
-                 " without a picture have colours that are not shown: others have both"}};
+                 " without a picture have colours that are not shown: others have both"},
+    CountWarning{importing::kIgnoredEmission, "materials",
+                 " emit light that is not shown, beside their base colour"},
+    CountWarning{importing::kMadeOpaque, "materials",
+                 " are transparent and shown as opaque: only pictures are shown through"},
+    CountWarning{
+        importing::kIgnoredTechniques, "materials",
+        " have pictures by KHR_techniques_webgl of which none is known to be their colour: "
+        "they are not shown"}};
 
 /// Where positions are rounded, the mesh may have one.
 const char* no_area_text(const SourceSummary& source, bool is_rounded) {

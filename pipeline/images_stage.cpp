@@ -3,7 +3,7 @@
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "images/open_source.h"
+#include "import/open_picture.h"
 #include "pipeline/tiles/texture_store.h"
 
 #include <algorithm>
@@ -108,7 +108,7 @@ Decoded decode(std::uint32_t image, const images::ImageStore& pictures,
   };
   Decoded decoded;
   try {
-    const auto reader = images::open_source(materials.images[image], context.files.input());
+    const auto reader = importing::open_picture(materials.images[image], context.files.input());
     if (!is_alpha_unsaid(image, materials)) {
       decoded.stored = pictures.write(*reader, step);
       return decoded;

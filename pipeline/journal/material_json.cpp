@@ -9,11 +9,9 @@ namespace meshhier::pipeline {
 namespace {
 
 nlohmann::json to_json(const images::ImageSource& image) {
-  return {{"name", to_binary(image.name)},
-          {"file", to_binary(image.file.string())},
-          {"offset", image.offset},
-          {"bytes", image.bytes},
-          {"data", to_binary(image.data)}};
+  return {{"name", to_binary(image.name)}, {"file", to_binary(image.file.string())},
+          {"offset", image.offset},        {"bytes", image.bytes},
+          {"data", to_binary(image.data)}, {"packed", image.is_packed}};
 }
 
 images::ImageSource image_source(const nlohmann::json& json) {
@@ -24,6 +22,7 @@ images::ImageSource image_source(const nlohmann::json& json) {
   image.bytes = json.at("bytes");
   const auto data = std::as_bytes(std::span(json.at("data").get_binary()));
   image.data.assign(data.begin(), data.end());
+  image.is_packed = json.at("packed");
   return image;
 }
 
@@ -31,6 +30,7 @@ nlohmann::json to_json(const images::Material& material) {
   nlohmann::json json{{"name", to_binary(material.name)},
                       {"colour", material.colour},
                       {"factor", material.factor},
+                      {"light", material.light},
                       {"wraps", {material.wrap_u, material.wrap_v}},
                       {"alpha", material.alpha},
                       {"cutoff", material.alpha_cutoff},
@@ -45,6 +45,7 @@ images::Material material_of(const nlohmann::json& json) {
   material.name = text_of(json.at("name"));
   material.colour = json.at("colour");
   material.factor = json.at("factor");
+  material.light = json.at("light");
   material.wrap_u = json.at("wraps").at(0);
   material.wrap_v = json.at("wraps").at(1);
   material.alpha = json.at("alpha");

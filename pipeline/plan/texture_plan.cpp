@@ -2,7 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "images/image_store.h"
-#include "images/open_source.h"
+#include "import/open_picture.h"
 
 #include <algorithm>
 #include <utility>
@@ -63,7 +63,7 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
   plan.materials.materials = std::move(materials.materials);
   for (std::uint32_t i = 0; i < materials.images.size(); ++i) {
     try {
-      plan.heads.push_back(images::open_source(materials.images[i], files.input())->info());
+      plan.heads.push_back(importing::open_picture(materials.images[i], files.input())->info());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)
         throw;

@@ -364,6 +364,23 @@ TEST_F(ImageStoreTest, AMaterialMultipliesLightAndAlpha) {
   }
 }
 
+TEST_F(ImageStoreTest, AMaterialAddsItsLightAndCutsAtWhite) {
+  const Image picture = noise(30, 1);
+  add(picture);
+  Material material;
+  material.image = 0;
+  material.factor = {0.5F, 4, 1, 1};
+  material.light = {0.25F, 0, 1};
+  Image shown(30, 1, 3);
+  MaterialTexels(material, store).read(0, 0, 0, 30, 1, shown, 0, 0);
+  for (std::uint32_t x = 0; x < 30; ++x) {
+    const std::uint8_t* from = picture.at(x, 0);
+    EXPECT_EQ(shown.at(x, 0)[0], screen_value(0.5 * light_of(from[0] / 255.0) + 0.25));
+    EXPECT_EQ(shown.at(x, 0)[1], screen_value(4 * light_of(from[1] / 255.0)));
+    EXPECT_EQ(shown.at(x, 0)[2], 255);
+  }
+}
+
 TEST_F(ImageStoreTest, AnOpaqueMaterialHasNoUseForAlpha) {
   const Image picture = noise(20, 30, 4);
   add(picture);

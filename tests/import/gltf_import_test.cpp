@@ -1,6 +1,7 @@
 // glTF and GLB files: what they become.
 #include "hierarchy/error.h"
 #include "import/imported.h"
+#include "mesh_io/gltf_extensions.h"
 #include "storage/format/tile_glb.h"
 #include "support/gltf_builder.h"
 #include "tests/gltf/sample_hierarchy.h"
@@ -9,6 +10,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -513,19 +516,114 @@ TEST_F(GltfImportTest, PicturesAreFoundAsThoseOfAnObj) {
   }
 }
 
-TEST_F(GltfImportTest, WithoutABaseColoursPictureTheEmissiveOneIsShown) {
-  GltfBuilder gltf;
-  put("b.png", "x");
+/// A material whose one picture is of what it emits.
+GltfJson emissive_material(GltfBuilder& gltf, const GltfJson& base, const GltfJson& light) {
   const std::size_t number = gltf.textured_material({{"uri", "b.png"}});
   GltfJson& material = gltf.json["materials"][number];
   material["emissiveTexture"] = material["pbrMetallicRoughness"]["baseColorTexture"];
-  material["emissiveFactor"] = {1, 1, 0.5};
-  material["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 0, 1}}};
+  material["emissiveFactor"] = light;
+  material["pbrMetallicRoughness"] = {{"baseColorFactor", base}};
+  return number;
+}
+
+TEST_F(GltfImportTest, WhatIsEmittedIsAddedToTheBaseColour) {
+  put("b.png", "x");
+  for (const bool is_black : {true, false}) {
+    GltfBuilder gltf;
+    const GltfJson base = is_black ? GltfJson{0, 0, 0, 1} : GltfJson{0.25, 0.5, 0, 1};
+    gltf.show(textured_square(gltf, emissive_material(gltf, base, {1, 1, 0.5})));
+    const Imported mesh = import(gltf);
+    ASSERT_EQ(mesh.materials.materials.size(), 1U);
+    const images::Material& shown = mesh.materials.materials[0];
+    EXPECT_TRUE(shown.image);
+    EXPECT_EQ(shown.factor, (std::array<float, 4>{1, 1, 0.5F, 1}));
+    EXPECT_EQ(shown.light,
+              is_black ? (std::array<float, 3>{}) : (std::array<float, 3>{0.25F, 0.5F, 0}));
+    EXPECT_EQ(mesh.count("ignored_emission"), 0U);
+  }
+}
+
+TEST_F(GltfImportTest, APictureOfLightWithoutAFactorShowsNothing) {
+  put("b.png", "x");
+  GltfBuilder gltf;
+  const std::size_t number = emissive_material(gltf, {1, 0, 0, 1}, {0, 0, 0});
   gltf.show(textured_square(gltf, number));
+  gltf.json["materials"][number].erase("emissiveFactor");  // the same
   const Imported mesh = import(gltf);
-  ASSERT_EQ(mesh.materials.materials.size(), 1U);
-  EXPECT_TRUE(mesh.materials.materials[0].image);
-  EXPECT_EQ(mesh.materials.materials[0].factor, (std::array<float, 4>{1, 1, 0.5F, 1}));
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.colour = ColourType::u8, .texcoords = true}));
+  EXPECT_EQ(mesh.attributes[0], 255);
+  EXPECT_EQ(mesh.attributes[1], 0);
+  EXPECT_THAT(mesh.companions(), IsEmpty());
+}
+
+TEST_F(GltfImportTest, LightWithoutPicturesIsPartOfTheColour) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["material"] =
+      gltf.add("materials",
+               {{"emissiveFactor", {0.25, 0, 0.1}},
+                {"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0, 0, 1}}}},
+                {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 20}}}}}});
+  gltf.show(primitive);
+  Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.attributes[0], 255) << "0.25 + 5";
+  EXPECT_EQ(mesh.attributes[1], 0);
+  EXPECT_EQ(mesh.attributes[2], 255);
+  gltf.json["materials"][0]["extensions"].erase("KHR_materials_emissive_strength");
+  mesh = import(gltf);
+  EXPECT_EQ(mesh.attributes[0], 188) << "0.5, as a screen has it";
+  EXPECT_EQ(mesh.attributes[2], 89);
+  gltf.json["materials"][0]["extensions"]["KHR_materials_unlit"] = GltfJson::object();
+  EXPECT_EQ(import(gltf).attributes[0], 137) << "nothing emits where nothing is lit";
+}
+
+TEST_F(GltfImportTest, ColoursOfVerticesAreNoPartOfTheLight) {
+  put("b.png", "x");
+  const std::vector<float> half(12, 0.5F);
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["COLOR_0"] = gltf.accessor(half, "VEC3");
+  primitive["material"] = gltf.add("materials", {{"emissiveFactor", {0.125, 0, 1}}});
+  gltf.show(primitive);
+  Imported mesh = import(gltf);
+  EXPECT_THAT(std::vector<float>(mesh.attributes.begin(), mesh.attributes.begin() + 3),
+              ElementsAre(0.625F, 0.5F, 1));
+  EXPECT_EQ(mesh.count("ignored_emission"), 0U);
+
+  // In one mesh with pictures, which colours multiply as a whole.
+  GltfJson lamp = textured_square(gltf, emissive_material(gltf, {0, 0, 0, 1}, {1, 1, 1}));
+  GltfJson lit = textured_square(gltf, emissive_material(gltf, {1, 1, 0, 1}, {1, 1, 1}));
+  lamp["attributes"]["COLOR_0"] = lit["attributes"]["COLOR_0"] = gltf.accessor(half, "VEC3");
+  gltf.show(lamp);
+  gltf.show(lit);
+  mesh = import(gltf);
+  EXPECT_EQ(mesh.count("ignored_emission"), 2U) << "that of the first and of the last";
+  const auto& materials = mesh.materials.materials;
+  EXPECT_EQ(materials[mesh.material_of(0)].colour, (std::array<float, 4>{1, 1, 1, 1}));
+  EXPECT_TRUE(materials[mesh.material_of(2)].image);
+  EXPECT_FALSE(materials[mesh.material_of(4)].image);
+  EXPECT_EQ(materials[mesh.material_of(4)].colour, (std::array<float, 4>{1, 1, 0, 1}));
+  const std::size_t channels = mesh.attributes.size() / mesh.positions.size();
+  EXPECT_EQ(mesh.attributes[0], 0.5F);
+  EXPECT_EQ(mesh.attributes[4 * channels], 1) << "black times it is black";
+  EXPECT_EQ(mesh.attributes[8 * channels], 0.5F);
+}
+
+TEST_F(GltfImportTest, BesideABaseColoursPictureTheEmissiveOneIsCounted) {
+  put("b.png", "x");
+  put("c.png", "x");
+  GltfBuilder gltf;
+  const std::size_t number = gltf.textured_material({{"uri", "b.png"}});
+  gltf.json["materials"][number]["emissiveTexture"] = {
+      {"index", gltf.add("textures", {{"source", gltf.add("images", {{"uri", "c.png"}})}})}};
+  gltf.show(textured_square(gltf, number));
+  EXPECT_EQ(import(gltf).count("ignored_emission"), 0U) << "its factor is 0";
+  gltf.json["materials"][number]["emissiveFactor"] = {0, 0, 1};
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.count("ignored_emission"), 1U);
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/b.png"));
+  gltf.json["materials"][number].erase("emissiveTexture");
+  EXPECT_EQ(import(gltf).materials.materials[0].light, (std::array<float, 3>{0, 0, 1}));
 }
 
 TEST_F(GltfImportTest, APictureInKtx2IsToldToBeUnreadable) {
@@ -537,6 +635,10 @@ TEST_F(GltfImportTest, APictureInKtx2IsToldToBeUnreadable) {
   const Imported mesh = import(gltf);
   ASSERT_EQ(mesh.warnings.size(), 1U);
   EXPECT_THAT(mesh.warnings[0], HasSubstr("KTX2, which cannot be read"));
+
+  gltf.json["textures"][0]["extensions"]["MSFT_texture_dds"]["source"] = 0;
+  EXPECT_THAT(import(gltf).warnings[0], HasSubstr("DDS, which cannot be read"));
+  gltf.json["textures"][0]["extensions"].erase("MSFT_texture_dds");
 
   gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
   EXPECT_THAT(failure(gltf), HasSubstr("leave them out with \"texture\": {\"use\": false}"));
@@ -668,6 +770,180 @@ TEST_F(GltfImportTest, InvisibleNodesAndThoseBelowAreLeftOut) {
   EXPECT_THAT(failure(gltf), HasSubstr("visible"));
 }
 
+/// A square that hangs on joints, below an armature of a hundredth.
+struct Skinned {
+  GltfBuilder gltf;
+  std::size_t joints = 0, weights = 0;
+
+  explicit Skinned(const std::vector<float>& weights_of,
+                   const std::vector<std::uint8_t>& joints_of = std::vector<std::uint8_t>(16)) {
+    GltfJson primitive = square(gltf);
+    joints = gltf.accessor(joints_of, "VEC4");
+    weights = gltf.accessor(weights_of, "VEC4");
+    primitive["attributes"]["JOINTS_0"] = joints;
+    primitive["attributes"]["WEIGHTS_0"] = weights;
+    primitive["attributes"]["NORMAL"] =
+        gltf.accessor(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1}, "VEC3");
+    gltf.node({{"scale", {0.01, 0.01, 0.01}}, {"children", {1, 2, 3}}});
+    gltf.node({{"translation", {0, 0, 100}}});
+    gltf.node({{"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}});
+    gltf.node({{"mesh", gltf.mesh(primitive)}, {"skin", 0}, {"translation", {5, 5, 5}}});
+    gltf.json["scenes"] = {{{"nodes", {0}}}};
+    // The inverse of the armature's scale.
+    const std::vector<float> hundred{100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 1};
+    std::vector<float> binds = hundred;
+    binds.insert(binds.end(), hundred.begin(), hundred.end());
+    gltf.json["skins"] = {
+        {{"joints", {1, 2}},
+         {"inverseBindMatrices", gltf.accessor(binds, "VEC4", {{"type", "MAT4"}, {"count", 2}})}}};
+  }
+};
+
+const std::vector<float> kAllOnTheFirst{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+
+TEST_F(GltfImportTest, JointsPlaceASkinnedMeshAndItsNodeDoesNot) {
+  const Imported mesh = import(Skinned(kAllOnTheFirst).gltf);
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  EXPECT_LT(length(mesh.positions[2] - Vec3d{1, 1, 1}), 1e-6);
+  EXPECT_EQ(mesh.count("skinned_meshes"), 1U);
+  EXPECT_EQ(mesh.count("ignored_skins"), 0U);
+  EXPECT_NEAR(mesh.attributes[7], 1, 1e-6) << "normals are turned alike";
+}
+
+TEST_F(GltfImportTest, AVertexIsAMeanOfItsJointsByWeights) {
+  const std::vector<std::uint8_t> joints{0, 1, 99, 99, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
+  // Their sum need not be 1; what is not above 0 does not count.
+  const float nan = std::nanf("");
+  const std::vector<float> weights{0, 0, 0, 0, .5F, .5F, 0, 0, 3, 0, -1, nan, 1, 0, 0, 0};
+  const Imported mesh = import(Skinned(weights, joints).gltf);
+  EXPECT_LT(length(mesh.positions[0] - Vec3d{0, 0, 1}), 1e-6) << "the first, as none has a weight";
+  EXPECT_LT(length(mesh.positions[1] - Vec3d{0.5, 0.5, 0.5}), 1e-6);
+  EXPECT_LT(length(mesh.positions[2] - Vec3d{-1, 1, 0}), 1e-6) << "a quarter turn";
+  EXPECT_NEAR(mesh.attributes[6], -1, 1e-6) << "so is its normal";
+  EXPECT_LT(length(mesh.positions[3] - Vec3d{0, 1, 1}), 1e-6);
+}
+
+TEST_F(GltfImportTest, SkinsMayLackMatricesAndTheirJointsTheScene) {
+  Skinned bare(kAllOnTheFirst);
+  bare.gltf.json["skins"][0].erase("inverseBindMatrices");
+  EXPECT_LT(length(import(bare.gltf).positions[2] - Vec3d{0.01, 0.01, 1}), 1e-8);
+  Skinned apart(kAllOnTheFirst);
+  apart.gltf.json["scenes"][0]["nodes"] = {3};  // not the armature
+  EXPECT_LT(length(import(apart.gltf).positions[2] - Vec3d{1, 1, 1}), 1e-6);
+  apart.gltf.json["nodes"][1]["children"] = {0};
+  EXPECT_THAT(failure(apart.gltf), HasSubstr("is below itself: nodes must be a tree"));
+  Skinned mirrored(kAllOnTheFirst);
+  mirrored.gltf.json["nodes"][0]["scale"] = {-0.01, 0.01, 0.01};
+  EXPECT_THAT(import(mirrored.gltf).triangles[0], Triangle3({0, 2, 1}));
+}
+
+TEST_F(GltfImportTest, SkinsThatAreWrongAreRefusedAndThoseWithoutWeightsCounted) {
+  std::vector<std::uint8_t> joints(16);
+  joints[8] = 2;
+  EXPECT_THAT(failure(Skinned(kAllOnTheFirst, joints).gltf),
+              HasSubstr("element 2 has the joint 2, but the skin has 2"));
+  Skinned few(kAllOnTheFirst);
+  few.gltf.json["skins"][0]["joints"] = {1, 2, 0};
+  EXPECT_THAT(failure(few.gltf), HasSubstr("has 2 elements of 16 numbers for the matrices of 3"));
+  few.gltf.json["skins"][0]["joints"] = GltfJson::array();
+  EXPECT_THAT(failure(few.gltf), HasSubstr("skins[0] has no joints"));
+  Skinned longer(kAllOnTheFirst);
+  longer.gltf.json["accessors"][longer.weights]["count"] = 3;
+  EXPECT_THAT(failure(longer.gltf), HasSubstr("has 3 elements for WEIGHTS_0, POSITION has 4"));
+  Skinned scalar(kAllOnTheFirst);
+  scalar.gltf.json["accessors"][scalar.joints]["type"] = "VEC2";
+  EXPECT_THAT(failure(scalar.gltf), HasSubstr("is of no type that JOINTS_0 may have"));
+  Skinned stiff(kAllOnTheFirst);
+  stiff.gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  const Imported mesh = import(stiff.gltf);
+  EXPECT_EQ(mesh.count("ignored_skins"), 1U);
+  EXPECT_LT(length(mesh.positions[0] - Vec3d{0.05, 0.05, 0.05}), 1e-8) << "its node's place";
+}
+
+TEST_F(GltfImportTest, WhatLetsAllLightThroughIsLeftOut) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  GltfJson helper = square(gltf);
+  helper["material"] = gltf.add(
+      "materials",
+      {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 1, 0}}}}});
+  gltf.show(helper);
+  Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.count("invisible_parts"), 1U);
+  GltfJson& material = gltf.json["materials"][0];
+  material["alphaMode"] = "OPAQUE";  // then alpha is nothing
+  EXPECT_EQ(import(gltf).triangles.size(), 4U);
+  material["alphaMode"] = "MASK";
+  EXPECT_EQ(import(gltf).triangles.size(), 2U);
+  material["alphaCutoff"] = 0;
+  EXPECT_EQ(import(gltf).triangles.size(), 4U);
+  material["alphaMode"] = "BLEND";
+  material["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.2;
+  mesh = import(gltf);
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  EXPECT_EQ(mesh.count("materials_made_opaque"), 1U);
+
+  GltfBuilder nothing;
+  GltfJson only = square(nothing);
+  only["material"] = nothing.add(
+      "materials",
+      {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0}}}}});
+  nothing.show(only);
+  EXPECT_THAT(failure(nothing), HasSubstr("a.glb holds nothing that is to be seen"));
+}
+
+TEST_F(GltfImportTest, PointsAndLinesAloneAreNoMesh) {
+  for (const int mode : {0, 1, 3}) {
+    GltfBuilder gltf;
+    GltfJson primitive = square(gltf);
+    primitive["mode"] = mode;
+    gltf.show(primitive);
+    EXPECT_THAT(failure(gltf), HasSubstr("a.glb holds points or lines alone, no triangles"));
+  }
+}
+
+TEST_F(GltfImportTest, ShadersHaveTheBaseColourThatTheirNamesTell) {
+  put("b.png", "x");
+  const auto shown = [&](const char* values, const char* uniforms = "{}") {
+    GltfBuilder gltf;
+    const std::size_t number = gltf.textured_material({{"uri", "b.png"}});
+    gltf.json["materials"][number] = {
+        {"extensions",
+         {{"KHR_techniques_webgl", {{"technique", 0}, {"values", GltfJson::parse(values)}}}}}};
+    gltf.json["extensions"]["KHR_techniques_webgl"]["techniques"] = {
+        {{"uniforms", GltfJson::parse(uniforms)}}};
+    gltf.json["extensionsRequired"] = {"KHR_techniques_webgl"};
+    gltf.show(textured_square(gltf, number));
+    return import(gltf);
+  };
+  for (const char* values :
+       {R"({"u_diffuse": {"index": 0, "texCoord": 0}})", R"({"u_tex": {"index": 0}})",
+        R"({"u_normal": {"index": 0}, "u_Diffuse0": {"index": 0}, "u_other": {"index": 0}})"})
+    EXPECT_TRUE(shown(values).layout.material) << values;
+  EXPECT_TRUE(
+      shown("{}", R"({"u_diffuse": {"type": 35678, "value": {"index": 0}}})").layout.material);
+  Imported mesh = shown(R"({"u_a": {"index": 0}, "u_b": {"index": 0}})");
+  EXPECT_FALSE(mesh.layout.material);
+  EXPECT_EQ(mesh.count("ignored_techniques"), 1U);
+  EXPECT_EQ(shown(R"({"u_normal": {"index": 0}})").count("ignored_techniques"), 0U);
+  mesh = shown(R"({"u_diffuse": [0.2, 0.4, 1, 1], "u_shininess": 5})");
+  EXPECT_EQ(mesh.attributes[0], 51) << "values of a screen";
+  EXPECT_EQ(mesh.attributes[1], 102);
+  EXPECT_EQ(shown(R"({"u_diffuse": "x", "u_tex": 7})").layout.colour, ColourType::none);
+}
+
+TEST_F(GltfImportTest, ScenesThatShowMeshesAnyNumberOfTimesAreRefused) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["indices"] = gltf.accessor(std::vector<std::uint8_t>(300000), "SCALAR");
+  const std::size_t places = gltf.accessor(std::vector<std::uint8_t>(300000), "VEC3");
+  gltf.node(
+      {{"mesh", gltf.mesh(primitive)},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
+  EXPECT_THAT(failure(gltf), HasSubstr("shows 10000000000 triangles"));
+}
+
 TEST_F(GltfImportTest, TheCentreOfCesiumIsAddedBehindItsTurn) {
   GltfBuilder gltf;
   const std::size_t number = gltf.mesh(square(gltf));
@@ -729,7 +1005,7 @@ TEST_F(GltfImportTest, InstancesAreCopiesPlacedWithinTheirNode) {
   EXPECT_THAT(failure(gltf), HasSubstr("TRANSLATION"));
 }
 
-TEST_F(GltfImportTest, PackedFilesAreUnpackedUnlessTheirPicturesAreNeeded) {
+TEST_F(GltfImportTest, PackedFilesAreUnpackedAndTheirPicturesFoundWithin) {
   GltfBuilder gltf;
   gltf.show(square(gltf));
   put("a.glb.gz", tests::gzip(gltf.glb()));
@@ -739,7 +1015,12 @@ TEST_F(GltfImportTest, PackedFilesAreUnpackedUnlessTheirPicturesAreNeeded) {
   EXPECT_EQ(import("a.gltf.gz").summary.files.size(), 2U);
   gltf.show(textured_square(gltf, gltf.textured_material({{"bufferView", gltf.view("picture")}})));
   put("b.glb.gz", tests::gzip(gltf.glb()));
-  EXPECT_THAT(failure("b.glb.gz"), HasSubstr("images[0] lies in a packed GLB; unpack"));
+  const Imported mesh = import("b.glb.gz");
+  ASSERT_EQ(mesh.materials.images.size(), 1U);
+  const images::ImageSource& image = mesh.materials.images[0];
+  EXPECT_EQ(image.file, fs::path("w/b.glb.gz"));
+  EXPECT_TRUE(image.is_packed);
+  EXPECT_EQ(gltf.glb().substr(image.offset, image.bytes), "picture");
 }
 
 TEST_F(GltfImportTest, FilesOfSeveralFormatsAreJoined) {
@@ -783,6 +1064,21 @@ TEST_F(GltfImportTest, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
     EXPECT_EQ(mesh.count("texcoords_made_zero"), 1U);
     const std::vector<float> second(mesh.attributes.begin() + 5, mesh.attributes.begin() + 10);
     EXPECT_EQ(second, std::vector<float>(5, 0.0F));
+  }
+}
+
+TEST_F(GltfImportTest, ExtensionsThatChangeNothingMayBeRequired) {
+  std::ifstream manual(fs::path(MESHHIER_SOURCE_DIR) / "docs/input_formats.md");
+  const std::string documented(std::istreambuf_iterator<char>(manual), {});
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  for (const auto& extensions : {mesh_io::read_extensions(), mesh_io::harmless_extensions()}) {
+    for (const mesh_io::GltfExtension& one : extensions) {
+      const std::string name = std::string(one.name) + (one.name.ends_with('_') ? "any" : "");
+      gltf.json["extensionsRequired"] = {name};
+      EXPECT_EQ(failure(gltf), "") << name;
+      EXPECT_THAT(documented, HasSubstr("`" + std::string(one.name))) << "in the manual";
+    }
   }
 }
 

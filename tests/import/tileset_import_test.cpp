@@ -2,10 +2,12 @@
 #include "config/input_frame.h"
 #include "hierarchy/error.h"
 #include "import/imported.h"
+#include "import/open_picture.h"
 #include "mesh_io/tileset.h"
 #include "support/gltf_builder.h"
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_texture.h"
 
 #include <cmath>
 #include <filesystem>
@@ -44,6 +46,20 @@ std::string b3dm(const std::string& glb, std::string table = "", const std::stri
   return "b3dm" + word(1) + word(28 + table.size() + binary.size() + batches.size() + glb.size()) +
          word(table.size()) + word(binary.size()) + word(batches.size()) + word(0) + table +
          binary + batches + glb;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
 }
 
 std::string cmpt(const std::vector<std::string>& tiles) {
@@ -352,9 +368,180 @@ TEST_F(TilesetImportTest, BrokenTilesAreRefused) {
               HasSubstr("ends behind 0 of 4000000000 tiles"));
   EXPECT_THAT(refused("cmpt" + word(1) + word(28) + word(1) + "b3dm" + word(1) + word(13)),
               HasSubstr("a tile of 13 bytes begins, but the composite has 12 more"));
-  EXPECT_THAT(refused(tests::gzip(whole)), HasSubstr("unpack the tiles by gunzip first"));
+  EXPECT_EQ(refused(tests::gzip(whole)), "");
+  const std::string packed = tests::gzip(whole);
+  for (std::size_t bytes = 1; bytes < packed.size(); bytes += 7)
+    EXPECT_THAT(refused(packed.substr(0, bytes)), HasSubstr("w/a.b3dm")) << bytes;
+  for (std::size_t bytes = 1; bytes < whole.size(); bytes += 7)
+    EXPECT_THAT(refused(tests::gzip(whole.substr(0, bytes))), HasSubstr("w/a.b3dm")) << bytes;
+  EXPECT_THAT(refused("cmpt" + word(1) + word(16 + 12 * 70000) + word(70000) +
+                      [] {
+                        std::string tiles;
+                        for (int i = 0; i < 70000; ++i)
+                          tiles += "i3dm" + word(1) + word(12);
+                        return tiles;
+                      }()),
+              HasSubstr("holds more than 65536 tiles"));
   EXPECT_THAT(refused("i3dm" + word(1) + word(12)), HasSubstr("without a mesh"));
   EXPECT_THAT(refused("plainly nothing"), HasSubstr("found 'plainly nothing'"));
+}
+
+TEST_F(TilesetImportTest, ATilesetIsKnownByItsRootWhereverThatStands) {
+  put("a.glb", triangle().glb());
+  const std::string root = tile_of("a.glb").dump();
+  const std::string bare =
+      R"({"boundingVolume": {"sphere": [0, 0, 0, 9]}, "content": {"url": "a.glb"}})";
+  const std::string text(200000, 'x'), wide(60000, '\xc3');
+  std::string umlauts;
+  for (const char c : wide)
+    umlauts += {c, '\xa4'};
+  for (const std::string& whole : {R"({"asset": {"version": "1.1"}, "schema": {"id": ")" + text +
+                                       R"("}, "geometricError": 1, "root": )" + root + "}",
+                                   R"({"extras": {"a": [")" + umlauts + R"("]}, "root": )" + root +
+                                       R"(, "asset": {"version": "1.0"}})",
+                                   R"({"asset": {"version": "0.0"}, "root": )" + bare + "}",
+                                   "\xef\xbb\xbf \n{\"root\": " + bare + ", \"asset\": {}}",
+                                   R"({"properties": {"scenes": {"meshes": 1}}, "root": )" + root +
+                                       R"(, "asset": {"extras": "x"}})"}) {
+    put("tileset.json", whole);
+    EXPECT_EQ(tests::import_files(files_, fs::path("w/tileset.json")).triangles.size(), 1)
+        << whole.substr(0, 60);
+    put("inner.json", whole);
+    EXPECT_EQ(import(tile_of("inner.json")).triangles.size(), 1) << whole.substr(0, 60);
+  }
+}
+
+TEST_F(TilesetImportTest, AGltfThatHasItsWordsIsNone) {
+  GltfBuilder gltf = triangle();
+  gltf.json["asset"]["extras"] = {{"geometricError", 12.5}, {"root", {{"asset", 1}}}};
+  put("a.bin", gltf.bin);
+  put("a.gltf", gltf.text("a.bin"));
+  EXPECT_EQ(tests::import_files(files_, fs::path("w/a.gltf")).triangles.size(), 1);
+  EXPECT_EQ(import(tile_of("a.gltf")).triangles.size(), 1);
+}
+
+TEST_F(TilesetImportTest, AnExternalTilesetRefinesAsTheTileThatNamesIt) {
+  for (const char* name : {"a.glb", "ext/b.glb", "ext/c.glb"})
+    put(name, triangle().glb());
+  const auto triangles = [&](const char* outer, const char* inner) {
+    GltfJson external = tile_of("b.glb");
+    external["children"] = {tile_of("c.glb")};
+    if (inner != nullptr)
+      external["refine"] = inner;
+    put("ext/tileset.json", tileset_of(external));
+    GltfJson root = tile_of("a.glb");
+    root["refine"] = outer;
+    root["children"] = {tile_of("ext/tileset.json")};
+    return import(root).triangles.size();
+  };
+  EXPECT_EQ(triangles("ADD", nullptr), 3);
+  EXPECT_EQ(triangles("ADD", "REPLACE"), 2);
+  EXPECT_EQ(triangles("REPLACE", nullptr), 1);
+  EXPECT_EQ(triangles("REPLACE", "ADD"), 2);
+}
+
+TEST_F(TilesetImportTest, AVolumeOfTheGlobeLeavesThePlaceToTheTiles) {
+  put("a.glb", triangle().glb());
+  const Transform place{0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, kRadius + 0.25, 0, 0, 1};
+  constexpr double kPi = 3.14159265358979;
+  for (const GltfJson& volume :
+       {GltfJson{{"sphere", {0, 0, 0, kRadius}}},
+        GltfJson{{"box", {0, 0, 0, kRadius, 0, 0, 0, kRadius, 0, 0, 0, kRadius}}},
+        GltfJson{{"box", {kRadius - 3e5, 1e6, 2e5, 5e5, 0, 0, 0, 2e6, 0, 0, 0, 2e6}}},
+        GltfJson{{"region", {-kPi, -kPi / 2, kPi, kPi / 2, -100, 9000}}},
+        GltfJson{{"region", {-0.3, 0.5, 0.2, 0.9, 0, 100}}}, GltfJson::object()}) {
+    GltfJson root = tile_of("");
+    root.erase("content");
+    root["boundingVolume"] = volume;
+    GltfJson tower = tile_of("a.glb");
+    tower["transform"] = place;
+    root["children"] = {tower};
+    EXPECT_EQ(import(root).positions[1], (Vec3d{1, 0, 0})) << volume << " exactly";
+    EXPECT_EQ(framed().placement.transform, place) << volume;
+
+    put("ext/tileset.json", tileset_of(tower));  // also where another document has it
+    put("ext/a.glb", triangle().glb());
+    root["children"] = {tile_of("ext/tileset.json")};
+    EXPECT_EQ(import(root).positions[1], (Vec3d{1, 0, 0})) << volume;
+
+    GltfJson other = tower;  // with another one the middle of both
+    other["transform"][13] = 200;
+    root["children"] = {tower, other};
+    EXPECT_EQ(import(root).triangles.size(), 2);
+    const Transform middle = framed().placement.transform.value();
+    EXPECT_NEAR(middle[12], kRadius, 1);
+    EXPECT_NEAR(middle[13], 100, 1e-9) << volume;
+  }
+}
+
+TEST_F(TilesetImportTest, CentresTellThePlaceIfVolumesDoNot) {
+  put("a.b3dm", b3dm(triangle().glb(), R"({"RTC_CENTER":[0,6378137,0]})"));
+  GltfJson root = tile_of("a.b3dm");
+  root["boundingVolume"] = {{"sphere", {0, 0, 0, kRadius}}};
+  import(root);
+  EXPECT_EQ(framed().placement.transform.value()[13], kRadius);
+  put("b.b3dm", b3dm(triangle().glb(), R"({"RTC_CENTER":[0,-6378137,0]})"));
+  root["contents"] = {{{"uri", "b.b3dm"}}};
+  import(root);
+  EXPECT_FALSE(framed().placement.transform) << "all around the globe";
+}
+
+TEST_F(TilesetImportTest, DocumentsThatMakeAnyNumberOfTilesAreRefusedSoon) {
+  put("a.glb", triangle().glb());
+  const auto name = [](int i) { return "part" + std::to_string(i) + ".json"; };
+  const auto grow = [&](int documents) {
+    for (int i = 0; i < documents; ++i) {
+      GltfJson root = tile_of("");
+      root.erase("content");
+      root["children"] = GltfJson::array();
+      for (int k = 0; k < 10; ++k)
+        root["children"].push_back(tile_of(i + 1 < documents ? name(i + 1) : "a.glb"));
+      put(name(i), tileset_of(root));
+    }
+    put("tileset.json", files_.content("w/" + name(0)));
+  };
+  grow(12);
+  EXPECT_THAT(failure(), HasSubstr("is a tileset of 1222222222221 tiles, as its 12 documents name "
+                                   "each other; up to 1048576 are read"));
+  grow(40);
+  EXPECT_THAT(failure(), HasSubstr("more than 1000000000000000000 tiles"));
+  grow(3);
+  EXPECT_EQ(tests::import_files(files_, fs::path("w/tileset.json")).triangles.size(), 1000);
+  grow(70);
+  EXPECT_THAT(failure(), HasSubstr("deeper than 64 levels"));
+}
+
+/// What a tile shows lies in it, packed or as data.
+TEST_F(TilesetImportTest, ContentsInGzipAndAsDataAreReadWithTheirPictures) {
+  GltfBuilder gltf = triangle();
+  const std::vector<float> uv{0, 1, 1, 1, 0, 0};
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = gltf.accessor(uv, "VEC2");
+  const std::vector<std::byte> png = tests::sample_png(5, 3, false);
+  gltf.json["meshes"][0]["primitives"][0]["material"] = gltf.textured_material(
+      {{"bufferView", gltf.view({reinterpret_cast<const char*>(png.data()), png.size()})},
+       {"mimeType", "image/png"}});
+  const std::string tile = b3dm(gltf.glb(), R"({"BATCH_LENGTH":0,"RTC_CENTER":[1,2,3]})");
+  const auto data = [](const std::string& content) {
+    return "data:application/octet-stream;base64," + base64(content);
+  };
+  put("a.b3dm", tests::gzip(tile));
+  put("b.cmpt", tests::gzip(cmpt({tile})));
+  put("c.json", tests::gzip(tileset_of(tile_of("a.b3dm"))));
+  for (const std::string& uri :
+       {std::string("a.b3dm"), std::string("b.cmpt"), std::string("c.json"), data(tile),
+        data(cmpt({tile})), data(tests::gzip(tile)), data(tileset_of(tile_of("a.b3dm")))}) {
+    SCOPED_TRACE(uri.substr(0, 60) + std::to_string(uri.size()));
+    const Imported mesh = import(tile_of(uri));
+    ASSERT_EQ(mesh.positions.size(), 3);
+    EXPECT_EQ(mesh.positions[1], (Vec3d{2, 2, 3}));
+    ASSERT_EQ(mesh.materials.images.size(), 1);
+    const auto picture = open_picture(mesh.materials.images[0], files_);
+    EXPECT_EQ(picture->info().width, 5);
+    EXPECT_EQ(picture->info().height, 3);
+  }
+  EXPECT_THAT(failure(tile_of("data:model/gltf-binary,abc")), HasSubstr("that is no base64"));
+  EXPECT_THAT(failure(tile_of("data:model/gltf-binary;base64,a$c")), HasSubstr("is no base64"));
+  EXPECT_THAT(failure(tile_of(data("nothing"))), HasSubstr("found 'nothing'"));
 }
 
 TEST_F(TilesetImportTest, DeepTilesetsAreReadAndDeeperOnesRefused) {

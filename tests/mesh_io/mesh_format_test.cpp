@@ -64,6 +64,11 @@ TEST(MeshFormat, ATilesetBeginsAsAGltf) {
   EXPECT_EQ(format_of("\xef\xbb\xbf \n" + text), "3D Tiles");
   EXPECT_EQ(format_of(gzip(text)), "3D Tiles (gzip)");
   EXPECT_EQ(format_of(R"({"asset": {"version": "2.0"}, "scenes": []})"), "glTF");
+  EXPECT_EQ(
+      format_of(R"({"extras": [")" + std::string(100000, 'x') + R"("], "root": {}, "asset": {}})"),
+      "3D Tiles");
+  EXPECT_EQ(format_of(R"({"asset": {"extras": {"root": 1, "geometricError": 1}}, "meshes": [)"),
+            "glTF");
 }
 
 TEST(MeshFormat, ABinaryStlMayBeginAsATextDoes) {

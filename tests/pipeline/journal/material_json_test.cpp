@@ -10,10 +10,12 @@ TEST(MaterialJsonTest, AListComesBack) {
   list.images.push_back({"a b.jpg", "/scans/\xff/a b.jpg", 0, 0, {}});
   list.images.push_back({"inside", "/scans/one.glb", 1000, 77, {}});
   list.images.push_back({"data", {}, 0, 0, {std::byte{1}, std::byte{255}}});
+  list.images.push_back({"packed", "/scans/one.b3dm", 1000, 77, {}, true});
   images::Material wall{.name = "wall \xc3\xa4",
                         .colour = {0.25f, 1, 0, 0.5f},
                         .image = 1,
                         .factor = {1, 0.5f, 0.25f, 0},
+                        .light = {0, 0.5f, 0.125f},
                         .wrap_u = Wrap::mirrored,
                         .wrap_v = Wrap::clamp,
                         .alpha = AlphaMode::blend,

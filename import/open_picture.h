@@ -1,0 +1,17 @@
+// Pictures that a mesh shows, wherever they lie.
+#pragma once
+
+#include "images/image_codec.h"
+#include "images/material_list.h"
+#include "storage/io/file.h"
+
+#include <memory>
+
+namespace meshhier::importing {
+
+/// Opens a picture as images::open_source(); one within a file in gzip is held in memory as it is
+/// coded. Throws Error(input) if that file is damaged or does not have it.
+std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& source,
+                                                  storage::FileSystem& files);
+
+}  // namespace meshhier::importing

@@ -1,0 +1,59 @@
+// The JSON of one tileset (OGC, 3D Tiles 1.0 and 1.1) as a list of its tiles.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "mesh_io/gltf_transform.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Whether the children of a tile take its place or are shown beside it.
+enum class Refine : std::uint8_t { inherited, replace, add };
+
+/// A ball around what a tile holds: all of its bounding volume lies in it.
+struct TileVolume {
+  Vec3d middle;
+  double radius = 0;
+  bool is_geocentric = false;  ///< whatever the tile's transform; else in the tile's coordinates
+};
+
+/// What a tile names.
+struct TileContentName {
+  std::optional<std::string> uri;  ///< none: to be told when it is looked for
+  std::uint32_t tile = 0;          ///< of it
+  std::string place;               ///< in the tile: ".content"
+};
+
+struct TilesetTile {
+  std::optional<std::uint32_t> parent{};  ///< none: the root
+  std::uint32_t number = 0;               ///< among the children of its parent
+  Refine refine = Refine::inherited;
+  bool is_leaf = true;
+  GltfTransform transform;  ///< to the parent's coordinates
+  std::optional<TileVolume> volume{};
+  std::uint32_t first_content = 0, end_content = 0;  ///< of TilesetDocument::contents
+};
+
+struct TilesetDocument {
+  std::filesystem::path path;
+  std::vector<TilesetTile> tiles{};  ///< parents first, in the order of the document
+  std::vector<TileContentName> contents{};
+  GltfTransform axes{};       ///< from those of a glTF to those of 3D Tiles
+  bool is_hierarchy = false;  ///< one that a build made
+};
+
+/// "root.children[3].content", for messages.
+std::string place_of(const TilesetDocument& document, const TileContentName& content);
+
+/// Reads a document, packed by gzip or not. `most_bytes`: memory for its JSON. Throws Error(input)
+/// naming file and place if it is no tileset, if its values are not as the specification says, or
+/// if tiles are implicit; Error(budget), Error(io).
+TilesetDocument read_tileset_document(const storage::File& file, std::uint64_t most_bytes);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,103 @@
+// All documents and contents of a tileset, each of which is read once however often it is named.
+#pragma once
+
+#include "mesh_io/globe_frame.h"
+#include "mesh_io/tile_file.h"
+#include "mesh_io/tileset_document.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// So many tiles are read at most, each as often as it is shown: documents that name each other
+/// would else make any number. A mesh has up to 2^32 vertices: 4,096 for each of them.
+inline constexpr std::uint64_t kMostTiles = std::uint64_t{1} << 20;
+/// Memory for contents that documents hold as data.
+inline constexpr std::uint64_t kMostTileData = std::uint64_t{64} << 20;
+
+/// What a tile shows: a file, or data that a document holds.
+struct TileContent {
+  std::filesystem::path file;  ///< of data: the document
+  std::shared_ptr<const std::vector<std::byte>> data{};
+  TileFile tile;
+  std::optional<std::uint32_t> document{};  ///< of an external tileset
+};
+
+/// A content where a tile shows it.
+struct ShownContent {
+  const TileContent& content;
+  const TilesetTile& tile;
+  const GltfTransform& axes;
+  const GltfTransform& to_globe;   ///< of the tile, from its coordinates to the tileset's
+  const GltfTransform& placement;  ///< the same to the frame's
+};
+
+class TilesetTree {
+ public:
+  /// Reads the documents, and the headers of the contents that are shown. Throws as
+  /// read_tileset().
+  TilesetTree(storage::FileSystem& files, const std::filesystem::path& path,
+              std::uint64_t most_bytes);
+
+  const TilesetDocument& root() const { return documents_[0].document; }
+  /// Those of external tilesets, each once, but for those that are data.
+  const std::vector<std::filesystem::path>& external() const { return external_; }
+
+  using Visit = std::function<void(const ShownContent&)>;
+  /// Visits what is shown, in the order of the documents, and calls `coarser` for each content that
+  /// finer tiles replace. A tile whose coordinates are the frame's is placed there exactly.
+  void for_each(const std::optional<GlobeFrame>& frame, const Visit& visit,
+                const std::function<void()>& coarser) const;
+
+ private:
+  /// A document, with the numbers of its contents that are shown.
+  struct Part {
+    TilesetDocument document;
+    std::vector<std::optional<std::uint32_t>> contents;
+  };
+  /// What a document makes of itself.
+  struct Size {
+    std::uint64_t tiles = 0;  ///< with those of the documents that it names
+    std::size_t levels = 0;   ///< of documents in each other
+    bool is_open = true;      ///< being counted
+  };
+  /// Where a tile stands.
+  struct Stand {
+    GltfTransform to_globe, placement;
+    bool adds = false;
+  };
+  using SizeKey = std::pair<std::uint32_t, bool>;
+
+  Size size_of(std::uint32_t document, bool parent_adds, std::size_t level);
+  std::uint32_t add_document(const storage::File& file);
+  std::uint32_t content_of(std::uint32_t document, std::uint32_t content);
+  std::uint32_t add_content(TileContent content, const storage::File& file);
+  TileContent data_content(const Part& part, const TileContentName& name, std::string_view base64);
+  std::filesystem::path file_of(const Part& part, const TileContentName& content) const;
+  bool is_below_place(const std::filesystem::path& path) const;
+  static Stand stand_of(const TilesetTile& tile, const Stand& parent,
+                        const std::optional<GlobeFrame>& frame);
+  void walk(std::uint32_t document, const Stand& parent, const std::optional<GlobeFrame>& frame,
+            const Visit& visit, const std::function<void()>& coarser) const;
+
+  storage::FileSystem& files_;
+  std::filesystem::path place_;
+  std::uint64_t most_bytes_;
+  std::uint64_t data_bytes_ = 0;
+  std::vector<Part> documents_;  ///< the root first
+  std::vector<TileContent> contents_;
+  std::map<std::filesystem::path, std::uint32_t> known_;  ///< contents by their files
+  std::map<SizeKey, Size> sizes_;
+  std::vector<std::filesystem::path> external_;
+};
+
+}  // namespace meshhier::mesh_io
