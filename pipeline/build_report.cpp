@@ -118,10 +118,10 @@ Vec3d absolute(Vec3d p) {
 }
 
 /// Whether the triangle has more area than rounding its corners makes of a line. Along each axis an
-/// edge is off by at most 2^-23 of the largest coordinate there, and by twice that in tiles above
-/// the partitions, whatever the other axes are like: they may be in other units.
+/// edge is off by at most 2^-23 of the largest coordinate there, whatever the other axes are like:
+/// they may be in other units.
 bool is_wide(Vec3f a, Vec3f b, Vec3f c) {
-  constexpr double kRounding = 0x1p-22;
+  constexpr double kRounding = 0x1p-23;
   Vec3d off;
   for (const Vec3f corner : {a, b, c}) {
     const Vec3d p = absolute(to_double(corner)) * kRounding;
@@ -194,7 +194,7 @@ std::string made_text(const storage::HierarchyReader& made, const std::filesyste
 bool has_area(const storage::HierarchyReader& made, const execution::CancelToken& cancel) {
   return std::ranges::any_of(made.records(), [&](const TileRecord& record) {
     cancel.check();
-    return has_area(made.read_tile(record.node).mesh);
+    return made.tree().is_partition(record.node) && has_area(made.read_tile(record.node).mesh);
   });
 }
 

@@ -37,8 +37,8 @@ std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem
 /// One line for people: what was made, and how large it is.
 std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
                       std::uint64_t output_bytes);
-/// Whether a triangle of any tile has an area, beyond what rounding its corners makes of a line.
-/// Reads tiles from the root on until one has: the first, as a rule.
+/// Whether a triangle of any partition has an area, beyond what rounding its corners makes of a
+/// line. Reads partitions until one has: the first, as a rule.
 bool has_area(const storage::HierarchyReader& made, const execution::CancelToken& cancel);
 /// A line for each thing that is to be known of it; may be empty.
 std::string notes_text(const storage::HierarchyReader& made, const config::Config& config,

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -485,6 +486,45 @@ TEST_F(CommandLine, ABuildEndsWithThreeLines) {
   EXPECT_FALSE(std::getline(lines, more)) << more;
 }
 
+/// Triangles along a line, in several tiles.
+std::string slanted_line() {
+  constexpr int kCount = 9000;
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kCount) +
+                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                     std::to_string(kCount - 2) +
+                     "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < kCount; ++i)
+    text += fmt::format("{:.1f} {:.1f} {:.1f}\n", 0.1 * i, 0.2 * i, 0.3 * i);
+  for (int i = 0; i + 2 < kCount; ++i)
+    text += fmt::format("3 {} {} {}\n", i, i + 1, i + 2);
+  return text;
+}
+
+TEST_F(CommandLine, AMeshWithAnAreaIsNotSaidToHaveNone) {
+  // Degrees, and heights in metres.
+  std::string text;
+  for (int i = 0; i < 441; ++i) {
+    text += fmt::format("v {:.8f} {:.8f} {}\n", 139.7 + i % 21 * 1e-5, 35.65 + i / 21 * 1e-5,
+                        i % 21 * (i / 21));
+  }
+  for (int i = 1; i < 420; ++i)
+    text += fmt::format("f {} {} {}\n", i, i + 1, i + 21);
+  write_text(work() / "a.obj", text);
+  EXPECT_THAT(run({"build", (work() / "a.obj").string()}).out, Not(HasSubstr("warning")));
+  // A strip that is thinner than a step of the lattice.
+  text.clear();
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("v {} {} 0\n", i / 2, i % 2 * 0.01);
+  for (int i = 1; i < 99; ++i)
+    text += fmt::format("f {} {} {}\n", i, i + 1, i + 2);
+  write_text(work() / "a.obj", text);
+  const std::string out =
+      run({"build", (work() / "a.obj").string(), "--force", "--set", "storage.positions.bits=8"})
+          .out;
+  EXPECT_THAT(out, AllOf(HasSubstr("warning: no triangle has an area once positions are rounded"),
+                         Not(HasSubstr("of the mesh has"))));
+}
+
 TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
   const std::string vertices =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
@@ -501,6 +541,7 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
       {vertices + "2" + lists + "0.1 0.2 0.3\n0.2 0.5 1\n0.3 0.8 1.7\n0.4 1.1 2.4\n" +
            "3 0 1 2\n3 1 3 2\n",
        "no triangle of the mesh has an area"},
+      {slanted_line(), "no triangle of the mesh has an area"},
       {vertices + "3" + lists + corners + "3 0 0 1\n3 0 1 1\n3 0 1 2\n", "most triangles"},
   };
   for (const auto& [mesh, warning] : meshes) {
