@@ -3,6 +3,7 @@
 #include "hierarchy/plain_text.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
+#include "storage/format/system_files.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 
@@ -54,6 +55,12 @@ std::set<fs::path> known_directories(const Tree& tree, const std::set<fs::path>&
   return known;
 }
 
+/// What neither the hierarchy has nor a system leaves in folders.
+bool is_strange(const VerifyJob& job, const fs::path& path) {
+  const fs::path relative = path.lexically_relative(job.reader.directory());
+  return !storage::is_system_file(relative.generic_string());
+}
+
 /// Looks for directories that hold none of the hierarchy's files, and for links, at `directory`
 /// and below it.
 void find_strange_entries(const VerifyJob& job, const std::set<fs::path>& known,
@@ -63,31 +70,54 @@ void find_strange_entries(const VerifyJob& job, const std::set<fs::path>& known,
     if (job.files.is_link(path)) {
       job.problems.add(fmt::format("{}: a link; put the file itself in its place", path.string()));
     } else if (job.files.is_directory(path)) {
-      if (!known.contains(path.lexically_relative(job.reader.directory())))
+      if (known.contains(path.lexically_relative(job.reader.directory())))
+        find_strange_entries(job, known, path);
+      else if (is_strange(job, path))
         job.problems.add(
             fmt::format("{}: not a directory of this hierarchy; remove it", path.string()));
-      else
-        find_strange_entries(job, known, path);
     }
   }
 }
 
+struct FoundFiles {
+  std::uint64_t all = 0;
+  std::uint64_t of_systems = 0;  ///< of these, which systems leave in folders
+};
+
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
 /// Nothing if nothing can be listed.
-std::optional<std::uint64_t> find_extra_files(const VerifyJob& job,
-                                              const std::set<fs::path>& tilesets) {
+std::optional<FoundFiles> find_extra_files(const VerifyJob& job,
+                                           const std::set<fs::path>& tilesets) {
   const fs::path& directory = job.reader.directory();
   if (!job.files.can_list(directory))
     return std::nullopt;
-  const std::vector<fs::path> found = job.files.list(directory);
-  for (const fs::path& path : found) {
+  FoundFiles found;
+  for (const fs::path& path : job.files.list(directory)) {
+    ++found.all;
     if (is_known(job, tilesets, path.lexically_relative(directory)))
       continue;
-    job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
+    if (is_strange(job, path))
+      job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
+    else
+      ++found.of_systems;
   }
   if (job.files.is_directory(directory))  // an archive has files only
     find_strange_entries(job, known_directories(job.tree(), tilesets), directory);
-  return found.size();
+  return found;
+}
+
+std::string files_text(const std::optional<FoundFiles>& found, const std::string& tiles) {
+  if (!found) {
+    return fmt::format(
+        "files: {} in the index; on the web nothing can be listed, so others that "
+        "lie beside them are not seen",
+        tiles);
+  }
+  std::string text = fmt::format("files: {} found, {} in the index", found->all, tiles);
+  if (found->of_systems > 0)
+    text += fmt::format("; {} left there by a system or an unpacker",
+                        counted(found->of_systems, "files"));
+  return text;
 }
 
 void check_outline(const VerifyJob& job) {
@@ -152,14 +182,11 @@ std::set<fs::path> check_tilesets(const VerifyJob& job) {
 }  // namespace
 
 void verify_files(const VerifyJob& job) {
-  const std::optional<std::uint64_t> count = find_extra_files(job, check_tilesets(job));
+  const std::optional<FoundFiles> found = find_extra_files(job, check_tilesets(job));
   check_outline(job);
   verify_preview(job);
   const std::string tiles = counted(job.reader.records().size(), "tiles");
-  job.checks.push_back(count ? fmt::format("files: {} found, {} in the index", *count, tiles)
-                             : fmt::format("files: {} in the index; on the web nothing can be "
-                                           "listed, so others that lie beside them are not seen",
-                                           tiles));
+  job.checks.push_back(files_text(found, tiles));
 }
 
 }  // namespace meshhier::inspection

@@ -4,6 +4,7 @@
 #include "hierarchy/plain_text.h"
 #include "storage/format/archive.h"
 #include "storage/format/layout.h"
+#include "storage/format/system_files.h"
 #include "storage/io/hash.h"
 
 #include <chrono>
@@ -20,13 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file in the directory that no hierarchy, or stream, has; empty if there is none.
+/// A file in the directory that no hierarchy, or stream, has, and no system leaves in folders;
+/// empty if there is none.
 std::string foreign_file(FileSystem& files, const Output& output) {
   const auto is_own =
       output.content == Content::progressive_stream ? is_stream_file : is_hierarchy_file;
   for (const fs::path& file : files.list(output.path)) {
     const std::string name = file.lexically_relative(output.path).generic_string();
-    if (!is_own(name))
+    if (!is_own(name) && !is_system_file(name))
       return name;
   }
   return "";
