@@ -103,16 +103,56 @@ std::string exactness_text(const geodesy::MapProjection& projection, double larg
   return text;
 }
 
+/// No ground lies so low or so high; what does was given by another CRS or in other units.
+std::string height_warning(double height, bool is_geocentric) {
+  constexpr double kLowest = -15'000, kHighest = 50'000;
+  if (height >= kLowest && height <= kHighest)
+    return "";
+  return fmt::format(
+      "warning: that is {:.0f} km {} the ground: {}look at \"crs\", \"offset\", \"height\", "
+      "\"units\" and \"up\"\n",
+      std::abs(height) / 1000, height < 0 ? "below" : "above",
+      is_geocentric ? "the CRS has coordinates from the middle of the Earth, and those of a map "
+                      "are none; "
+                    : "");
+}
+
+/// And how the input's heights were taken.
+std::string heights_text(const geodesy::MapProjection& projection) {
+  const std::string heights = projection.heights();
+  if (heights.empty())
+    return "above the ellipsoid";
+  return heights == geodesy::kEllipsoid
+             ? "above the ellipsoid, as the input's heights are taken"
+             : "above the ellipsoid, the input's heights being " + heights;
+}
+
+/// A model in map coordinates whose point 0 0 0 stands there.
+std::string anchor_warning(const BoundsD& box, Vec3d anchor, double metres) {
+  constexpr double kFar = 100'000;
+  const double away = length((box.min + box.max) * 0.5 - anchor) * metres;
+  if (away <= kFar || away <= length(box.max - box.min) * metres)
+    return "";
+  return fmt::format(
+      "warning: the middle of the model is {:.0f} km from that place: \"anchor\" "
+      "names the point of the model that stands there\n",
+      away / 1000);
+}
+
 /// Of a model that the config puts on the globe itself.
 std::string globe_text(const Config& config, const BoundsD& bounds) {
   const PlacementConfig& place = config.placement;
   const BoundsD box = z_up_box(bounds, config.up_axis());
   const Vec3d size = (box.max - box.min) * metres(config);
+  const double height = place.height.value_or(0);
+  const Vec3d anchor =
+      to_z_up(to_vec(place.anchor.value_or(std::array<double, 3>{})), config.up_axis());
   return fmt::format(
-      "placed at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {:.4g} m from west to east, "
-      "{:.4g} m from south to north, {:.4g} m high{}\n",
-      *place.longitude, *place.latitude, place.height.value_or(0), size.x, size.y, size.z,
-      config.units ? "" : " (taken to be in metres: \"units\" says others)");
+             "placed at longitude {:.6f}, latitude {:.6f}, height {:.1f} m above the ellipsoid: "
+             "{:.4g} m from west to east, {:.4g} m from south to north, {:.4g} m high{}\n",
+             *place.longitude, *place.latitude, height, size.x, size.y, size.z,
+             config.units ? "" : " (taken to be in metres: \"units\" says others)") +
+         height_warning(height, false) + anchor_warning(box, anchor, metres(config));
 }
 
 }  // namespace
@@ -172,9 +212,11 @@ std::string placement_text(const Config& config, const BoundsD& bounds,
       projection.to_geodetic(projection.to_geocentric(model.to_map(model.anchor)));
   const double off =
       geodesy::largest_error(projection, model, transform, z_up_box(bounds, config.up_axis()));
-  std::string text = fmt::format(
-      "placed by {} at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {}\n", projection.name(),
-      place.longitude, place.latitude, place.height, exactness_text(projection, off));
+  std::string text =
+      fmt::format("placed by {} at longitude {:.6f}, latitude {:.6f}, height {:.1f} m {}: {}\n",
+                  projection.name(), place.longitude, place.latitude, place.height,
+                  heights_text(projection), exactness_text(projection, off));
+  text += height_warning(place.height, projection.heights().empty());
   if (!projection.is_meant_for(place)) {
     text += fmt::format(
         "warning: the model lies outside the area that {} is meant for; look at "

@@ -154,6 +154,16 @@ const std::string& MapProjection::name() const {
   return parts_->name;
 }
 
+std::string MapProjection::heights() const {
+  const Object vertical = proj::vertical_part(parts_->context.get(), parts_->crs.get());
+  if (vertical)
+    return plain_text(library().get_name(vertical.get()), kLongestQuote);
+  constexpr int kGeocentricAxes = 3;
+  const bool is_geocentric = parts_->axes.count == kGeocentricAxes &&
+                             library().get_type(parts_->crs.get()) == PJ_TYPE_GEOCENTRIC_CRS;
+  return is_geocentric ? "" : std::string(kEllipsoid);
+}
+
 double MapProjection::accuracy() const {
   return library().pj_info(parts_->operation.get()).accuracy;
 }

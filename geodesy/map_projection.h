@@ -9,8 +9,12 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace meshhier::geodesy {
+
+/// What heights are above without a vertical part.
+inline constexpr std::string_view kEllipsoid = "the ellipsoid";
 
 /// A place on or above WGS 84: degrees, degrees, metres above the ellipsoid.
 struct Geodetic {
@@ -48,6 +52,9 @@ class MapProjection {
   double unit_metres() const;
   /// As PROJ calls it, for people: "WGS 84 / UTM zone 33N".
   const std::string& name() const;
+  /// What heights of the map are above, for people: kEllipsoid, or PROJ's name of the heights
+  /// ("EGM96 height"); empty if it has none, being geocentric.
+  std::string heights() const;
   /// How far off the change of datum may be, metres; 0 if there is none, below 0 if not known.
   double accuracy() const;
   /// The datum is not known and was taken as WGS 84.

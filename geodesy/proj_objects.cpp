@@ -114,4 +114,13 @@ Object horizontal_part(PJ_CONTEXT* context, const PJ* crs) {
   }
 }
 
+Object vertical_part(PJ_CONTEXT* context, const PJ* crs) {
+  Object whole(library().clone(context, crs));
+  while (library().get_type(whole.get()) == PJ_TYPE_BOUND_CRS)
+    whole.reset(library().get_source_crs(context, whole.get()));
+  if (library().get_type(whole.get()) != PJ_TYPE_COMPOUND_CRS)
+    return nullptr;
+  return Object(library().crs_get_sub_crs(context, whole.get(), 1));
+}
+
 }  // namespace meshhier::geodesy::proj

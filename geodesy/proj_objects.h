@@ -30,5 +30,7 @@ Context make_context();
 Object make_crs(PJ_CONTEXT* context, const std::string& text);
 /// The part with easting and northing, or degrees; of one without parts itself.
 Object horizontal_part(PJ_CONTEXT* context, const PJ* crs);
+/// The part with heights of a compound one; else null.
+Object vertical_part(PJ_CONTEXT* context, const PJ* crs);
 
 }  // namespace meshhier::geodesy::proj

@@ -1,5 +1,6 @@
 #include "pipeline/estimate.h"
 
+#include "config/placement.h"
 #include "execution/size_text.h"
 #include "hierarchy/plain_text.h"
 #include "import/import_input.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -93,6 +95,23 @@ void describe_import(const importing::InputFiles& input, const importing::Import
   temporary = std::max(temporary, importing::predict_import(input, memory));
 }
 
+/// Reads the vertices if the config gives the model a place.
+std::string placement_of(const config::Config& config, importing::MeshInput& input,
+                         const execution::CancelToken& cancel) {
+  if (!config.placement.longitude && !config.placement.crs)
+    return "";
+  BoundsD bounds;
+  input.open()->read_vertices([&](const mesh_io::VertexBlock& block) {
+    cancel.check();
+    for (const Vec3f p : block.positions)
+      bounds.add(to_double(p));
+    for (const Vec3d p : block.exact)
+      bounds.add(p);
+  });
+  const std::optional<Transform> transform = config::tileset_transform(config, bounds);
+  return transform ? config::placement_text(config, bounds, *transform) : "";
+}
+
 }  // namespace
 
 TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
@@ -125,9 +144,11 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
                          .time = {},
                          .disk = storage::existing_directory(files, config.output),
                          .input = config.input,
-                         .output = config.output};
+                         .output = config.output,
+                         .placement = {}};
   if (input.needs_import())
     describe_import(input.files(), importing::plan_import(memory_budget(config)), estimate);
+  estimate.placement = placement_of(config, input, cancel);
   input.drop();
   storage::check_output(files, {config.output, config.storage.container}, force);
   check_coders(estimate.plan.job);
@@ -165,31 +186,34 @@ std::string estimate_text(const BuildEstimate& e) {
       "            (an estimate, for {})\n",
       execution::duration_text(e.time.wall_seconds), counted(e.plan.threads, "threads"),
       execution::duration_text(e.time.cpu_seconds), kRateMachine);
-  return text;
+  return text + e.placement;
 }
 
 Json to_json(const BuildEstimate& e) {
   Json paths = Json::array();
   for (const std::filesystem::path& path : e.input)
     paths.push_back(path.string());
-  return {{"input", paths.size() == 1 ? paths[0] : paths},
-          {"output", e.output.string()},
-          {"input_bytes", e.mesh.file_bytes},
-          {"vertices", e.mesh.vertex_count},
-          {"places", e.mesh.places()},
-          {"faces", e.mesh.face_count},
-          {"partitions", e.plan.tree.partition_count()},
-          {"levels", e.tiles.levels},
-          {"tiles", e.tiles.tiles()},
-          {"predicted_output_bytes", e.plan.disk.output_bytes},
-          {"predicted_temporary_bytes", e.plan.disk.temporary_bytes},
-          {"predicted_room_bytes", e.plan.disk.room_bytes},
-          {"free_bytes", e.free_bytes},
-          {"memory", memory_json(e)},
-          {"threads", e.plan.threads},
-          {"estimated_cpu_seconds", std::round(e.time.cpu_seconds * 1000) / 1000},
-          {"estimated_wall_seconds", std::round(e.time.wall_seconds * 1000) / 1000},
-          {"rates_of", kRateMachine}};
+  Json json{{"input", paths.size() == 1 ? paths[0] : paths},
+            {"output", e.output.string()},
+            {"input_bytes", e.mesh.file_bytes},
+            {"vertices", e.mesh.vertex_count},
+            {"places", e.mesh.places()},
+            {"faces", e.mesh.face_count},
+            {"partitions", e.plan.tree.partition_count()},
+            {"levels", e.tiles.levels},
+            {"tiles", e.tiles.tiles()},
+            {"predicted_output_bytes", e.plan.disk.output_bytes},
+            {"predicted_temporary_bytes", e.plan.disk.temporary_bytes},
+            {"predicted_room_bytes", e.plan.disk.room_bytes},
+            {"free_bytes", e.free_bytes},
+            {"memory", memory_json(e)},
+            {"threads", e.plan.threads},
+            {"estimated_cpu_seconds", std::round(e.time.cpu_seconds * 1000) / 1000},
+            {"estimated_wall_seconds", std::round(e.time.wall_seconds * 1000) / 1000},
+            {"rates_of", kRateMachine}};
+  if (!e.placement.empty())
+    json["placement"] = e.placement;
+  return json;
 }
 
 }  // namespace meshhier::pipeline

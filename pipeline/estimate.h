@@ -40,11 +40,13 @@ struct BuildEstimate {
   std::uint64_t free_bytes = 0;
   mesh_io::InputPaths input;
   std::filesystem::path output;
+  std::string placement;  ///< as config::placement_text() has it
 };
 
 /// Refuses what build_hierarchy() refuses before its work, with the same Error; leaves nothing
 /// behind. Input that must be imported is imported to count it, into temporary files beside the
-/// output, which takes as long as in a build; of all else only the header is read.
+/// output, which takes as long as in a build; of all else only the header is read, and the vertices
+/// where places are counted or the config puts the model on the globe.
 BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
                              const execution::CancelToken& cancel = execution::CancelToken());
 

@@ -156,17 +156,42 @@ TEST(PlacementTransform, IsToldToPeople) {
   };
   EXPECT_EQ(text(kCrs),
             "placed by WGS 84 / UTM zone 33N at longitude 15.000000, latitude 47.853342, height "
-            "300.0 m: at most 16 cm off at the corners of its box\n");
+            "300.0 m above the ellipsoid, as the input's heights are taken: at most 16 cm off at "
+            "the corners of its box\n");
   EXPECT_THAT(text(R"("crs": "EPSG:27700", "offset": [530000, 180000, 0])"),
               AllOf(HasSubstr("; the change of datum is good to 2.0 m\n"), Not(HasSubstr("warn"))));
   EXPECT_THAT(text(R"("crs": "EPSG:25832")"),
               HasSubstr("warning: the model lies outside the area that ETRS89 / UTM zone 32N is "
                         "meant for"));
   EXPECT_EQ(text(R"("longitude": 5, "latitude": 6)"),
-            "placed at longitude 5.000000, latitude 6.000000, height 0.0 m: 2000 m from west to "
-            "east, 2000 m from south to north, 20 m high (taken to be in metres: \"units\" says "
-            "others)\n");
+            "placed at longitude 5.000000, latitude 6.000000, height 0.0 m above the ellipsoid: "
+            "2000 m from west to east, 2000 m from south to north, 20 m high (taken to be in "
+            "metres: \"units\" says others)\n");
   EXPECT_THAT(text(R"("transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])"), IsEmpty());
+}
+
+TEST(PlacementTransform, WarnsOfPlacesThatAreNone) {
+  const auto text = [](const std::string& placement, const BoundsD& box) {
+    const Config config = placed(placement);
+    return placement_text(config, box, tileset_transform(config, box).value());
+  };
+  const BoundsD map = box_to({5'300'000, 500'000, 200}, {5'301'000, 501'000, 400});
+  EXPECT_THAT(text(R"("crs": "EPSG:4978")", map),
+              AllOf(HasSubstr(" m above the ellipsoid: at most"),
+                    HasSubstr("km below the ground: the CRS has coordinates from the middle of "
+                              "the Earth, and those of a map are none; look at \"crs\"")));
+  const BoundsD geocentric = box_to(kPlace - Vec3d{9, 9, 9}, kPlace + Vec3d{9, 9, 9});
+  EXPECT_THAT(text(R"("crs": "EPSG:4978")", geocentric), Not(HasSubstr("warning")));
+  const BoundsD local = box_to({-1000, -1000, 90}, {1000, 1000, 110});
+  EXPECT_THAT(text(R"("crs": "EPSG:32633", "offset": [500000, 5300000, 90000])", local),
+              HasSubstr("warning: that is 90 km above the ground: look at \"crs\""));
+  EXPECT_THAT(text(R"("longitude": 5, "latitude": 6, "height": -400000)", local),
+              HasSubstr("warning: that is 400 km below the ground"));
+  const std::string globe = R"("longitude": 5, "latitude": 6)";
+  EXPECT_THAT(text(globe, local), Not(HasSubstr("warning")));
+  EXPECT_THAT(text(globe, map), HasSubstr("warning: the middle of the model is 5324 km from that "
+                                          "place: \"anchor\" names the point"));
+  EXPECT_THAT(text(globe + R"(, "anchor": [5300500, 500500, 0])", map), Not(HasSubstr("warning")));
 }
 
 /// The same placement of a model in metres, and of it in other units: the same point of the model.

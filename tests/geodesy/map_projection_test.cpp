@@ -64,6 +64,13 @@ TEST(MapProjection, IsThatOfPROJ) {
   }
 }
 
+TEST(MapProjection, TellsWhatHeightsAreAbove) {
+  EXPECT_EQ(MapProjection("EPSG:32633").heights(), kEllipsoid);
+  EXPECT_EQ(MapProjection("+proj=utm +zone=33 +datum=WGS84").heights(), kEllipsoid);
+  EXPECT_EQ(MapProjection("EPSG:32633+5773").heights(), "EGM96 height");
+  EXPECT_EQ(MapProjection("EPSG:4978").heights(), "");
+}
+
 TEST(MapProjection, TakesPROJStringsAndWkt) {
   const Vec3d map{500000, 5300000, 300};
   const Vec3d place = MapProjection("EPSG:32633").to_geocentric(map);
