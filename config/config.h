@@ -185,6 +185,14 @@ struct PlacementConfig {
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 
+/// How the tileset is told to viewers of 3D Tiles.
+struct TilesetConfig {
+  /// Its geometric errors are the tiles' errors times this. CesiumJS, 3d-tiles-renderer and iTowns
+  /// allow for 16 pixels by default: then the error is one.
+  double pixels = 16;
+  friend bool operator==(const TilesetConfig&, const TilesetConfig&) = default;
+};
+
 inline constexpr std::array kTopologies{NamedValue{"place", Topology::place},
                                         NamedValue{"index", Topology::index}};
 
@@ -212,6 +220,7 @@ struct Config {
   std::optional<UpAxis> up;
   std::optional<Unit> units;  ///< of the input's coordinates; none: as the format says, or unknown
   PlacementConfig placement;
+  TilesetConfig tileset;
   std::string licence;  ///< of the model; for the tileset; may be empty
   std::optional<BoundsD> crop_box() const {
     if (!crop)

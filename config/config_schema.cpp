@@ -1,6 +1,7 @@
 #include "config/config_schema.h"
 
 #include "execution/size_text.h"
+#include "storage/format/manifest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -527,6 +528,14 @@ std::vector<ConfigKey> make_config_keys() {
                       "by column, from z-up coordinates (in metres, if `units` are given)",
            .excludes = {"longitude"}},
           [](auto& c) -> auto& { return c.placement.transform; })),
+      deciding(number(
+          {.path = "tileset.pixels",
+           .meaning = "the tileset's `geometricError` is a tile's error times this: pixels that a "
+                      "viewer of 3D Tiles allows for by default, where the error shall be one "
+                      "pixel; 1: the error itself",
+           .takes_minimum = true},
+          {storage::kFewestTilesetPixels, storage::kMostTilesetPixels},
+          [](auto& c) -> auto& { return c.tileset.pixels; })),
       deciding(text(
           {.path = "licence", .meaning = "the licence of the model, a text in the tileset"},
           [](auto& c) -> auto& { return c.licence; })),
@@ -606,7 +615,8 @@ const std::vector<ConfigSection>& config_sections() {
       {"texture", "what becomes of the pictures of a textured mesh"},
       {"placement",
        "where the tileset puts the model: on the globe (WGS 84), x to the east; where its map "
-       "coordinates are; or anywhere by a transform"}};
+       "coordinates are; or anywhere by a transform"},
+      {"tileset", "what viewers of 3D Tiles are told"}};
   return sections;
 }
 

@@ -361,7 +361,8 @@ void put_chunk_head(ByteStream& to, std::uint64_t bytes, std::string_view type) 
 
 std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
   job.progress.stage("export", 2 * parts.count, "tiles");
-  const storage::TileFormat& format = job.reader.tile_format();
+  storage::TileFormat format = job.reader.tile_format();
+  format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
   std::vector<PartFacts> facts;
   std::vector<std::size_t> shown;  // that draw something
   std::uint64_t vertices = 0, triangles = 0;

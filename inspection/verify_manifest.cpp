@@ -133,6 +133,10 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
         manifest.transform == config::tileset_transform(config, manifest.source.bounds),
         "\"transform\" is not that of \"config.placement\"");
   }
+  if (says("/tileset/pixels")) {
+    problems.require(manifest.tileset_pixels == config.tileset.pixels,
+                     "\"tileset.pixels\" are not those of \"config\"");
+  }
   problems.compare("licence", manifest.licence, config.licence);
 }
 

@@ -78,9 +78,10 @@ struct RootFrame {
   std::optional<GlobeFrame> frame{};
 };
 
-RootFrame frame_of_root(const TilesetTile& root) {
-  if (is_local_frame(root.transform))
-    return {true, GlobeFrame{root.transform}};
+RootFrame frame_of_root(const TilesetDocument& document) {
+  const TilesetTile& root = document.tiles[0];
+  if (const GltfTransform from = from_input(document); is_local_frame(from))
+    return {true, GlobeFrame{from}};
   if (!root.volume)
     return {};
   const Ball ball = ball_of(*root.volume, root.transform);
@@ -90,7 +91,7 @@ RootFrame frame_of_root(const TilesetTile& root) {
 }
 
 std::optional<GlobeFrame> frame_of(const TilesetTree& tree) {
-  const RootFrame said = frame_of_root(tree.root().tiles[0]);
+  const RootFrame said = frame_of_root(tree.root());
   return said.is_known ? said.frame : frame_of_contents(tree);
 }
 
@@ -115,7 +116,7 @@ void add_meshes(const ShownContent& shown, Tileset& to) {
 std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::filesystem::path& path,
                                       std::uint64_t most_bytes) {
   const TilesetDocument document = read_tileset_document(*files.open(path), most_bytes);
-  if (const RootFrame said = frame_of_root(document.tiles[0]); said.is_known)
+  if (const RootFrame said = frame_of_root(document); said.is_known)
     return said.frame;
   return frame_of(TilesetTree(files, path, most_bytes));
 }

@@ -167,7 +167,23 @@ void add_tile(const GltfObject& tile, std::optional<std::uint32_t> parent, std::
                 [&](const GltfObject& within) { add_tile(within, number, next++, to); });
 }
 
+/// Of the root of a hierarchy.
+GltfTransform origin_of(const GltfObject& root) {
+  GltfTransform move;
+  const auto extras = root.object("extras");
+  if (const auto origin = extras ? extras->numbers("origin", 3) : std::nullopt)
+    move.offset = {(*origin)[0], (*origin)[1], (*origin)[2]};
+  return move;
+}
+
 }  // namespace
+
+GltfTransform from_input(const TilesetDocument& document) {
+  GltfTransform back;
+  back.offset = document.origin.offset * -1.0;
+  return document.origin == GltfTransform{} ? document.tiles[0].transform
+                                            : document.tiles[0].transform * back;
+}
 
 std::string place_of(const TilesetDocument& document, const TileContentName& content) {
   std::string place = content.place;
@@ -185,6 +201,8 @@ TilesetDocument read_tileset_document(const storage::File& file, std::uint64_t m
   TilesetDocument document{.path = file.path(), .axes = axes_of(asset)};
   document.is_hierarchy = asset.has_object("extras") &&
                           asset.require_object("extras").has_text("generator", "meshhier");
+  if (document.is_hierarchy)
+    document.origin = origin_of(root);
   add_tile(root, std::nullopt, 0, document);
   return document;
 }

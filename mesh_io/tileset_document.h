@@ -46,7 +46,11 @@ struct TilesetDocument {
   std::vector<TileContentName> contents{};
   GltfTransform axes{};       ///< from those of a glTF to those of 3D Tiles
   bool is_hierarchy = false;  ///< one that a build made
+  GltfTransform origin{};     ///< what the root's transform of a hierarchy does first: a move
 };
+
+/// The root's transform, but from the input's coordinates: without the move by the origin.
+GltfTransform from_input(const TilesetDocument& document);
 
 /// "root.children[3].content", for messages.
 std::string place_of(const TilesetDocument& document, const TileContentName& content);

@@ -179,13 +179,17 @@ bool TilesetTree::is_below_place(const fs::path& path) const {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-TilesetTree::Stand TilesetTree::stand_of(const TilesetTile& tile, const Stand& parent,
+TilesetTree::Stand TilesetTree::stand_of(const TilesetDocument& document, const TilesetTile& tile,
+                                         const Stand& parent,
                                          const std::optional<GlobeFrame>& frame) {
   Stand stand{.to_globe = parent.to_globe * tile.transform,
               .placement = parent.placement * tile.transform,
               .adds = mesh_io::adds(tile.refine, parent.adds)};
-  if (frame && stand.to_globe == frame->to_globe)
-    stand.placement = {};  // exactly, without a way to the globe and back
+  // Exactly, without a way to the globe and back:
+  if (frame && !tile.parent && parent.to_globe * from_input(document) == frame->to_globe)
+    stand.placement = document.origin;
+  else if (frame && stand.to_globe == frame->to_globe)
+    stand.placement = {};
   return stand;
 }
 
@@ -196,7 +200,8 @@ void TilesetTree::walk(std::uint32_t document, const Stand& parent,
   std::vector<Stand> stands;
   stands.reserve(part.document.tiles.size());
   for (const TilesetTile& tile : part.document.tiles) {
-    stands.push_back(stand_of(tile, tile.parent ? stands[*tile.parent] : parent, frame));
+    stands.push_back(
+        stand_of(part.document, tile, tile.parent ? stands[*tile.parent] : parent, frame));
     const Stand& stand = stands.back();
     for (std::uint32_t c = tile.first_content; c < tile.end_content; ++c) {
       if (!is_shown(tile, stand.adds)) {

@@ -84,8 +84,8 @@ class TilesetTree {
   TileContent data_content(const Part& part, const TileContentName& name, std::string_view base64);
   std::filesystem::path file_of(const Part& part, const TileContentName& content) const;
   bool is_below_place(const std::filesystem::path& path) const;
-  static Stand stand_of(const TilesetTile& tile, const Stand& parent,
-                        const std::optional<GlobeFrame>& frame);
+  static Stand stand_of(const TilesetDocument& document, const TilesetTile& tile,
+                        const Stand& parent, const std::optional<GlobeFrame>& frame);
   void walk(std::uint32_t document, const Stand& parent, const std::optional<GlobeFrame>& frame,
             const Visit& visit, const std::function<void()>& coarser) const;
 

@@ -49,7 +49,7 @@ std::optional<Lattice> lattice_of(const DistributedSource& source, const StageCo
 storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
                               const TextureStore& textures, const StageContext& context) {
   storage::TileFormat format = {source.summary.attributes,
-                                {source.origin, context.config.up_axis()},
+                                {{}, context.config.up_axis()},  // the origin is in the tileset
                                 context.config.storage.compression,
                                 {}};
   format.computed_normals = computed_normals;
@@ -327,12 +327,13 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = source;
-  manifest.origin = format.frame.origin;
+  manifest.origin = journal.source()->origin;
   manifest.up = format.frame.up;
   manifest.units = context.config.units ? context.config.units : source.units;
   manifest.first_view = lines.first_view;
   manifest.transform = config::tileset_transform(context.config, source.bounds);
   manifest.licence = context.config.licence;
+  manifest.tileset_pixels = context.config.tileset.pixels;
   manifest.partition_count = tree.partition_count();
   manifest.compression = format.compression;
   manifest.quantization = quantization;

@@ -100,8 +100,7 @@ void check_first_view(const std::optional<Standpoint>& found, const Manifest& ma
 }
 
 TileFormat format_of(const Manifest& manifest) {
-  TileFormat format{
-      manifest.source.attributes, {manifest.origin, manifest.up}, manifest.compression, {}};
+  TileFormat format{manifest.source.attributes, manifest.tile_frame(), manifest.compression, {}};
   if (manifest.quantization)
     format.lattice = manifest.quantization->lattice;
   format.computed_normals = manifest.computed_normals;

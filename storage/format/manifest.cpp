@@ -100,6 +100,16 @@ Json preview_json(const Preview& preview) {
           {"height", preview.height}};
 }
 
+Json tileset_json(const Manifest& manifest) {
+  Json tileset = {{"file", tileset_path({}).string()},
+                  {"files", manifest.tileset_files},
+                  {"bytes", manifest.tileset_bytes},
+                  {"checksum", hex_digits(manifest.tileset_checksum)}};
+  if (manifest.tileset_pixels)
+    tileset["pixels"] = *manifest.tileset_pixels;
+  return tileset;
+}
+
 Json view_json(const Standpoint& view) {
   return {{"azimuth", view.azimuth}, {"elevation", view.elevation}};
 }
@@ -125,10 +135,7 @@ Json manifest_json(const Manifest& manifest) {
   document["outline"] = outline_json(manifest);
   if (manifest.preview)
     document["preview"] = preview_json(*manifest.preview);
-  document["tileset"] = {{"file", tileset_path({}).string()},
-                         {"files", manifest.tileset_files},
-                         {"bytes", manifest.tileset_bytes},
-                         {"checksum", hex_digits(manifest.tileset_checksum)}};
+  document["tileset"] = tileset_json(manifest);
   document["levels"] = manifest.levels;
   document["total_bytes"] = manifest.total_bytes;
   return document;
@@ -294,6 +301,32 @@ std::optional<Standpoint> read_view(const JsonObject& object) {
   return found;
 }
 
+void read_tileset(const JsonObject& object, std::uint64_t version, Manifest& manifest) {
+  manifest.tileset_files = object.count("files");
+  manifest.tileset_bytes = object.count("bytes");
+  manifest.tileset_checksum = object.hash("checksum");
+  if (version <= kTrueErrorsFormatVersion)
+    return;
+  manifest.tileset_pixels = object.number("pixels");
+  if (!(*manifest.tileset_pixels >= kFewestTilesetPixels &&
+        *manifest.tileset_pixels <= kMostTilesetPixels))
+    object.wrong("pixels", fmt::format("{} to {}", kFewestTilesetPixels, kMostTilesetPixels));
+}
+
+/// Until 11, what tiles have decided the version.
+void check_version(std::uint64_t version, const Manifest& manifest, const JsonObject& object) {
+  if (version > kTrueErrorsFormatVersion)
+    return;
+  if (version < kNoKtx2FormatVersion &&
+      (version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
+    object.wrong("format_version", "9 if and only if there are values, no normal maps and no KTX2");
+  if ((version == kTrueErrorsFormatVersion) != manifest.has_ktx2())
+    object.wrong("format_version", "11 if and only if pictures or normal maps are KTX2");
+  if (version < kTrueErrorsFormatVersion &&
+      (version == kNoKtx2FormatVersion) != manifest.normal_maps.has_value())
+    object.wrong("format_version", "10 if and only if there are normal maps, none of them KTX2");
+}
+
 std::uint32_t read_side(const JsonObject& object, const char* key) {
   const std::uint64_t side = object.count(key, kMostPreviewSide);
   if (side == 0)
@@ -310,6 +343,19 @@ std::optional<Preview> read_preview(const JsonObject& object) {
 }
 
 }  // namespace
+
+std::optional<Transform> Manifest::root_transform() const {
+  std::optional<Transform> root = transform;
+  if (!root && units && *units != Unit::m)
+    root = scaled(kIdentity, metres_of(*units));
+  const Vec3d shift = to_z_up(origin - tile_frame().origin, up);
+  if (shift == Vec3d{})
+    return root;
+  Transform moved = root.value_or(kIdentity);
+  for (std::size_t i = 0; i < 3; ++i)
+    moved[12 + i] += moved[i] * shift.x + moved[4 + i] * shift.y + moved[8 + i] * shift.z;
+  return moved;
+}
 
 Json source_json(const SourceSummary& source) {
   Json json{
@@ -365,9 +411,6 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.first_view = read_view(object);
   const std::uint64_t version = object.count("format_version");
   manifest.screen_colours = version <= kScreenColoursFormatVersion;
-  if (version < kNoKtx2FormatVersion &&
-      (version > kNoValuesFormatVersion) != !manifest.source.attributes.values.empty())
-    object.wrong("format_version", "9 if and only if there are values, no normal maps and no KTX2");
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =
@@ -384,11 +427,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);
   manifest.normal_maps = read_normal_maps(storage, manifest.source);
-  if ((version == kFormatVersion) != manifest.has_ktx2())
-    object.wrong("format_version", "11 if and only if pictures or normal maps are KTX2");
-  if (version < kFormatVersion &&
-      (version == kNoKtx2FormatVersion) != manifest.normal_maps.has_value())
-    object.wrong("format_version", "10 if and only if there are normal maps, none of them KTX2");
+  check_version(version, manifest, object);
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");
@@ -396,10 +435,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.index_checksum = object.object("index").hash("checksum");
   read_outline(object.object("outline"), manifest);
   manifest.preview = read_preview(object);
-  const JsonObject tileset = object.object("tileset");
-  manifest.tileset_files = tileset.count("files");
-  manifest.tileset_bytes = tileset.count("bytes");
-  manifest.tileset_checksum = tileset.hash("checksum");
+  read_tileset(object.object("tileset"), version, manifest);
   manifest.levels = object.at("levels");
   if (!manifest.levels.is_array())
     object.wrong("levels", "an array");

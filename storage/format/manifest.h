@@ -17,7 +17,9 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 11;
+inline constexpr int kFormatVersion = 12;
+/// Without Manifest::tileset_pixels, of pictures or normal maps in KTX2.
+inline constexpr int kTrueErrorsFormatVersion = 11;
 /// The same without pictures or normal maps in KTX2, of tiles with normal maps.
 inline constexpr int kNoKtx2FormatVersion = 10;
 /// The same without normal maps, of tiles with values.
@@ -28,6 +30,9 @@ inline constexpr int kNoValuesFormatVersion = 8;
 inline constexpr int kScreenColoursFormatVersion = 7;
 /// The oldest that is read: that without a first view.
 inline constexpr int kOldestFormatVersion = 6;
+
+/// Of Manifest::tileset_pixels.
+inline constexpr double kFewestTilesetPixels = 1, kMostTilesetPixels = 1000;
 
 /// What rounding to a lattice did.
 struct Quantization {
@@ -65,6 +70,9 @@ struct Manifest {
   std::optional<TextureFormat> textures;  ///< of tiles' pictures; if and only if the source has any
   bool screen_colours = false;            ///< as TileFormat's; of format versions up to 7
   std::optional<NormalMapFormat> normal_maps{};  ///< some tiles have one
+  /// The tileset's geometric errors are the tiles' errors times this, at least 1. None: of format
+  /// versions up to 11, whose nodes hold the origin; later it is in the tileset's root.
+  std::optional<double> tileset_pixels{};
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
@@ -80,12 +88,12 @@ struct Manifest {
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
   std::uint64_t total_bytes = 0;       ///< of all files but this one
 
-  /// Of the tileset's root: its coordinates become metres. None: they are, or are not known.
-  std::optional<Transform> root_transform() const {
-    if (transform || !units || *units == Unit::m)
-      return transform;
-    return scaled(kIdentity, metres_of(*units));
-  }
+  /// Of the tileset's root: its coordinates become metres, those of the nodes (tile_frame()) the
+  /// input's. None: they are, or are not known.
+  std::optional<Transform> root_transform() const;
+
+  /// Of the nodes of tiles and of the outline.
+  Frame tile_frame() const { return {tileset_pixels ? Vec3d{} : origin, up}; }
 
   /// Whether graphics devices keep its pictures or normal maps compressed.
   bool has_ktx2() const {
@@ -94,7 +102,8 @@ struct Manifest {
   }
 
   int format_version() const {
-    return has_ktx2()                          ? kFormatVersion
+    return tileset_pixels                      ? kFormatVersion
+           : has_ktx2()                        ? kTrueErrorsFormatVersion
            : normal_maps                       ? kNoKtx2FormatVersion
            : !source.attributes.values.empty() ? kNoMapsFormatVersion
            : !screen_colours                   ? kNoValuesFormatVersion

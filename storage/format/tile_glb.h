@@ -51,7 +51,7 @@ constexpr bool is_gzipped(Compression compression) {
 /// What all tiles of a hierarchy share.
 struct TileFormat {
   AttributeLayout attributes;
-  Frame frame;  ///< the node's; its origin is 0 for float input
+  Frame frame;  ///< the node's; Manifest::tile_frame()
   Compression compression = Compression::none;
   std::optional<Lattice> lattice{};  ///< what all positions lie on, if they are quantized
   bool computed_normals = false;     ///< Shading has normals; `attributes` has none then

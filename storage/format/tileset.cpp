@@ -4,6 +4,7 @@
 #include "hierarchy/wgs84.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/sealed_json.h"
 #include "storage/format/tile_values.h"
 #include "storage/io/hash.h"
 
@@ -85,6 +86,9 @@ class TilesetWriter {
            !tree_.is_partition(tree_.tile_node(node));
   }
 
+  /// What viewers allow for by default; errors are told times that.
+  double pixels() const { return manifest_.tileset_pixels.value_or(1); }
+
   const TileRecord& record(NodeId node) const { return record_of(records_, node); }
 
   std::string text_of(NodeId root) const {
@@ -98,7 +102,7 @@ class TilesetWriter {
     // What is missing while nothing is drawn, in metres: no transform is above.
     const std::optional<Transform> transform = manifest_.root_transform();
     const double error = std::max(diagonal(boxes_[root]), 2.0 * record(root).error);
-    document["geometricError"] = error * (transform ? largest_scale(*transform) : 1);
+    document["geometricError"] = pixels() * error * (transform ? largest_scale(*transform) : 1);
     document["root"] = tile_json(root, root);
     if (is_first && transform)
       document["root"]["transform"] = *transform;
@@ -145,20 +149,25 @@ class TilesetWriter {
 
   /// `root`: of the file it is written into.
   Json tile_json(NodeId node, NodeId root) const {
+    const bool is_root = node == tree_.root();
     const std::string up = root == tree_.root() ? "" : "../../";
     Json tile;
     tile["boundingVolume"] = {{"box", box_json(boxes_[node])}};
     if (node != root && is_page(node)) {
       // Shown never; between the errors of its parent and of the tile it leads to.
       const double above = record(tree_.parent_tile(node)).error;
-      tile["geometricError"] = (above + record(node).error) / 2;
+      tile["geometricError"] = pixels() * ((above + record(node).error) / 2);
       tile["content"] = {{"uri", up + tileset_path({}, node).generic_string()}};
       return tile;
     }
-    tile["geometricError"] = record(node).error;
+    tile["geometricError"] = pixels() * record(node).error;
     if (node == root)
       tile["refine"] = "REPLACE";
     tile["content"] = {{"uri", up + tile_path({}, node).generic_string()}};
+    if (manifest_.tileset_pixels)
+      tile["extras"]["error"] = record(node).error;
+    if (is_root && manifest_.origin != manifest_.tile_frame().origin)
+      tile["extras"]["origin"] = point_json(to_z_up(manifest_.origin, manifest_.up) + Vec3d{});
     const Tree::Children children = tree_.children(node);
     for (const NodeId child : children.span())
       tile["children"].push_back(tile_json(tree_.tile_node(child), root));
@@ -166,8 +175,9 @@ class TilesetWriter {
   }
 
   Json box_json(const Bounds& bounds) const {
-    const Vec3d low = to_double(bounds.min) + manifest_.origin;
-    const Vec3d high = to_double(bounds.max) + manifest_.origin;
+    const Vec3d origin = manifest_.tile_frame().origin;
+    const Vec3d low = to_double(bounds.min) + origin;
+    const Vec3d high = to_double(bounds.max) + origin;
     const Vec3d centre = to_z_up((low + high) * 0.5, manifest_.up);
     const Vec3d extent = to_z_up((high - low) * 0.5, manifest_.up);
     const auto half = [&](double x) { return std::max(std::abs(x), thinnest_); };

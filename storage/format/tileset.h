@@ -1,7 +1,9 @@
 // 3D Tiles 1.1 over a hierarchy's tiles: tileset.json, and the files that it pages through.
 //
 // One tile of the tileset is one node; refinement replaces. A box holds all that is drawn of a node
-// and below it; the geometric errors are the tiles' errors, strictly decreasing. Where a file would
+// and below it; the geometric errors are the tiles' errors times a factor, strictly decreasing,
+// because viewers allow for many pixels by default. The root's transform holds the origin: numbers
+// below it are small, and floats suffice for who multiplies matrices in floats. Where a file would
 // have more than kTilesetLevels levels, the nodes of the next one are external tilesets, so that a
 // viewer starts with one small request and no file exceeds 256 kB.
 #pragma once
@@ -28,7 +30,7 @@ struct TilesetFile {
 };
 
 /// Visits every file, tileset.json first. Uses of the manifest: generator, source, origin, up,
-/// transform, licence. Deterministic, O(tiles). `records`: ascending by node, all of the tree's.
+/// transform, units, licence, tileset_pixels. Deterministic, O(tiles). `records`: ascending by node, all of the tree's.
 void for_each_tileset(const Manifest& manifest, const Tree& tree,
                       std::span<const TileRecord> records,
                       const std::function<void(const TilesetFile&)>& visit);

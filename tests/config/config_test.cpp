@@ -950,13 +950,14 @@ TEST(Config, CompleteTextIsTheSameConfigAnywhere) {
   const auto again = [](const Config& config) {
     return parse_config(complete_text(config, "/elsewhere"), {"plan", "/nowhere"}, {});
   };
-  for (const char* keys :
-       {"", R"("partition": {"count": 9}, "simplify": {"vertices": [100, 200]}, "threads": 3)",
-        R"("partition": {"vertices": 77}, "memory_budget": "300MiB", "weld": true)",
-        R"("texture": {"use": false}, "licence": "CC0", "up": "z", "preview": false,
+  for (
+      const char* keys :
+      {"", R"("partition": {"count": 9}, "simplify": {"vertices": [100, 200]}, "threads": 3)",
+       R"("partition": {"vertices": 77}, "memory_budget": "300MiB", "weld": true)",
+       R"("texture": {"use": false}, "licence": "CC0", "up": "z", "preview": false, "tileset": {"pixels": 1},
            "placement": {"crs": "EPSG:32632", "offset": [1, 2, 3]})",
-        R"("placement": {"metadata": "m.xml"}, "storage": {"container": "3tz"})",
-        R"("placement": {"longitude": 10, "latitude": 50, "height": 3, "anchor": [1, 2, 3]},
+       R"("placement": {"metadata": "m.xml"}, "storage": {"container": "3tz"})",
+       R"("placement": {"longitude": 10, "latitude": 50, "height": 3, "anchor": [1, 2, 3]},
            "storage": {"compression": "zlib", "positions": {"bits": 12}, "normals": "none"})"}) {
     const Config config = parse(with(keys));
     EXPECT_EQ(again(config), config) << keys;

@@ -328,6 +328,37 @@ TEST_F(TilesetImportTest, TwoTilesetsShareTheFrameOfTheFirst) {
             1e-8);
 }
 
+// A hierarchy's root moves by the origin first: what is read of it are the input's coordinates.
+TEST_F(TilesetImportTest, AHierarchyIsReadInTheCoordinatesOfItsInput) {
+  put("a.glb", triangle().glb());
+  const Transform place{0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, kRadius + 0.25, 0, 0, 1};
+  const auto read = [&](const Transform& transform, const char* generator) {
+    GltfJson root = tile_of("a.glb");
+    root["transform"] = transform;
+    root["extras"]["origin"] = {1000, -20, 3};
+    GltfJson whole = GltfJson::parse(tileset_of(root));
+    whole["asset"]["extras"]["generator"] = generator;
+    put("tileset.json", whole.dump());
+    return tests::import_files(files_, fs::path("w/tileset.json")).positions;
+  };
+  Transform moved = kIdentity;
+  moved[12] = 1000;
+  moved[13] = -20;
+  moved[14] = 3;
+  const std::vector<Vec3d> input{{1000, -20, 3}, {1001, -20, 3}, {1000, -20, 5}};
+  EXPECT_EQ(read(moved, "meshhier 9"), input) << "it is nowhere in particular";
+  EXPECT_FALSE(framed().placement.transform);
+
+  Transform there = place;  // after the move by the origin
+  there[12] += 3;
+  there[13] += 1000;
+  there[14] += -20;
+  EXPECT_EQ(read(there, "meshhier 9"), input);
+  EXPECT_EQ(framed().placement.transform, place);
+  EXPECT_EQ(read(there, "another"), (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 0, 2}}));
+  EXPECT_EQ(framed().placement.transform, there);
+}
+
 TEST_F(TilesetImportTest, WhatCannotBeReadIsRefusedWithItsPlace) {
   put("a.glb", triangle().glb());
   put("../outside.glb", triangle().glb());

@@ -7,6 +7,7 @@
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -384,6 +386,79 @@ TEST_F(VerifyMutationsTest, LinksAreNoFiles) {
   fs::rename(level, outside);
   fs::create_directory_symlink(outside, level);
   EXPECT_THAT(problems(), testing::Contains(HasSubstr(level.string() + ": a link")));
+}
+
+/// The JSON of a GLB.
+Json json_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 12, sizeof length);
+  return Json::parse(bytes.substr(20, length));
+}
+
+// Viewers that multiply matrices in floats would move what lies at 5,800,000 by decimetres.
+TEST_F(VerifyMutationsTest, LargeCoordinatesAreInTheTilesetsRootAlone) {
+  tests::TestMesh moved = tests::sphere(2000, 0.01F);
+  for (Vec3f& p : moved.positions)
+    p = {p.x + 500'000, p.y + 5'800'000, p.z};
+  const fs::path ply = directory_.path() / "map.ply";
+  tests::write_ply(moved, ply);
+  for (const char* more : {"", "units", "lattice", "placed"}) {
+    config::Config config = small();
+    config.input = ply;
+    config.up = UpAxis::z;
+    const std::string what = more;
+    if (what == "units")
+      config.units = Unit::ft;
+    if (what == "lattice")
+      config.storage.position_bits = 14;
+    if (what == "placed")
+      config.placement = {.longitude = 9, .latitude = 48, .anchor = {{500'000, 5'800'000, 0}}};
+    config.output = path();
+    execution::NoProgress progress;
+    pipeline::build_hierarchy(config, {.force = true},
+                              {*files_, progress, execution::CancelToken()});
+    EXPECT_THAT(problems(), IsEmpty()) << more;
+    const storage::HierarchyReader reader(*files_, path());
+    ASSERT_EQ(reader.manifest().origin, (Vec3d{500'000, 5'800'000, 0})) << more;
+    for (const fs::path& file :
+         {storage::tile_path(path(), tests::node(0, 0)), storage::outline_path(path())}) {
+      for (const Json& number : json_of(file)["nodes"][0]["matrix"])
+        EXPECT_LE(std::abs(number.get<double>()), 2) << more << ' ' << file;
+    }
+    const Json root = Json::parse(text_of(storage::tileset_path(path())))["root"];
+    const double unit = what == "units" ? 0.3048 : 1;
+    if (what == "placed") {
+      const Transform place = storage::globe_transform(9, 48, 0, {}, UpAxis::z);
+      for (std::size_t i = 0; i < place.size(); ++i)
+        EXPECT_NEAR(root["transform"][i].get<double>(), place[i], 1e-8) << i;
+    } else {
+      EXPECT_EQ(root["transform"][13], 5'800'000 * unit) << more;
+    }
+  }
+}
+
+// An archive that an unpacker has unpacked, on a disk that several systems have looked at.
+TEST_F(VerifyMutationsTest, WhatSystemsLeaveInFoldersIsNoProblem) {
+  config::Config config = small();
+  config.input = mesh("mesh.ply");
+  build(config);
+  const std::vector<const char*> names{"@3dtilesIndex1@", ".DS_Store",        "tiles/00/.DS_Store",
+                                       "Thumbs.db",       "tiles/.nfs00a1b2", "tiles/._00",
+                                       "__MACOSX/x/._y",  "tiles/@eaDir/z"};
+  for (const char* name : names) {
+    fs::create_directories((path() / name).parent_path());
+    std::ofstream(path() / name) << "anything";
+  }
+  EXPECT_THAT(problems(), IsEmpty());
+  std::ofstream(path() / "tiles/@3dtilesIndex1@") << "elsewhere";
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("tiles/@3dtilesIndex1@: not a file of this")));
+  fs::remove(path() / "tiles/@3dtilesIndex1@");
+  config.output = path();
+  execution::NoProgress progress;
+  pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, execution::CancelToken()});
+  EXPECT_FALSE(fs::exists(path() / "Thumbs.db")) << "they go with what is replaced";
 }
 
 TEST_F(VerifyMutationsTest, DirectoriesOfNothingAreNamed) {

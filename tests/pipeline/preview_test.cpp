@@ -210,7 +210,7 @@ TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
   }
   const auto index = storage::encode_index(records);
   manifest.index_checksum = storage::checksum(index);
-  const auto lines = storage::encode_outline(outline, {manifest.origin, manifest.up});
+  const auto lines = storage::encode_outline(outline, manifest.tile_frame());
   manifest.outline_checksum = storage::checksum(lines);
   manifest.levels = nlohmann::ordered_json::array();
   for (const auto& level : storage::summarize_levels(reader.tree(), records))

@@ -2,6 +2,8 @@
 import { coveredAround, pixelsOf, standing } from './pixels.mjs';
 
 const Cesium = window.Cesium;
+/// How many times a tile's error its `geometricError` is, by default.
+const PIXELS_AN_ERROR = 16;
 // Frames with all tiles there before the picture counts as complete.
 const QUIET_FRAMES = 10;
 
@@ -55,7 +57,7 @@ function draw() {
 
 /// Refines until nothing is left to do for `errorTarget` pixels.
 async function settle(errorTarget) {
-  tileset.maximumScreenSpaceError = errorTarget;
+  tileset.maximumScreenSpaceError = PIXELS_AN_ERROR * errorTarget;
   for (let quiet = 0; quiet < QUIET_FRAMES; ) {
     await new Promise((resolve) => requestAnimationFrame(resolve));
     draw();

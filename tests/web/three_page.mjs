@@ -8,6 +8,8 @@ import { loadMesh, takeLight } from './original_mesh.mjs';
 import { coveredAround, pixelsOf, signalToNoise, standing } from './pixels.mjs';
 
 const SIZE = 512;
+/// How many times a tile's error its `geometricError` is, by default.
+const PIXELS_AN_ERROR = 16;
 // Frames without anything under way before the picture counts as complete.
 const QUIET_FRAMES = 10;
 // Within so many something is in sight: what has come may be in no count for a while.
@@ -132,7 +134,7 @@ function look({ direction, distance, close = false }) {
 
 /// Refines until nothing is left to do for `errorTarget` pixels.
 async function settle(errorTarget) {
-  tiles.errorTarget = errorTarget;
+  tiles.errorTarget = PIXELS_AN_ERROR * errorTarget;
   for (let quiet = 0, frames = 0; quiet < QUIET_FRAMES; ++frames) {
     await frame();
     tiles.update();

@@ -139,8 +139,8 @@ describe('readManifest', () => {
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
 
-  it('knows three versions of the format', () => {
-    for (const version of [6, 7, 8])
+  it('knows seven versions of the format', () => {
+    for (const version of [6, 7, 8, 9, 10, 11, 12])
       expect(readManifest(textured(undefined, undefined).replace('"format_version":6', `"format_version":${version}`)).partitions).toBe(1);
   });
 

@@ -603,15 +603,49 @@ TEST(Manifest, Ktx2IsOfVersionElevenAlone) {
   EXPECT_THAT(failure(sealed(changed)), HasSubstr("11 if and only if pictures or normal maps"));
 }
 
+TEST(Manifest, PixelsOfTheTilesetAreOfVersionTwelveAlone) {
+  for (Manifest manifest : {make_manifest(), make_textured(), with_values()}) {
+    EXPECT_EQ(manifest.tile_frame(), (Frame{manifest.origin, manifest.up}));
+    manifest.tileset_pixels = 7.5;
+    EXPECT_EQ(manifest.tile_frame(), (Frame{{}, manifest.up})) << "the tileset has the origin";
+    EXPECT_EQ(manifest.format_version(), 12);
+    const Manifest back = parse_manifest(to_json_text(manifest), kManifestName);
+    expect_same(back, manifest);
+    EXPECT_EQ(back.tileset_pixels, 7.5);
+    for (const Json& wrong : {Json(0), Json(0.5), Json(1001), Json("16"), Json()}) {
+      Json changed = Json::parse(to_json_text(manifest));
+      changed["tileset"]["pixels"] = wrong;
+      EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"tileset.pixels\" is wrong")) << wrong;
+    }
+    Json changed = Json::parse(to_json_text(manifest));
+    changed["tileset"].erase("pixels");
+    EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"tileset.pixels\"")) << "is missing";
+  }
+}
+
+TEST(Manifest, TheRootOfTheTilesetHasTheOriginSinceVersionTwelve) {
+  Manifest manifest = make_manifest();
+  manifest.transform.reset();
+  manifest.origin = {100, 200, 300};
+  EXPECT_FALSE(manifest.root_transform()) << "the nodes have it";
+  manifest.tileset_pixels = 16;
+  EXPECT_EQ(manifest.root_transform(),
+            (Transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100, 200, 300, 1}));
+  manifest.up = UpAxis::y;
+  manifest.units = Unit::km;
+  EXPECT_EQ(manifest.root_transform(),
+            (Transform{1e3, 0, 0, 0, 0, 1e3, 0, 0, 0, 0, 1e3, 0, 1e5, -3e5, 2e5, 1}));
+}
+
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 12;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 12 is newer than 11"));
+  document["format_version"] = 13;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 13 is newer than 12"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 11: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 12: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

@@ -1,11 +1,14 @@
 #include "storage/format/tileset.h"
 
 #include "hierarchy/bounds.h"
+#include "storage/format/index.h"
 #include "storage/format/layout.h"
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -189,6 +192,76 @@ Vec3d apply(const Transform& m, Vec3d p) {
   return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
           m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
+}
+
+/// The tile, and all below it in its file.
+void visit_tiles(const Json& tile, const std::function<void(const Json&)>& visit) {
+  visit(tile);
+  for (const Json& child : tile.value("children", Json::array()))
+    visit_tiles(child, visit);
+}
+
+TEST(Tileset, TellsErrorsTimesWhatViewersAllowFor) {
+  const Tree tree(100'000, 1000);
+  const std::vector<TileRecord> records = records_of(tree);
+  for (const double pixels : {1.0, 7.3, 16.0, 1000.0}) {
+    Manifest manifest;
+    const Tileset plain(manifest, tree, records);
+    manifest.tileset_pixels = pixels;
+    const Tileset tileset(manifest, tree, records);  // strictly decreasing: its walk looks
+    std::size_t tiles = 0;
+    for (const std::string& file : tileset.visited_files()) {
+      visit_tiles(tileset.root(file), [&](const Json& tile) {
+        const auto uri = tile["content"]["uri"].get<std::string>();
+        const auto node = storage::tile_of(uri.substr(uri.find("tiles/")));
+        EXPECT_EQ(tile.contains("extras"), node.has_value()) << uri;
+        if (!node)
+          return;
+        const float error = storage::record_of(records, *node).error;
+        EXPECT_EQ(tile["extras"]["error"], error) << uri;
+        EXPECT_EQ(tile["geometricError"], pixels * error) << uri;
+        ++tiles;
+      });
+    }
+    EXPECT_EQ(tiles, records.size());
+    const fs::path first = storage::tileset_path({});
+    EXPECT_EQ(tileset.document(first)["geometricError"],
+              pixels * plain.document(first)["geometricError"].get<double>());
+    EXPECT_FALSE(plain.root(first).contains("extras")) << "as until version 11";
+  }
+}
+
+TEST(Tileset, HasTheOriginInItsRootAlone) {
+  const Tree tree(100'000, 200);
+  const std::vector<TileRecord> records = records_of(tree);
+  const Transform place = storage::globe_transform(9, 48, 300, {1e6, 2e6, -7}, UpAxis::z);
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    for (const std::optional<Transform>& transform : {std::optional<Transform>{}, {place}}) {
+      Manifest manifest;
+      manifest.up = up;
+      manifest.transform = transform;
+      manifest.tileset_pixels = 16;
+      const Json at_zero = Tileset(manifest, tree, records).root(storage::tileset_path({}));
+      manifest.origin = {1e6, 2e6, -7};
+      const Tileset tileset(manifest, tree, records);
+      for (const std::string& file : tileset.visited_files()) {
+        visit_tiles(tileset.root(file), [&](const Json& tile) {
+          EXPECT_EQ(tile.contains("transform"), tile["content"]["uri"] == "tiles/00/000000.glb");
+          for (const Json& number : tile["boundingVolume"]["box"])
+            EXPECT_LT(std::abs(number.get<double>()), 300) << file;
+        });
+      }
+      const Json root = tileset.root(storage::tileset_path({}));
+      EXPECT_EQ(root["boundingVolume"], at_zero["boundingVolume"]);
+      const Vec3d origin = to_z_up(manifest.origin, up);
+      EXPECT_EQ(root["extras"]["origin"], Json({origin.x, origin.y, origin.z}));
+      const auto found = root["transform"].get<Transform>();
+      const Vec3d near{3, -5, 100};
+      const Transform place_of_input = transform.value_or(kIdentity);
+      const Vec3d wanted = apply(place_of_input, origin + near);
+      EXPECT_LT(length(apply(found, near) - wanted), 1e-8);
+    }
+  }
 }
 
 TEST(Globe, PlacesTheAnchorAndStandsUp) {

@@ -16,7 +16,7 @@ export interface Outline {
   formSegments: number;
   /// The axis of the stored positions that points up.
   up: 'y' | 'z';
-  /// Turns stored positions upright and adds the origin; 16 numbers, column by column.
+  /// Turns stored positions upright, and adds the origin until format version 11; 16 numbers, column by column.
   matrix: readonly number[];
   firstView: FirstView | null;
 }
