@@ -326,8 +326,7 @@ class HttpServer::Library final : public httplib::Server {
       case Connection::Next::request:
         break;
       case Connection::Next::malformed:
-        return refuse(connection, 400, "Bad Request",
-                      "This is no request that is read in one way.");
+        return refuse(connection, 400, "Bad Request", "");
       case Connection::Next::too_large:
         return refuse(
             connection, 431, "Request Header Fields Too Large",
@@ -349,15 +348,18 @@ class HttpServer::Library final : public httplib::Server {
     return is_sent && !closes && !client_closes && !exchange.ends_connection && !is_stopping_;
   }
 
-  /// What is no request is not shown in the log: "-" stands for it.
+  /// What is no request is not shown in the log: "-" stands for it. `why`: for people; may be
+  /// empty.
   bool refuse(Connection& connection, int status, const char* reason, const std::string& why) {
+    const std::string body = why.empty() ? "" : why + '\n';
     const std::string reply = fmt::format(
-        "HTTP/1.1 {} {}\r\nConnection: close\r\nCache-Control: no-store\r\n"
-        "Content-Type: text/plain; charset=utf-8\r\nContent-Length: {}\r\n\r\n{}\n",
-        status, reason, why.size() + 1, why);
+        "HTTP/1.1 {} {}\r\nConnection: close\r\nCache-Control: no-store\r\n{}"
+        "Content-Length: {}\r\n\r\n{}",
+        status, reason, body.empty() ? "" : "Content-Type: text/plain; charset=utf-8\r\n",
+        body.size(), body);
     connection.write(reply.data(), reply.size());
     if (log_)
-      log_({connection.address(), "-", "-", status, why.size() + 1});
+      log_({connection.address(), "-", "-", status, body.size()});
     return false;
   }
 

@@ -116,10 +116,10 @@ struct Head {
 
  private:
   std::optional<std::uint64_t> length_of(std::string_view text) {
-    const auto length = file_length(text);
-    if (!length && is_number(text))
+    const auto found = file_length(text);
+    if (!found && is_number(text))
       impossible = text.substr(0, 40);
-    return length;
+    return found;
   }
 
   /// "bytes 0-99/1234", or "bytes */1234" of what there is none of.

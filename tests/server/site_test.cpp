@@ -224,7 +224,6 @@ TEST_F(SiteTest, NoFailureIsKept) {
 
 TEST_F(SiteTest, WarningsOfABuildAreListedWhereAFolderIsWatched) {
   using Warnings = std::vector<std::string>;
-  const json manifest = json::parse(text_of(folder_.models() / "plain.hier/hierarchy.json"));
   const auto note = [&](std::uint64_t content) {
     const storage::InputNote note{.content = content,
                                   .files = {{"plain.ply", {}, 0}},
@@ -235,7 +234,7 @@ TEST_F(SiteTest, WarningsOfABuildAreListedWhereAFolderIsWatched) {
     site_->refresh();
     return json::parse(get("/models.json").text)["models"][1].value("warnings", Warnings());
   };
-  const std::uint64_t content = manifest["source"]["checksum"];
+  const std::uint64_t content = hierarchies_->look("plain.hier").value().source_checksum;
   EXPECT_THAT(note(content), IsEmpty()) << "readers learn nothing of how models were made";
   open({}, [] { return nlohmann::ordered_json::array(); });
   EXPECT_THAT(note(content), ElementsAre("wall.mtl: missing"));

@@ -3,7 +3,7 @@
 //
 //   node addresses.mjs MESHHIER PICTURES PAGE HIERARCHY.hier HIERARCHY.3tz
 //
-// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Exit code 2: wrong use; else see browser.mjs.
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page; HIERARCHY.hier: with tiles in gzip. Exit code 2: wrong use; else see browser.mjs.
 import { execFileSync } from 'node:child_process';
 import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -83,7 +83,7 @@ class Visits {
     if (awaitsStory) {
       await page.locator('.story-card').getByRole('button').nth(2).or(page.locator('.problem')).first().waitFor();
       await page.locator('.story-mark').first().click();
-      await page.waitForFunction(() => document.querySelector('.story-picture')?.complete, null, { timeout: PATIENCE });
+      await page.waitForFunction(() => document.querySelector('.story-picture')?.complete || document.querySelector('.story-body .tool-note'), null, { timeout: PATIENCE });
     }
     await page.waitForTimeout(400); // a message may be late
     return page.evaluate(() => {
@@ -179,15 +179,18 @@ async function checkAll(browser, report, [meshhier, , viewer, hierarchy, archive
   execFileSync(meshhier, ['page', path.join(models, 'david.3tz'), '-o', single, '--viewer', viewer]);
   const server = startServer(meshhier, models, '--viewer', viewer, '--cors', '*');
   const host = await serve({ '/bucket': models, '': site }, { ranges: true });
+  const bare = await serve({ '': site }, { isBare: true });
   try {
     await visits.gallery('served', (await server.url).replace(/\/$/, ''));
     await visits.gallery('site', host.origin);
     await visits.bucket(host.origin, `${host.origin}/bucket`);
+    for (const model of ['david.hier', 'david.3tz']) await visits.visit('a host without settings', `${bare.origin}/index.html#models/${model}`, 'story');
     await visits.documents(host.origin);
     for (const behind of ['', '#&9,9,9,0,0,0', '#&up=z']) await visits.visit('one file', pathToFileURL(single).href + behind, 'model');
   } finally {
     await server.stop();
     host.close();
+    bare.close();
     rmSync(work, { recursive: true });
   }
 }

@@ -56,8 +56,9 @@ function sendPart(request, response, file) {
   else createReadStream(file, part ?? {}).pipe(response);
 }
 
-/// Serves `directories` ({prefix: directory}), archives in parts if `ranges` says so. Resolves to {origin, close}.
-export function serve(directories, { ranges = false } = {}) {
+/// Serves `directories` ({prefix: directory}), archives in parts if `ranges` says so; `isBare`: as a host without any settings, which says
+/// nothing of gzip. Resolves to {origin, close}.
+export function serve(directories, { ranges = false, isBare = false } = {}) {
   const server = createServer((request, response) => {
     const file = fileOf(request.url, directories);
     if (file === null) {
@@ -69,9 +70,10 @@ export function serve(directories, { ranges = false } = {}) {
       sendPart(request, response, file);
       return;
     }
-    const sent = isFile(`${file}.gz`) ? `${file}.gz` : file;
+    const sent = !isBare && isFile(`${file}.gz`) ? `${file}.gz` : file;
     const headers = { 'Content-Type': TYPES[type] ?? 'application/octet-stream' };
-    if (sent !== file || (type === '.glb' && isGzip(file))) headers['Content-Encoding'] = 'gzip';
+    if (isBare) headers['Content-Length'] = statSync(file).size;
+    else if (sent !== file || (type === '.glb' && isGzip(file))) headers['Content-Encoding'] = 'gzip';
     response.writeHead(200, headers);
     createReadStream(sent).pipe(response);
   });

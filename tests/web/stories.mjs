@@ -263,7 +263,7 @@ async function phone(visit, url) {
 
 /// Whatever a story's file holds, the model is shown, and the page says what is wrong.
 async function damaged(visit, url, file, good) {
-  for (const [what, text, said] of [['no JSON', '{', 'not JSON'], ['another file', '{"type": "Manifest"}', 'AnnotationPage'], ['no number', good.replace(/"x": [-0-9.e]+/, '"x": "1"'), 'is not a number']]) {
+  for (const [what, text, said] of [['no JSON', '{', 'not JSON'], ['another file', '{"type": "Collection"}', 'AnnotationPage'], ['no number', good.replace(/"x": [-0-9.e]+/, '"x": "1"'), 'is not a number']]) {
     writeFileSync(file, text);
     const page = await visit.open(url);
     await page.locator('.problem', { hasText: 'story' }).waitFor();

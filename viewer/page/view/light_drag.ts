@@ -29,6 +29,7 @@ export class LightDrag {
   /// Radians of a drag. False: it is none of the light.
   drag(right: number, up: number): boolean {
     if (!this.held && !this.isChosen) return false;
+    if (!Number.isFinite(right + up)) return true; // of a picture without a size
     this.used = true;
     this.turn({ right, up });
     return true;

@@ -25,6 +25,13 @@ describe('L', () => {
     expect(turn).not.toHaveBeenCalled();
   });
 
+  it('with a drag that is no number turns nothing', () => {
+    const { drag, turn } = made();
+    drag.hold();
+    for (const far of [NaN, Infinity]) expect(drag.drag(far, 0)).toBe(true);
+    expect(turn).not.toHaveBeenCalled();
+  });
+
   it('with a drag turns the light, and is no tap', () => {
     const { drag, turn, tapped } = made();
     drag.hold();
