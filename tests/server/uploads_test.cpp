@@ -155,8 +155,9 @@ TEST_F(UploadsTest, NamesThatNoModelCanBeMadeOfAreRefusedAtOnce) {
     const std::string name = std::string(bytes - 4, 'n') + ".ply";
     const Reply reply = put(name, "x");
     EXPECT_EQ(reply.status, excess_of_name(name, ".hier") == 0 ? 201 : 400) << bytes;
-    if (reply.status == 400)
+    if (reply.status == 400) {
       EXPECT_THAT(reply.text, HasSubstr("too long"));
+    }
   }
   EXPECT_EQ(put(std::string(240, 'n') + ".ply", "x").status, 400);
   EXPECT_EQ(post(std::string(240, 'h'), {{"a.obj", "o"}}).status, 400);

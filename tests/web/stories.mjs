@@ -295,6 +295,28 @@ async function single(visit, meshhier, { models, viewer, work }) {
   await page.locator('.story-text', { hasText: 'The first note' }).waitFor();
   visit.check('one file', true, 'tells it from the disk, offline');
   await context.close();
+  await fetchesNothing(visit, file);
+}
+
+/// Whatever its story names: a picture of another host is left out, and nobody is asked for it.
+async function fetchesNothing(visit, file) {
+  const other = await serve({ '': path.dirname(file) });
+  const text = readFileSync(file, 'utf8').replace(/data:image\/webp;base64,[A-Za-z0-9+/=]+/, `${other.origin}/spy.webp`);
+  writeFileSync(file, text);
+  const page = await visit.browser.newPage({ reducedMotion: 'reduce', ...WIDE });
+  const asked = [];
+  page.on('request', (request) => { if (/^https?:/.test(request.url())) asked.push(request.url()); });
+  await page.goto(`${pathToFileURL(file).href}#&story=2`);
+  await settle(page);
+  await page.locator('.story-text', { hasText: 'no marks' }).waitFor();
+  const allowed = await page.evaluate((url) => new Promise((done) => {
+    const picture = new Image();
+    picture.onload = picture.onerror = () => done(picture.naturalWidth > 0);
+    picture.src = url;
+  }), `${other.origin}/spy.webp`);
+  visit.check('one file asks nobody', text.includes('spy.webp') && !allowed && asked.length === 0 && (await page.locator('.story-picture').count()) === 0, asked.join(', ') || 'no request');
+  await page.close();
+  other.close();
 }
 
 async function site(visit, meshhier, { models, viewer, work }) {

@@ -52,8 +52,9 @@ function resolved({ value, transforms }: Body, languages: Languages, depth: numb
 }
 
 export function bodiesOf(annotation: JsonValue, languages: Languages): Body[] {
-  if (!annotation.isObject() || !annotation.has('body')) return [];
-  return annotation.at('body').oneOrMore().flatMap((value) => resolved({ value, transforms: [] }, languages, 0));
+  if (!annotation.isObject()) return [];
+  const values = annotation.has('bodyValue') ? annotation.at('bodyValue').oneOrMore().filter((value) => !value.isText()) : []; // bodies that stand in its place
+  return [...listOf(annotation, 'body'), ...values].flatMap((value) => resolved({ value, transforms: [] }, languages, 0));
 }
 
 export function shortened(text: string): string {
@@ -84,7 +85,8 @@ export interface Said {
 
 export function saidBy(annotation: JsonValue, languages: Languages): Said {
   const bodies = bodiesOf(annotation, languages).map(({ value }) => value);
-  const texts = annotation.has('bodyValue') ? [annotation.at('bodyValue').text()] : bodies.filter((body) => isOfType(body, 'TextualBody')).map(textOf);
+  const value = annotation.has('bodyValue') && annotation.at('bodyValue').isText() ? [annotation.at('bodyValue').text()] : [];
+  const texts = [...value, ...bodies.filter((body) => isOfType(body, 'TextualBody')).map(textOf)];
   const picture = bodies.find((body) => isOfType(body, 'Image'));
   const link = bodies.find((body) => body.isObject() && body.at('purpose').isText('linking'));
   return { text: shortened(texts.join('\n')), ...(picture === undefined ? {} : { picture: idOf(picture) }), ...(link === undefined ? {} : { link: shortened(idOf(link)) }) };

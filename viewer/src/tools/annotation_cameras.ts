@@ -37,12 +37,12 @@ function transformed(point: Vector, transform: JsonValue): Vector {
   return [point[0] * factors[0], point[1] * factors[1], point[2] * factors[2]];
 }
 
-/// Null: at nothing that is known.
+/// Null: at nothing that is known. What is painted at no point is at the origin.
 function lookedAt(body: JsonValue, annotations: ReadonlyMap<string, JsonValue>, refuse: Fail): Vector | null {
   if (!body.has('lookAt')) return null;
   const lookAt = body.at('lookAt');
   const annotation = annotations.get(idOf(lookAt));
-  return pointOf(lookAt, refuse) ?? (annotation === undefined ? null : targetOf(annotation, refuse));
+  return pointOf(lookAt, refuse) ?? (annotation === undefined ? null : (targetOf(annotation, refuse) ?? [0, 0, 0]));
 }
 
 /// One that looks at nothing looks as far as the middle of its scene is away, or the point that it is to look beside.

@@ -5,7 +5,7 @@
 import type { Fail, JsonValue } from '../json_value.js';
 import { bodiesOf, labelOf, saidBy, type Languages } from './annotation_bodies.js';
 import { cameraBodyOf, CHOICES, readCamera, type Camera } from './annotation_cameras.js';
-import { annotationsIn, DOCUMENTS } from './annotation_pages.js';
+import { annotationsIn, annotationsWithin, DOCUMENTS } from './annotation_pages.js';
 import { idOf, isOfType, targetOf as placeOf } from './annotation_points.js';
 import { MOST_ENTRIES, type Bookmark, type Note, type Notebook, type SeenFrom } from './note.js';
 import type { Vector } from './vectors.js';
@@ -108,10 +108,12 @@ class Reader {
 
   /// One that shows a camera when a comment is chosen.
   private takeActivation(item: JsonValue): boolean {
-    if (!item.isObject() || !motivationsOf(item).includes('activating') || !item.has('target')) return false;
-    const camera = bodiesOf(item, this.languages).map(({ value }) => this.cameraOf(idOf(value))).find((each) => each !== undefined);
+    if (!item.isObject() || !motivationsOf(item).includes('activating')) return false;
+    const targets = item.has('target') ? item.at('target').oneOrMore().map(idOf) : [];
+    const ids = [...bodiesOf(item, this.languages).map(({ value }) => idOf(value)), ...targets]; // drafts have it either way round
+    const camera = ids.map((id) => this.cameraOf(id)).find((each) => each !== undefined);
     if (camera === undefined) return false;
-    for (const target of item.at('target').oneOrMore()) this.given.set(idOf(target), camera);
+    for (const id of ids) this.given.set(id, camera);
     return true;
   }
 
@@ -156,8 +158,7 @@ class Reader {
 
   /// In a scene that is as it is for one comment.
   private cameraWithin(scene: JsonValue): Camera | undefined {
-    if (!scene.isObject() || !scene.has('items')) return undefined;
-    for (const item of scene.at('items').items()) {
+    for (const item of annotationsWithin(scene)) {
       const body = cameraBodyOf(item, this.languages);
       const camera = body && readCamera(item, body, this.byId, this.languages, this.refuse);
       if (camera) return camera;

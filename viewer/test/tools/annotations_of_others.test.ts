@@ -54,6 +54,11 @@ describe('a choice of texts', () => {
     expect(read(page(comment('1', body)), 'es').notes).toEqual([{ at: [1, 2, 3], text: 'Guante\n!', picture: 'a.jpg' }]);
   });
 
+  it('may stand where a text is meant to', () => {
+    expect(texts(page({ ...comment('1', []), bodyValue: said('Helmet', 'en') }))).toEqual(['Helmet']);
+    expect(texts(page({ ...comment('1', []), bodyValue: 'plain' }))).toEqual(['plain']);
+  });
+
   it('holds for titles, too', () => {
     const label = { en: ['A scene'], es: ['Una escena'] };
     expect(read({ ...glove, label }, 'es-MX').title).toBe('Una escena');
@@ -130,6 +135,14 @@ describe('a camera in a resource', () => {
     expect(target).toEqual([5, 6, 7]);
   });
 
+  it('looks at the origin where what it looks at is at no point', () => {
+    expect(read(page(MODEL, camera('c', { lookAt: { id: 'model', type: 'Annotation' } }, at(0, 3, -10)))).bookmarks[0].target).toEqual([0, 0, 0]);
+  });
+
+  it('may be among those that there is a choice of', () => {
+    expect(read(page({ id: 'choice', type: 'Choice', items: [camera('a', {}, at(0, 0, 1)), camera('b', {}, at(0, 0, 2))] })).bookmarks).toHaveLength(2);
+  });
+
   it('without a name of its own is one of several', () => {
     expect(read(page(camera('', {}, at(0, 0, 1)), camera('', {}, at(0, 0, 2)))).bookmarks).toHaveLength(2);
   });
@@ -154,15 +167,20 @@ describe('a manifest', () => {
   });
 
   it('may have the camera of a comment within its scope', () => {
-    const within = { type: 'Annotation', motivation: ['contentState'], target: { ...SCENE, items: [camera('', {}, at(0, 0, 8))] } };
-    expect(read(page(comment('1', said('x'), at(0, 0, 2, { scope: within })))).notes[0].view).toEqual({ position: [0, 0, 8], target: [0, 0, 2], choices: '' });
+    for (const items of [[camera('', {}, at(0, 0, 8))], [page(camera('', {}, at(0, 0, 8)))]]) {
+      const within = { type: 'Annotation', motivation: ['contentState'], target: { ...SCENE, items } };
+      expect(read(page(comment('1', said('x'), at(0, 0, 2, { scope: within })))).notes[0].view).toEqual({ position: [0, 0, 8], target: [0, 0, 2], choices: '' });
+    }
   });
 
   it('may give a comment its camera by another annotation', () => {
     const activating = { id: 'a', type: 'Annotation', motivation: ['activating'], target: { id: '1', type: 'Annotation' }, body: { type: 'SpecificResource', source: { id: 'c', type: 'Annotation' }, action: ['show'] } };
-    const { notes, bookmarks, leftOut } = read(page(camera('c', {}, at(0, 0, 9)), comment('1', said('x'), at(0, 0, 1)), activating));
-    expect(notes[0].view).toEqual({ position: [0, 0, 9], target: [0, 0, 1], choices: '' });
-    expect([bookmarks, leftOut]).toEqual([[], undefined]);
+    const older = { ...activating, target: 'c', body: '1', enables: 'c' };
+    for (const each of [activating, older]) {
+      const { notes, bookmarks, leftOut } = read(page(camera('c', {}, at(0, 0, 9)), comment('1', said('x'), at(0, 0, 1)), each));
+      expect(notes[0].view).toEqual({ position: [0, 0, 9], target: [0, 0, 1], choices: '' });
+      expect([bookmarks, leftOut]).toEqual([[], undefined]);
+    }
   });
 });
 
