@@ -413,8 +413,11 @@ TEST_F(VerifyMutationsTest, LargeCoordinatesAreInTheTilesetsRootAlone) {
       config.units = Unit::ft;
     if (what == "lattice")
       config.storage.position_bits = 14;
-    if (what == "placed")
-      config.placement = {.longitude = 9, .latitude = 48, .anchor = {{500'000, 5'800'000, 0}}};
+    if (what == "placed") {
+      config.placement.longitude = 9;
+      config.placement.latitude = 48;
+      config.placement.anchor = {500'000, 5'800'000, 0};
+    }
     config.output = path();
     execution::NoProgress progress;
     pipeline::build_hierarchy(config, {.force = true},
