@@ -5,6 +5,7 @@
 #include "server/connection.h"
 #include "server/connection_body.h"
 #include "server/connection_queue.h"
+#include "storage/io/open_files.h"
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +20,6 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -45,10 +45,8 @@ constexpr std::size_t kFilesOfThread = 4;
 /// As many threads and connections as the open files of this process allow: a request that finds
 /// none left could only be told to come again.
 ServerOptions fitted(ServerOptions options) {
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-    return options;
-  const std::size_t files = std::max<std::size_t>(limit.rlim_cur, kOwnFiles) - kOwnFiles;
+  const std::size_t files =
+      std::max<std::size_t>(storage::most_open_files(), kOwnFiles) - kOwnFiles;
   const std::size_t threads = std::max<std::size_t>(files / (2 * kFilesOfThread), 1);
   options.threads = std::min(options.threads, threads);
   const std::size_t left = files - std::min(files, options.threads * kFilesOfThread);

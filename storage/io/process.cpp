@@ -1,6 +1,7 @@
 #include "storage/io/process.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/open_files.h"
 
 #include <algorithm>
 #include <array>
@@ -60,6 +61,13 @@ ProcessUsage process_usage() {
 
 std::uint64_t resident_bytes() {
   return status_bytes("VmRSS:");
+}
+
+std::uint64_t most_open_files() {
+  rlimit limit{};
+  const bool is_limited =
+      ::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_limited ? limit.rlim_cur : UINT64_MAX;
 }
 
 void allow_many_open_files() {
