@@ -128,9 +128,11 @@ Filling filled(const PageSource& source, PagePacking packing, std::uint64_t room
   return {packer, std::move(choice)};
 }
 
-/// Rounded where not all fits exactly, and the error of what is shown covers the rounding, or the
-/// page is nearer to the original that way.
+/// Rounded where not all fits exactly, and the error of what is shown is twice the rounding, or the
+/// page is nearer to the original that way. A rounding as large as the error would be seen: it
+/// makes steps where simplified surfaces are smooth.
 Filling filling_of(const PageSource& source, std::uint64_t room) {
+  constexpr double kCover = 2;
   source.progress.stage("choose", 0, "steps");
   if (!source.options.link.empty())
     return filled(source, PagePacking::as_stored, room);
@@ -138,10 +140,10 @@ Filling filling_of(const PageSource& source, std::uint64_t room) {
   const bool has_none = exact.choice.tiles.empty();
   const double rounding =
       PagePacker(source.files, source.reader, PagePacking::rounded).most_rounding();
-  if (rounding == 0 || (!has_none && rounding >= exact.error()))
+  if (rounding == 0 || (!has_none && kCover * rounding > exact.error()))
     return exact;
   Filling rounded = filled(source, PagePacking::rounded, room);
-  const bool is_covered = rounded.choice.rounding <= double{rounded.choice.error};
+  const bool is_covered = kCover * rounded.choice.rounding <= double{rounded.choice.error};
   return has_none || is_covered || rounded.error() < exact.error() ? rounded : exact;
 }
 

@@ -27,11 +27,12 @@ struct PageOptions {
 
 /// Writes `viewer` (viewer/vite.single.config.ts) with the manifest, the root and more tiles:
 /// always both children of the node with the largest error, as long as they fit. Without a link
-/// tiles are packed, and where not all fit, their positions are rounded if the page is nearer to
-/// the original that way. Holds a tile and the story. Deterministic. The output appears complete or
-/// not at all. Returns lines for people: what is in it, what is not, and what would change that;
-/// warns of pictures that are left out. Throws Error(usage) if not even the root fits, Error(exists
-/// | io | corrupt), the last for a story that is no JSON object, too.
+/// tiles are packed, and where not all fit, their positions are rounded if that is at most half of
+/// the error of what is shown, or if the page is nearer to the original that way. Holds a tile and
+/// the story. Deterministic. The output appears complete or not at all. Returns lines for people:
+/// what is in it, what is not, and what would change that; warns of pictures that are left out.
+/// Throws Error(usage) if not even the root fits, Error(exists | io | corrupt), the last for a
+/// story that is no JSON object, too.
 std::string write_page(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel);
