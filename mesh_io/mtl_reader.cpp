@@ -94,7 +94,8 @@ class MtlReader {
   void begin(std::string name) {
     finish();
     material_ = {};
-    light_ = ambient_ = std::nullopt;
+    light_.reset();
+    ambient_.reset();
     material_.name = std::move(name);
     has_begun_ = true;
     has_opacity_ = false;
