@@ -3,7 +3,6 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "server/url_path.h"
-#include "storage/format/layout.h"
 #include "storage/io/folder.h"
 #include "storage/io/http_client.h"
 
@@ -33,11 +32,10 @@ constexpr std::chrono::seconds kForOne{20}, kForAll{120};
 }
 
 void require_room(std::uint64_t bytes, std::uint64_t most) {
-  constexpr std::uint64_t kMostPicture = storage::kMostStoryBytes / 4 * 3;  // in base64
-  if (bytes > kMostPicture) {
+  if (bytes > inspection::kMostStoryPictureBytes) {
     leave_out(fmt::format("it has {}, more than a story can hold ({})",
                           execution::rounded_size_text(bytes),
-                          execution::rounded_size_text(kMostPicture)));
+                          execution::rounded_size_text(inspection::kMostStoryPictureBytes)));
   }
   if (bytes > most) {
     leave_out(

@@ -1,6 +1,8 @@
 // The story of a page that fetches nothing: its pictures are in it.
 #pragma once
 
+#include "storage/format/layout.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,6 +15,9 @@ namespace meshhier::inspection {
 /// that says why there are none.
 using OpenPicture =
     std::function<std::vector<std::byte>(const std::string& address, std::uint64_t most_bytes)>;
+
+/// No picture of a story is larger: in base64, it would be more than a story's file may have.
+inline constexpr std::uint64_t kMostStoryPictureBytes = storage::kMostStoryBytes / 4 * 3;
 
 struct PageStory {
   std::string text;                   ///< JSON; empty: there is no story
