@@ -101,7 +101,7 @@ class BinaryStl {
         bad = i;
     }
     if (bad)
-      return take_bad_facet(offset() + 12 + 4 * *bad, values[*bad], is_finite);
+      return take_bad_facet(offset() + 12 + 4 * *bad, static_cast<float>(values[*bad]), is_finite);
     attributes_.push_back(load<std::uint16_t, kSwap>(bytes + 48));
     counts_.attributes += attributes_.back() != 0 ? 1 : 0;
     block_.push_back({Vec3d{values[0], values[1], values[2]},
@@ -109,7 +109,7 @@ class BinaryStl {
                       Vec3d{values[6], values[7], values[8]}});
   }
 
-  void take_bad_facet(std::uint64_t offset, double value, bool is_finite) {
+  void take_bad_facet(std::uint64_t offset, float value, bool is_finite) {
     const std::string message = fmt::format("byte {}: expected {} in facet {}, found {}", offset,
                                             kCoordinateRange, done_, value);
     if (is_finite)
