@@ -703,10 +703,11 @@ TEST_F(Limited, FewerThreadsDo) {
   for (const int most : {1, 2, 3, 4}) {
     // The system limits no user 0, and counts all processes of others: nobody has none.
     const std::string as_nobody =
-        ::geteuid() == 0 ? "exec setpriv --reuid=65534 --regid=65534 --clear-groups bash -c 'ulimit "
-                           "-u " +
-                               std::to_string(most) + " && exec \"$0\" \"$@\"' \"$0\" \"$@\""
-                         : "ulimit -u " + std::to_string(most);
+        ::geteuid() == 0
+            ? "exec setpriv --reuid=65534 --regid=65534 --clear-groups bash -c 'ulimit "
+              "-u " +
+                  std::to_string(most) + " && exec \"$0\" \"$@\"' \"$0\" \"$@\""
+            : "ulimit -u " + std::to_string(most);
     const Outcome outcome = run_after(
         as_nobody,
         {"build", mesh, "-o", made, "--set", "partition.vertices=500", "preview=false", "--force"});

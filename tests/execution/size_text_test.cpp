@@ -67,8 +67,8 @@ TEST(ExactSizeText, IsShortAndReadsBack) {
   EXPECT_EQ(exact_size_text(1536 * kMebi), "1536MiB");
   EXPECT_EQ(exact_size_text(2048 * kMebi * kMebi), "2048TiB");
   for (const std::uint64_t bytes :
-       {std::uint64_t{1}, std::uint64_t{1023}, std::uint64_t{1025}, 7 * kMebi, kMebi * kMebi, std::uint64_t{15'000'000},
-        kMebi + 1, (std::uint64_t{1} << 53) - 1}) {
+       {std::uint64_t{1}, std::uint64_t{1023}, std::uint64_t{1025}, 7 * kMebi, kMebi * kMebi,
+        std::uint64_t{15'000'000}, kMebi + 1, (std::uint64_t{1} << 53) - 1}) {
     EXPECT_EQ(parse_size(exact_size_text(bytes)), bytes);
   }
 }
