@@ -1,7 +1,7 @@
 // Writes a steeple as a PLY to standard output: a pyramid three times as high as wide at its foot, in
 // the middle of which the origin is. Its east side is red, its north side green, the others grey.
 //
-//   node steeple.mjs y|z      which axis points up: east is x, north -z or y
+//   node steeple.mjs y|z [EAST NORTH]      which axis points up: east is x, north -z or y; where the middle of its foot is, 0 0
 const HALF = 50, HEIGHT = 300;
 const STEPS = 24;  // along a side: enough triangles for several levels of small tiles
 const SIDES = [  // the outward direction of each, in z-up coordinates, and its colour
@@ -11,10 +11,11 @@ const SIDES = [  // the outward direction of each, in z-up coordinates, and its 
   { out: [0, -1], colour: [160, 160, 160] },
 ];
 
-const up = process.argv[2];
+const [up, east = 0, north = 0] = [process.argv[2], ...process.argv.slice(3).map(Number)];
 const vertices = [], faces = [];
 
-function put([x, y, z], colour) {
+function put([fromEast, fromNorth, z], colour) {
+  const [x, y] = [fromEast + east, fromNorth + north];
   const turned = up === 'z' ? [x, y, z] : [x, z, -y];
   vertices.push([...turned, ...colour].join(' '));
 }
@@ -42,7 +43,7 @@ for (const { out: [x, y], colour } of SIDES) {
 
 const header = [
   'ply', 'format ascii 1.0', `element vertex ${vertices.length}`,
-  ...['x', 'y', 'z'].map((name) => `property float ${name}`),
+  ...['x', 'y', 'z'].map((name) => `property double ${name}`),
   ...['red', 'green', 'blue'].map((name) => `property uchar ${name}`),
   `element face ${faces.length}`, 'property list uchar int vertex_indices', 'end_header',
 ];
