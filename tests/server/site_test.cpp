@@ -225,12 +225,12 @@ TEST_F(SiteTest, NoFailureIsKept) {
 TEST_F(SiteTest, WarningsOfABuildAreListedWhereAFolderIsWatched) {
   using Warnings = std::vector<std::string>;
   const auto note = [&](std::uint64_t content) {
-    const storage::InputNote note{.content = content,
+    const storage::InputNote kept{.content = content,
                                   .files = {{"plain.ply", {}, 0}},
                                   .awaited = {},
                                   .warnings = {"wall.mtl: missing"}};
     tests::write_text(folder_.models() / storage::input_note_path("plain.hier"),
-                      storage::to_json_text(note));
+                      storage::to_json_text(kept));
     site_->refresh();
     return json::parse(get("/models.json").text)["models"][1].value("warnings", Warnings());
   };
