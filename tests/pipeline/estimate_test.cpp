@@ -85,6 +85,23 @@ TEST_F(EstimateTest, TellsWhatABuildMakes) {
   }
 }
 
+TEST_F(EstimateTest, TellsThePlaceAsTheBuildDoes) {
+  write_mesh(tests::sphere(2000));
+  EXPECT_EQ(pipeline::estimate_build(config(), true, files_).placement, "");
+  for (const Topology topology : {Topology::place, Topology::index}) {
+    config::Config placed = config();
+    placed.topology = topology;
+    placed.placement.longitude = 7;
+    placed.placement.latitude = 46;
+    placed.placement.height = -20'000;
+    const pipeline::BuildEstimate estimate = pipeline::estimate_build(placed, true, files_);
+    EXPECT_THAT(estimate.placement, HasSubstr("warning: that is 20 km below the ground"));
+    EXPECT_THAT(build(placed, true).text, HasSubstr(estimate.placement));
+    EXPECT_THAT(pipeline::estimate_text(estimate), HasSubstr(estimate.placement));
+    EXPECT_EQ(pipeline::to_json(estimate)["placement"], estimate.placement);
+  }
+}
+
 TEST_F(EstimateTest, KnowsWhatIsAskedOfEachLevel) {
   write_mesh(tests::sphere(20'000));
   const auto estimate = [&](const TargetVertexCounts& vertices) {

@@ -9,6 +9,7 @@
 #include "storage/format/level_summary.h"
 #include "storage/format/outline_glb.h"
 #include "storage/format/tile_glb.h"
+#include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
@@ -22,6 +23,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -189,6 +191,8 @@ TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
   Outline outline = reader.read_outline();
   outline.first_view = manifest.first_view = std::nullopt;
   manifest.screen_colours = true;
+  manifest.tileset_pixels.reset();
+  manifest.config.erase("tileset");
   storage::TileFormat format = reader.tile_format();
   format.screen_colours = true;
   const auto rewrite = [&](NodeId node, TileRecord& record) {
@@ -215,6 +219,9 @@ TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
   manifest.levels = nlohmann::ordered_json::array();
   for (const auto& level : storage::summarize_levels(reader.tree(), records))
     manifest.levels.push_back(storage::to_json(level));
+  manifest.total_bytes -= std::exchange(manifest.tileset_bytes, 0);
+  manifest.tileset_files = 0;
+  storage::write_tilesets(*files_, hierarchy(), reader.tree(), records, manifest);
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(*files_, storage::index_path(hierarchy()), index);
   storage::write_file(*files_, storage::outline_path(hierarchy()), lines);
