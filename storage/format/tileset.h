@@ -30,7 +30,8 @@ struct TilesetFile {
 };
 
 /// Visits every file, tileset.json first. Uses of the manifest: generator, source, origin, up,
-/// transform, units, licence, tileset_pixels. Deterministic, O(tiles). `records`: ascending by node, all of the tree's.
+/// transform, units, licence, tileset_pixels. Deterministic, O(tiles). `records`: ascending by
+/// node, all of the tree's.
 void for_each_tileset(const Manifest& manifest, const Tree& tree,
                       std::span<const TileRecord> records,
                       const std::function<void(const TilesetFile&)>& visit);
