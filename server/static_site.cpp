@@ -31,7 +31,7 @@ constexpr const char* kPage = "index.html";
 /// GitHub Pages takes the files of a site that has this as they are, whatever their names.
 constexpr const char* kAsItIs = ".nojekyll";
 /// Of a picture, in a message.
-constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kLongestShown = 200;
 /// Of the viewer's folder, what is not for a site: `meshhier page` puts a hierarchy into it.
 constexpr std::string_view kSingle = "single.html";
 
@@ -135,7 +135,7 @@ class SiteMaker {
         copies.push_back({job_.models.get(), name, joined("models", name)});
       else
         progress_.tell(fmt::format("{} names the picture {}, which is not there", story.string(),
-                                   plain_text(picture, kLongestName)));
+                                   plain_text(picture, kLongestShown)));
     }
   }
 
