@@ -8,7 +8,7 @@ namespace {
 
 // docs/input_formats.md has both lists.
 
-constexpr auto kRead = std::to_array<GltfExtension>({
+constexpr auto kUsed = std::to_array<GltfExtension>({
     {"CESIUM_RTC", "places the mesh"},
     {"EXT_mesh_gpu_instancing", "places copies of a mesh"},
     {"EXT_meshopt_compression", "packs buffers"},
@@ -80,7 +80,7 @@ bool is_among(std::span<const GltfExtension> extensions, std::string_view name) 
 }  // namespace
 
 std::span<const GltfExtension> read_extensions() {
-  return kRead;
+  return kUsed;
 }
 
 std::span<const GltfExtension> harmless_extensions() {
@@ -88,7 +88,7 @@ std::span<const GltfExtension> harmless_extensions() {
 }
 
 bool may_be_required(std::string_view extension) {
-  return is_among(kRead, extension) || is_among(kHarmless, extension);
+  return is_among(kUsed, extension) || is_among(kHarmless, extension);
 }
 
 }  // namespace meshhier::mesh_io

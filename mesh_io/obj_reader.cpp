@@ -4,6 +4,7 @@
 #include "mesh_io/line_blocks.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/polygon_cut.h"
+#include "mesh_io/text_chars.h"
 #include "mesh_io/text_stream.h"
 #include "mesh_io/word_stream.h"
 
@@ -28,10 +29,6 @@ constexpr std::string_view kIgnored[] = {
     "csh",   "ctech", "stech",    "shadow_obj", "trace_obj"};
 
 constexpr std::uint64_t kMostElements = UINT32_MAX;  // the last value means none
-
-bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
-}
 
 /// Text from the line `lines` behind the one at its start; each ends with LF, CRLF or CR.
 std::string_view behind_lines(std::string_view text, std::uint64_t lines) {

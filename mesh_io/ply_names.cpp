@@ -1,6 +1,7 @@
 #include "mesh_io/ply_names.h"
 
 #include "hierarchy/small_letters.h"
+#include "mesh_io/text_chars.h"
 
 #include <algorithm>
 #include <array>
@@ -19,10 +20,6 @@ std::string bare(std::string_view name) {
   std::string letters = small_letters(name);
   std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
   return letters;
-}
-
-bool is_one_of(std::string_view name, std::span<const std::string_view> names) {
-  return std::ranges::find(names, name) != names.end();
 }
 
 struct ElementNames {

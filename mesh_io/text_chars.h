@@ -1,6 +1,8 @@
-// What separates words and lines.
+// What separates words and lines, and words among others.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <string_view>
 
 namespace meshhier::mesh_io {
@@ -17,6 +19,10 @@ constexpr bool is_line_end(char c) {
 }
 constexpr bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+inline bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
 }
 
 }  // namespace meshhier::mesh_io

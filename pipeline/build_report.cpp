@@ -21,7 +21,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr std::size_t kLongestName = 255;
+constexpr std::size_t kLongestFileName = 255;
 constexpr std::size_t kLongestPath = 4096;
 
 /// What `config` became, with what does not decide the result.
@@ -149,8 +149,8 @@ std::string placement_text(const storage::Manifest& made, const config::Config& 
 std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   std::string text;
   for (const SourceFile& file : source.files) {
-    text += fmt::format("imported {}: {}, {}\n", plain_text(file.name, kLongestName), file.format,
-                        execution::rounded_size_text(file.bytes));
+    text += fmt::format("imported {}: {}, {}\n", plain_text(file.name, kLongestFileName),
+                        file.format, execution::rounded_size_text(file.bytes));
   }
   if (!source.counts.empty())
     text += "counted " + importing::counts_text(source.counts) + '\n';

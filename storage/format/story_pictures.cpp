@@ -22,9 +22,9 @@ constexpr int kDeepestStory = 64;
 
 /// -1 if it is no hexadecimal digit.
 int hex_digit(char c) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::string_view kHexDigits = "0123456789abcdef";
   const std::size_t value =
-      kDigits.find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+      kHexDigits.find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
   return value == std::string_view::npos ? -1 : static_cast<int>(value);
 }
 

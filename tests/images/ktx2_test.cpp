@@ -55,7 +55,7 @@ class Ktx2Test : public testing::Test {
 TEST_F(Ktx2Test, PicturesComeBackNearly) {
   for (const std::uint32_t channels : {3U, 4U}) {
     const Image image = smooth(96, 60, channels);
-    for (const auto [quality, most] : {std::pair(90, 8.0), std::pair(100, 2.5)}) {
+    for (const auto& [quality, most] : {std::pair(90, 8.0), std::pair(100, 2.5)}) {
       const Bytes file = encode_image(image, ImageFormat::ktx2, quality);
       const ImageInfo info = open_image(source_of(file), "sample")->info();
       EXPECT_EQ(info.format, ImageFormat::ktx2);

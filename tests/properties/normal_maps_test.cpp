@@ -181,7 +181,7 @@ bench::LoadedMesh two_sided_bumps(std::uint64_t seed) {
   for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
     const double height = 0.5 * double{tests::hash_noise(seed, i)};
     mesh.positions.push_back(
-        {double{i % kSide}, double{i / kSide}, static_cast<double>(static_cast<float>(height))});
+        {double(i % kSide), double(i / kSide), double(static_cast<float>(height))});
   }
   for (std::uint32_t i = 0; i + kSide + 1 < kSide * kSide; ++i) {
     if (i % kSide == kSide - 1)

@@ -175,7 +175,6 @@ TEST(NormalBake, SomeLevelsLaterTheWavesAreStillThere) {
     BakedNormalMap next = map_of(tile, below, 252);
     baked = std::move(next);
   }
-  const NormalSurface last{tile.positions, tile.triangles, {}, baked.corners, &baked.texels};
   double most = 0;
   for (std::uint32_t y = 0; y < baked.texels.height(); ++y) {
     for (std::uint32_t x = 0; x < baked.texels.width(); ++x)
