@@ -27,7 +27,7 @@ namespace meshhier::inspection {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -83,17 +83,17 @@ class PageTest : public testing::Test {
                       progress, execution::CancelToken());
   }
 
-  json embedded() {
+  Json embedded() {
     const std::string text = text_of(page());
     const std::size_t begin = text.find('{');
-    return json::parse(text.substr(begin, text.find("\n</script>", begin) - begin));
+    return Json::parse(text.substr(begin, text.find("\n</script>", begin) - begin));
   }
 
   /// What a page has, as files of a hierarchy; returns the tiles.
   std::vector<NodeId> unpack() {
     files_->remove_all(unpacked());
     std::vector<NodeId> tiles;
-    const json all = embedded();
+    const Json all = embedded();
     for (const auto& [name, content] : all["files"].items()) {
       std::string bytes = decoded(content.get<std::string>());
       if (bytes.starts_with("\x1f\x8b"))
@@ -243,39 +243,39 @@ std::vector<std::byte> open_some(const std::string& address, std::uint64_t most)
 }
 
 PageStory story_with(const json& body) {
-  const json story{{"type", "AnnotationPage"},
+  const Json story{{"type", "AnnotationPage"},
                    {"items", {{{"type", "Annotation"}, {"body", body}}}}};
   return with_pictures(story.dump(), "s", 1000, open_some);
 }
 
-json image_body(const std::string& id) {
+Json image_body(const std::string& id) {
   return {{"id", id}, {"type", "Image"}};
 }
 
-json body_of(const PageStory& story) {
-  return json::parse(story.text)["items"][0].value("body", json());
+Json body_of(const PageStory& story) {
+  return Json::parse(story.text)["items"][0].value("body", Json());
 }
 
 const std::string kInline = "data:image/png;base64," + base64(page_bytes(kPicture));
 
 TEST(PageStoryTest, PicturesAreInItWhereverABodyHasThem) {
-  const json text{{"type", "TextualBody"}, {"value", "told"}};
+  const Json text{{"type", "TextualBody"}, {"value", "told"}};
   EXPECT_EQ(body_of(story_with(image_body("a.png"))), image_body(kInline));
-  EXPECT_EQ(body_of(story_with({text, image_body("a.png")})), json({text, image_body(kInline)}));
-  const json choice{{"type", "Choice"}, {"items", {image_body("a.png"), text}}};
-  EXPECT_EQ(body_of(story_with(choice))["items"], json({image_body(kInline), text}));
+  EXPECT_EQ(body_of(story_with({text, image_body("a.png")})), Json({text, image_body(kInline)}));
+  const Json choice{{"type", "Choice"}, {"items", {image_body("a.png"), text}}};
+  EXPECT_EQ(body_of(story_with(choice))["items"], Json({image_body(kInline), text}));
   EXPECT_EQ(story_with({image_body("a.png"), image_body("a.png")}).pictures, 2U);
 }
 
 TEST(PageStoryTest, ThoseThatCannotBeHadAreRemovedAndTold) {
-  const json text{{"type", "TextualBody"}, {"value", "told"}};
+  const Json text{{"type", "TextualBody"}, {"value", "told"}};
   const PageStory story =
       story_with({image_body("none.png"), text, image_body("text.png"), image_body("a.png")});
-  EXPECT_EQ(body_of(story), json({text, image_body(kInline)}));
+  EXPECT_EQ(body_of(story), Json({text, image_body(kInline)}));
   EXPECT_EQ(story.pictures, 1U);
   EXPECT_THAT(story.left_out, ElementsAre("none.png: it is not there",
                                           "text.png: it is no PNG, JPEG, WebP, GIF or AVIF"));
-  EXPECT_EQ(body_of(story_with(image_body("none.png"))), json());
+  EXPECT_EQ(body_of(story_with(image_body("none.png"))), Json());
   EXPECT_THAT(story_with(image_body("https://me:word@h/a.png?key=1")).left_out,
               ElementsAre("https://h/a.png: it is not there"));
 }
