@@ -27,7 +27,6 @@ namespace meshhier::inspection {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -83,17 +82,17 @@ class PageTest : public testing::Test {
                       progress, execution::CancelToken());
   }
 
-  Json embedded() {
+  nlohmann::json embedded() {
     const std::string text = text_of(page());
     const std::size_t begin = text.find('{');
-    return Json::parse(text.substr(begin, text.find("\n</script>", begin) - begin));
+    return nlohmann::json::parse(text.substr(begin, text.find("\n</script>", begin) - begin));
   }
 
   /// What a page has, as files of a hierarchy; returns the tiles.
   std::vector<NodeId> unpack() {
     files_->remove_all(unpacked());
     std::vector<NodeId> tiles;
-    const Json all = embedded();
+    const nlohmann::json all = embedded();
     for (const auto& [name, content] : all["files"].items()) {
       std::string bytes = decoded(content.get<std::string>());
       if (bytes.starts_with("\x1f\x8b"))
@@ -242,40 +241,41 @@ std::vector<std::byte> open_some(const std::string& address, std::uint64_t most)
   throw Error(ErrorCode::input, most < 100 ? "no room" : "it is not there");
 }
 
-PageStory story_with(const json& body) {
-  const Json story{{"type", "AnnotationPage"},
-                   {"items", {{{"type", "Annotation"}, {"body", body}}}}};
+PageStory story_with(const nlohmann::json& body) {
+  const nlohmann::json story{{"type", "AnnotationPage"},
+                             {"items", {{{"type", "Annotation"}, {"body", body}}}}};
   return with_pictures(story.dump(), "s", 1000, open_some);
 }
 
-Json image_body(const std::string& id) {
+nlohmann::json image_body(const std::string& id) {
   return {{"id", id}, {"type", "Image"}};
 }
 
-Json body_of(const PageStory& story) {
-  return Json::parse(story.text)["items"][0].value("body", Json());
+nlohmann::json body_of(const PageStory& story) {
+  return nlohmann::json::parse(story.text)["items"][0].value("body", nlohmann::json());
 }
 
 const std::string kInline = "data:image/png;base64," + base64(page_bytes(kPicture));
 
 TEST(PageStoryTest, PicturesAreInItWhereverABodyHasThem) {
-  const Json text{{"type", "TextualBody"}, {"value", "told"}};
+  const nlohmann::json text{{"type", "TextualBody"}, {"value", "told"}};
   EXPECT_EQ(body_of(story_with(image_body("a.png"))), image_body(kInline));
-  EXPECT_EQ(body_of(story_with({text, image_body("a.png")})), Json({text, image_body(kInline)}));
-  const Json choice{{"type", "Choice"}, {"items", {image_body("a.png"), text}}};
-  EXPECT_EQ(body_of(story_with(choice))["items"], Json({image_body(kInline), text}));
+  EXPECT_EQ(body_of(story_with({text, image_body("a.png")})),
+            nlohmann::json({text, image_body(kInline)}));
+  const nlohmann::json choice{{"type", "Choice"}, {"items", {image_body("a.png"), text}}};
+  EXPECT_EQ(body_of(story_with(choice))["items"], nlohmann::json({image_body(kInline), text}));
   EXPECT_EQ(story_with({image_body("a.png"), image_body("a.png")}).pictures, 2U);
 }
 
 TEST(PageStoryTest, ThoseThatCannotBeHadAreRemovedAndTold) {
-  const Json text{{"type", "TextualBody"}, {"value", "told"}};
+  const nlohmann::json text{{"type", "TextualBody"}, {"value", "told"}};
   const PageStory story =
       story_with({image_body("none.png"), text, image_body("text.png"), image_body("a.png")});
-  EXPECT_EQ(body_of(story), Json({text, image_body(kInline)}));
+  EXPECT_EQ(body_of(story), nlohmann::json({text, image_body(kInline)}));
   EXPECT_EQ(story.pictures, 1U);
   EXPECT_THAT(story.left_out, ElementsAre("none.png: it is not there",
                                           "text.png: it is no PNG, JPEG, WebP, GIF or AVIF"));
-  EXPECT_EQ(body_of(story_with(image_body("none.png"))), Json());
+  EXPECT_EQ(body_of(story_with(image_body("none.png"))), nlohmann::json());
   EXPECT_THAT(story_with(image_body("https://me:word@h/a.png?key=1")).left_out,
               ElementsAre("https://h/a.png: it is not there"));
 }
