@@ -23,6 +23,8 @@
 #include "storage/io/file_checksum.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -367,13 +369,14 @@ class Import {
 
   /// Of a file that may hold many meshes, one behind the other.
   std::uint64_t checksum_of(const std::filesystem::path& path) {
-    if (last_checked_.first != path) {
-      const auto file = input_.system().open(path);
-      last_checked_ = {path, storage::FileChecksum(file->size()).complete(*file, [this] {
-                         env_.cancel.check();
-                       })};
-    }
-    return last_checked_.second;
+    const auto known = checked_.find(path);
+    if (known != checked_.end())
+      return known->second;
+    const auto file = input_.system().open(path);
+    const std::uint64_t checksum =
+        storage::FileChecksum(file->size()).complete(*file, [this] { env_.cancel.check(); });
+    checked_.emplace(path, checksum);
+    return checksum;
   }
 
   static mesh_io::GltfContent content_of(const InputFileFacts& facts) {
@@ -548,8 +551,8 @@ class Import {
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   std::vector<JoinedFile> joined_;
-  std::vector<std::uint64_t> checksums_;                          ///< of the meshes that are read
-  std::pair<std::filesystem::path, std::uint64_t> last_checked_;  ///< of a file of glTF
+  std::vector<std::uint64_t> checksums_;                    ///< of the meshes that are read
+  std::map<std::filesystem::path, std::uint64_t> checked_;  ///< files of glTF
   ImportFacts facts_;
 };
 

@@ -252,6 +252,8 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
       picture.offset = buffer.offset + range.offset + (is_own ? room_.begin : 0);
       picture.bytes = range.size;
       picture.is_packed = is_own && room_.content == GltfContent::packed;
+      if (picture.is_packed)
+        require_memory(range.size, name);  // it is held as a whole
     } else {
       require_memory(range.size, name);
       picture.data.resize(range.size);

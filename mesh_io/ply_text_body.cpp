@@ -17,6 +17,11 @@
 namespace meshhier::mesh_io {
 namespace {
 
+/// Of a length or an index: what is so large is none.
+std::int64_t clamped(double value) {
+  return static_cast<std::int64_t>(std::clamp(value, -0x1p62, 0x1p62));
+}
+
 using Role = PlyElementPlan::Role;
 
 /// Beyond it doubles do not hold all integers.
@@ -145,7 +150,7 @@ void TextBody::fail_number(const Row& row, const PlyProperty& property, PlyType 
 std::int64_t TextBody::take_integer(const Row& row, const PlyProperty& property, PlyType type) {
   const std::string_view word = take_word(row, property);
   const auto value = integer_of(type, word);
-  return value ? *value : static_cast<std::int64_t>(odd_integer(row, property, type, word));
+  return value ? *value : clamped(odd_integer(row, property, type, word));
 }
 
 /// Requires that it is not as it should be.
@@ -257,8 +262,7 @@ void TextBody::take_corners(const Row& row, const PlyProperty& property, Triangl
 std::int64_t TextBody::take_index(const Row& row, const PlyProperty& property) {
   const std::string_view word = take_word(row, property);
   const auto index = parse_integer(word);
-  return index ? *index
-               : static_cast<std::int64_t>(odd_integer(row, property, property.type, word));
+  return index ? *index : clamped(odd_integer(row, property, property.type, word));
 }
 
 void TextBody::read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) {

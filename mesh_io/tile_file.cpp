@@ -31,6 +31,8 @@ constexpr std::uint64_t kCompositeHeaderBytes = 16;
 constexpr int kDeepestComposite = 8;
 /// Of tiles in a file; the least takes 12 bytes of it, and more to be remembered.
 constexpr std::uint64_t kMostComposed = 65536;
+/// Of a file in gzip, which is unpacked anew to reach each.
+constexpr std::uint64_t kMostPackedComposed = 256;
 
 /// A range of the file that is a tile.
 struct Extent {
@@ -47,8 +49,8 @@ struct BatchedParts {
 
 class TileFileReader {
  public:
-  TileFileReader(const storage::File& file, std::uint64_t most_bytes)
-      : file_(file), most_bytes_(most_bytes) {}
+  TileFileReader(const storage::File& file, std::uint64_t most_bytes, std::uint64_t most_tiles)
+      : file_(file), most_bytes_(most_bytes), most_tiles_(most_tiles) {}
 
   TileFile read() {
     read_tile({0, file_.size()}, 0);
@@ -57,8 +59,8 @@ class TileFileReader {
 
  private:
   void read_tile(Extent tile, int depth) {
-    if (++tiles_ > kMostComposed)
-      fail_file(file_.path(), fmt::format("holds more than {} tiles", kMostComposed));
+    if (++tiles_ > most_tiles_)
+      fail_file(file_.path(), fmt::format("holds more than {} tiles", most_tiles_));
     const std::string magic = text(tile.begin, std::min<std::uint64_t>(4, tile.bytes()));
     if (magic == "b3dm") {
       read_batched(sized(tile));
@@ -207,6 +209,7 @@ class TileFileReader {
 
   const storage::File& file_;
   std::uint64_t most_bytes_;
+  std::uint64_t most_tiles_;
   std::uint64_t tiles_ = 0;
   TileFile found_;
 };
@@ -215,9 +218,9 @@ class TileFileReader {
 
 TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes) {
   if (!is_gzip(file))
-    return TileFileReader(file, most_bytes).read();
+    return TileFileReader(file, most_bytes, kMostComposed).read();
   const auto content = unpacked(file);
-  TileFile found = TileFileReader(*content, most_bytes).read();
+  TileFile found = TileFileReader(*content, most_bytes, kMostPackedComposed).read();
   found.is_packed = true;
   return found;
 }

@@ -35,9 +35,15 @@ bool is_shown(const TilesetTile& tile, bool is_added) {
 std::vector<std::byte> unpacked_bytes(const fs::path& path, std::vector<std::byte> bytes) {
   const auto file =
       file_of_bytes(path, std::make_shared<const std::vector<std::byte>>(std::move(bytes)));
-  std::vector<std::byte> content(is_gzip(*file) ? kMostTileData + 1 : file->size());
-  content.resize(open_stream({*file, file->size()}, {})->read(content));
-  content.shrink_to_fit();
+  const auto stream = open_stream({*file, file->size()}, {});
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  std::vector<std::byte> content;
+  for (std::size_t got = kBlock; got == kBlock && content.size() <= kMostTileData;) {
+    const std::size_t size = content.size();
+    content.resize(size + kBlock);
+    got = stream->read(std::span(content).subspan(size));
+    content.resize(size + got);
+  }
   return content;
 }
 
@@ -59,6 +65,11 @@ TilesetTree::TilesetTree(storage::FileSystem& files, const fs::path& path, std::
 
 std::uint32_t TilesetTree::add_document(const storage::File& file) {
   Part part{read_tileset_document(file, most_bytes_), {}};
+  read_ += std::max(part.document.tiles.size(), part.document.contents.size());
+  if (read_ > kMostTiles) {
+    fail_file(file.path(),
+              fmt::format("and the tilesets before it have more than {} tiles", kMostTiles));
+  }
   part.contents.resize(part.document.contents.size());
   documents_.push_back(std::move(part));
   return static_cast<std::uint32_t>(documents_.size() - 1);
@@ -81,12 +92,16 @@ TilesetTree::Size TilesetTree::size_of(std::uint32_t document, bool parent_adds,
     const TilesetTile tile = documents_[document].document.tiles[i];  // they may move
     added.push_back(adds(tile.refine, tile.parent ? added[*tile.parent] : parent_adds));
     ++size.tiles;
-    for (std::uint32_t c = tile.first_content; c < tile.end_content && is_shown(tile, added[i]);
-         ++c) {
+    for (std::uint32_t c = tile.first_content; c < tile.end_content; ++c) {
+      const std::uint64_t with_tile = c == tile.first_content ? 1 : 0;  // counted already
+      if (!is_shown(tile, added[i])) {
+        size.tiles = std::min(size.tiles + 1 - with_tile, kMostCounted);
+        continue;
+      }
       const TileContent& content = contents_[content_of(document, c)];
       const std::uint64_t meshes = std::max<std::uint64_t>(content.tile.meshes.size(), 1);
       const Size more = content.document ? size_of(*content.document, added[i], level + 1)
-                                         : Size{.tiles = meshes - 1};
+                                         : Size{.tiles = meshes - with_tile};
       size.tiles = std::min(size.tiles + more.tiles, kMostCounted);
       size.levels = std::max(size.levels, more.levels + 1);
     }

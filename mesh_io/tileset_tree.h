@@ -18,8 +18,8 @@
 
 namespace meshhier::mesh_io {
 
-/// So many tiles are read at most, each as often as it is shown: documents that name each other
-/// would else make any number. A mesh has up to 2^32 vertices: 4,096 for each of them.
+/// So many tiles and contents are read at most, each as often as it is shown: documents that name
+/// each other would else make any number. A mesh has up to 2^32 vertices: 4,096 for each of them.
 inline constexpr std::uint64_t kMostTiles = std::uint64_t{1} << 20;
 /// Memory for contents that documents hold as data.
 inline constexpr std::uint64_t kMostTileData = std::uint64_t{64} << 20;
@@ -93,6 +93,7 @@ class TilesetTree {
   std::filesystem::path place_;
   std::uint64_t most_bytes_;
   std::uint64_t data_bytes_ = 0;
+  std::uint64_t read_ = 0;       ///< tiles and contents of the documents
   std::vector<Part> documents_;  ///< the root first
   std::vector<TileContent> contents_;
   std::map<std::filesystem::path, std::uint32_t> known_;  ///< contents by their files

@@ -40,8 +40,8 @@ void LabelGuess::add(const LabelGuess& next) {
 
 bool LabelGuess::is_quantity() const {
   constexpr std::uint64_t kOf = 10, kMost = 9;
-  return attribute_.is_label && is_integer(attribute_.type) && values_.size() > kManyValues &&
-         steps_ >= kLeastSteps && changes_ / kMost >= steps_ / kOf;
+  return attribute_.is_label && values_.size() > kManyValues && steps_ >= kLeastSteps &&
+         changes_ / kMost >= steps_ / kOf;
 }
 
 std::vector<double> LabelGuess::classes() const {

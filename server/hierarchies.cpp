@@ -27,6 +27,7 @@ constexpr std::int64_t kNanoseconds = 1'000'000'000;  // of a second
 
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
+constexpr std::size_t kMostNotes = 1000;
 
 std::string name_of(const std::filesystem::path& path) {
   const bool is_usual = path.extension() == ".hier" || is_archive_name(path.native());
@@ -128,8 +129,19 @@ std::optional<PublishedFile> Hierarchies::open_picture(std::string_view path) {
   return picture ? std::optional(PublishedFile{std::move(picture)}) : std::nullopt;
 }
 
-/// Notes are written by watched folders alone, and tell of no other build.
+/// A note that cannot be read, or is damaged, tells nothing.
 std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
+  try {
+    return noted_warnings(model);
+  } catch (const storage::Busy&) {
+    throw;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Notes are written by watched folders alone, and tell of no other build.
+std::vector<std::string> Hierarchies::noted_warnings(const Model& model) {
   const std::string name = storage::input_note_path(model.path).generic_string();
   const auto note = model.path.empty() ? nullptr : folder_->open(name);
   if (!note)
@@ -142,14 +154,11 @@ std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
       return found->second.content == model.source_checksum ? found->second.warnings
                                                             : std::vector<std::string>();
   }
-  Warned warned{version, 0, {}};
-  try {
-    storage::InputNote read = storage::read_input_note(*note, name);
-    warned.content = read.content;
-    warned.warnings = std::move(read.warnings);
-  } catch (const Error&) {
-  }  // a note that is damaged tells nothing
+  storage::InputNote read = storage::read_input_note(*note, name);
+  const Warned warned{version, read.content, std::move(read.warnings)};
   const std::lock_guard lock(mutex_);
+  if (warned_.size() >= kMostNotes)
+    warned_.clear();
   warned_[model.path] = warned;
   return warned.content == model.source_checksum ? warned.warnings : std::vector<std::string>();
 }

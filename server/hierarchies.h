@@ -100,6 +100,7 @@ class Hierarchies {
   Model model_of(const std::string& path, const storage::File& manifest) const;
 
   std::vector<std::string> warnings_of(const Model& model);
+  std::vector<std::string> noted_warnings(const Model& model);
 
   std::shared_ptr<const storage::Folder> folder_;
   Tell tell_;

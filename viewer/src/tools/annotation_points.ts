@@ -4,7 +4,7 @@ import { areNear } from '../farthest.js';
 import type { Fail, JsonValue } from '../json_value.js';
 import { add, cross, dot, scale, subtract, type Vector } from './vectors.js';
 
-const WKT = /^\s*(POINT|LINESTRING|POLYGON)\s*Z?\s*\(+([^()]*)\)/i;
+const WKT = /^\s*(POINT|LINESTRING|POLYGON)\s*(?:Z\s*)?\(+([^()]*)\)/i;
 const FRAGMENT = /[#&]xyz=([^&]*)/;
 
 export function isOfType(value: JsonValue, type: string): boolean {
