@@ -1,5 +1,6 @@
 #include "mesh_io/foreign_format.h"
 
+#include "hierarchy/text_mark.h"
 #include "mesh_io/text_chars.h"
 
 #include <algorithm>
@@ -125,7 +126,7 @@ constexpr auto kWords = std::to_array<Word>({
 constexpr std::size_t kWordsWithin = 4096;
 
 std::string_view without_blanks(std::string_view text) {
-  text = without_byte_order_mark(text);
+  text = without_mark(text);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   return text;
 }

@@ -1,6 +1,7 @@
 #include "mesh_io/mesh_format.h"
 
 #include "hierarchy/small_letters.h"
+#include "hierarchy/text_mark.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
@@ -35,7 +36,7 @@ constexpr std::string_view kBlanks = " \t\v\f\r\n";
 
 /// The first word that is in no comment.
 std::string_view first_word(std::string_view text) {
-  text = without_byte_order_mark(text);
+  text = without_mark(text);
   for (;;) {
     const std::size_t begin = text.find_first_not_of(kBlanks);
     if (begin == std::string_view::npos)
@@ -98,7 +99,7 @@ bool is_ply(std::string_view start) {
 
 /// A PLY that does not begin at once, or in capitals: a line of the word alone.
 bool is_odd_ply(std::string_view start) {
-  start = without_byte_order_mark(start);
+  start = without_mark(start);
   start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
   const std::size_t end = start.find_first_of("\r\n");
   const std::string_view line = start.substr(0, end);
@@ -114,7 +115,7 @@ std::string_view without_padding(std::string_view start) {
 }
 
 bool begins_as_object(std::string_view start) {
-  start = without_byte_order_mark(start);
+  start = without_mark(start);
   start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
   return start.starts_with('{');
 }

@@ -35,12 +35,13 @@ struct MeshFormat {
 /// For people: "OBJ", "binary STL (gzip)".
 std::string name_of(const MeshFormat& format);
 
-/// Looks at the first 64 KiB of the content, and of a binary STL at the file's size: one that
-/// begins with "solid", as texts do, is binary if its size says so or (where it is packed, or where
-/// its first facets have numbers as meshes have) if the first bytes are no text. An object of JSON
-/// is read up to the keys that tell what it is, wherever they stand: a glTF has meshes or what
-/// belongs to them; a tileset a "root" beside its "asset", or a geometric error. One without any is
-/// a glTF if its first key is one of glTF's. Throws Error(input) if it is none of these, Error(io).
+/// Looks at the first 64 KiB of the content, of JSON up to the keys that tell what it is, and of a
+/// binary STL at the file's size: one that begins with "solid", as texts do, is binary if its size
+/// says so or (where it is packed, or where its first facets have numbers as meshes have) if the
+/// first bytes are no text. An object of JSON is read up to the keys that tell what it is, wherever
+/// they stand: a glTF has meshes or what belongs to them; a tileset a "root" beside its "asset", or
+/// a geometric error. One without any is a glTF if its first key is one of glTF's. Throws
+/// Error(input) if it is none of these, Error(io).
 MeshFormat detect_format(const storage::File& file);
 
 /// The same; nothing if it is none of these.

@@ -1,6 +1,7 @@
 #include "mesh_io/ply_header.h"
 
 #include "hierarchy/small_letters.h"
+#include "hierarchy/text_mark.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_names.h"
 #include "mesh_io/text_chars.h"
@@ -133,7 +134,7 @@ void HeaderParser::check_magic() {
 
 /// Over a byte order mark, blanks and blank lines.
 void HeaderParser::skip_to_magic() {
-  const std::size_t begin = start_.size() - without_byte_order_mark(start_).size();
+  const std::size_t begin = start_.size() - without_mark(start_).size();
   position_ = std::min(start_.find_first_not_of(kHeaderBlanks, begin), start_.size());
   for (std::size_t at = begin; at < position_; ++at) {
     const bool is_half = start_[at] == '\r' && start_[at + 1] == '\n';

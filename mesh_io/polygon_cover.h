@@ -4,16 +4,12 @@
 #include "hierarchy/triangle.h"
 #include "mesh_io/polygon_turns.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace meshhier::mesh_io {
-
-/// About what cover_polygon() takes of memory for a corner: a vertex and two triangles of CGAL.
-inline constexpr std::size_t kCoverBytesPerCorner = 320;
 
 /// Triangles of numbers of corners that cover the polygon exactly and turn as it does: those of a
 /// constrained Delaunay triangulation (CGAL) that lie within. The polygon may touch itself, as

@@ -542,6 +542,21 @@ TEST_F(TilesetImportTest, DocumentsThatMakeAnyNumberOfTilesAreRefusedSoon) {
   EXPECT_THAT(failure(), HasSubstr("deeper than 64 levels"));
 }
 
+TEST_F(TilesetImportTest, ContentsCountAsTilesDo) {
+  put("a.glb", triangle().glb());
+  for (const bool is_shown : {true, false}) {
+    GltfJson many = tile_of("a.glb");
+    many["contents"] = GltfJson(1500, GltfJson{{"uri", "a.glb"}});
+    if (!is_shown)
+      many["children"] = {tile_of("a.glb")};
+    put("many.json", tileset_of(many));
+    GltfJson root = tile_of("a.glb");
+    root["children"] = GltfJson(1000, tile_of("many.json"));
+    put("tileset.json", tileset_of(root));
+    EXPECT_THAT(failure(), HasSubstr("; up to 1048576 are read")) << is_shown;
+  }
+}
+
 /// What a tile shows lies in it, packed or as data.
 TEST_F(TilesetImportTest, ContentsInGzipAndAsDataAreReadWithTheirPictures) {
   GltfBuilder gltf = triangle();

@@ -26,8 +26,6 @@ export interface TileWanted {
 
 export interface OpenedTile {
   readonly tile: Tile;
-  /// Of the bytes as they came.
-  readonly checksum: bigint;
   /// They are those that the seal is of. False: a host has unpacked them, or there was no seal.
   readonly isSealed: boolean;
 }
@@ -43,5 +41,5 @@ export async function openTile(bytes: Uint8Array<ArrayBuffer>, { name, most, exp
   const sum = checksum(bytes);
   const isFitting = seal && fits(bytes, sum, seal);
   if (isFitting === false) throw new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged, or of another build');
-  return { tile: await readTile(await unpacked(bytes, most, name), name, expected), checksum: sum, isSealed: isFitting ?? false };
+  return { tile: await readTile(await unpacked(bytes, most, name), name, expected), isSealed: isFitting ?? false };
 }
