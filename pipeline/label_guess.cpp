@@ -38,9 +38,11 @@ void LabelGuess::add(const LabelGuess& next) {
     add_value(value);
 }
 
+// Integers of 64 bits are kept as doubles.
 bool LabelGuess::is_quantity() const {
   constexpr std::uint64_t kOf = 10, kMost = 9;
-  return attribute_.is_label && values_.size() > kManyValues && steps_ >= kLeastSteps &&
+  const bool is_whole = is_integer(attribute_.type) || attribute_.type == ValueType::f64;
+  return attribute_.is_label && is_whole && values_.size() > kManyValues && steps_ >= kLeastSteps &&
          changes_ / kMost >= steps_ / kOf;
 }
 

@@ -1442,11 +1442,12 @@ TEST_F(CommandLinePage, WhatIsWrongIsTold) {
   const std::string elsewhere = (work().parent_path() / "c.html").string();
   says({work().string(), "-o", elsewhere, "--link", "https://h/"}, kUsage,
        "--link is for the page of one");
-  says({work().string(), "-o", file, "--fetch-pictures"}, kUsage,
+  says({work().string(), "-o", elsewhere, "--fetch-pictures"}, kUsage,
        "--fetch-pictures is for the page of one");
-  says({work().string(), "-o", (work() / "site").string(), "--size", "20MB"}, kUsage,
+  says({work().string(), "-o", (work().parent_path() / "site").string(), "--size", "20MB"}, kUsage,
        "--size is for the page of one");
-  says({work().string(), "-o", file}, kUsage, "the name of an HTML file is for the page of one");
+  says({work().string(), "-o", elsewhere}, kUsage,
+       "the name of an HTML file is for the page of one");
   says({hierarchy(), "-o", (work() / "b.glb").string()}, kUsage, "name it .html");
   std::filesystem::remove(viewer() / "single.html");
   says({hierarchy(), "-o", file}, kIo, "has no single.html");

@@ -636,7 +636,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "storage": {"compression": "none", "normals": "smooth"},
       "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
-      "missing_images": "warn", "up": "y"})"));
+      "missing_images": "warn", "up": "y", "tileset": {"pixels": 16}})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
       "weld": false, "topology": "place", "attributes": "all", "labels": "integers",
       "partition": {"count": 9, "axis": "compactness"},
@@ -645,7 +645,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "storage": {"compression": "none", "normals": "smooth"},
       "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
-      "missing_images": "warn", "up": "y"})"));
+      "missing_images": "warn", "up": "y", "tileset": {"pixels": 16}})"));
 }
 
 TEST(ResolvedJson, DoesNotDependOnPathsBudgetAndThreads) {

@@ -133,8 +133,8 @@ const std::vector<Expected>& conformance_files() {
       {"assimp+assimp/test/models/PLY/cube_binary_starts_with_nl.ply", mesh(8, 12, ""),
        "the first byte of the data is an LF"},
       {"assimp+assimp/test/models/PLY/issue623.ply",
-       refused("line 14: expected a number for 'vertex_indices' in row 0 of 24 of element "
-               "'vertex', found the end of the line"),
+       refused("line 15: expected an integer from 0 to 255 ('uchar') for 'vertex_indices' in row 0 "
+               "of 24 of element 'vertex', found '7.941797'"),
        "the line 'element face' is missing from the header, so each vertex should have a list"},
       {"cdcseacave+openMVS_sample/Sparse.ply", mesh(12683, 0, "rgb8"), ""},
       {"cdcseacave+openMVS_sample/scene_mesh_texture.ply", mesh(7378, 14709, ""),
@@ -181,8 +181,8 @@ const std::vector<Expected>& conformance_files() {
       {"debian-assimp-testmodels/empty.ply", refused("expected a PLY file, found an empty file"),
        "0 bytes"},
       {"debian-assimp-testmodels/issue623.ply",
-       refused("line 13: expected a number for 'vertex_indices' in row 0 of 24 of element "
-               "'vertex', found the end of the line"),
+       refused("line 14: expected an integer from 0 to 255 ('uchar') for 'vertex_indices' in row 0 "
+               "of 24 of element 'vertex', found '7.941797'"),
        "the line 'element face' is missing from the header, as above"},
       {"debian-assimp-testmodels/points.ply", mesh(4, 0, "n rgb8"), ""},
       {"debian-libcgal-demo-5.5.1/b9.ply", mesh(22300, 0, ""), ""},

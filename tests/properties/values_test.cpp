@@ -271,7 +271,7 @@ TEST_F(ValuesTest, ThoseChosenAreKept) {
   c.attributes.which = mesh_io::AttributeChoice::Which::none;
   build(c);
   const storage::HierarchyReader without(*files_, path("mesh.hier"));
-  EXPECT_EQ(without.manifest().format_version(), 8);
+  EXPECT_EQ(without.manifest().format_version(), 12);
   EXPECT_EQ(without.manifest().source.unused.size(), 8U);
 }
 
