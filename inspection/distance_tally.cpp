@@ -19,7 +19,7 @@ std::size_t bin_of(double distance) {
 }
 
 /// The middle of a bin.
-double value_of(std::size_t bin) {
+double bin_value(std::size_t bin) {
   const bool is_negative = bin < kSign;
   const auto bits = static_cast<std::uint32_t>(is_negative ? kSign - 1 - bin : bin - kSign);
   if (bits == 0)
@@ -71,7 +71,7 @@ double DistanceTally::quantile(double part) const {
     if (below >= part * weight_)
       break;
   }
-  return std::clamp(value_of(last), least_, largest_);
+  return std::clamp(bin_value(last), least_, largest_);
 }
 
 double DistanceTally::size_quantile(double part) const {
@@ -86,7 +86,7 @@ double DistanceTally::size_quantile(double part) const {
     if (below >= part * weight_)
       break;
   }
-  return std::min(value_of(last), farthest());
+  return std::min(bin_value(last), farthest());
 }
 
 std::vector<double> DistanceTally::histogram(double from, double to, std::size_t bins) const {
@@ -94,7 +94,7 @@ std::vector<double> DistanceTally::histogram(double from, double to, std::size_t
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     if (!(bins_[bin] > 0))
       continue;
-    const double at = to > from ? (value_of(bin) - from) / (to - from) : 0;
+    const double at = to > from ? (bin_value(bin) - from) / (to - from) : 0;
     const double place =
         std::clamp(at * static_cast<double>(bins), 0.0, static_cast<double>(bins) - 1);
     weights[static_cast<std::size_t>(place)] += bins_[bin];

@@ -322,14 +322,17 @@ TEST_F(StreamTest, AnOutputThatIsThereStays) {
 TEST_F(StreamTest, ForceReplacesNothingButStreams) {
   files_.put("/models/mine/diary.txt", "dear diary");
   const Contents hierarchy = contents(kHierarchy);
-  for (const char* output : {"/models/mine", kHierarchy, "/models/mesh.ply"}) {
+  const auto refused = [&](const char* output, ErrorCode code, const char* message) {
     progressive::ProgressiveOptions elsewhere = options();
     elsewhere.output = output;
     const std::optional<Error> error = write_error(elsewhere);
     ASSERT_TRUE(error) << output;
-    EXPECT_EQ(error->code(), ErrorCode::exists) << output;
-    EXPECT_THAT(error->what(), HasSubstr("is not a progressive stream"));
-  }
+    EXPECT_EQ(error->code(), code) << output;
+    EXPECT_THAT(error->what(), HasSubstr(message));
+  };
+  refused("/models/mine", ErrorCode::exists, "is not a progressive stream");
+  for (const char* output : {kHierarchy, "/models/mesh.ply"})
+    refused(output, ErrorCode::usage, "a directory of its own kind");
   EXPECT_EQ(files_.content("/models/mine/diary.txt"), "dear diary");
   EXPECT_EQ(contents(kHierarchy), hierarchy);
 }
@@ -459,10 +462,10 @@ TEST_F(StreamTest, ADamagedTileIsNamedAndNoStreamMade) {
 }
 
 TEST_F(StreamTest, WhatAStoppedBuildHasDoneStays) {
-  const fs::path journal = storage::journal_path(storage::work_path("/models/other.hier"));
+  const fs::path journal = storage::journal_path(storage::work_path("/models/other"));
   files_.put(journal, "done");
   progressive::ProgressiveOptions there = options();
-  there.output = "/models/other.hier";
+  there.output = "/models/other";
   const std::optional<Error> error = write_error(there);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::exists);
