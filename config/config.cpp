@@ -4,6 +4,7 @@
 #include "config/input_frame.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
+#include "hierarchy/flat_axes.h"
 #include "hierarchy/mesh_name.h"
 #include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
@@ -377,9 +378,7 @@ void check_output(const Config& config, const Draft& draft) {
 
 /// Whether what is moved by it has no volume left, but for rounding.
 bool is_flat(const Transform& m) {
-  constexpr double kRounding = 1e-14;
-  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
-  return !(std::abs(dot(x, cross(y, z))) > kRounding * length(x) * length(y) * length(z));
+  return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
 }
 
 /// There are three ways to place a model; each stands alone.

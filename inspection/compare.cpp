@@ -2,6 +2,7 @@
 
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
+#include "hierarchy/flat_axes.h"
 #include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/text_mark.h"
@@ -449,10 +450,7 @@ void check_options(const Opened& from, const Opened& to, const CompareOptions& o
 
 /// Whether what is moved by it has no volume left, but for rounding.
 bool is_flat(const PlaceTransform& m) {
-  constexpr double kRounding = 1e-14;
-  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
-  const double volume = std::abs(dot(x, cross(y, z)));
-  return !(volume > kRounding * length(x) * length(y) * length(z));
+  return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
 }
 
 }  // namespace
