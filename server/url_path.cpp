@@ -1,5 +1,7 @@
 #include "server/url_path.h"
 
+#include "hierarchy/percent_code.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -13,34 +15,14 @@ constexpr std::size_t kLongestPath = 4095;
 
 constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 
-/// -1 if it is none.
-int hex_value(char c) {
-  if (c >= 'a' && c <= 'f')
-    c = static_cast<char>(c - 'a' + 'A');
-  const std::size_t value = kHexDigits.find(c);
-  return value == std::string_view::npos ? -1 : static_cast<int>(value);
-}
-
 bool is_plain(char c) {
   return static_cast<unsigned char>(c) >= ' ' && c != '\x7f' && c != '/' && c != '\\';
 }
 
 /// One part between slashes.
 std::optional<std::string> decode_part(std::string_view part) {
-  std::string name;
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    char c = part[i];
-    if (c == '%') {
-      const int high = i + 2 < part.size() ? hex_value(part[i + 1]) : -1;
-      const int low = i + 2 < part.size() ? hex_value(part[i + 2]) : -1;
-      if (high < 0 || low < 0)
-        return std::nullopt;
-      c = static_cast<char>(high * 16 + low);
-      i += 2;
-    }
-    name += c;
-  }
-  return is_plain_name(name) ? std::optional(std::move(name)) : std::nullopt;
+  std::optional<std::string> name = percent_decoded(part);
+  return name && is_plain_name(*name) ? std::move(name) : std::nullopt;
 }
 
 bool is_unreserved(char c) {

@@ -1,10 +1,10 @@
 #include "storage/format/story_pictures.h"
 
+#include "hierarchy/percent_code.h"
 #include "hierarchy/small_letters.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <optional>
 #include <set>
@@ -20,32 +20,13 @@ constexpr std::array<std::string_view, 6> kPictureEndings{".avif", ".gif", ".jpe
 /// A manifest's picture is some twenty deep.
 constexpr int kDeepestStory = 64;
 
-/// -1 if it is no hexadecimal digit.
-int hex_digit(char c) {
-  constexpr std::string_view kHexDigits = "0123456789abcdef";
-  const std::size_t value =
-      kHexDigits.find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-  return value == std::string_view::npos ? -1 : static_cast<int>(value);
-}
-
 /// A part of an address as a file's name; nothing if it cannot be one.
 std::optional<std::string> part_name(std::string_view part) {
-  std::string name;
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    char c = part[i];
-    if (c == '%') {
-      const int high = i + 2 < part.size() ? hex_digit(part[i + 1]) : -1;
-      const int low = i + 2 < part.size() ? hex_digit(part[i + 2]) : -1;
-      if (high < 0 || low < 0)
-        return std::nullopt;
-      c = static_cast<char>(high * 16 + low);
-      i += 2;
-    }
-    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' ')
-      return std::nullopt;
-    name += c;
-  }
-  return name;
+  std::optional<std::string> name = percent_decoded(part);
+  const auto is_none = [](char c) {
+    return c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' ';
+  };
+  return name && std::ranges::none_of(*name, is_none) ? std::move(name) : std::nullopt;
 }
 
 /// Takes a step; false if it leads nowhere that is beside the story.
