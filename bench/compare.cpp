@@ -1,20 +1,15 @@
-// meshhier_compare: how kd-tree, octree and k-means divide real meshes, and what simplification
-// makes of their cells; how the shading and the textures of a hierarchy's levels differ from the
+// meshhier_compare: how the shading and the textures of a hierarchy's levels differ from the
 // original's.
-#include "bench/comparison.h"
 #include "bench/program.h"
 #include "bench/shading_comparison.h"
 #include "bench/texture_comparison.h"
 #include "bench/textured_mesh.h"
-#include "hierarchy/error.h"
-#include "mesh_io/mesh_source.h"
 #include "render/camera.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/output_file.h"
 #include "storage/io/process.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -28,11 +23,6 @@
 namespace {
 
 using namespace meshhier;
-
-struct Arguments {
-  std::vector<std::string> inputs;
-  bench::ComparisonOptions options;
-};
 
 struct ShadingArguments {
   std::filesystem::path hierarchy;
@@ -50,24 +40,6 @@ struct TextureArguments {
   bool json = false;
   std::filesystem::path pictures;  ///< a directory; empty: none are kept
 };
-
-void add_options(CLI::App& app, Arguments& arguments) {
-  bench::ComparisonOptions& options = arguments.options;
-  app.add_option("inputs", arguments.inputs, "PLY files");
-  app.add_option("--parts", options.parts, "How many partitions")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--cell-vertices", options.cell_vertices,
-                 "Vertices that become one in the simplified meshes, on average, 1 or more")
-      ->check(CLI::Range(1.0, static_cast<double>(UINT32_MAX)))
-      ->capture_default_str();
-  app.add_option("--iterations", options.kmeans_iterations, "Of k-means, at most")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--samples", options.samples, "Of a distance, in each direction")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-}
 
 CLI::App* add_shading(CLI::App& app, ShadingArguments& arguments) {
   CLI::App* command = app.add_subcommand(
@@ -89,7 +61,7 @@ CLI::App* add_shading(CLI::App& app, ShadingArguments& arguments) {
   return command;
 }
 
-CLI::App* add_textures(CLI::App& app, TextureArguments& arguments) {
+void add_textures(CLI::App& app, TextureArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "textures",
       "Compares pictures of a textured hierarchy's levels with those of its input, seen from where "
@@ -110,25 +82,6 @@ CLI::App* add_textures(CLI::App& app, TextureArguments& arguments) {
   command->add_flag("--json", arguments.json, "One JSON object, for programs");
   command->add_option("--pictures", arguments.pictures,
                       "A directory for PNG files: input and level side by side");
-  return command;
-}
-
-/// Prints each comparison as soon as it is there.
-void run(const Arguments& arguments) {
-  if (arguments.inputs.empty())
-    throw CLI::RequiredError("inputs");
-  const auto files = storage::make_posix_file_system();
-  for (const std::string& input : arguments.inputs) {
-    try {
-      const auto source = mesh_io::open_mesh(*files, input);
-      const bench::PlainMesh mesh = bench::plain_mesh(bench::load_mesh(*source));
-      fmt::print("{}\n", bench::markdown(std::filesystem::path(input).stem().string(),
-                                         bench::compare(mesh, arguments.options, *files)));
-    } catch (const Error& error) {
-      throw error.within(input);
-    }
-    std::fflush(stdout);
-  }
 }
 
 using PictureSink = std::function<void(const bench::NamedPicture&)>;
@@ -208,21 +161,16 @@ void run_textures(const TextureArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Compares kd-tree, octree and k-means: sizes, compactness and time of the partitions, and "
-      "the distance to meshes in which every cell is one vertex");
-  Arguments arguments;
-  add_options(app, arguments);
+  CLI::App app("Compares pictures of a hierarchy's levels with pictures of the original");
+  app.require_subcommand(1);
   ShadingArguments shading;
   const CLI::App* shading_command = add_shading(app, shading);
   TextureArguments textures;
-  const CLI::App* textures_command = add_textures(app, textures);
+  add_textures(app, textures);
   return bench::run_program("meshhier_compare", app, argc, argv, [&] {
     if (shading_command->parsed())
       run_shading(shading);
-    else if (textures_command->parsed())
-      run_textures(textures);
     else
-      run(arguments);
+      run_textures(textures);
   });
 }

@@ -14,7 +14,7 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0);
 
 /// Which repetitions are looked for. Numbers that hardly repeat are smaller, and five times as
 /// fast, without any but runs of one byte: matches by chance spoil the statistics of what is left
-/// (docs/performance.md, progressive streams).
+/// (docs/decisions/008-progressive-streams.md).
 enum class Repetitions { all, runs };
 
 /// One gzip member. Deterministic for one zlib: no name, no time, operating system "unknown".
