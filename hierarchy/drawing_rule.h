@@ -1,13 +1,5 @@
-// Which tile of a cut draws a border triangle.
-//
-// Every tile that a border triangle touches lists it; in a cut exactly one of them draws it:
-//
-//   - the finest of them: a tile does not draw what reaches into a region that is shown finer;
-//   - among tiles of one level, the one with the lowest index.
-//
-// The corners alone say which tiles a triangle touches, so all images of one triangle of the cut
-// are drawn by the same tile. In the cut of a level, early nodes are shown as their partitions,
-// which are finer: their neighbours leave the border to them.
+// The drawing rule as functions: which tile of a cut draws a border triangle. The rule itself
+// stands at PublishedTile (hierarchy/published.h).
 #pragma once
 
 #include "hierarchy/ids.h"

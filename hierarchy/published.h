@@ -50,7 +50,28 @@ struct TileRecord {
   std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };
 
-/// One tile file, decoded.
+/// One tile file, decoded: all that a viewer needs to draw the tile in any cut.
+///
+/// The drawing rule. A cut shows tiles of any levels that cover each partition once. A tile A of
+/// the cut draws all of mesh.interior. It draws a triangle of mesh.border if and only if each ghost
+/// of the triangle belongs to a tile B of A's level (mesh.ghosts) whose region the cut shows
+///
+///   as B itself, and B has a larger index than A: the ghost stays where B has it; or
+///   coarser, as an ancestor of B n levels up: the ghost moves to its vertex chains[ghost][n].
+///
+/// If B's region is shown finer, a tile in there draws the triangle. A triangle whose corners lay
+/// at different places and come to one has vanished and is not drawn.
+///
+///   the input       2/0 | 2/1 | 2/2 | 2/3      a triangle t with corners in 2/1 and 2/2
+///   cut of level 2  2/0 [2/1]| 2/2 | 2/3       2/1 draws t: both are shown, 1 < 2
+///   a mixed cut     2/0 [2/1]|    1/1          2/1 draws t; its corner in 2/2 is a vertex of 1/1
+///   another         [  1/0  ]|    1/1          1/0 draws what t has become on level 1
+///
+/// So the finest of the shown tiles that t touches draws it, of equals the one with the lowest
+/// index. The corners alone say which tiles those are: every image of t comes to the same tile, t
+/// is drawn once, and all that is drawn is the image of the input under one map of vertices. A
+/// surface that is closed in the input is closed in every cut. An early node has no tile: its
+/// partition is shown for it, which is finer, and neighbours leave the border to that.
 struct PublishedTile {
   NodeId node;
   TileMesh mesh;
