@@ -73,7 +73,7 @@ inline double rounded_to_float(double x) {
   return narrow;
 }
 
-/// What a file of single precision holds of `p`.
+/// Returns `p` as a file of single precision holds it.
 inline Vec3d rounded_to_float(Vec3d p) {
   return {rounded_to_float(p.x), rounded_to_float(p.y), rounded_to_float(p.z)};
 }

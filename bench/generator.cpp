@@ -3,7 +3,7 @@
 namespace meshhier::bench {
 namespace {
 
-/// What is handed to the writer at once: 1.5 MiB of positions, large against a call's cost.
+/// The writer gets so many at once: 1.5 MiB of positions, large against a call's cost.
 constexpr std::size_t kWriteBlock = 65536;
 
 void write_vertices(mesh_io::PlyWriter& writer, const GeneratedMesh& mesh) {

@@ -76,7 +76,8 @@ LoadedMesh load_mesh(mesh_io::MeshSource& source);
 struct AmplifyOptions {
   int times = 1;  ///< subdivision steps, each 1:4; [0, 10]
   std::uint64_t seed = 1;
-  /// Of an edge's midpoint along the normal, at most, in parts of the edge's length; [0, 1].
+  /// How far an edge's midpoint moves along the normal, at most, in parts of the edge's length;
+  /// [0, 1].
   double displacement = 0.05;
 };
 

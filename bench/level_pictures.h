@@ -1,4 +1,4 @@
-// What comparisons of levels in pictures share.
+// Pictures of levels, for the comparisons of shading and textures.
 #pragma once
 
 #include "hierarchy/ids.h"
@@ -24,7 +24,7 @@ std::vector<Level> levels_of(const Tree& tree, const std::optional<Level>& asked
 /// The input's box, relative to the origin as stored positions are.
 BoundsD stored_box(const storage::Manifest& manifest);
 
-/// Of the input.
+/// The direction that points up in the input.
 Vec3d up_of(const storage::Manifest& manifest);
 
 }  // namespace meshhier::bench

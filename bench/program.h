@@ -1,4 +1,4 @@
-// What the programs of this folder have in common: their main().
+// main() of the programs of this folder.
 #pragma once
 
 #include "hierarchy/error.h"

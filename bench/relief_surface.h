@@ -34,7 +34,7 @@ constexpr bool is_cut_upwards(GridPoint cell) {
 /// Requires that `cell`, the lowest point of a cell, is no last one of its row or column.
 CellTriangles triangles_of(GridPoint cell);
 
-/// Of what a surface is made, for a comment in its file.
+/// Tells how a surface was made, for a comment in its file.
 std::string description_of(const SurfaceOptions& options);
 
 /// A pure function of the options; immutable, thread-safe.
@@ -49,7 +49,7 @@ class ReliefSurface {
   double step() const { return step_; }
 
   ReliefVertex vertex(GridPoint at) const { return vertex(at, grid_.index(at)); }
-  /// What a file holds of its position.
+  /// Returns its position as a file holds it.
   Vec3d stored(const ReliefVertex& vertex) const;
   /// Every vertex once, by ascending number.
   void visit_vertices(const std::function<void(const ReliefVertex&)>& visit) const;

@@ -7,7 +7,7 @@
 namespace meshhier::bench {
 namespace {
 
-/// What generated meshes are asked for at once.
+/// Generated meshes hand out so many at once.
 constexpr std::size_t kBlock = 65536;
 
 Tree tree_of(std::uint64_t vertices, std::uint32_t partition_vertices) {

@@ -30,14 +30,14 @@ using render::NormalKind;
 
 // ---- differences ---------------------------------------------------------------------------
 
-/// Of directions of length 1.
+/// Takes directions of length 1.
 double degrees_between(Vec3f a, Vec3f b) {
   constexpr double kDegrees = 57.29577951308232;
   const Vec3d u = to_double(a), v = to_double(b);
   return kDegrees * angle_of(dot(u, v), length(cross(u, v)));
 }
 
-/// Of screen values, by the shares of ITU-R BT.709.
+/// Takes screen values; the shares are those of ITU-R BT.709.
 double luminance(const std::uint8_t* rgba) {
   return 0.2126 * rgba[0] + 0.7152 * rgba[1] + 0.0722 * rgba[2];
 }
@@ -144,7 +144,7 @@ render::Camera camera_of(const storage::HierarchyReader& reader, const render::V
   return {view, stored_box(reader.manifest()), render::Framing{.width = size, .height = size}};
 }
 
-/// What all views have in common.
+/// All views have this in common.
 struct Job {
   const storage::HierarchyReader& reader;
   const ShadingOptions& options;

@@ -35,7 +35,7 @@ Vec3d unit(Vec3d v) {
   return size > 0 ? v * (1 / size) : Vec3d{0, 0, 1};
 }
 
-/// What corners get, channel by channel.
+/// Gives each corner its channels.
 class Splitter {
  public:
   Splitter(const LoadedMesh& mesh, double degrees)
@@ -66,7 +66,8 @@ class Splitter {
     add(unit(normals_[triangle]), channels);
   }
 
-  /// Of the triangles around the corner that bend away from its own by less than the angle.
+  /// Adds the normal of the triangles around the corner that bend away from its own by less than
+  /// the angle.
   void add_smooth_normal(std::size_t triangle, std::size_t corner, std::vector<float>& channels) {
     if (around_.empty())
       collect();

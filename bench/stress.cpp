@@ -44,7 +44,7 @@ LoadedMesh collect(const GeneratedMesh& generated) {
   return mesh;
 }
 
-// What the cases are made of. A rough closed surface is the sound mesh that many of them spoil.
+// The cases are made of this. A rough closed surface is the sound mesh that many of them spoil.
 
 LoadedMesh surface(const StressOptions& options) {
   SurfaceOptions wanted;

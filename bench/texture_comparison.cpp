@@ -28,16 +28,16 @@ namespace {
 
 using RatioJson = nlohmann::ordered_json;
 
-/// Of the input, along each axis of a sample: two levels up in its pyramid still keep charts apart
-/// that have gutters of four texels.
+/// A sample covers so many texels of the input along each axis: two levels up in its pyramid still
+/// keep charts apart that have gutters of four texels.
 constexpr double kTexelsASample = 2;
-/// Of a picture's side: 1 GB.
+/// A picture's side has so many samples at most: 1 GB.
 constexpr std::uint32_t kMostSamples = 6144;
 constexpr std::uint32_t kLeastSamples = 2;
 
 // ---- a level seen from afar ----------------------------------------------------------------
 
-/// What the index says of a level.
+/// A level as the index tells it.
 struct LevelFacts {
   Level level{};
   double error = 0, texel = 0;
@@ -58,7 +58,7 @@ LevelFacts facts_of(const storage::HierarchyReader& reader, Level level) {
   return facts;
 }
 
-/// What all views and levels have in common.
+/// All views and levels have this in common.
 struct TextureJob {
   const storage::HierarchyReader& reader;
   const TexturedMesh& input;
@@ -92,7 +92,7 @@ render::Framing framing_for(const TextureJob& job, const render::View& view, dou
   return framing;
 }
 
-/// Of the vertices the one nearest to the middle of the picture: where there is something to see.
+/// Returns the vertex nearest to the middle of the picture: there is something to see there.
 Vec3d middle_vertex(const TexturedMesh& mesh, const render::ViewAxes& axes, Vec3d centre) {
   Vec3d nearest = centre;
   double least = std::numeric_limits<double>::infinity();

@@ -59,7 +59,7 @@ void visit_triangles(const PlacedChart& chart, const Visit& visit) {
   }
 }
 
-/// Of a point of the grid, within its chart.
+/// Returns where a point of the grid lies within its chart.
 ChartPlace place_in(const PlacedChart& chart, GridPoint at) {
   return {static_cast<double>(at.column - chart.cells.column_begin),
           static_cast<double>(at.row - chart.cells.row_begin)};

@@ -10,7 +10,7 @@
 namespace meshhier::bench {
 namespace {
 
-/// What no chart covers.
+/// The shade of texels that no chart covers.
 constexpr std::uint8_t kBackground = 24;
 /// The finest detail, in texels: a lens shows no finer one.
 constexpr double kFinestWaveTexels = 4;
@@ -30,7 +30,7 @@ class ChartPainter {
   ChartPainter(const ReliefSurface& surface, const PlacedChart& chart)
       : surface_(surface), chart_(chart) {}
 
-  /// Of the texels from (x, y) on.
+  /// Writes the surface points of the texels from (x, y) on.
   void points_of(std::uint32_t x, std::uint32_t y, std::span<Vec3d> points) {
     for (std::size_t i = 0; i < points.size(); ++i)
       points[i] = point_at(chart_.place_of({static_cast<double>(x + i) + 0.5, y + 0.5}));

@@ -89,7 +89,7 @@ export function readTile(bytes, node, tree, lattice) {
     const vertex = v < own + ghosts + copies ? v : splitOf[v - own - ghosts - copies];
     placeOf[v] = vertex < own + ghosts ? vertex : copyOf[vertex - own - ghosts];
   });
-  // Of each neighbour: itself and its ancestors below the common one, and where its ghosts' chains begin.
+  // Each neighbour has its own node and its ancestors below the common one, and the place where its ghosts' chains begin.
   let entry = 0;
   const starts = section('ghostStarts', Uint32Array);
   const neighbours = Array.from(section('neighbours', Uint32Array), (index, i) => {

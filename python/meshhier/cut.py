@@ -82,8 +82,8 @@ class CutAssembly:
         return np.concatenate([interior, vertices[border[shown]]])
 
     def _ghosts(self, part: _Part) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64]]:
-        """Of each place whether its tile leaves border triangles to this one, and its number in the whole cut; of each vertex
-        the number in the mesh."""
+        """Tells of each place whether its tile leaves border triangles to this one, and its number in the whole cut; and the
+        number of each vertex in the mesh."""
         tile, manifest = part.tile, self._manifest
         is_ours = np.ones(tile.own + tile.ghosts, bool)
         places = np.concatenate([part.base + np.arange(tile.own), np.full(tile.ghosts, -1)])

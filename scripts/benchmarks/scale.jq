@@ -26,7 +26,7 @@ def size:
 def budget:
   if . % 1073741824 == 0 then "\(. / 1073741824)GiB" elif . % 1048576 == 0 then "\(. / 1048576)MiB" else tostring end;
 
-# What the columns say of a build.
+# The columns of a build.
 def cells:
   .setting as $setting | .total as $total
   | {

@@ -62,8 +62,8 @@ TEST_P(SurfaceShape, has_the_least_grid_with_enough_triangles) {
   }
 }
 
-/// What the smooth shape encloses: spheres by formula, the others as the limit of Catmull and
-/// Clark's subdivision, which the patches approximate.
+/// The volume that the smooth shape encloses: spheres by formula, the others as the limit of
+/// Catmull and Clark's subdivision, which the patches approximate.
 double ideal_volume(Shape shape) {
   constexpr double kUnitBall = 4.18879020478639;
   if (shape == Shape::sphere)

@@ -49,7 +49,7 @@ struct Corner {
 };
 using CornerTriangle = std::array<Corner, 3>;
 
-/// Of all triangles of a chart.
+/// Returns all triangles of a chart.
 std::vector<CornerTriangle> triangles_in(const TexturedSurface& mesh, const PlacedChart& chart) {
   std::vector<CornerTriangle> all;
   const auto corner = [&](GridPoint at) {
