@@ -11,8 +11,8 @@ namespace {
 // A corner that is no farther than so many times the mean is near: one in 50 of scans is farther.
 constexpr double kFar = 3;
 
-// What is typical of triangles, as a part of how far they are at most. With a tenth, the steps of
-// five scans have a larger mean over vertices, but for one in 40. Where no collapse cares for the
+// A triangle's typical distance, as a part of its largest one. With a tenth, the steps of five
+// scans have a larger mean over vertices, but for one in 40. Where no collapse cares for the
 // surface, much of a triangle is away from it.
 constexpr double kWithCare = 0.1;
 constexpr double kWithout = 0.5;

@@ -18,7 +18,7 @@ namespace meshhier::cluster_simplify {
 /// cost next to nothing.
 class AreaMean {
  public:
-  /// Of a triangle.
+  /// One triangle's part in the mean.
   struct Patch {
     double doubled_area = 0;
     double square = 0;  ///< of the distance; may be infinite

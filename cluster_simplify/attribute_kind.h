@@ -31,10 +31,10 @@ class AttributeKind {
   /// Larger for what is less alike; limit() is the largest for what may be one.
   double distance(const AttributePoint& a, const AttributePoint& b) const;
   double limit() const { return limit_; }
-  /// Of two parts; what says nothing is like everything.
+  /// Whether two parts may not be one; one that says nothing is like any other.
   bool are_apart(std::span<const float> a, std::span<const float> b) const;
 
-  /// What means are made of: a direction, or light.
+  /// The point in the units in which means are taken: a direction, or light.
   AttributePoint summand(const AttributePoint& point) const;
   /// A part again. `sum`: of summands, each times its weight. Nothing if it has no direction, or no
   /// weight.
@@ -47,7 +47,7 @@ class AttributeKind {
                 double limit)
       : offset_(offset), channels_(channels), numbers_(numbers), range_(range), limit_(limit) {}
 
-  /// Of red, green and blue.
+  /// Changes red, green and blue, not opacity.
   template <class Change>
   AttributePoint changed(AttributePoint p, const Change& change) const {
     for (std::size_t k = 0; k < std::min<std::size_t>(channels_, 3); ++k)

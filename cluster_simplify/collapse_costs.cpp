@@ -25,7 +25,7 @@ constexpr float kLeastShare = 0.01F;
 
 constexpr float kLeastCosine = 0.2F;
 
-/// Of the triangles around one end.
+/// Whether no triangle around one end turns.
 bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::uint32_t other,
                  Vec3f place, Fans fans) {
   const Vec3f old = positions[vertex];
@@ -46,8 +46,8 @@ bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::ui
   return true;
 }
 
-/// Of links [begin, end) of a disc, four at a time; `old`: their end of the edge as seen from its
-/// new place.
+/// The same for links [begin, end) of a disc, four at a time. `old`: their end of the edge as seen
+/// from its new place.
 bool links_keep_sides(const EdgeStar& star, Vec3f old, std::uint32_t begin, std::uint32_t end) {
   FourInts turned{};
   for (std::uint32_t i = begin; i < end; i += 4) {

@@ -1,4 +1,4 @@
-// What the collapse methods have in common in judging a collapse.
+// Judges a collapse, as all collapse methods do.
 #pragma once
 
 #include "cluster_simplify/edge_star.h"
@@ -27,7 +27,7 @@ inline float quadric_cost(const VertexQuadric& sum, Vec3f x, float squared_edge)
 /// degrees when its ends move to `place`. `star`: as seen from there if it is a disc. O(triangles).
 bool keeps_sides(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
 
-/// What a collapse costs that changes topology: quadrics do not see it. Noise closes its holes and
+/// Prices of collapses that change topology, which quadrics do not see. Noise closes its holes and
 /// handles, and specks of it vanish, when that harms less than any other collapse.
 class TopologyPrices {
  public:

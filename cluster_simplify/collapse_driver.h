@@ -1,4 +1,35 @@
 // Collapses edges in order of cost until few enough vertices are left.
+//
+// Problem. All edges of a tile wait in a queue, cheapest first. A collapse changes the costs of all
+// edges around it, some ten or twenty: keeping the queue true after each would take most of the
+// time.
+//
+// Idea. An edge's cost is looked at again when its turn comes, not when a neighbour changes:
+//
+//      queue, by cost
+//      +----+----+----+----+--
+//      | 16 edges of the   |      all looked up at once: the machine waits for memory once
+//      | lowest bucket     |
+//      +----+----+----+----+--
+//         |  today's cost in a higher bucket, or an end has just moved? back into the queue
+//         v
+//      what would it do?   topology changes: back into the queue at the price of that
+//         |                triangles turn over: refused, asked again when an end collapses
+//         v
+//      measured (DeviationMeter::note), then carried out
+//
+// Invariant. An edge in the queue stands there with a cost that it once had. Collapses make costs
+// grow, hardly ever shrink, so what is taken from the queue is about the cheapest there is. An edge
+// that vanishes leaves the queue; one that was refused is known by its ends (refused_), and comes
+// back when one of them takes part in a collapse.
+//
+// When the queue is empty and too many vertices are left, the tile gives up care (Care): what was
+// refused for its triangles may happen, then anything.
+//
+// Cost. Pushing and popping are O(1), as the queue has buckets (collapse_queue.h). An edge comes
+// back only into a higher bucket, or when its ends change. A collapse goes through the triangles
+// around its edge; vertices of more than 1,024 triangles do not collapse (decision 015). Decisions
+// 005 and 007 tell about costs and speed.
 #pragma once
 
 #include "cluster_simplify/collapse_costs.h"
@@ -26,7 +57,7 @@ struct Collapse {
   Vec3f place;     ///< where `to` comes to lie, tile-local
 };
 
-/// What is given up, step by step, when a tile cannot reach its count otherwise.
+/// Steps of care; the next one is tried when a tile cannot reach its count with the one before.
 enum class Care {
   all,       ///< no triangle turns over; topology changes at its price, no borders meet
   topology,  ///< triangles may turn over
@@ -39,8 +70,6 @@ enum class Care {
 ///   float price(edge, TopologyChange)        what it costs at least if it changes topology
 ///   void collapsed(Collapse)
 ///   std::span<const Vec3f> positions()
-/// An edge's cost is looked at again when its turn comes, not when a neighbour changes: collapses
-/// make costs grow, hardly ever shrink. HighValence vertices stay what they are.
 template <class Costs>
 class CollapseDriver {
  public:
@@ -75,8 +104,8 @@ class CollapseDriver {
 
  private:
   void reach(std::uint32_t target, Care care) {
-    // What was impossible may have become possible by later collapses next to it: as long as a
-    // round gets a fair part of the way, there is another.
+    // Later collapses may have made possible what was refused: as long as a round gets a fair part
+    // of the way, there is another.
     constexpr std::uint64_t kFairPart = 16;
     while (left_ > target) {
       const std::uint32_t before = left_;
@@ -107,8 +136,8 @@ class CollapseDriver {
     return mesh_.has_high_valence(mesh_.edge(e).a) || mesh_.has_high_valence(mesh_.edge(e).b);
   }
 
-  /// Of what is left at of high valence vertices the mesh knows an upper bound only. Returns
-  /// whether there are any.
+  /// Counts the triangles that are left at high-valence vertices: the mesh knows an upper bound
+  /// only. Returns whether there are any such vertices.
   bool recount_high_valences() {
     bool any = false;
     for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
@@ -204,12 +233,13 @@ class CollapseDriver {
 
   void attempt(std::uint32_t e, const Collapse& collapse, Care care) {
     star_.gather(mesh_, collapse.from, collapse.to);
-    if (star_.is_disc()) {
+    if (star_.is_disc()) {  // a disc becomes a disc: no topology changes
       changes_[e] = TopologyChange::none;
       star_.look_from(collapse.place, costs_.positions());
     } else if (care != Care::none) {
       const TopologyChange change =
           link_.change(mesh_, star_.from(), star_.to(), star_.around_from(), star_.around_to());
+      // The edge stood in the queue without this price: it goes back and waits for its turn.
       const bool known = change <= changes_[e];
       changes_[e] = change;
       if (!known) {
@@ -254,7 +284,7 @@ class CollapseDriver {
     }
   }
 
-  /// What was impossible may be possible now.
+  /// Gives the edges around a vertex that just changed another turn: some had been refused.
   void ask_again(std::uint32_t vertex, Care care) {
     refused_[vertex] = 0;
     for (const CollapseMesh::Fan& fan : mesh_.star_of(vertex, around_)) {

@@ -77,7 +77,7 @@ class CollapseMesh {
   bool has_high_valence(std::uint32_t vertex) const { return stars_[vertex].count > kHighValence; }
   /// Whether any triangle is left at the vertex.
   bool is_isolated(std::uint32_t vertex);
-  /// What stands for the vertex now.
+  /// Returns the vertex that stands for this one now. Shortens the way for the next call.
   std::uint32_t representative(std::uint32_t vertex) {
     while (parents_[vertex] != vertex) {
       parents_[vertex] = parents_[parents_[vertex]];
@@ -175,7 +175,7 @@ void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<cons
     }
     return known;
   };
-  // What follows comes before what dies: an edge that loses its own triangle may get another.
+  // Triangles that move come before those that die: an edge that loses one may get another.
   for (const Fan& fan : around_from) {
     if (fan.is_at(to))
       continue;

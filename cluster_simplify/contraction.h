@@ -26,7 +26,7 @@ enum class Representative {
   vertex,   ///< the cell's vertex of least such distance
 };
 
-/// What a half-edge collapse costs.
+/// The cost of a half-edge collapse.
 enum class HalfEdgeCost {
   quadric,  ///< squared distance to the planes of both vertices
   melax,    ///< length times how far the surface bends (Melax 1998)

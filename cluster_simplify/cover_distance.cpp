@@ -97,6 +97,7 @@ double CoverDistance::cut_or_bound(Piece piece, double enough) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < row_size(); ++i)
     least = std::min(least, farthest(i));
+  // No cut can bring the bound below `needed`: the corners themselves are that far.
   const double reach = std::max(enough, kTight * needed);
   if (least <= reach || distances_.size() >= most_rows_ * row_size()) {
     std::size_t best = 0;
@@ -105,6 +106,7 @@ double CoverDistance::cut_or_bound(Piece piece, double enough) {
     landings_[best] = std::max(landings_[best], least);
     return least;
   }
+  // Between ends of one nearest cover nothing crosses: halving makes the piece smaller at least.
   const std::size_t k = edge_to_cut(piece, reach);
   const Point& a = piece[k];
   const Point& b = piece[(k + 1) % 3];

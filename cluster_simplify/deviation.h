@@ -5,7 +5,7 @@
 
 namespace meshhier::cluster_simplify {
 
-/// What a contraction did to the surface of a joined tile, its ghosts held in place.
+/// How far a contraction moved the surface of a joined tile, its ghosts held in place.
 ///
 /// The deviation of a triangle: none of its points is farther from the joined surface, and the
 /// points of the joined surface that have come to lie on it are no farther from it.

@@ -13,10 +13,11 @@ namespace {
 constexpr double kSmallBeside = 0.5;
 constexpr double kSmallAnywhere = 0.5;
 
-// Of deviations on discs, which are cheap to know.
+// The same part for discs, whose deviations are cheap to know.
 constexpr float kSmallDisc = 0.2F;
 
-// Of the largest deviation so far: a fan's is believed up to here.
+// A fan's deviation is believed up to this part of the largest so far: unfolding makes long ways
+// longer.
 constexpr float kLargeFan = 0.5F;
 
 // Stars of more triangles are not compared all with all, which takes their number squared in time
@@ -100,7 +101,6 @@ std::optional<DiscGap> DeviationMeter::measure(std::span<const Vec3f> positions,
       return disc;
   }
   std::optional<DiscGap> fan = fans_.measure(positions, deviations_, c);
-  // Unfolding makes long ways longer.
   if (fan &&
       *std::max_element(fan->deviations.begin(), fan->deviations.end()) > kLargeFan * largest_)
     return std::nullopt;

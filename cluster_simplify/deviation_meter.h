@@ -49,7 +49,7 @@ class DeviationMeter {
   float of_triangle(std::uint32_t triangle) const { return deviations_[triangle]; }
   /// Weight times squared distance, summed up over all collapses.
   double squared_sum() const { return squared_sum_; }
-  /// Of own vertices that had triangles from the start.
+  /// The weight of all own vertices that had triangles from the start.
   double weight_sum() const { return weight_sum_; }
   /// The farthest that each own vertex, or what it stood for by then, was from the surface after
   /// one collapse.

@@ -15,7 +15,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Below this part of the largest squared coordinate a doubled area has no certain sign.
 constexpr float kLeastArea = 1e-6F;
 
-// Of the largest coordinate: more than the rounding of all sums and quotients here.
+// This part of the largest coordinate is more than the rounding of all sums and quotients here.
 constexpr float kRounding = 4e-6F;
 
 FourFloats four_at(const EdgeStar::Row& row, std::uint32_t i) {
@@ -82,7 +82,7 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const EdgeStar& sta
   return true;
 }
 
-/// Of links i, i + 1, ...: both their vertices x the end that they are opposite of.
+/// Returns, for links i, i + 1, ..., both their vertices x the end that they are opposite of.
 std::array<FourFloats, 2> DiscGapMeter::beside_own_ends(std::uint32_t i) const {
   const FourInts of_from = lanes_below(i, ring_.to_begin);
   return {of_from ? four_at(from_.beside, i) : four_at(to_.beside, i),
@@ -100,10 +100,12 @@ bool DiscGapMeter::faces_front() const {
     const FourInts exist = lanes_below(i, ring_.size);
     const FourFloats fresh = four_at(ring_.doubled, i);
     const auto [beside, behind] = beside_own_ends(i);
+    // (p - e) x (q - e) = p x q - p x e + q x e: the old triangle's area from numbers at hand.
     const FourFloats old = fresh - beside + behind;
     const FourFloats least = fresh < old ? fresh : old;
     smallest = (exist & (least < smallest)) ? least : smallest;
-    smallest = (exist & (least != least)) ? least : smallest;
+    smallest = (exist & (least != least)) ? least : smallest;  // a NaN must not be overlooked
+    // A fan may face front and still go around twice: one that does once passes y = 0 upwards once.
     rounds += exist & (four_at(ring_.y, i) < 0.0F) & (four_at(ring_.y, i + 1) >= 0.0F);
   }
   const FourInts large = smallest > kLeastArea * radius_ * radius_;
@@ -127,6 +129,7 @@ float DiscGapMeter::lay_over_new(End& end) {
   if (end.x == 0 && end.y == 0 && end.z == 0)
     return 0;  // it is the new vertex
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    // The end is counter-clockwise of vertex i and clockwise of the next one.
     const FourInts over = lanes_below(i, ring_.size) & (four_at(end.beside, i) >= 0.0F) &
                           (four_at(end.beside, i + 1) < 0.0F);
     if (!any_of(over))
@@ -139,13 +142,16 @@ float DiscGapMeter::lay_over_new(End& end) {
     overlap(link, end.deviation, std::abs(height));
     return height;
   }
+  // It lies over the new vertex itself, where all new triangles meet.
   overlap_all(end.deviation, std::abs(end.z));
   return end.z;
 }
 
-/// Lays the new vertex over the old disc. False if rounding hides where.
+/// Lays the new vertex over the old disc. False if rounding hides where. All new triangles meet at
+/// it, so all are told.
 bool DiscGapMeter::lay_middle() {
   const std::uint32_t turn = ring_.to_begin;
+  // Barycentric: each corner's height counts with the area of the triangle opposite to it.
   const auto lay = [&](float deviation, float wa, float a, float wb, float b, float wc, float c) {
     overlap_all(deviation, std::abs((wa * a + wb * b + wc * c) / (wa + wb + wc)));
     return true;
@@ -186,10 +192,12 @@ void DiscGapMeter::cross_ray(std::uint32_t ray, const Way& way, float beside, fl
   overlap(ring_.previous(ray), way.deviation, gap);
 }
 
-/// The old edge from `end` to a ring vertex.
+/// Visits all rays that the old edge from `end` to a ring vertex crosses.
 void DiscGapMeter::cross_rays(const End& end, std::uint32_t target, float deviation) {
   if (end.sector < 0)
     return;  // it starts where all new edges start
+  // A straight edge turns less than half around, seen from the new vertex: the shorter way to its
+  // target leads past exactly the rays that it crosses.
   const bool forth = end.beside[target] < 0;
   auto ray = static_cast<std::uint32_t>(end.sector);
   if (forth)
@@ -203,7 +211,7 @@ void DiscGapMeter::cross_rays(const End& end, std::uint32_t target, float deviat
   }
 }
 
-/// The collapsing edge.
+/// Visits all rays that the collapsing edge crosses.
 void DiscGapMeter::cross_rays() {
   if (from_.sector < 0 || to_.sector < 0)
     return;
@@ -221,6 +229,7 @@ void DiscGapMeter::cross_rays() {
   }
 }
 
+/// Starts the books: a new triangle shares its link with an old one, and lies over that at least.
 void DiscGapMeter::look_up(std::span<const float> deviations, const EdgeStar& star) {
   ring_.first_deviation = deviations[star.at_edge()[0]->triangle];
   ring_.turn_deviation = deviations[star.at_edge()[1]->triangle];
@@ -244,6 +253,8 @@ void DiscGapMeter::look_up(std::span<const float> deviations, const EdgeStar& st
   all_deviation_ = all_gap_ = 0;
 }
 
+/// Visits all crossings. An old edge brings the larger deviation of the triangles on its two sides,
+/// since both reach over the ray there.
 void DiscGapMeter::lay_edges() {
   const std::uint32_t turn = ring_.to_begin;
   const auto at_link = [&](std::uint32_t i) { return ring_.deviation[i]; };

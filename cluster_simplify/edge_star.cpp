@@ -52,7 +52,7 @@ bool EdgeStar::append_links(Fans fans, std::uint32_t other,
     links_[size_ + k] = &fans[i];
     vertex = fans[i].previous;
   }
-  // Of those with one next corner only the last is met.
+  // If two triangles have one next corner, only the last is met.
   if (vertex != other || met != (std::uint32_t{1} << count) - 1)
     return false;
   ends = {links_[size_], links_[size_ + count - 1]};

@@ -18,7 +18,7 @@ struct StarCollapse {
   Fans around_from, around_to;
 };
 
-/// What is around an edge. Keeps its memory from one edge to the next.
+/// The triangles around an edge. Keeps its memory from one edge to the next.
 ///
 /// A disc: every vertex around the edge is met once, on one ring of at least three links. Link i is
 /// the edge from ring vertex i to the next, opposite one end of the edge; those of `from` come
@@ -45,7 +45,7 @@ class EdgeStar {
   Fans around_to() const { return around_to_; }
   bool is_disc() const { return is_disc_; }
 
-  // What follows, of discs.
+  // The rest is for discs only.
   std::uint32_t size() const { return size_; }
   std::uint32_t to_begin() const { return to_begin_; }
   /// One per link.
@@ -56,7 +56,8 @@ class EdgeStar {
 
   /// Looks up where the ring's vertices lie as seen from `place`.
   void look_from(Vec3f place, std::span<const Vec3f> positions);
-  /// What look_from() found. After the first once more, zeros up to a whole group of four.
+  /// The places that look_from() found; then the first once more, then zeros up to a whole group of
+  /// four.
   const Row& x() const { return x_; }
   const Row& y() const { return y_; }
   const Row& z() const { return z_; }

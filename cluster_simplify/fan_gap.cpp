@@ -14,8 +14,8 @@ namespace {
 // Below this part of the squared size a doubled area has no certain sign.
 constexpr double kLeastArea = 1e-9;
 
-// Of the largest coordinate: more than the rounding of all sums and quotients here, and of the
-// coordinates themselves.
+// This part of the largest coordinate is more than the rounding of all sums and quotients here, and
+// of the coordinates themselves.
 constexpr double kRounding = 1e-7;
 
 // An open fan is squeezed if it turns farther than this.
@@ -39,6 +39,8 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
   if (c.around_from.size() + c.around_to.size() > kMostLinks)
     return false;
   bool twice[2] = {false, false};
+  // Triangles turn counter-clockwise, so a link that runs from next to previous does so around its
+  // end, too. Two edge triangles with `to` on the same side of `from`: orientations disagree.
   for (const CollapseMesh::Fan& fan : c.around_from) {
     if (!fan.is_at(c.to)) {
       found[size_++] = {fan.next, fan.previous, fan.triangle, 0};
@@ -55,7 +57,7 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     if (!fan.is_at(c.from))
       found[size_++] = {fan.next, fan.previous, fan.triangle, 1};
   }
-  if (edge_triangle_count_ == 1 && twice[1])
+  if (edge_triangle_count_ == 1 && twice[1])  // the only one comes first
     std::swap(apexes_[0], apexes_[1]), std::swap(edge_triangles_[0], edge_triangles_[1]);
   if (size_ == 0 || edge_triangle_count_ == 0)
     return false;
@@ -72,6 +74,8 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     return std::count_if(found.begin(), found.begin() + size_,
                          [&](const Link& link) { return link.end == vertex; });
   };
+  // A link that no other one ends at begins an open ring. Two of them, or two links that end at one
+  // vertex, make no single ring.
   std::uint32_t at = 0;
   bool open = false;
   for (std::uint32_t i = 0; i < size_; ++i) {
@@ -83,6 +87,8 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
       open = true;
     }
   }
+  // Follow the links. An open ring that ends too early left some out, another sheet at the same
+  // edge. A closed one is walked again instead, and find_shape() sees its owners change too often.
   shape_ = open ? Shape::border_edge : Shape::closed;
   for (std::uint32_t length = 0; length < size_; ++length) {
     if (at >= size_)
@@ -96,7 +102,8 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
   return open ? at == kMostLinks : at < size_ && found[at].start == vertices_[0];
 }
 
-/// Which end has which links. False if they change otherwise than at the edge's triangles.
+/// Finds which end has which links. False if the owner changes anywhere but at the edge's
+/// triangles.
 bool FanGapMeter::find_shape(const StarCollapse& c) {
   const auto turn_vertices = [&](std::uint32_t i) { return vertices_[i]; };
   const auto run_end = [&](std::uint32_t i) {
@@ -116,7 +123,7 @@ bool FanGapMeter::find_shape(const StarCollapse& c) {
   if (shape_ == Shape::closed) {
     if (edge_triangle_count_ != 2)
       return false;
-    // The ring from where the links of `from` begin.
+    // The ring shall begin where the links of `from` do.
     std::uint32_t start = 0;
     while (start < size_ && !(is_of_to_[start] == 0 && is_of_to_[(start + size_ - 1) % size_] == 1))
       ++start;
@@ -140,6 +147,7 @@ bool FanGapMeter::find_shape(const StarCollapse& c) {
     take((is_of_to_[0] == 1) == (turn_ > 0));
     return (turn_ == size_ || run_end(turn_) == size_) && apexes_[0] == turn_vertices(turn_);
   }
+  // Two edge triangles on an open ring: one end is inside, and its links are one run in the middle.
   shape_ = Shape::border_end;
   for (const bool inner_is_to : {false, true}) {
     std::uint32_t begin = 0;
@@ -161,6 +169,8 @@ bool FanGapMeter::find_shape(const StarCollapse& c) {
   return false;
 }
 
+/// Lays the new triangles into the plane, around the new vertex. False if one has no area there, or
+/// more than half a turn at the new vertex.
 bool FanGapMeter::unfold(std::span<const Vec3f> positions, const StarCollapse& c) {
   const Vec3d middle = to_double(c.place);
   std::array<double, kMostLinks + 1> lengths, angles;
@@ -178,6 +188,8 @@ bool FanGapMeter::unfold(std::span<const Vec3f> positions, const StarCollapse& c
   const double total = angles[size_];
   if (!(total > 0))
     return false;
+  // A closed fan must close in the plane: a peak's angles are less than a full turn, a saddle's are
+  // more. An open one may keep its angles unless it would meet itself.
   const double scale = is_open() ? std::min(1.0, kWidest / total) : 2 * std::numbers::pi / total;
   for (std::uint32_t i = 0; i <= size_; ++i) {
     const UnitTurn turn = turn_by(angles[i] * scale);
@@ -202,6 +214,7 @@ void FanGapMeter::lay_nearest(End& end, std::uint32_t begin, std::uint32_t until
     if (nearest.squared_distance >= least)
       continue;
     least = nearest.squared_distance;
+    // The same shares of the ring's two vertices make the point in space and in the plane.
     const double xb = dot(nearest.point, frame.ab);
     const double xc = dot(nearest.point, frame.ac);
     const double area = frame.bb * frame.cc - frame.bc * frame.bc;
@@ -215,7 +228,8 @@ void FanGapMeter::lay_nearest(End& end, std::uint32_t begin, std::uint32_t until
   }
 }
 
-/// Lays an end on the new border.
+/// Lays an end on the new border, a ray: old border onto new border, or the discs would not fill
+/// the same polygon.
 void FanGapMeter::lay_on_ray(End& end, std::uint32_t ray, std::uint32_t sector) {
   const double squared = dot(ring_[ray], ring_[ray]);
   const double part =
@@ -257,7 +271,7 @@ bool FanGapMeter::run_lies_flat(const End& end, std::uint32_t begin, std::uint32
   return true;
 }
 
-/// Whether no old triangle is turned over.
+/// Whether no old triangle is turned over. All fill one polygon, so then none overlaps another.
 bool FanGapMeter::lies_flat() const {
   const Flat a = first_.flat;
   const Flat b = second_.flat;
@@ -267,7 +281,7 @@ bool FanGapMeter::lies_flat() const {
       return run_lies_flat(first_, 0, turn_) && run_lies_flat(second_, turn_, size_) &&
              turn(between(a, flat_[turn_]), between(a, b)) > least &&
              turn(between(a, b), between(a, flat_[0])) > least;
-    case Shape::border_edge:  // the edge goes over the new vertex
+    case Shape::border_edge:  // the edge bends at the new vertex: its triangle becomes two there
       return run_lies_flat(first_, 0, turn_) && run_lies_flat(second_, turn_, size_) &&
              turn(a, flat_[turn_]) >= 0 && turn(flat_[turn_], b) >= 0;
     case Shape::border_end:
@@ -277,6 +291,7 @@ bool FanGapMeter::lies_flat() const {
          turn(a, flat_[turn_]) >= 0;
 }
 
+/// The largest deviation of the old triangles of links [begin, until).
 double FanGapMeter::run_deviation(std::uint32_t begin, std::uint32_t until) const {
   double most = 0;
   for (std::uint32_t i = begin; i < until; ++i)
@@ -284,6 +299,7 @@ double FanGapMeter::run_deviation(std::uint32_t begin, std::uint32_t until) cons
   return most;
 }
 
+/// Starts the books: a new triangle shares its link with an old one, and lies over that at least.
 void FanGapMeter::look_up(std::span<const float> deviations) {
   for (std::uint32_t i = 0; i < size_; ++i) {
     deviation_[i] = fresh_[i] = double{deviations[triangles_[i]]};
@@ -297,6 +313,8 @@ void FanGapMeter::look_up(std::span<const float> deviations) {
   second_.deviation = std::max({at_edge, run_deviation(0, head_), run_deviation(turn_, size_)});
 }
 
+/// Enters a corner of the overlay: the new triangle of `link` has it, old triangles of that
+/// deviation meet there, and the two discs are `gap` apart.
 void FanGapMeter::overlap(std::uint32_t link, double deviation, double gap) {
   fresh_[link] = std::max(fresh_[link], deviation);
   gap_[link] = std::max(gap_[link], gap);
@@ -310,6 +328,8 @@ void FanGapMeter::overlap_all(double deviation, double gap) {
 /// Where an old edge from `end` crosses the new edge to a ring vertex.
 void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place,
                             double deviation) {
+  // The old edge's ends lie `beside` and `behind` the ray, in proportion to their distances from
+  // it. Lines along each other have no crossing; any point of both is as good.
   const double beside = turn(flat_[ray], end.flat);
   const double behind = turn(flat_[ray], to);
   const double divisor = beside - behind;
@@ -325,8 +345,10 @@ void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to
   overlap((ray == 0 ? size_ : ray) - 1, deviation, gap);
 }
 
-/// The old edge from an end to a ring vertex.
+/// Visits all crossings of the old edge from an end to a ring vertex, which is no crossing itself.
 void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double deviation) {
+  // Seen from the new vertex a straight edge turns less than half around: the shorter way leads
+  // past all rays that it crosses. On an open ring there is one way only.
   const bool forth = is_open() ? target > end.sector : turn(end.flat, flat_[target]) > 0;
   std::uint32_t ray = forth ? ray_after(end.sector) : end.sector;
   for (std::uint32_t steps = 0; ray != target && steps <= size_; ++steps) {
@@ -335,7 +357,7 @@ void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double deviat
   }
 }
 
-/// The collapsing edge, inside a closed ring.
+/// Visits all crossings of the collapsing edge, which ends inside the ring on both sides.
 void FanGapMeter::cross_between_ends() {
   const bool forth = turn(first_.flat, second_.flat) > 0;
   const double deviation = std::max(edge_deviation_[0], edge_deviation_[1]);
@@ -352,6 +374,7 @@ void FanGapMeter::cross_between_ends() {
 /// Lays the new vertex over the old disc. False if rounding hides where.
 bool FanGapMeter::lay_middle() {
   if (shape_ == Shape::border_end) {
+    // second_ lies there. Its triangles outside of first_'s links are each under one new triangle.
     const double gap = length(second_.place);
     overlap_all(0, gap);
     for (std::uint32_t i = head_; i < turn_; ++i)
@@ -359,6 +382,7 @@ bool FanGapMeter::lay_middle() {
     return true;
   }
   if (shape_ == Shape::border_edge) {
+    // The old edge may bend anywhere; at its nearest point the gap is least.
     const Vec3d along = second_.place - first_.place;
     const double squared = dot(along, along);
     const double part = squared > 0 ? std::clamp(-dot(first_.place, along) / squared, 0.0, 1.0) : 0;
@@ -389,7 +413,9 @@ bool FanGapMeter::lay_middle() {
   return false;
 }
 
+/// Visits the other corners: the edge's ends, and all crossings.
 void FanGapMeter::lay_edges() {
+  // An old edge brings the larger deviation of the triangles on its two sides: both cross there.
   const auto beside = [&](std::uint32_t i, std::uint32_t begin, std::uint32_t until,
                           double at_begin, double at_end) {
     return std::max(i == begin ? at_begin : deviation_[i - 1], i == until ? at_end : deviation_[i]);
@@ -398,11 +424,12 @@ void FanGapMeter::lay_edges() {
   overlap(first_.sector, first_.deviation, length(first_.place - first_.image));
   const double first_edge = shape_ == Shape::border_edge ? 0 : edge_deviation_[0];
   const double last_edge = shape_ == Shape::border_edge ? edge_deviation_[0] : edge_deviation_[1];
+  // Along the border the old edge to r[0] lies on a ray and crosses none.
   const std::uint32_t begin = shape_ == Shape::border_edge ? 1 : head_;
   for (std::uint32_t i = begin; i <= turn_; ++i)
     cross_rays(first_, i, beside(i, head_, turn_, first_edge, last_edge));
   if (shape_ == Shape::border_end)
-    return;
+    return;  // all other old edges start at the new vertex, as all rays do
   overlap(second_.sector, second_.deviation, length(second_.place - second_.image));
   for (std::uint32_t i = turn_; i < size_; ++i)
     cross_rays(second_, i, beside(i, turn_, size_, last_edge, first_edge));

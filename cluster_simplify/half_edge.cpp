@@ -12,7 +12,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-/// Of an edge's ends, the one whose going costs less goes.
+/// Returns the collapse that costs less; the first of equal ones.
 Collapse cheaper(Collapse first, Collapse second) {
   return second.cost < first.cost ? second : first;
 }
@@ -115,8 +115,8 @@ class MelaxCosts {
     return {from, to, size * (bend + kFlat), positions_[to]};
   }
 
-  /// Of all triangles around the vertex, the largest (1 - cosine) / 2 to the more alike of those at
-  /// the edge.
+  /// Compares each triangle around the vertex that goes with those at the edge, which stand for it
+  /// afterwards: returns the largest (1 - cosine) / 2 to the more alike of these.
   float surface_bend(std::uint32_t to) {
     normals_.clear();
     at_edge_.clear();

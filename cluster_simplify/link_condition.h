@@ -1,4 +1,4 @@
-// What a collapse would do to the topology of the surface around its edge.
+// Tells what a collapse would do to the topology of the surface around its edge.
 #pragma once
 
 #include "cluster_simplify/collapse_mesh.h"

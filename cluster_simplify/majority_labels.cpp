@@ -13,7 +13,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-/// Of the triangles around each own place.
+/// Twice the area of the triangles around each own place.
 std::vector<double> areas_around(const TileMesh& mesh) {
   std::vector<double> areas(mesh.own_count);
   const auto add = [&](const TileTriangle& t) {

@@ -156,8 +156,8 @@ class Motion {
     }
   }
 
-  /// What a triangle became whose image has no area lies in the corner or edge of one that is drawn
-  /// and brings its deviation along; false if there is none.
+  /// A triangle whose image has no area lies in a corner or edge of one that is drawn, and brings
+  /// its deviation along. False if there is none.
   bool lands(const EdgeSet& edges, const TileTriangle& t) {
     const std::uint32_t a = image(t[0]);
     const std::uint32_t b = image(t[1]) != a ? image(t[1]) : image(t[2]);
@@ -228,9 +228,9 @@ class Motion {
     return lost;
   }
 
-  /// Of triangles whose image is drawn nowhere, to a corner of it that is, or else to the drawn
-  /// vertex nearest to it; infinite if there is none. Vertices whose image is not drawn have moved
-  /// to the drawn one nearest to it.
+  /// Measures triangles whose image is drawn nowhere: to a corner of it that is drawn, or else to
+  /// the drawn vertex nearest to it; infinite if there is none. Vertices whose image is not drawn
+  /// have moved to the drawn one nearest to it.
   void measure_lost() {
     double farthest = 0;
     const std::vector<TileTriangle> triangles = lost_triangles(farthest);
@@ -251,7 +251,7 @@ class Motion {
     deviation_.lost = static_cast<float>(farthest * (1 + kRounding));
   }
 
-  /// Of the distances from vertices to their images.
+  /// The mean square of the distances from vertices to their images.
   double over_vertices() const {
     double sum = 0;
     double whole = 0;

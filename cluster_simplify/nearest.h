@@ -45,7 +45,7 @@ class NearestDrawn {
       points_.emplace(positions, drawn);
   }
 
-  /// What `measure` gives for the drawn vertex nearest to a point; infinite if nothing is drawn.
+  /// Returns measure(the drawn vertex nearest to a point); infinite if nothing is drawn.
   template <class Measure>
   double from(Vec3f lost, const Measure& measure) const {
     return points_ ? double{measure(points_->nearest(lost))}

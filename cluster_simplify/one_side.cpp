@@ -45,7 +45,8 @@ bool OneSide::find(const EdgeStar& star) {
   return true;
 }
 
-/// Of each fan the one with the other corners exchanged; false if one has none, or several.
+/// Finds, for each fan, the one with the other corners exchanged; false if one has none, or
+/// several.
 bool OneSide::find_reverses(Fans fans) {
   reverses_.clear();
   for (const CollapseMesh::Fan& fan : fans) {

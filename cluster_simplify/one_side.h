@@ -22,7 +22,7 @@ class OneSide {
   /// are the reverses. False if there are none. O(n^2) of at most kMost triangles at an end.
   bool find(const EdgeStar& star);
 
-  /// What find() found.
+  /// The triangles that find() found.
   EdgeStar& star() { return star_; }
   /// A triangle of the side, and its reverse; a triangle at the edge is in two pairs.
   std::span<const std::array<std::uint32_t, 2>> pairs() const { return pairs_; }

@@ -75,7 +75,7 @@ std::vector<std::uint32_t> left_of(std::uint32_t count, const Stays& stays) {
   return left;
 }
 
-/// Adds up what the collapses moved the surface, and what joining vertices across gaps adds.
+/// Adds up how far the collapses moved the surface, and how far joining across gaps moves it.
 class DeviationSum {
  public:
   DeviationSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
@@ -129,6 +129,7 @@ class DeviationSum {
            tile_.deviation.of_triangle(t)});
       return;
     }
+    // A triangle that follows its corners is nowhere farther from where it was than they are.
     float deviation = tile_.deviation.of_triangle(t);
     if (ends != corners)
       deviation += farthest_join(corners, ends);
@@ -231,8 +232,8 @@ class DeviationSum {
     return lost;
   }
 
-  /// Of vertices that were joined with others: the distance to what is drawn around the one that
-  /// stands for them.
+  /// Counts vertices that were joined with others by their distance from what is drawn around the
+  /// one that stands for them.
   void add_joined() {
     for_each_weight([&](std::uint32_t v, float weight, std::uint32_t representative) {
       if (is_shown(representative) && into_[v] != v)

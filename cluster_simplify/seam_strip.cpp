@@ -24,6 +24,8 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
     seam_strip.positions.push_back(tile.vertices.positions[v]);
     seam_strip.deviations.push_back(contracted.deviation.around[v]);
   };
+  // The boundary keeps its numbers, which the neighbours know; other corners follow as they are
+  // met.
   for (std::uint32_t v = 0; v < tile.boundary_count; ++v)
     add_own(v);
   for (const TileTriangle& t : tile.interior) {
@@ -36,6 +38,7 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
     seam_strip.interior.push_back(
         {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}});
   }
+  // Foreign corners lie where they were on the finer level: the contraction held them there.
   seam_strip.foreign = tile.foreign;
   const std::vector<GhostRef>& ghosts = joined.mesh.ghosts;
   for (const FinerGhost& corner : tile.foreign) {
@@ -72,19 +75,20 @@ enum class When : std::uint8_t {
   both,  ///< an interior triangle
 };
 
-/// A triangle at the seam. Small: around a vertex of a million triangles there are as many.
+/// A triangle at the seam. It is small: around a vertex of a million triangles there are as many.
 struct SeamTriangle {
   std::array<Vec3f, 3> positions;
   float deviation = 0;  ///< 0 if it is drawn now only
   When when = When::both;
-  Triangle<std::uint32_t> vertices{};  ///< kNowhere: of those that nobody asks about
+  Triangle<std::uint32_t> vertices{};  ///< kNowhere: a vertex that nobody asks about
 
   CoverDistance::Corners corners() const {
     return {to_double(positions[0]), to_double(positions[1]), to_double(positions[2])};
   }
 };
 
-/// Vertices here: the own boundary, then the ghosts.
+/// All triangles around one tile's seam, then and now. Its vertices are the own boundary, then the
+/// ghosts.
 class Seam {
  public:
   explicit Seam(const SeamInput& input)
@@ -115,6 +119,7 @@ class Seam {
         lost_.push_back(&t);
         continue;
       }
+      // Only the largest counts: what is below it, or below the tile's own, need not be exact.
       const double enough = std::max(largest, double{input_.own.seam_strip.interior_deviation});
       largest = std::max(largest, distance_to_covers(t, enough - t.deviation) + t.deviation);
     }
@@ -158,7 +163,7 @@ class Seam {
     return {positions[raw(t[0])], positions[raw(t[1])], positions[raw(t[2])]};
   }
 
-  /// What the triangle may have deviated: no more than what is around any of its own corners.
+  /// A bound of how far the triangle deviated: no more than all around any of its own corners.
   static float deviation_of(const SeamStrip& seam_strip, const TileTriangle& t) {
     float deviation = std::numeric_limits<float>::infinity();
     for (const TileVertex v : t) {
@@ -274,8 +279,8 @@ class Seam {
            });
   }
 
-  /// What is around the triangle's corners at the other time. What shares more than one corner with
-  /// it comes first: it is mostly near enough.
+  /// Collects the triangles around the triangle's corners at the other time. Those that share more
+  /// than one corner with it come first: they are mostly near enough.
   void collect_covers(const SeamTriangle& t) {
     of_covers_.clear();
     front_ = 0;
@@ -332,7 +337,8 @@ class Seam {
     return cover_distance_(corners, covers_, enough);
   }
 
-  /// Of border triangles around whose corners nothing is left, to the nearest vertex that is drawn.
+  /// The largest distance of border triangles around whose corners nothing is left from the nearest
+  /// vertex that is drawn.
   double farthest_lost() const {
     if (lost_.empty())
       return 0;

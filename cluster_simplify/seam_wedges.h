@@ -50,13 +50,13 @@ std::vector<CornerWedges> wedges_of_images(const TileMesh& joined,
                                            std::span<const CornerWedges> wedges,
                                            const ContractedTile& contracted);
 
-/// Of triangles of the same places keeps one, and drops and sorts as normalize_triangles() does.
-/// Which one stays does not depend on how a tile numbers its vertices: the wedges are compared in
+/// Keeps one of the triangles of the same places, and drops and sorts as normalize_triangles()
+/// does. The choice does not depend on how a tile numbers its vertices: the wedges are compared in
 /// the order of the corners' names in their own tiles, `ref`. O(n log n).
 void keep_one_of_places(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges,
                         const std::function<GhostRef(TileVertex)>& ref);
 
-/// Of neighbours that are equal, wedges and all, keeps one.
+/// Keeps one of neighbours that are equal, wedges and all.
 void drop_equal(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges);
 
 }  // namespace meshhier::cluster_simplify

@@ -90,6 +90,8 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
   assert(mapped_refs.size() == tile.foreign.size());
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   std::vector<GhostRef> ghosts(mapped_refs.begin(), mapped_refs.end());
+  // Several corners of the finer level may have one parent now: they become one ghost, and
+  // triangles between them lose their area.
   const std::vector<std::uint32_t> place = make_unique(ghosts);
   for (TileTriangle& t : tile.border) {
     t = mapped(t, [&](TileVertex v) {
@@ -97,6 +99,8 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
                                 : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
     });
   }
+  // Triangles of equal places may differ in their wedges. Which one stays must not depend on this
+  // tile's numbers: the neighbours number the same corners otherwise.
   if (unique && !tile.border_wedges.empty()) {
     keep_one_of_places(tile.border, tile.border_wedges, [&](TileVertex v) {
       return raw(v) < own_count ? GhostRef{own_index, raw(v)} : ghosts[raw(v) - own_count];
@@ -154,7 +158,7 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   joined.history.weights.insert(joined.history.weights.end(), second.history.weights.begin(),
                                 second.history.weights.end());
 
-  // Outside ghosts of both, merged.
+  // Ghosts that belong to neither of the two stay ghosts; one that both have becomes one.
   struct Outside {
     GhostRef ref;
     const BuildTile* tile;
@@ -179,6 +183,8 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
     mesh.vertices.append(ghost.tile->mesh.vertices, ghost.vertex, ghost.vertex + 1);
   }
 
+  // The numbers of a tile's vertices in the joined one. A ghost in the sibling is a boundary vertex
+  // there, and those are its first own vertices: its index is its number.
   const auto place_of = [&](const TileMesh& tile, std::uint32_t offset, std::uint32_t sibling,
                             std::uint32_t sibling_offset) {
     std::vector<TileVertex> place(tile.vertices.size());
@@ -221,10 +227,11 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
     add_border(a, i, mapped(a.border[i], [&](TileVertex v) { return place_a[raw(v)]; }));
   for (std::size_t i = 0; i < b.border.size(); ++i) {
     const TileTriangle placed = mapped(b.border[i], [&](TileVertex v) { return place_b[raw(v)]; });
+    // A triangle that touches both is a border triangle of both: it came with the first tile.
     const bool known = std::any_of(placed.begin(), placed.end(),
                                    [&](TileVertex v) { return raw(v) < a.own_count; });
     if (!known)
-      add_border(b, i, placed);  // a triangle that touches the first tile came with it
+      add_border(b, i, placed);
   }
   if (has_copies) {
     drop_degenerate(mesh.interior, mesh.interior_wedges);
@@ -278,6 +285,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     return static_cast<TileVertex>(raw(v) < mesh.own_count ? contraction.parent_of[raw(v)]
                                                            : raw(v) - mesh.own_count + count);
   });
+  // Only now is it known which representatives the border still uses; those get the first numbers.
   const std::vector<std::uint32_t> place = boundary_first(tile.border, count, tile.boundary_count);
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
@@ -300,7 +308,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     if (!tile.copies.empty())
       tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
   }
-  // Of triangles that differ by their wedges one stays when all corners are known: resolve().
+  // Triangles that differ by their wedges wait for resolve(), which knows all corners' names.
   normalize_triangles(tile.border, tile.border_wedges, tile.border_wedges.empty());
   drop_equal(tile.border, tile.border_wedges);
   drop_unused(tile.border, tile.foreign, count);

@@ -1,9 +1,34 @@
-// Seams: how border triangles stay true while every tile contracts on its own
-// (docs/architecture.md).
+// Seams: border triangles stay true while every tile contracts on its own (docs/architecture.md,
+// docs/decisions/004).
 //
-// A border triangle's foreign corner is whatever the neighbour's own chain of parent maps says it
-// is. These kernels carry foreign corners one level up, join two tiles, and carry a contraction out
-// on a joined tile.
+// Problem. Each tile is contracted alone, on another thread or another machine, and knows nothing
+// of what its neighbours do meanwhile. Still any cut must be free of cracks.
+//
+// Idea. A tile decides about its own places only. It never stores where a neighbour's corner *is*,
+// but what its *name* is: (tile, index among that tile's boundary vertices). Whoever wants to draw
+// the corner follows the neighbour's own parent maps. So all tiles that hold a border triangle draw
+// the same one, whichever of them was contracted first. A border triangle on its way from one level
+// to the next coarser one:
+//
+//      the finer level      A | B | C | D       border triangle (A 7, B 2, C 5)
+//                            \ /  |  \ /
+//        join()              A+B  |  C+D        A 7 and B 2 are own places of the joined tile,
+//                             |   |   |         C 5 is a ghost
+//        contract(), apply()  AB  |  CD         own corners have parents, C 5 keeps its old name:
+//                             |   |   |         (AB 3, AB 0, foreign C 5)
+//        - - - - - - - - - - - - - - - -        the coarser level is complete
+//                             |   |   |
+//        resolve()            AB  |  CD         CD's parent map says 5 -> 1: (AB 3, AB 0, CD 1)
+//        fill_ghosts()        AB  |  CD         the position of CD 1 is one short read
+//
+// Invariants.
+//  - Boundary vertices come first in their tile, so a name is an index below boundary_count, and
+//    positions of ghosts and the start of a parent map are short reads.
+//  - ghosts and foreign corners ascend by name; triangles are normalized and ascend.
+//  - Of triangles that became equal in their places one stays, and all tiles that have them choose
+//    the same one: by names, which they share, not by their own numbers, which they do not.
+//
+// Cost. O(n log n) each for n vertices and triangles; a joined tile has at most 65,536 places.
 #pragma once
 
 #include "cluster_simplify/deviation.h"
@@ -15,23 +40,25 @@
 
 namespace meshhier::cluster_simplify {
 
+// All functions are pure: they may be called for different tiles at the same time.
+
 /// Rewrites a fresh tile's border with its foreign corners' places at the tile's own level.
 /// `Corner`: ChunkVertex or FinerGhost.
 /// `mapped`: one entry per tile.foreign, at the tile's level, as are the wedges of foreign corners.
-/// Corners that became one place become one ghost, triangles that became degenerate go; of exact
-/// duplicates one stays if `unique` (simplified tiles; partitions keep the input's duplicates),
-/// with the same wedges in all tiles that have it: `own_index` is the tile's. The ghosts' positions
-/// and attributes are left for fill_ghosts(). O(n log n).
+/// Corners that became one place become one ghost, and triangles that became degenerate go. If
+/// `unique`, one of exact duplicates stays (in simplified tiles; partitions keep the input's
+/// duplicates), with the same wedges in all tiles that have it; `own_index` is the tile's. The
+/// ghosts' positions and attributes are left for fill_ghosts(). Throws nothing.
 template <class Corner>
 BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped, bool unique,
                   std::uint32_t own_index);
 
-/// Appends the ghosts of one neighbour to the tile's vertices; call in ascending order of
+/// Appends the ghosts of one neighbour to the tile's vertices. Call it in ascending order of
 /// `neighbour`. Throws Error(internal) if a ghost lies outside the boundary.
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary);
 
-/// Two neighbouring tiles of one level as one: first's own vertices, then second's; border
-/// triangles between them become interior; ghosts of one in the other become own vertices.
+/// Makes two neighbouring tiles of one level one: first's own vertices, then second's. Border
+/// triangles between them become interior, ghosts of one in the other own vertices.
 BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
                std::uint32_t second_index);
 
@@ -72,11 +99,11 @@ struct ContractedWedges;  // cluster_simplify/wedges.h
 /// puts the boundary first and sums weights. `wedges`: of the contraction, if the joined tile has
 /// copies.
 ContractedTile apply(const BuildTile& joined, Contraction contraction, ContractedWedges wedges);
-/// Of a joined tile without copies.
+/// The same for a joined tile without copies.
 ContractedTile apply(const BuildTile& joined, Contraction contraction);
 
-/// The contraction that changes nothing: for a node whose only child stands for it. The parent map
-/// is the identity.
+/// Applies the contraction that changes nothing, for a node whose only child stands for it. The
+/// parent map is the identity.
 ContractedTile keep(const BuildTile& tile);
 
 }  // namespace meshhier::cluster_simplify

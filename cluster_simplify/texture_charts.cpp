@@ -53,7 +53,7 @@ void join_charts(const TileWedges& wedges, const WedgeClusters& clusters, UnionF
   }
 }
 
-/// Of each cluster whether it is of several charts, and its places have one wedge each.
+/// Marks the clusters that have several charts although their places have one wedge each.
 std::vector<char> scattered_clusters(const TileWedges& wedges, const WedgeClusters& clusters,
                                      UnionFind& charts) {
   std::vector<char> scattered(clusters.count());

@@ -9,8 +9,8 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-/// Of each of `place_count` places the number of its first copy, or of the next; their count at the
-/// end.
+/// Returns, for each of `place_count` places, the number of its first copy, or of the next one; the
+/// copies' count at the end.
 std::vector<std::uint32_t> first_copies(const Copies& copies, std::size_t place_count) {
   std::vector<std::uint32_t> firsts(place_count + 1);
   for (const std::uint32_t place : copies.places)

@@ -14,7 +14,7 @@ namespace {
 // worth next to nothing.
 constexpr std::uint32_t kSmallPiece = 32;
 
-/// Of each vertex, the least of its connected piece.
+/// Returns, for each vertex, the least vertex of its connected piece.
 std::vector<std::uint32_t> piece_of_vertices(const TileMesh& tile) {
   const auto count = static_cast<std::uint32_t>(tile.vertices.size());
   UnionFind pieces(count);

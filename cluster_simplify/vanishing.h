@@ -1,4 +1,4 @@
-// What it costs the surface to lose a small piece of itself.
+// Measures how far the surface is off if it loses a small piece of itself.
 #pragma once
 
 #include "hierarchy/tile_mesh.h"

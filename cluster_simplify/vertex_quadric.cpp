@@ -88,7 +88,7 @@ float upright_weight(std::uint32_t triangle_count, bool folds_back) {
   return folds_back && triangle_count == 2 ? kFoldWeight : 0;
 }
 
-/// Of each edge whether it is a seam.
+/// Marks the edges that are seams.
 std::vector<char> seam_marks(const CollapseMesh& mesh, std::span<const PlaceEdge> seams) {
   std::vector<char> marks;
   marks.reserve(mesh.edges().size());
@@ -97,7 +97,7 @@ std::vector<char> seam_marks(const CollapseMesh& mesh, std::span<const PlaceEdge
   return marks;
 }
 
-/// Of each vertex whether seams are lines there: no more than half of its edges.
+/// Marks the vertices where seams are lines: no more than half of the edges.
 std::vector<char> line_marks(const CollapseMesh& mesh, std::span<const char> is_seam) {
   std::vector<std::int64_t> others(mesh.vertex_count());  // edges, less twice the seams
   for (std::size_t e = 0; e < is_seam.size(); ++e) {

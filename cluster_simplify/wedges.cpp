@@ -53,8 +53,8 @@ WedgeUse use_of(const TileWedges& wedges, const WedgeClusters& clusters) {
   return use;
 }
 
-/// Of each cluster whether its wedges are looked at: not if all it has is one wedge a place, in one
-/// chart; the method knew all there is.
+/// Marks the clusters whose wedges are looked at: not those with one wedge a place, in one chart;
+/// the method knew all there is.
 std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters& clusters,
                                   const WedgeUse& use, std::span<const std::uint32_t> charts) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -73,7 +73,7 @@ std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters&
   return wanted;
 }
 
-/// What a corner shows: one of each.
+/// A corner shows one of each.
 struct Combination {
   std::uint32_t chart, normal, colour, labels;
   friend auto operator<=>(const Combination&, const Combination&) = default;

@@ -1,9 +1,30 @@
-// Attributes of a contracted tile: which wedges its places have, and which old ones they stand for.
+// Finds the wedges of a contracted tile, and which old wedges they stand for (docs/decisions/025).
 //
-// Methods contract places and know nothing of wedges; this comes after any of them. A new wedge is
-// a chart of the texture, a group of normals and a group of colours that some corner shows
-// together: textures do not blend across seams, hard edges stay hard, and shading stays smooth
-// across a seam of the texture.
+// Problem. Methods contract places and know nothing of wedges. Several old places, each with its
+// wedges, have become one: mixing all of them would blend textures across seams and round off hard
+// edges; keeping all would pile up copies.
+//
+// Idea. After any method, a new place gets a wedge for each combination that some corner around it
+// shows:
+//
+//      old wedges of the new place     chart    normals    colours      new wedges
+//         o1  area 5                     A      group 1    group 1      (A, 1, 1)  for o1 and o2
+//         o2  area 3                     A      group 1    group 1
+//         o3  area 4                     A      group 2    group 1      (A, 2, 1)
+//         o4  area 2                     B      group 2    group 1      (B, 2, 1)
+//
+//   - A chart is a set of wedges that edges or equal texture coordinates join (texture_charts.h).
+//   - Groups are made by leaders: the wedge that shows the largest area leads; one that differs
+//   from
+//     all leaders by too much becomes one (attribute_groups.h).
+//   - Labels do not mix: wedges with different ones stay apart.
+//
+// So textures do not blend across seams, hard edges stay hard, and shading stays smooth across a
+// seam of the texture.
+//
+// Invariant. Each old wedge maps to one new wedge of its place's parent, and each triangle that
+// survives shows combinations that exist. Order and choice follow areas and the old wedges' order,
+// never addresses or time.
 #pragma once
 
 #include "cluster_simplify/seams.h"

@@ -11,8 +11,8 @@
 namespace meshhier::partition {
 namespace {
 
-// Of all planes only these are refined, those of the shortest lines. All twelve would make lines
-// shorter by a fiftieth, and splitting takes half as long again.
+// Only so many planes are refined, those of the shortest lines. All twelve would make lines shorter
+// by a fiftieth, and splitting takes half as long again.
 constexpr std::size_t kPlanes = 2;
 
 // Regions are grown from so many vertices, evenly spread over the numbers. They follow the surface
@@ -78,7 +78,7 @@ class Bisector {
 
   /// The best of several tries: each vertex's side, 0 or 1.
   std::vector<std::uint32_t> bisect(const Graph& node, std::uint32_t left, std::uint32_t right) {
-    // What the vertices weigh is shared as the targets are.
+    // The vertices' weight is shared as the targets are.
     const auto total = std::accumulate(node.weight.begin(), node.weight.end(), std::uint64_t{0});
     const double share = static_cast<double>(left) / (static_cast<double>(left) + right);
     const auto left_target = static_cast<std::uint32_t>(static_cast<double>(total) * share);

@@ -23,7 +23,7 @@ struct ChunkMesh {
       triangles;  ///< every triangle with a corner in the chunk, provisional ranks, any order
   std::vector<CornerWedges> wedges;  ///< of the last triangles; those of all others are 0
 
-  /// Of the triangle at that place in `triangles`.
+  /// Returns the wedges of the triangle at that place in `triangles`.
   CornerWedges wedges_of(std::size_t triangle) const {
     const std::size_t before = triangles.size() - wedges.size();
     return triangle < before ? CornerWedges{} : wedges[triangle - before];

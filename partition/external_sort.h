@@ -1,9 +1,29 @@
-// Sorting more records than fit in memory: runs sorted in memory, then streaming merges by a loser
+// Sorts more records than fit in memory: runs sorted in memory, then streaming merges by a loser
 // tree (Knuth, The Art of Computer Programming 3, section 5.4.1).
 //
-// Bytes moved: none if the records fit in memory; else every record is written once and read once.
-// One merge takes memory / 64 KiB runs of memory bytes each (4 GiB from 16 MiB, 64 GiB from 64
-// MiB); what is beyond that goes through one merge more, and only the excess does.
+//      add():  | memory full | memory full | memory full | rest |      records as they come
+//                     |             |             |          |
+//      runs:        [a..z]        [b..y]        [a..x]     [c..w]      each sorted, in a spool
+//                      \             \           /          /
+//      sort(), next_block():      a loser tree over the runs' heads
+//
+//      The tree's leaves are the runs; each inner node keeps the loser of the match between its two
+//      subtrees, losers_[0] the winner of all. When the winner's run moves on, only the matches on
+//      its way to the root are played again: log2(runs) comparisons a record.
+//
+//                losers_[0]: run 2                      the winner
+//                       [1]: run 0
+//                      /            \                   each the loser of its match
+//              [2]: run 1            [3]: run 3
+//              /      \              /      \           leaves, nodes 4 to 7: not stored
+//           run 0    run 1        run 2    run 3
+//
+// Invariant. The order is total: equal keys are ordered by the records' bytes. So neither the cuts
+// between runs, nor the number of merges, nor threads show in the result.
+//
+// Cost. O(n log n). No bytes are moved if the records fit in memory; else every record is written
+// once and read once. One merge takes memory / 64 KiB runs of memory bytes each (4 GiB from 16 MiB,
+// 64 GiB from 64 MiB); the excess, and it alone, goes through one merge more.
 #pragma once
 
 #include "partition/parallel_sort.h"
@@ -26,7 +46,7 @@ namespace meshhier::partition {
 /// with operator<. Records of equal keys come in the order of their bytes: the result depends on
 /// the set of records alone, not on their arrival, the memory or the threads. (Who wants arrival
 /// order puts a counter into record and key.) Call add() any number of times, sort() once, then
-/// read.
+/// read; all from one thread at a time. Throws what the scratch file throws, as a full disk.
 template <class Record, class KeyOf>
 class ExternalSort {
   static_assert(std::is_trivially_copyable_v<Record>);
@@ -82,7 +102,7 @@ class ExternalSort {
   };
 
   static constexpr std::uint64_t kLeastMemory = 65536;
-  /// What a run is read by. A disk's sequential rate needs requests of about this size.
+  /// A run is read in blocks of this size: a disk's sequential rate needs about that.
   static constexpr std::uint64_t kReadBytes = 65536;
   /// Grain of the spools: large writes, but small beside the memory.
   static constexpr std::uint64_t kSpoolBytes = 1 << 20;
@@ -211,6 +231,7 @@ void ExternalSort<Record, KeyOf>::reduce_runs() {
   std::vector<Run> reduced;
   std::size_t first = 0, left = runs_.size();
   while (left > fan_in() && first + 1 < runs_.size()) {
+    // Merging k runs makes k - 1 fewer: no more than it takes to come down to one merge.
     const std::size_t count = std::min({fan_in(), runs_.size() - first, left - fan_in() + 1});
     const std::uint64_t begin = spools_.back()->size();
     start_merge(std::span(runs_).subspan(first, count));
@@ -238,6 +259,7 @@ void ExternalSort<Record, KeyOf>::start_merge(std::span<const Run> runs) {
     advance(inputs_.back());
   }
 
+  // The first round plays all matches from the leaves up, as in a heap: node i's are 2 i, 2 i + 1.
   losers_.assign(count, 0);
   std::vector<std::uint32_t> winners(2 * count);
   for (std::uint32_t i = 0; i < count; ++i)
@@ -285,6 +307,8 @@ std::size_t ExternalSort<Record, KeyOf>::merge_some() {
       break;
     std::memcpy(static_cast<void*>(&output_[filled++]), input.now, sizeof(Record));
     advance(input);
+    // Only the matches that the run played can end otherwise now: those on its way to the root. Its
+    // opponent in each is the loser kept there.
     for (std::uint32_t node = (winner + count) / 2; node > 0; node /= 2) {
       if (beats(losers_[node], winner))
         std::swap(losers_[node], winner);

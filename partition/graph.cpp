@@ -89,7 +89,7 @@ class ArcBuilder {
     }
   }
 
-  /// Of an edge between two groups: the lower one; `count_` within a group.
+  /// The row of an edge: the lower of its two groups; `count_` within a group.
   std::uint32_t row_of(std::uint32_t a, std::uint32_t b) const {
     return a == b ? count_ : std::min(a, b);
   }

@@ -45,7 +45,7 @@ class LeafBuilder {
   }
 
  private:
-  // What kinds of triangles a vertex has: bits.
+  // The kinds of triangles that a vertex has, as bits.
   static constexpr std::uint8_t kInner = 1, kBoundary = 2;
 
   struct Place {

@@ -1,4 +1,19 @@
-// Partition tiles out of a split chunk.
+// Makes partition tiles out of a split chunk.
+//
+//      a triangle's corners are in ...     it goes to                 named there
+//      partition 0                         tile 0, interior           by tile vertices
+//      partitions 0 and 1                  tiles 0 and 1, border      own ones likewise, others by
+//      partition 1 and another chunk       tile 1, border               (chunk, provisional rank)
+//
+// A tile numbers its boundary vertices first, then the others, both along a space-filling curve.
+// Foreign corners are found by `places` when all chunks are done (find_place()).
+//
+// Invariant. The result depends on the mesh and the split alone: what is made in the triangles'
+// order is sorted before it is handed out. Degenerate triangles are dropped, exact duplicates stay:
+// partitions together are the input.
+//
+// Cost. O(n log n) only along borders: interior triangles are sorted by counting their first
+// corners, and a few at a time by the other two.
 #pragma once
 
 #include "hierarchy/build_tile.h"
@@ -23,9 +38,8 @@ struct ChunkLeaves {
   std::uint64_t unreferenced_count = 0;  ///< vertices without a triangle
 };
 
-/// Builds the partition tiles, of at most 65,536 vertices each: vertices by id, boundary first; a
-/// border triangle goes to each partition it touches; its foreign corners are vertices
-/// of chunks. Independent of the order of the triangles.
+/// Builds the partition tiles, of at most 65,536 vertices each. Independent of the order of the
+/// triangles. Pure; may be called by many threads.
 ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of,
                          const Tree& tree, const ChunkMap& chunks);
 

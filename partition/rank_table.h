@@ -18,14 +18,14 @@
 
 namespace meshhier::partition {
 
-/// What a corner of a triangle becomes where the mesh has copies.
+/// A corner of a triangle, renumbered, where the mesh has copies.
 struct WedgeRank {
   std::uint32_t rank;  ///< provisional, of the place
   std::uint32_t wedge;
 };
 static_assert(std::is_trivially_default_constructible_v<WedgeRank>);
 
-/// What the corner of a copy becomes.
+/// A copy and its rank.
 struct RankedCopy {
   std::uint32_t id = 0;
   WedgeRank rank{};

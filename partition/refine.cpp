@@ -43,7 +43,8 @@ Refiner::Refiner(const Graph& graph, std::span<std::uint32_t> part_of,
   }
 }
 
-/// Notes that a vertex changed its part.
+/// Notes that a vertex changed its part: its neighbours may be on a boundary now, and touches that
+/// were gathered before are wrong about them.
 void Refiner::look_around(std::uint32_t v) {
   is_stale_[v] = 1;
   for (const Graph::Arc& arc : graph_.arcs_of(v)) {
@@ -55,6 +56,7 @@ void Refiner::look_around(std::uint32_t v) {
   }
 }
 
+/// Forgets all gains and moves at once: what an epoch wrote is below the next one's numbers.
 void Refiner::next_epoch() {
   now_ += 2;
   left_.heap.clear();
@@ -62,6 +64,7 @@ void Refiner::next_epoch() {
   log_.clear();
 }
 
+/// The gain of moving v to another part: arcs to third parts are cut before and after.
 std::int32_t Refiner::gain_of(std::uint32_t v, std::uint32_t other) const {
   const std::uint32_t own = part_of_[v];
   std::int32_t sum = 0;
@@ -136,6 +139,8 @@ void Refiner::update_neighbours(std::uint32_t v, std::uint32_t from, std::uint32
     const std::uint32_t part = part_of_[u];
     if ((part != from && part != to) || is_moved(u))
       continue;
+    // An arc that counted against u's move counts for it now, or the other way round. A gain that
+    // rises needs a new key; one that falls waits until has_top() meets the old key.
     const auto change = static_cast<std::int32_t>(2 * arc.weight);
     if (!is_seen(u)) {
       if (!is_fixed(u))
@@ -155,6 +160,7 @@ bool Refiner::refine_pair(std::uint32_t a, std::uint32_t b, std::span<const Touc
   ++counts_.pairs;
   left_.part = a;
   right_.part = b;
+  // Seeds were gathered for all pairs at once: pairs before this one may have moved some.
   for (const Touch& seed : seeds) {
     const std::uint32_t v = seed.vertex;
     if (is_stale_[v] == 0)
@@ -184,6 +190,7 @@ bool Refiner::refine_pair(std::uint32_t a, std::uint32_t b, std::span<const Touc
     move(v, from->part, to.part);
     update_neighbours(v, from->part, to.part);
     log_.push_back(v);
+    // Only strictly better states count: so equal ones do not keep the search alive.
     const std::int64_t left = beyond();
     if (left < best_beyond || (left == best_beyond && total > best_gain)) {
       best_beyond = left;
@@ -193,7 +200,7 @@ bool Refiner::refine_pair(std::uint32_t a, std::uint32_t b, std::span<const Touc
   }
   counts_.moves += log_.size();
   counts_.kept_moves += best_moves;
-  for (std::size_t i = log_.size(); i > best_moves; --i) {
+  for (std::size_t i = log_.size(); i > best_moves; --i) {  // take back what led nowhere
     const std::uint32_t v = log_[i - 1];
     move(v, part_of_[v], part_of_[v] == a ? b : a);
   }
@@ -216,7 +223,7 @@ void Refiner::add_touches(std::uint32_t v, std::vector<Touch>& touches) {
   links_[own] = 0;
   for (const Graph::Arc& arc : arcs) {
     const std::uint32_t other = part_of_[arc.to];
-    if (links_[other] == 0)
+    if (links_[other] == 0)  // noted by an arc before, and cleared for the next vertex
       continue;
     touches.push_back(
         {std::min(own, other) * parts + std::max(own, other), v, links_[other] - held});
@@ -224,7 +231,7 @@ void Refiner::add_touches(std::uint32_t v, std::vector<Touch>& touches) {
   }
 }
 
-/// All of them, by pair.
+/// Returns all touches by pair, by counting sort: within a pair they stay in the candidates' order.
 std::vector<Refiner::Touch> Refiner::sorted_touches() {
   std::vector<Touch> touches;
   for (const std::uint32_t v : candidates_) {
@@ -276,6 +283,8 @@ bool Refiner::balance_exactly(Reach reach) {
   return balance(0, static_cast<std::uint32_t>(targets_.size()), reach);
 }
 
+/// Balances the two halves of the parts first, over the line between them, where vertices cost
+/// least; then each half within itself.
 bool Refiner::balance(std::uint32_t begin, std::uint32_t end, Reach reach) {
   if (end - begin < 2)
     return true;
@@ -290,13 +299,13 @@ bool Refiner::balance(std::uint32_t begin, std::uint32_t end, Reach reach) {
   return left == 0 && balance(begin, middle, reach) && balance(middle, end, reach);
 }
 
-/// Moves so many vertices of parts [begin, end) into parts [to_begin, to_end); returns how many are
-/// missing.
+/// Moves vertices of so much weight from parts [begin, end) into parts [to_begin, to_end); returns
+/// the weight that is missing.
 std::int64_t Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin,
                             std::uint32_t to_end, std::int64_t weight, Reach reach) {
   next_epoch();
   const auto inside = [&](std::uint32_t v) { return part_of_[v] >= begin && part_of_[v] < end; };
-  // The part a vertex gains most by going to, if it has a neighbour there; `to_end` if it has none.
+  // Returns the part that a vertex gains most by going to; `to_end` if it has no neighbour there.
   const auto is_target = [&](const Graph::Arc& arc) {
     return part_of_[arc.to] >= to_begin && part_of_[arc.to] < to_end;
   };
@@ -335,7 +344,7 @@ std::int64_t Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_
     std::pop_heap(heap.begin(), heap.end());
     heap.pop_back();
     if (!inside(v) || gain_[v] != gain(top))
-      continue;
+      continue;  // it went already, or has another key since a neighbour went
     const std::uint32_t target = best_target(v);
     move(v, part_of_[v], target);
     ++counts_.moves;
@@ -346,7 +355,7 @@ std::int64_t Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_
   }
   if (reach == Reach::neighbours)
     return weight;
-  // What no edge leads to: the last vertices, wherever they are.
+  // No edge leads to any more: the last vertices go, wherever they are.
   for (std::uint32_t v = movable_; weight > 0 && v > 0; --v) {
     if (!inside(v - 1))
       continue;

@@ -1,4 +1,37 @@
-// Shorter lines between parts of a graph, without giving up their sizes.
+// Shortens the lines between parts of a graph, without giving up the parts' sizes.
+//
+// Problem. Parts come from a coarser graph, projected down: they have about their sizes, but ragged
+// lines. Moving any single vertex may make things worse although moving three would make them
+// better.
+//
+// Idea (Fiduccia & Mattheyses 1982). Take two parts that touch. Move the vertex that gains most,
+// even if its gain is negative, never move it back, and go on for a while; then take back all moves
+// behind the best state seen. So a search climbs out of small dents:
+//
+//      part a | part b      gain of v: arcs that stop being cut less arcs that begin to be
+//             |
+//      . . . .|_ .          total gain
+//      . . . v . |              ^      .*.  best state: kept
+//      . . . .|~~              |     /   \..
+//      . . . .| . .           0+----/-------'---.---> moves
+//             |                 | \/              '  taken back
+//
+// Sizes: a move is allowed while the two parts stay within `explored` of their targets, or nears
+// them; a state counts as best by its excess beyond `kept` first, by gain then. With exact sizes a
+// vertex goes over and another one comes back.
+//
+// All pairs of parts that touch are refined in turn, in further rounds those where something
+// changed (Sanders & Schulz, Engineering Multilevel Graph Partitioning Algorithms, 2011).
+//
+// Invariants. gain_ of a vertex that was seen is exact at all times: a move changes its neighbours'
+// gains by twice the arc's weight. Heaps are lazy: a vertex has an entry that is not below its
+// gain, so a heap's top, once corrected, is its best (has_top()). Ties go to the lower number, so
+// the result depends on the graph alone.
+//
+// Cost. A round takes O(m log n), times the parts that a vertex touches: a search ends after a
+// dozen moves without a better state, a vertex moves once in it, and vertices of more than 1,024
+// arcs stay where they are, for a move goes through all arcs. Memory: a few numbers a vertex, the
+// heaps, and an entry for each vertex and part that it touches.
 #pragma once
 
 #include "partition/graph.h"
@@ -13,8 +46,8 @@ namespace meshhier::partition {
 /// other|.
 struct Slack {
   std::int64_t kept = 0;  ///< in the result, unless it was more at the start
-  /// On the way to it. No more than a vertex's weight allows for one move either way is best: with
-  /// unit weights and exact sizes 2, a step of an exchange; with 16 lines are 4 % longer.
+  /// On the way to the result. It is best when it allows one move either way: with unit weights and
+  /// exact sizes 2, a step of an exchange; with 16, lines are 4 % longer.
   std::int64_t explored = 0;
 };
 
@@ -24,7 +57,7 @@ enum class Reach {
   anywhere     ///< others, too, when these do not suffice
 };
 
-/// Work that was done, for those who want to see that it is bounded.
+/// Counts the work that was done: tests hold that it is bounded.
 struct RefineCounts {
   std::uint64_t pairs = 0;       ///< refinements of two parts
   std::uint64_t moves = 0;       ///< of vertices, those taken back included
@@ -32,11 +65,7 @@ struct RefineCounts {
   RefineCounts& operator+=(const RefineCounts& other);
 };
 
-/// Local search by moving single vertices between two parts, best gain first, worse ones too, and
-/// going back to the best state seen (Fiduccia & Mattheyses 1982); over all pairs of parts that
-/// touch, again where something changed (Sanders & Schulz, Engineering Multilevel Graph
-/// Partitioning Algorithms, 2011). Vertices of more than `kHubDegree` arcs stay where they are:
-/// so a round takes O(m), times the parts a vertex touches. Deterministic; ties by number.
+/// Moves single vertices between parts. Deterministic. One refiner serves one thread.
 class Refiner {
  public:
   /// `part_of`: per vertex its part < targets.size() <= kMostParts; refined in place. `targets`:
@@ -55,7 +84,7 @@ class Refiner {
   /// may not take others.
   bool balance_exactly(Reach reach);
 
-  /// What a part weighs more than its target.
+  /// Returns by how much a part weighs more than its target.
   std::int64_t excess(std::uint32_t part) const {
     return static_cast<std::int64_t>(size_[part]) - targets_[part];
   }
@@ -67,7 +96,7 @@ class Refiner {
   static constexpr std::uint32_t kMostParts = 64;
 
  private:
-  using Key = std::uint64_t;  ///< gain, then the lower number, as one: the larger the sooner
+  using Key = std::uint64_t;  ///< gain, then the lower number, in one: the larger goes first
   struct Side {
     std::uint32_t part;
     std::vector<Key> heap;

@@ -1,11 +1,20 @@
-// Triangles of ids become triangles of values, through a table that may be larger than memory.
+// Translates triangles of ids into triangles of values, through a table that may be larger than
+// memory.
 //
 // A table that fits is there as a whole. A larger one is never read at random: it is cut into
-// blocks that fit half of the memory, and one sweep goes over the blocks in order. A triangle waits
-// in the bucket of the block that holds its least untranslated corner; when that block is loaded,
-// all its corners there are translated, and the triangle is finished or goes on to the bucket of a
-// later block ("time-forward processing", Chiang et al. 1995). While the first block is loaded the
-// source is read, so what lies in it never waits at all.
+// blocks that fit two thirds of the memory, and one sweep goes over the blocks in order. A triangle
+// waits in the bucket of the block that holds its least untranslated corner; when that block is
+// loaded, all its corners there are translated, and the triangle is finished or goes on to the
+// bucket of a later block ("time-forward processing", Chiang et al. 1995). While the first block is
+// loaded the source is read, so triangles within it never wait at all.
+//
+//      table:     |  block 0  |  block 1  |  block 2  |  block 3  |     loaded one after another
+//                                                                       ------ time ------>
+//      (3, 7, 9)     done: the source is read while block 0 is loaded
+//      (5, 1, 40)    5, 1 ............................. 40 done         one bucket
+//      (17, 30, 44)              17 ..... 30 .......... 44 done         three buckets
+//
+// Invariant. A waiting triangle has no untranslated corner below the loaded block.
 //
 // Passes: the source once, the table once, and each triangle through as many buckets as its corners
 // have blocks beyond the first of all: at most three, mostly one where ids are coherent. A triangle
@@ -58,7 +67,7 @@ struct WaitingTriangle {
 template <class Value>
 double expected_waiting_bytes(const RenumberPlan& plan, std::uint64_t triangles);
 
-/// What became of some triangles. Used again and again, it keeps its memory.
+/// Some triangles after translation. Used again and again, it keeps its memory.
 template <class Value>
 struct Renumbered {
   std::vector<Triangle<Value>> finished;  ///< corners as they were

@@ -197,7 +197,7 @@ bool Renumberer<Value>::next_round() {
   if (block_ + 1 >= plan_.blocks)
     return false;
   load(block_ + 1);
-  // What waits for the first block of a group has waited for the group.
+  // Triangles for any block of a later group wait for the group; its first round tells them apart.
   const std::uint64_t in_group = block_ % plan_.group_blocks;
   draining_ = buckets_[in_group == 0 ? plan_.group_blocks + group_ : in_group].get();
   return true;

@@ -7,7 +7,7 @@
 namespace meshhier::partition {
 namespace {
 
-/// What a cell is taken to be larger by on each side, in cells. A point's cell is computed with
+/// A cell is taken to be larger by this on each side, in cells. A point's cell is computed with
 /// errors of 10^-7 cells at most, even where the box is a few units in the last place of its
 /// coordinates.
 constexpr double kMargin = 1e-3;

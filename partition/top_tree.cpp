@@ -26,7 +26,7 @@ constexpr double variance_below(double variance) {
   return kMedianVariance + variance / 2;
 }
 
-// What select() takes at least.
+// The least memory of select().
 constexpr std::uint64_t kSelectBytes = 1 << 20;
 
 // Undecided vertices are read back in blocks of this many.
@@ -149,6 +149,7 @@ class Planner {
                                             [&](const Keyed& k) { return k.key() < split.low; });
       return {static_cast<std::size_t>(cut - sorted.begin()), kMedianVariance};
     }
+    // Missed twice, or nothing to plan with: all vertices are kept aside, so the median is inside.
     if (split.misses > 1 || sample.size() < 2) {
       split.low = SplitKey::lowest();
       split.high = SplitKey::highest();
@@ -252,7 +253,8 @@ void Sweep::count_all(std::span<const Vec3f> positions, const IdOf& id_of,
     }
     ++block.passed[node];
   }
-  // Counted where their way ends so far, they came through all nodes above.
+  // A vertex was counted once, where its way ends so far; it came through all nodes above. From the
+  // leaves up, sums give each node's left child, with one addition a node instead of one a level.
   block.left_counts.resize(splits.size());
   for (std::size_t node = splits.size(); node-- > 0;) {
     block.left_counts[node] = block.passed[2 * node + 1];
@@ -300,7 +302,7 @@ TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::Scratch
       memory_bytes_(memory_bytes),
       left_counts_(plan.splits.size()),
       locks_(plan.splits.size()) {
-  // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its
+  // The open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its
   // bookkeeping.
   const std::size_t block = std::clamp<std::size_t>(
       (4U << 20) / std::max<std::size_t>(plan.splits.size(), 1), 1024, 65536);
@@ -334,8 +336,8 @@ std::vector<SplitPlane> TopSelector::settle(TopPlan& plan) {
 }
 
 bool TopSelector::settle_level(std::uint32_t first, std::uint32_t count, TopPlan& plan) {
-  // A node is settled only if those above it are: else its counts are of other vertices than it
-  // will have.
+  // A node is settled only if those above it are: else it would count other vertices than it will
+  // have.
   const auto ready = [&](std::uint32_t node) {
     return node == 0 || plan.splits[(node - 1) / 2].settled;
   };
@@ -380,6 +382,8 @@ void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split, std::uint
         ++inside;
     }
   });
+  // The plane is the first key of the right child: it has `target` keys before it, and must be one
+  // of those inside.
   const std::uint64_t target = left_target(tree_, node_at(node));
   if (target < left || target >= left + inside) {
     split.settled = false;
@@ -401,6 +405,7 @@ void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split, std::uint
   const SplitPlane plane{split.direction, select(keys, inside, target - left, memory_bytes)};
   split.low = split.high = plane.first_right;
   split.settled = true;
+  // All that was kept aside here goes on: on the last level above the chunks nobody asks for it.
   if (2 * node + 1 < left_counts_.size()) {
     for_each_block([&](std::span<const IdPoint> block) {
       for (const IdPoint& p : block)
@@ -410,7 +415,7 @@ void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split, std::uint
 }
 
 double expected_window_bytes(std::uint64_t vertex_count) {
-  // The part of a sample's vertices that a window holds, times the root of their number.
+  // A window holds this part of a sample's vertices, times the root of their number.
   const double share = 2 * kWindowSigmas * std::sqrt(kMedianVariance);
   double outside = 1;
   double sample = static_cast<double>(std::min(vertex_count, kSampleVertices));
