@@ -224,7 +224,7 @@ class Draft {
     return document_.contains(place);
   }
 
-  /// Of two keys that exclude each other, one that was overridden replaces one that was not.
+  /// Two keys exclude each other: one that was overridden replaces one that was not.
   void settle(const std::string& section, const std::string& one, const std::string& other) {
     if (!document_.contains(section) || !document_[section].is_object())
       return;
@@ -258,7 +258,7 @@ class Draft {
   }
 
  private:
-  /// What the command line says of the key or of a section around it.
+  /// Finds the command line's word on the key or on a section around it.
   std::map<std::string, std::string>::const_iterator overriding(const std::string& path) const {
     for (std::size_t end = path.find('.'); end != std::string::npos;
          end = path.find('.', end + 1)) {
@@ -438,7 +438,7 @@ std::filesystem::path beside(const std::filesystem::path& mesh, const std::strin
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
 }
 
-/// What is not given follows from what is: the name from the mesh, the container from the name.
+/// Fills in what is not given: the name from the mesh, the container from the name.
 void put_output(Draft& draft, const CommandLine& words) {
   if (!words.output.empty()) {
     draft.put("output", words.output.string(), kOutputWord);
@@ -468,7 +468,7 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
   return text;
 }
 
-/// What lies at a path decides, not the path.
+/// Whether the key has paths: what lies there decides, not the path.
 bool is_of_paths(const ConfigKey& key) {
   return key.kind == KeyKind::path || key.kind == KeyKind::paths;
 }

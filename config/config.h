@@ -1,4 +1,4 @@
-// What a build is asked to do: the config file as values.
+// The config: what a build is asked to do, as values.
 //
 // The keys, their ranges and what they mean are listed once, in config_schema.cpp.
 #pragma once
@@ -108,7 +108,7 @@ using Container = storage::Container;
 inline constexpr std::array kContainers{NamedValue{"files", Container::files},
                                         NamedValue{"3tz", Container::archive}};
 
-/// What tiles get to be lit by.
+/// Normals that tiles are lit by.
 enum class Normals {
   smooth,  ///< computed ones, smooth but for creases
   none,
@@ -137,14 +137,14 @@ inline constexpr std::array kImageFormats{NamedValue{kImageFormatNames[0], Image
                                           NamedValue{kImageFormatNames[2], ImageFormat::webp},
                                           NamedValue{kImageFormatNames[3], ImageFormat::ktx2}};
 
-/// Of storage.normals map and auto.
+/// Options of storage.normals map and auto.
 struct NormalMapConfig {
   std::uint32_t texels = 896;  ///< side of a map, at most
   NormalMapFormat format;
   friend bool operator==(const NormalMapConfig&, const NormalMapConfig&) = default;
 };
 
-/// What becomes of the pictures of a textured mesh.
+/// The pictures of a textured mesh.
 struct TextureConfig {
   bool use = true;  ///< else textures are left out, and coordinates kept as attributes
   std::uint32_t texels =
@@ -153,7 +153,7 @@ struct TextureConfig {
   friend bool operator==(const TextureConfig&, const TextureConfig&) = default;
 };
 
-/// What a picture that cannot be decoded does.
+/// The effect of a picture that cannot be decoded.
 enum class MissingImages {
   warn,   ///< one that is not there is a warning, a broken one an error
   ignore  ///< both are warnings
@@ -238,7 +238,7 @@ struct ConfigOrigin {
   std::filesystem::path directory;  ///< relative paths of the text start here; may be empty
 };
 
-/// What a command line says besides a config, or instead of one. Its paths are relative to the
+/// The words of a command line besides a config, or instead of one. Its paths are relative to the
 /// current directory.
 struct CommandLine {
   CommandLine() = default;
@@ -269,9 +269,9 @@ Config load_config(storage::FileSystem& files, const std::filesystem::path& file
 /// All files that a build of that config reads.
 std::vector<std::filesystem::path> read_by(const Config& config);
 
-/// What decides the result: weld, topology, partition, simplify, outline, storage, texture; not
-/// paths, budget, threads, container. All defaults are filled in, except that simplify.vertices is
-/// absent if it follows partition.count.
+/// Returns all that decides the result: weld, topology, partition, simplify, outline, storage,
+/// texture; not paths, budget, threads, container. All defaults are filled in, except that
+/// simplify.vertices is absent if it follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
 /// All of a config, for another process in whatever directory: parse_config() of it gives the same

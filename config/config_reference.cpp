@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What parse_size() takes as a text, as a regular expression of JavaScript.
+/// The texts that parse_size() takes, as a regular expression of JavaScript.
 constexpr const char* kSizePattern =
     R"(^[ \t]*[0-9]+(\.[0-9]*)?[ \t]*([bB]|[kKmMgGtT]([iI]?[bB])?)?[ \t]*$)";
 /// Columns that a line of the terminal may take.
@@ -47,7 +47,7 @@ Json plain_number(double value) {
 
 // ---- the JSON schema
 
-/// What a value must be.
+/// The schema of a key's value.
 Json value_schema(const ConfigKey& key) {
   const Json path{{"type", "string"}, {"minLength", 1}};
   const Json integer{{"type", "integer"},
@@ -173,7 +173,7 @@ std::string whole_meaning(const ConfigKey& key) {
   return text;
 }
 
-/// Of a key that has none, what holds instead: "required", "none: exact".
+/// A key's default; where it has none, what holds instead: "required", "none: exact".
 std::string default_text(const ConfigKey& key, const char* quote) {
   const Json value = key.show(Config{});
   if (value.is_null())

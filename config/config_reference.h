@@ -1,5 +1,5 @@
-// What is told of the config's keys, all made from config_schema.h: for editors, the terminal and
-// the documents. scripts/config_reference writes what is kept in files.
+// Describes the config's keys for editors, the terminal and the documents, all from
+// config_schema.h. scripts/config_reference writes what is kept in files.
 #pragma once
 
 #include <string>

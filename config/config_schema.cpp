@@ -34,7 +34,7 @@ constexpr double kMostThreads = 4096;
 constexpr double kMostInputs = 100000;
 /// A mesh has no more.
 constexpr double kMostAttributes = kMaxValueChannels;
-/// Of texts that the manifest repeats, which has 1 MiB.
+/// Texts are repeated in the manifest, which has 1 MiB.
 constexpr double kMostTextBytes = 32768;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
@@ -167,7 +167,7 @@ ConfigKey text(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of an optional string, for which an empty one is a value.
+/// A key with an optional string, for which an empty one is a value.
 template <class Field>
 ConfigKey optional_text(ConfigKey key, Field field) {
   key.kind = KeyKind::text;
@@ -179,7 +179,7 @@ ConfigKey optional_text(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of an optional array.
+/// A key with an optional array.
 template <class Field>
 ConfigKey numbers(ConfigKey key, Field field) {
   using Array =
@@ -191,7 +191,7 @@ ConfigKey numbers(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of optional TargetVertexCounts. A list of one is the number: it means the same.
+/// A key with optional TargetVertexCounts. A list of one is the number: it means the same.
 template <class Field>
 ConfigKey levels(ConfigKey key, Limits limits, Field field) {
   key.kind = KeyKind::levels;

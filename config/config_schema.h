@@ -71,10 +71,10 @@ nlohmann::ordered_json::json_pointer json_pointer_to(std::string path);
 
 bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);
 
-/// What an entry of a list for KeyKind::levels must be, as a key of kind integer.
+/// Describes an entry of a list for KeyKind::levels, as a key of kind integer.
 ConfigKey level_entry(const ConfigKey& key);
 
-/// What accepts() accepts, for messages: "an integer from 4 to 32768".
+/// Describes the values that accepts() takes, for messages: "an integer from 4 to 32768".
 std::string expectation(const ConfigKey& key);
 
 }  // namespace meshhier::config

@@ -11,7 +11,8 @@
 namespace meshhier::config {
 namespace {
 
-/// What is not there is told when it is read; what has the name of a mesh is not looked into.
+/// A file that is not there is told when it is read; one with the name of a mesh is not looked
+/// into.
 bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
   if (is_mesh_name(path.filename().string()) || files.kind(path) != storage::FileKind::regular)
     return false;

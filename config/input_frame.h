@@ -1,4 +1,4 @@
-// What a config does not say of up and place, and its input does.
+// Takes up and place from the input where the config does not say them.
 #pragma once
 
 #include "config/config.h"

@@ -71,7 +71,7 @@ Numbers numbers_of(std::string_view text, const std::string& what) {
 
 // ---- XML
 
-/// What stands between <name> and </name>, of the first such pair.
+/// Returns the text between the first <name> and its </name>.
 std::optional<std::string_view> find_element(std::string_view xml, const std::string& name) {
   const std::string opening = '<' + name + '>';
   const std::size_t begin = xml.find(opening);

@@ -28,7 +28,7 @@ class MapPlaces {
  private:
   geodesy::MapChange change_;
   geodesy::MappedModel model_;  ///< of what has a crs
-  /// Of what is placed by a transform.
+  /// A model that is placed by a transform.
   struct OnGlobe {
     geodesy::MapChange to_geocentric;
     double height = 0;  ///< metres above the ellipsoid

@@ -42,7 +42,8 @@ void refuse_foreign(const fs::path& path, const std::string& start) {
   }
 }
 
-/// What is told as a mesh is refused as one, if it is none.
+/// Whether the path is a config. Everything else is taken as a mesh, and refused as one if it is
+/// none.
 bool is_config(storage::FileSystem& files, const fs::path& path) {
   const bool is_json = path.extension() == ".json";
   if (files.is_directory(path))

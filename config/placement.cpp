@@ -17,7 +17,7 @@
 namespace meshhier::config {
 namespace {
 
-/// What these files have to say stands at their beginning; some list all pictures after it.
+/// These files say all that counts at their beginning; some list all pictures after it.
 constexpr std::uint64_t kLookedAtBytes = std::uint64_t{1} << 16;
 
 Vec3d to_vec(const std::array<double, 3>& p) {
@@ -57,7 +57,7 @@ geodesy::MapProjection projection_of(const PlacementConfig& place) {
   return about("placement.crs", [&] { return geodesy::MapProjection(*place.crs); });
 }
 
-/// Of z-up coordinates.
+/// The box in z-up coordinates.
 BoundsD z_up_box(const BoundsD& bounds, UpAxis up) {
   BoundsD box;
   box.add(to_z_up(bounds.min, up));
@@ -139,7 +139,7 @@ std::string anchor_warning(const BoundsD& box, Vec3d anchor, double metres) {
       away / 1000);
 }
 
-/// Of a model that the config puts on the globe itself.
+/// The text for a model that the config puts on the globe itself.
 std::string globe_text(const Config& config, const BoundsD& bounds) {
   const PlacementConfig& place = config.placement;
   const BoundsD box = z_up_box(bounds, config.up_axis());

@@ -1,4 +1,4 @@
-// What `placement` comes to: the transform of the tileset's root.
+// Turns `placement` into the transform of the tileset's root.
 #pragma once
 
 #include "config/config.h"
@@ -14,7 +14,7 @@
 
 namespace meshhier::config {
 
-/// What PROJ takes for a model with a crs: 14 to 15.4 MiB were measured, with a grid and without, 7
+/// PROJ's memory for a model with a crs: 14 to 15.4 MiB were measured, with a grid and without, 7
 /// of them for its libraries.
 inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 
@@ -23,12 +23,12 @@ inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 /// Error(io) if a file or PROJ's database cannot be read.
 Config with_map(storage::FileSystem& files, Config config);
 
-/// Of a model with a crs, whose projection it is. `bounds`: of the input.
+/// Places a model with a crs, whose projection is given. `bounds`: of the input.
 geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
                                   const geodesy::MapProjection& projection);
 
-/// Of the tileset's root, or none. `bounds`: of the input. Throws Error(usage) if the model has no
-/// place on the globe.
+/// Returns the transform of the tileset's root, if it needs one. `bounds`: of the input. Throws
+/// Error(usage) if the model has no place on the globe.
 std::optional<Transform> tileset_transform(const Config& config, const BoundsD& bounds);
 
 /// Whether `transform` is within metres of what PROJ says of a model with a crs. The last bits are

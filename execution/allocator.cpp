@@ -16,7 +16,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 void configure_allocator(std::uint64_t budget_bytes) {
   // Arrays mapped alone leave at once, but each of their pages is made anew, and so is the end of
   // the heap after it was given back. With the usual parts two thirds of all pages were made again.
-  // What is kept beyond was a stage's work, and goes back where much of the budget is resident
+  // Memory kept beyond was a stage's, and goes back where much of the budget is resident
   // (release_free_memory()). Small budgets have no room for it: a soup took 66 MiB of 64.
   const std::uint64_t roomy = budget_bytes - std::min(budget_bytes, 128 * kMiB);
   const auto part = [&](std::uint64_t usual_parts, std::uint64_t roomy_parts, std::uint64_t least,

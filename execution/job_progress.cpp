@@ -6,8 +6,8 @@
 namespace meshhier::execution {
 namespace {
 
-// What was expected weighs as much as so much work that took as long as expected: a short stage
-// says little of the pace of the others, as one waits for the disk and the other computes.
+// The expectation weighs as much as so much work that took as long as expected: a short stage says
+// little of the pace of the others, as one waits for the disk and the other computes.
 constexpr double kPriorShare = 0.05;
 constexpr double kPriorSeconds = 1;
 

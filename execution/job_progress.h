@@ -10,7 +10,7 @@
 
 namespace meshhier::execution {
 
-/// What a job says of a stage before it begins. Stages are known by name and unit.
+/// A stage as a job announces it. Stages are known by name and unit.
 struct ExpectedStage {
   std::string name;
   std::string unit;
@@ -21,12 +21,12 @@ struct ExpectedStage {
 /// Adds up the stages of a job. Its part done never decreases. The time left follows from what was
 /// expected, and the more of the job is done, the more from the pace of this run.
 ///
-/// What a resumed job does not do again counts as done, but not for the pace. A stage that was not
-/// expected, or comes more often than expected, adds nothing. Without expectations each stage is a
-/// job of its own.
+/// Work that a resumed job does not do again counts as done, but not for the pace. A stage that was
+/// not expected, or comes more often than expected, adds nothing. Without expectations each stage
+/// is a job of its own.
 class JobProgress {
  public:
-  /// Of all stages to come. Said again, it is about what is left of the job.
+  /// Announces all stages to come. Said again, it is about what is left of the job.
   void expect(std::vector<ExpectedStage> stages);
   /// Ends the stage before and begins the next, with `total` units left in it.
   void begin(std::string_view name, std::string_view unit, std::uint64_t total, double now);

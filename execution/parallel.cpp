@@ -93,7 +93,7 @@ class Pipeline {
     return next_++;
   }
 
-  /// What fails to be read is an item with a failure.
+  /// Whether there is a next item. One that fails to be read is an item with a failure.
   bool is_there() {
     bool is_there = true;
     has_failed_to_read_ =

@@ -18,15 +18,15 @@ namespace meshhier::execution {
 /// more than there are threads for.
 std::size_t useful_blocks(std::uint64_t memory_bytes, std::uint64_t block_bytes);
 
-/// Of items that hold memory only while they are at work, how many to let in where there is memory
-/// for so many: no more are at work than there are threads, others wait for those before them.
+/// Returns how many items to let in where there is memory for so many, if they hold it only while
+/// they are at work: no more are than there are threads, others wait for those before them.
 std::size_t with_those_that_wait(std::size_t in_flight);
 
 /// Runs work(i) for all i in [0, count) in parallel, in any order. The first exception ends it and
 /// is thrown again here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// What is done with the items 0, 1, 2, ...
+/// The steps of the items 0, 1, 2, ...
 struct OrderedSteps {
   std::function<bool(std::size_t)> read;     ///< whether there is such an item; in order
   std::function<void(std::size_t)> work;     ///< in parallel

@@ -27,7 +27,7 @@ constexpr double kJsonInterval = 0.5;
 constexpr std::size_t kBarWidth = 24;
 /// A shorter bar says less than the percentage beside it.
 constexpr std::size_t kLeastBarWidth = 8;
-/// Of a terminal that does not say how wide it is.
+/// The width of a terminal that does not say it.
 constexpr std::size_t kUsualColumns = 80;
 
 /// A stage at one moment.

@@ -5,7 +5,7 @@
 namespace meshhier::execution {
 namespace {
 
-/// Of a thread.
+/// The times of one thread.
 struct Account {
   int calls = 0;      ///< parallel ones that have not ended
   double inside = 0;  ///< its CPU seconds in them

@@ -1,4 +1,5 @@
-// What of a computation goes one step after another: the time that more threads cannot shorten.
+// Measures how much of a computation goes one step after another: time that more threads cannot
+// shorten.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace meshhier::execution {
 /// of its work. By Amdahl's law no number of threads does the work in less.
 double serial_seconds();
 
-/// Of the calling thread.
+/// CPU seconds of the calling thread.
 double thread_cpu_seconds();
 
 /// Steps that go one after another; or, by count_longest(), beside each other.

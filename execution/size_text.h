@@ -14,7 +14,7 @@ namespace meshhier::execution {
 /// anything else, negative, or 2^53 bytes (8 PiB) and more.
 std::optional<std::uint64_t> parse_size(std::string_view text);
 
-/// What parse_size() takes, for error messages.
+/// The syntax of parse_size(), for error messages.
 inline constexpr std::string_view kSizeSyntax =
     R"(a size such as "512MiB" or "2GiB", or a number of bytes)";
 

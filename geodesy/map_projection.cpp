@@ -94,7 +94,8 @@ struct MapProjection::Parts {
   Object geodetic;   ///< from them
   std::string name;
 
-  /// What PROJ takes as metres is in the map's unit.
+  /// Metres in a unit of height: without a vertical part PROJ takes metres, the map has its own
+  /// unit.
   double height_metres() const {
     const bool is_flat = axes.type == PJ_CS_TYPE_CARTESIAN && axes.count == 2 &&
                          library().get_type(crs.get()) != PJ_TYPE_COMPOUND_CRS;

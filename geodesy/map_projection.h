@@ -13,7 +13,7 @@
 
 namespace meshhier::geodesy {
 
-/// What heights are above without a vertical part.
+/// Without a vertical part heights are above this.
 inline constexpr std::string_view kEllipsoid = "the ellipsoid";
 
 /// A place on or above WGS 84: degrees, degrees, metres above the ellipsoid.
@@ -39,8 +39,8 @@ class MapProjection {
   MapProjection(MapProjection&&) noexcept;
   MapProjection& operator=(MapProjection&&) noexcept;
 
-  /// Of the changes of datum that PROJ has, takes the one for the place of these coordinates: all
-  /// others follow it, so that nothing jumps. Throws as to_geocentric().
+  /// Settles on the change of datum for the place of these coordinates: all other places follow it,
+  /// so that nothing jumps. Throws as to_geocentric().
   void settle_at(Vec3d map);
 
   /// Geocentric coordinates (WGS 84, EPSG:4978), metres. Throws Error(usage) if there are none.
@@ -52,7 +52,7 @@ class MapProjection {
   double unit_metres() const;
   /// As PROJ calls it, for people: "WGS 84 / UTM zone 33N".
   const std::string& name() const;
-  /// What heights of the map are above, for people: kEllipsoid, or PROJ's name of the heights
+  /// The surface below the map's heights, for people: kEllipsoid, or PROJ's name of the heights
   /// ("EGM96 height"); empty if it has none, being geocentric.
   std::string heights() const;
   /// How far off the change of datum may be, metres; 0 if there is none, below 0 if not known.

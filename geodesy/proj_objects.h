@@ -17,7 +17,7 @@ struct Destroy {
 using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
 using Object = std::unique_ptr<PJ, Destroy>;
 
-/// Of a quoted text.
+/// A quoted text is cut off at this length.
 inline constexpr std::size_t kLongestQuote = 80;
 std::string in_quotes(std::string_view text);
 

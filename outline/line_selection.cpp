@@ -6,7 +6,7 @@
 namespace meshhier::outline {
 namespace {
 
-/// What chosen lines take of a file.
+/// Counts of chosen lines, which tell their size in a file.
 struct Taken {
   std::size_t vertices = 0, lines = 0;
 

@@ -12,7 +12,7 @@
 
 namespace meshhier::outline {
 
-/// What a tile brings.
+/// The parts that a tile brings to the network.
 struct SectorContent {
   /// Those in several sectors, sorted; of those in several tiles if it is the first.
   std::vector<PlacedTriangle> triangles;
@@ -68,7 +68,7 @@ class Network {
   std::uint32_t add_centroid(const PlacedTriangle& triangle);
   /// The line through one border triangle, which has two or three crossing edges.
   void add_line(const PlacedTriangle& triangle, const Points& points);
-  /// Of a vertex on the mesh's border that a triangle in several sectors uses.
+  /// The number of a vertex on the mesh's border that a triangle in several sectors uses.
   std::uint32_t number_of(VertexKey vertex) const;
 
   std::vector<Tile> tiles_;

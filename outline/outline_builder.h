@@ -68,7 +68,7 @@ using Sectors = std::vector<std::vector<std::uint16_t>>;
 /// not depend on the order of add().
 class OutlineBuilder {
  public:
-  /// What makes lines of one tile.
+  /// The parts of one tile that make lines.
   class Sector {
    public:
     /// `index`: the NodeId::index of the tile; ghosts refer to others by theirs. `sectors`: the
@@ -95,8 +95,8 @@ class OutlineBuilder {
   /// Those of the whole surface, once.
   void add(std::vector<CrestLine> crests);
 
-  /// What is held so far: triangles in several sectors, borders and creases. Of such a
-  /// triangle finish() holds up to 220 bytes.
+  /// Counts what is held so far: triangles in several sectors, borders and creases. finish() holds
+  /// up to 220 bytes for such a triangle.
   std::size_t edge_count() const;
 
   /// Nothing if there are more than options.max_segments. Leaves no sector here.

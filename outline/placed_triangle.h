@@ -30,7 +30,7 @@ inline bool in_one_sector(const Corner& a, const Corner& b) {
 /// Corners by ascending key: both sides of a line compute its points from the same order.
 using PlacedTriangle = std::array<Corner, 3>;
 
-/// Of a triangle's edges, which corners they join.
+/// The corners that a triangle's edges join.
 inline constexpr std::array<std::array<std::size_t, 2>, 3> kEdges{{{0, 1}, {0, 2}, {1, 2}}};
 
 inline bool is_crossing(const PlacedTriangle& t, std::size_t edge) {

@@ -19,7 +19,7 @@ constexpr int kPartRounds = 6;
 /// A turn from one side to the other counts like so many widths of the part.
 constexpr double kTurnWidths = 1;
 
-/// What vertices are told apart by.
+/// Vertices are told apart by these.
 struct Features {
   std::span<const Vec3f> positions, normals;
 };

@@ -11,7 +11,7 @@
 
 namespace meshhier::outline {
 
-/// Of own vertices, without those of other tiles. O(t) for t triangles.
+/// The neighbours of own vertices, without those in other tiles. O(t) for t triangles.
 class Neighbours {
  public:
   explicit Neighbours(const TileMesh& tile);
@@ -28,9 +28,9 @@ class Neighbours {
 /// Zero where there is no direction.
 Vec3f of_length_one(Vec3d v);
 
-/// Of the own vertices, of length one or zero: the sum over the triangles weighted by area, then
-/// `rounds` times the mean with the neighbours. Roughness goes; the form of what is wider than
-/// about the root of `rounds` edges stays. O(t + rounds * n).
+/// Returns the own vertices' normals, of length one or zero: the sum over the triangles weighted by
+/// area, then `rounds` times the mean with the neighbours. Roughness goes; the form of what is
+/// wider than about the root of `rounds` edges stays. O(t + rounds * n).
 std::vector<Vec3f> smooth_normals(const TileMesh& tile, const Neighbours& neighbours, int rounds);
 
 }  // namespace meshhier::outline

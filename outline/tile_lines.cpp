@@ -10,8 +10,8 @@
 namespace meshhier::outline {
 namespace {
 
-/// Of a tile's edges between own vertices. All their triangles are in the tile, as interior or
-/// border triangles.
+/// Some of a tile's edges between own vertices. All triangles at those are in the tile, as interior
+/// or border triangles.
 struct OwnEdges {
   Edges borders;  ///< exactly one triangle has them
   Edges creases;  ///< exactly two have them, which meet at an angle

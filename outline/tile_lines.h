@@ -1,4 +1,4 @@
-// What one tile knows of the mesh's own borders and creases.
+// Finds the parts of the mesh's own borders and creases that one tile knows.
 #pragma once
 
 #include "hierarchy/tile_mesh.h"

@@ -36,7 +36,7 @@ constexpr std::uint32_t kDetailVersion = 1;
 constexpr std::size_t kDetailHeadBytes = 16;
 constexpr std::size_t kRunHeadBytes = 12;
 
-/// Of 32 bits and a sign, and of 63 bits.
+/// The most bytes for 32 bits and a sign, and for 63 bits.
 constexpr std::size_t kShortVarint = 5;
 constexpr std::size_t kLongVarint = 9;
 constexpr std::uint64_t kMostShort = UINT32_MAX;

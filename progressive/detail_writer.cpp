@@ -155,7 +155,7 @@ class ValueCursor {
   std::vector<float> entry_;
 };
 
-/// What stands for corners on a level, asked for in ascending order.
+/// Finds what stands for corners on a level, asked for in ascending order.
 class StandInCursor {
  public:
   StandInCursor(const LevelLists& level, std::size_t width, const execution::CancelToken& cancel)
@@ -169,7 +169,7 @@ class StandInCursor {
       return std::nullopt;
     return entries_.at(next_).stands;
   }
-  /// Of what was found last.
+  /// The values of what was found last.
   std::span<const float> values() { return values_.at(next_); }
 
  private:
@@ -246,7 +246,7 @@ class DetailWriter {
     return span_.coarse ? raw(*span_.coarse) + std::size_t{1} : raw(span_.fine);
   }
 
-  /// What stands for corners with the files before this one; none: it is the base.
+  /// Stand-ins of the corners with the files before this one; none for the base.
   std::optional<StandInCursor> known_before() const {
     if (!span_.coarse)
       return std::nullopt;

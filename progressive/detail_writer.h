@@ -16,7 +16,7 @@
 
 namespace meshhier::progressive {
 
-/// What a file leads from and to.
+/// The levels that a file leads from and to.
 struct DetailSpan {
   std::uint32_t step = 0;       ///< 0: the base
   std::optional<Level> coarse;  ///< none: from nothing

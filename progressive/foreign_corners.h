@@ -16,12 +16,12 @@ class ForeignCorners {
   ForeignCorners() = default;
   /// `width`: values of each.
   ForeignCorners(const LevelLists& level, std::size_t width);
-  /// What that takes, at most.
+  /// The memory that this takes, at most.
   static std::uint64_t memory_bytes(const LevelLists& level, std::size_t width);
 
   std::size_t size() const { return ranks_.size(); }
   std::uint32_t rank(std::size_t number) const { return ranks_[number]; }  ///< ascending
-  /// Of what stands for it on the level.
+  /// The values of what stands for it on the level.
   std::span<const float> values(std::size_t number) const {
     return std::span(values_).subspan(places_[number] * width_, width_);
   }

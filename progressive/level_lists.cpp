@@ -21,7 +21,7 @@ using progressive::Sector;
 using progressive::TracedTile;
 using progressive::Values;
 
-/// What a subtree leaves of one level.
+/// The part of one level's lists that a subtree makes.
 struct LevelPart {
   Losses lost;
   std::vector<StandIn> stand_ins;
@@ -139,7 +139,8 @@ class Tracer {
     part.foreign_values.append(vertices.attributes_of(vertex));
   }
 
-  /// What stands for foreign corners is in the tile's own file.
+  /// Adds a tile to the lists of its level. Values of what stands for foreign corners are taken
+  /// from the tile's own file.
   void list(const TracedTile& tile, const PublishedTile& published,
             std::vector<LevelPart>& levels) const {
     if (!is_listed(tile))

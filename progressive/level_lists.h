@@ -1,5 +1,5 @@
-// What the levels of a sector lose and stand for, on its way into the files of a progressive
-// stream.
+// Lists of what the levels of a sector lose and stand for, on the way into the files of a
+// progressive stream.
 #pragma once
 
 #include "execution/cancel.h"

@@ -20,7 +20,7 @@ struct ReconstructOptions {
   bool replace = false;                    ///< a file that is there
 };
 
-/// What a file did.
+/// A step of the reconstruction, by one file.
 struct ReconstructedStep {
   std::string file;
   std::uint64_t bytes = 0;

@@ -11,7 +11,7 @@
 namespace meshhier::progressive {
 namespace {
 
-/// Of a slot that nothing was put into, and of a triangle that is not there.
+/// Marks a slot that nothing was put into, and a triangle that is not there.
 constexpr std::uint32_t kNowhere = UINT32_MAX;
 /// Vertices and triangles are handed out in blocks of so many.
 constexpr std::size_t kBlock = 16384;

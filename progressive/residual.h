@@ -1,4 +1,4 @@
-// What is left of a vertex's values when another vertex's are known.
+// Residuals: what is left of a vertex's values when another vertex's are known.
 //
 // Nothing is lost: values are compared as integers of value_bytes() bytes. Floats become integers
 // that ascend with them (sign and magnitude turned to one scale, as in Lindstrom & Isenburg, "Fast

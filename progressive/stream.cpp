@@ -229,7 +229,7 @@ class StreamWriter {
     return index;
   }
 
-  /// Of the tiles that stand for the sector's nodes of a level.
+  /// Own vertices of the tiles that stand for the sector's nodes of a level.
   std::uint64_t own_vertices(Level level) const {
     std::uint64_t vertices = 0;
     const Tree& tree = reader_.tree();

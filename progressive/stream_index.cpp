@@ -21,7 +21,8 @@ constexpr storage::SealedFormat kStreamFormat{"meshhier-progressive", 2,
 /// Their array's bytes are countable; no disk holds so many.
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;
 
-/// Of an entry that is alone in its run: the run's head, gzip's frame, all values of a vertex.
+/// An entry that is alone in its run takes no more: the run's head, gzip's frame, all values of a
+/// vertex.
 constexpr std::uint64_t kMostEntryBytes = 128;
 
 /// A tree over less than 2^32 partitions has no more levels.

@@ -27,7 +27,7 @@ constexpr std::uint64_t kListsOfALevel = 7;
 /// Items in flight beyond twice the threads only wait.
 constexpr std::size_t kItemsAThread = 2;
 
-/// What tiles and lists take, by the counts of the index.
+/// Memory of tiles and lists, by the counts of the index.
 class Needs {
  public:
   Needs(const storage::HierarchyReader& reader, const progressive::Sector& sector)
@@ -100,7 +100,7 @@ class Needs {
     return triangles_of(record) * (2 * 120 + 60 + 48) +
            (std::uint64_t{record.own_count} + record.ghost_count) * (64 + 12 * width_);
   }
-  /// What it leaves behind: of partitions what is lost, of others what stands for corners.
+  /// Bytes that a tile leaves behind: losses of a partition, of others what stands for corners.
   std::uint64_t list_bytes(const TileRecord& record) const {
     if (tree_.is_partition(record.node))
       return triangles_of(record) * 24 + record.own_count * (8 + 8 * width_);

@@ -11,7 +11,7 @@ namespace meshhier::progressive {
 
 /// The budget's division. Every part is an upper bound.
 struct ProgressivePlan {
-  /// Of what is left beyond the least budget the foreign corners of a level get the 12th part:
+  /// The foreign corners of a level get the 12th part of what is left beyond the least budget:
   /// those of three levels are there at a time, beside runs and lists.
   static constexpr std::uint64_t kForeignParts = 12;
 

@@ -88,7 +88,7 @@ class Raiser {
     return {tile, chain[1]};
   }
 
-  /// Of a vertex of the child's sibling.
+  /// The image of a vertex of the child's sibling.
   std::uint32_t own_image_in(NodeId sibling, std::uint32_t vertex) const {
     for (std::size_t i = 0; i < children_.size(); ++i) {
       if (children_[i].node == sibling && vertex < children_[i].ranks.size())
@@ -135,7 +135,8 @@ class Raiser {
   std::vector<std::vector<TileVertex>> maps_;
 };
 
-/// Of the triangles with one image the first original stays, whoever looks at them.
+/// A triangle that was raised to its image. The first original of several with one image stays,
+/// whoever looks at them.
 struct RaisedTriangle {
   TileTriangle key;  ///< the image, turned
   Triangle<std::uint64_t> order;
@@ -194,7 +195,8 @@ struct ChildVertex {
   std::size_t vertex = 0;
 };
 
-/// Of the vertices that a parent's vertex stands for, the one that it is: the first at its place.
+/// Finds, for each vertex of the parent, the one that it is among those that it stands for: the
+/// first at its place.
 std::vector<ChildVertex> find_survivors(Raiser& raiser, const PublishedTile& parent) {
   std::vector<ChildVertex> survivors(parent.mesh.own_count, {UINT32_MAX, 0, 0});
   for (std::size_t child = 0; child < raiser.children().size(); ++child) {

@@ -19,7 +19,7 @@ namespace meshhier::progressive {
 // Vertices of the original mesh are ranks; triangles are numbered in the order of sorted_corners()
 // below, partition by partition, a triangle in the first partition that it touches.
 
-/// Of a triangle that a tile before counts.
+/// The number of a triangle that a tile before counts.
 inline constexpr std::uint64_t kCountedElsewhere = UINT64_MAX;
 
 /// The part of the hierarchy that is followed: a node, as if it were alone.
@@ -75,7 +75,7 @@ struct TracedTile {
   std::uint64_t end_index = 0;            ///< behind the last triangle that its partitions count
 };
 
-/// What of a level the next coarser one has no more, in ascending order.
+/// Vertices and triangles of a level that the next coarser one has no more, in ascending order.
 struct Losses {
   std::vector<std::uint32_t> ranks;
   Values values;
@@ -88,7 +88,7 @@ struct Losses {
 TracedTile trace_partition(const Tree& tree, const Sector& sector, const PublishedTile& tile,
                            std::uint64_t first_index);
 
-/// What both steps up lead to.
+/// The result of either step up.
 struct Lifted {
   TracedTile tile;
   Losses losses;

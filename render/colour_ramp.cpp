@@ -12,7 +12,7 @@
 namespace meshhier::render {
 namespace {
 
-// Of a screen, at equal steps.
+// Colours of a screen, at equal steps.
 constexpr std::array<std::uint32_t, 11> kViridis{0x440154, 0x482475, 0x414487, 0x355f8d,
                                                  0x2a788e, 0x21918c, 0x22a884, 0x44bf70,
                                                  0x7ad151, 0xbddf26, 0xfde725};

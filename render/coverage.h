@@ -15,7 +15,7 @@
 
 namespace meshhier::render {
 
-/// Of the corners of a triangle, at a place within it: their sum is 1.
+/// A place within a triangle as shares of its corners: their sum is 1.
 using Weights = std::array<double, 3>;
 
 /// In steps, of which a sample has kSteps.
@@ -36,7 +36,7 @@ inline GridPoint snapped(Vec3d place) {
   return {steps(place.x), steps(place.y)};
 }
 
-/// Of sample 0, 1, ... along an axis.
+/// The middle of sample 0, 1, ... along an axis.
 constexpr std::int64_t middle_of(std::int64_t sample) {
   return sample * kSteps + kSteps / 2;
 }
@@ -59,7 +59,7 @@ constexpr SampleSpan samples_between(std::int64_t least, std::int64_t most, std:
   return {std::max<std::int64_t>(first_from(least), 0), std::min(first_from(most + 1), count)};
 }
 
-/// Of columns and rows.
+/// Columns and rows of samples.
 struct SampleBox {
   SampleSpan across, down;
 
@@ -82,11 +82,11 @@ struct EdgeFunction {
   constexpr std::int64_t operator()(GridPoint p) const {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
   }
-  /// What it grows by from one sample to the next.
+  /// Its growth from one sample to the next.
   constexpr std::int64_t step_right() const { return -(b.y - a.y) * kSteps; }
   /// The same from one row to the next.
   constexpr std::int64_t step_down() const { return (b.x - a.x) * kSteps; }
-  /// What it must be at least: points on the line are inside where it goes up, or right.
+  /// Its least value inside: points on the line are inside where the line goes up, or right.
   constexpr std::int64_t least() const { return b.y < a.y || (b.y == a.y && b.x > a.x) ? 0 : 1; }
 };
 

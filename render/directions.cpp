@@ -7,7 +7,7 @@
 namespace meshhier::render {
 
 std::vector<View> views_around(std::uint32_t count, Vec3d up) {
-  /// Of a full turn: 1 - 1 / golden ratio.
+  /// As a part of a full turn: 1 - 1 / golden ratio.
   constexpr double kGoldenTurn = 0.38196601125010515;
   constexpr double kFullTurn = 6.283185307179586;
   std::vector<View> views;

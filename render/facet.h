@@ -1,4 +1,4 @@
-// What is drawn: triangles in space.
+// Facets: triangles in space, which are drawn.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -9,7 +9,7 @@
 
 namespace meshhier::render {
 
-/// Of surfaces without colours, in linear light: 0xb9b4ab of a screen, as the viewer has it.
+/// The light of surfaces without colours, linear: 0xb9b4ab of a screen, as the viewer has it.
 inline constexpr Vec3f kPlainColour{0.485150F, 0.456411F, 0.407240F};
 
 struct FacetCorner {
@@ -25,7 +25,7 @@ using Facet = std::array<FacetCorner, 3>;
 
 class MipTexture;
 
-/// What a facet has in place of its corners' colours, or is tinted by them.
+/// Pictures of a facet, in place of its corners' colours or tinted by them.
 struct Skin {
   const MipTexture* texture = nullptr;     ///< none: colours stay
   std::array<Vec2f, 3> texcoords{};        ///< of the corners
@@ -35,7 +35,7 @@ struct Skin {
   bool is_mirrored = false;                ///< the bitangent is on the other side
 };
 
-/// Of length 1; 0 of what has no direction.
+/// The direction of a vector, of length 1; 0 if it has none.
 inline Vec3f unit_or_zero(Vec3f vector) {
   const Vec3d wide = to_double(vector);
   const double size = length(wide);  // squares of floats are in range

@@ -60,7 +60,7 @@ double within_picture(float coordinate, Wrap wrap) {
   return in_two <= 1 ? in_two : 2 - in_two;
 }
 
-/// Of a row or column next to a place in the picture: at most one beyond its border.
+/// The row or column in the picture for one that is at most one beyond its border.
 std::uint32_t wrapped(std::int64_t texel, std::uint32_t count, Wrap wrap) {
   if (wrap == Wrap::repeat)
     return static_cast<std::uint32_t>((texel + count) % count);

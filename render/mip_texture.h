@@ -15,7 +15,7 @@ struct Wraps {
   Wrap u = Wrap::repeat, v = Wrap::repeat;
 };
 
-/// What texels are: light of a screen, or the numbers of a normal map.
+/// The meaning of texels: light of a screen, or the numbers of a normal map.
 enum class TexelKind { light, numbers };
 
 /// The picture and its pyramid, 8 bits a channel, all in memory. Immutable, thread-safe.
@@ -31,7 +31,7 @@ class MipTexture {
 
   /// Linear light (or numbers), 0 to 1: mixed from four texels of each of two levels of the
   /// pyramid. `level`: 0 is the picture itself, each further one has half of its width and height.
-  /// What is no number is looked up at 0.
+  /// A coordinate that is no number counts as 0.
   Vec3f light_at(Vec2f texcoord, double level) const;
 
   /// Whether a sample is seen at a place: of a mask where alpha is 0.5 or more, of what is to blend

@@ -12,7 +12,7 @@
 namespace meshhier::render {
 
 struct PaintingOptions {
-  /// Of samples at a time; one row of pixels at least. What is painted does not depend on it.
+  /// Samples held at a time, but one row of pixels at least. The picture does not depend on it.
   std::uint64_t band_bytes = std::uint64_t{8} << 20;
   /// Called for each tile that is looked at, `count` of them or fewer; may throw, to end it all.
   std::function<void()> step = [] {};

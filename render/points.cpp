@@ -7,7 +7,7 @@
 namespace meshhier::render {
 namespace {
 
-/// Of a picture's pixels so many belong to squares, if these do not cover each other.
+/// The part of a picture's pixels that squares take, if they do not cover each other.
 constexpr double kCovered = 0.35;
 /// Pixels: smaller ones flicker, larger ones show squares.
 constexpr double kLeastSide = 1.5, kMostSide = 6;

@@ -29,20 +29,20 @@ constexpr int kAround = 16;
 constexpr std::array kElevations{13.0, 26.0};
 constexpr std::array kFromAbove{37.0};  // roofs and streets are seen
 constexpr Standpoint kMapView{0, 90};
-/// Of points, which hide nothing: from the front, a little aside and above.
+/// Points hide nothing: they are seen from the front, a little aside and above.
 constexpr Standpoint kPointView{30, 20};
 /// Where a surface faces is told as a multiple of this, degrees.
 constexpr double kAngleStep = 0.25;
 /// A surface that hides nothing of itself from above, whatever its height.
 constexpr double kMap = 0.8;
-/// What is open above and lower than this part of its width is a map.
+/// A surface that is open above and lower than this part of its width is a map.
 constexpr double kFlat = 0.15;
 /// How much more than the back the front counts.
 constexpr double kFrontFavour = 0.05;
 /// Their pictures' side. What is smaller than a pixel of it is no form but roughness.
 constexpr std::uint32_t kTrialPixels = 80;
 
-/// Of length twice the facet's area.
+/// The facet's normal; its length is twice the area.
 Vec3d area_of(const Facet& facet) {
   const Vec3d a = to_double(facet[0].position);
   return cross(to_double(facet[1].position) - a, to_double(facet[2].position) - a);
@@ -118,8 +118,8 @@ double height_of(std::span<const Facet> facets, Vec3d up) {
   return size.y / std::max({size.x, size.z, std::numeric_limits<double>::min()});
 }
 
-/// What shows of a model's form in a picture of it: above all where the surface turns sharply, as a
-/// face does and the back of a head does not; then how far it turns in all, and where one part
+/// Rates how much of a model's form a picture shows: above all where the surface turns sharply, as
+/// a face does and the back of a head does not; then how far it turns in all, and where one part
 /// stands before another (decision 031).
 double form_in(const Raster& raster) {
   const auto samples = raster.samples();
@@ -145,8 +145,8 @@ double form_in(const Raster& raster) {
   return form;
 }
 
-/// What a front is worth: a model's face is where glTF's +z is, or where y is least if z is up,
-/// more often than not.
+/// Favours the front: a model's face is where glTF's +z is, or where y is least if z is up, more
+/// often than not.
 double favour(const View& view, Vec3d front) {
   return 1 + kFrontFavour * dot(view.direction, front * -1);
 }

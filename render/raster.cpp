@@ -21,8 +21,8 @@ Vec3f blend(const Weights& weights, const Three& corners) {
 
 using Places = Three;  ///< on the grid
 
-/// Of the side from which the corners turn counter-clockwise, by the view's axes. The grid's y goes
-/// down and its z away: both turn.
+/// The normal of the side from which the corners turn counter-clockwise, by the view's axes. The
+/// grid's y goes down and its z away: both turn.
 Vec3f flat_normal(const Places& places) {
   const Vec3d across = cross(places[1] - places[0], places[2] - places[0]);
   const double size = length(across);
@@ -46,7 +46,7 @@ double level_of(const Skin& skin, const MipTexture& texture, const Places& place
   return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
 }
 
-/// Of a sample of a pixel, from 0 to 1: those of a pixel have all different ones, evenly spread.
+/// A sample's threshold, from 0 to 1: those of a pixel are all different, and evenly spread.
 double threshold_at(std::int64_t column, std::int64_t row, std::uint32_t samples) {
   // Neighbours in a row or column are far from each other in the order.
   constexpr std::int64_t kStride = 7;
@@ -55,7 +55,7 @@ double threshold_at(std::int64_t column, std::int64_t row, std::uint32_t samples
   return (static_cast<double>(place * kStride % count) + 0.5) / static_cast<double>(count);
 }
 
-/// What a normal map is relative to, as the camera sees it: from behind turned round.
+/// The frames that a normal map is relative to, as the camera sees them: from behind turned round.
 class MapFrames {
  public:
   MapFrames(const Camera& camera, const Skin& skin, const Three& normals, const Places& places,
@@ -83,7 +83,7 @@ class MapFrames {
   Three tangents_, bitangents_;
 };
 
-/// What a facet shows of itself, as the camera sees it.
+/// A facet's surface as the camera sees it.
 class SeenSurface {
  public:
   SeenSurface(const Camera& camera, const Facet& facet, const Skin& skin, const Places& places)

@@ -18,7 +18,7 @@ namespace meshhier::render {
 
 struct DistinctPlaces;
 
-/// What is seen of the surface at one place.
+/// The surface as it is seen at one place.
 struct Sample {
   float depth = std::numeric_limits<float>::infinity();  ///< of Camera::on_grid()
   Vec3f normal;  ///< of length 1, by the view's axes, of the side that is seen; 0: nothing there
@@ -37,7 +37,7 @@ struct PixelRows {
 class Raster {
  public:
   explicit Raster(const Camera& camera);
-  /// Of these rows of the picture only, the same as they are in the whole. Requires that it has
+  /// Holds these rows of the picture only, the same as they are in the whole. Requires that it has
   /// them.
   Raster(const Camera& camera, PixelRows rows);
 
@@ -55,7 +55,7 @@ class Raster {
 
   const Framing& framing() const { return camera_.framing(); }
   std::uint32_t columns() const { return camera_.columns(); }
-  /// Of samples: those of pixel_rows().
+  /// Rows of samples: those of pixel_rows().
   std::uint32_t rows() const { return rows_.count * framing().samples; }
   PixelRows pixel_rows() const { return rows_; }
   /// Row by row, from the top left.
@@ -63,7 +63,7 @@ class Raster {
   void samples() const&& = delete;  ///< it would outlive its array
 
  private:
-  /// Of a place on the grid, from the first row that is here.
+  /// A place on the grid, counted from the first row that is here.
   GridPoint in_rows(Vec3d place) const {
     GridPoint point = snapped(place);
     point.y -= kSteps * rows_.first * framing().samples;

@@ -7,7 +7,7 @@
 namespace meshhier::render {
 namespace {
 
-/// What a dielectric mirrors of light that falls across it.
+/// A dielectric mirrors this part of light that falls straight on it.
 constexpr double kMirrored = 0.04;
 
 Vec3d times(Vec3d a, Vec3d b) {
@@ -38,8 +38,8 @@ double coat_of(double to_light, double to_viewer, double to_half, double roughne
   return kScattered * visible * width / (std::numbers::pi * spread * spread);
 }
 
-/// What comes through the coat of light from everywhere: within 0.005 of the integral, for a
-/// roughness from 0.7 on.
+/// The part of light from everywhere that comes through the coat: within 0.005 of the integral, for
+/// a roughness from 0.7 on.
 double through_coat(double to_viewer, double roughness) {
   const double rougher = roughness - kRoughness;
   return 0.974 + 0.0452 * rougher - (0.08 - 0.0824 * rougher) * cubed(1 - to_viewer);

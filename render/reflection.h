@@ -1,5 +1,5 @@
-// What a surface sends to the viewer of the light that falls on it, as the viewer's page has it:
-// glTF's dielectric material (Lambert below a GGX coat), and the tone curve of Khronos.
+// Computes the light that a surface sends to the viewer, as the viewer's page does: glTF's
+// dielectric material (Lambert below a GGX coat), and the tone curve of Khronos.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -7,7 +7,7 @@
 
 namespace meshhier::render {
 
-/// Of what has no picture, and of pictures.
+/// The roughness of plain surfaces, and of those with a picture.
 inline constexpr double kRoughness = 0.75, kPictureRoughness = 1;
 
 struct Surface {
@@ -19,8 +19,8 @@ struct Surface {
 /// Linear light, 0 to more than 1, to a viewer far away.
 Vec3d reflected(const Surface& surface, const LightRig& rig);
 
-/// What a screen shows of it, 0 to 1, linear: colours stay, but what is too bright (Khronos PBR
-/// Neutral, 2024).
+/// Returns what a screen shows of the light, 0 to 1, linear: colours stay, but those that are too
+/// bright (Khronos PBR Neutral, 2024).
 Vec3d toned(Vec3d light);
 
 }  // namespace meshhier::render

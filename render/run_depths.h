@@ -12,8 +12,9 @@
 
 namespace meshhier::render {
 
-/// Of a grid whose depths only become less. Never nearer than the farthest sample is; as it is
-/// looked up again now and then only, maybe farther. 8 bytes a run.
+/// The farthest depth of each run of samples, of a grid whose depths only become less. It is never
+/// nearer than the run's farthest sample, and maybe farther, as it is looked up now and then only.
+/// 8 bytes a run.
 class RunDepths {
  public:
   RunDepths(std::uint32_t columns, std::uint32_t rows)

@@ -1,4 +1,4 @@
-// What a picture shows, tile by tile: more than memory holds.
+// A scene: all that a picture shows, tile by tile, as it is more than memory holds.
 #pragma once
 
 #include "hierarchy/attributes.h"

@@ -92,7 +92,7 @@ double crease(const Turn& turn, double facing) {
   return std::clamp(1 + 1.8 * bend, 0.5, 1.4);
 }
 
-/// What turns within a pixel mirrors in as many directions.
+/// A surface that turns within a pixel mirrors in more directions: it looks rougher.
 double rougher(const Turn& turn, double roughness) {
   double most = 0;
   for (const Vec3d& side : {turn.right, turn.up})

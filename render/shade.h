@@ -8,7 +8,7 @@
 
 namespace meshhier::render {
 
-/// What falls on a surface. `none`: colours have their light already.
+/// The light that falls on a surface. `none`: colours have their light already.
 enum class Light { lamps, none };
 
 struct Lighting {

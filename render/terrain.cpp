@@ -14,7 +14,7 @@ namespace {
 
 /// Part of the surface that may look down: holes that were closed, a skirt.
 constexpr double kMostDown = 0.03;
-/// Of the extent across.
+/// The largest height of a terrain, as a part of its extent across.
 constexpr double kMostHeight = 0.35;
 /// The same of a sheet on its side: a thicker one is a relief, and light shows its form.
 constexpr double kMostThickness = 0.03;

@@ -11,7 +11,7 @@
 namespace meshhier::render {
 namespace {
 
-/// Of a number, in the light that `full` stands for.
+/// The light of a number; `full` stands for 1.
 double light(float number, double full, ColourSpace space) {
   if (space == ColourSpace::linear)
     return number > 0 ? std::min(number / full, 1.0) : 0;

@@ -73,8 +73,8 @@ std::vector<Place> sum_areas(const TileMesh& mesh, Corners& corners) {
   return places;
 }
 
-/// Of each place, whether it is an own one with a triangle so far from the mean that two may be a
-/// crease apart. Where two sides cancel there is no mean: any triangle is far from it.
+/// Marks own places with a triangle so far from the mean that two may be a crease apart. Where two
+/// sides cancel there is no mean: any triangle is far from it.
 std::vector<char> find_rough_places(const TileMesh& mesh, const Corners& corners,
                                     std::vector<Place>& places) {
   const double cosine = crease_cosine(0.5);
@@ -193,7 +193,7 @@ class Shader {
     }
   }
 
-  /// Of the vertices that no triangle has.
+  /// Gives all vertices of a place one normal. Those that no triangle uses keep it.
   void set_all(std::uint32_t place, const NormalCode& normal) {
     shading_.normals[place] = normal;
     for (std::size_t i = mesh_.copies.first_of(place);
@@ -216,7 +216,7 @@ class Shader {
   OwnShading shading_;
   std::vector<Split> splits_;
   FanGrouper grouper_;
-  // Of the place at hand.
+  // For the place at hand:
   std::vector<FanCorner> fan_;
   std::vector<Shown> shown_;
 };

@@ -101,7 +101,7 @@ class Assembler {
            of.shading.normals[vertex_count + static_cast<std::size_t>(split - split_of.begin())]});
   }
 
-  /// Of each vertex the first of its splits, once these are sorted; their count at the end.
+  /// Returns each vertex's first split, once these are sorted; their count at the end.
   std::vector<std::uint32_t> first_splits(std::size_t vertex_count) const {
     std::vector<std::uint32_t> firsts(vertex_count + 1);
     for (const Split& split : splits_)

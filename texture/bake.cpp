@@ -64,12 +64,12 @@ class Painter {
   }
 
  private:
-  /// What is compared of a picture: one in so many texels along each side.
+  /// One in so many texels along each side of a picture is compared.
   static constexpr std::uint32_t kLostStep = 4;
-  /// Of 8-bit values: 32 decibels.
+  /// The least visible difference of 8-bit values: 32 decibels.
   static constexpr double kLeastVisible = 6.4;
 
-  /// Of values, the mean square.
+  /// A mean square of differences.
   struct Difference {
     double squares = 0, count = 0;
     void add(const std::uint8_t* a, const std::uint8_t* b) {

@@ -165,7 +165,7 @@ class Fitter {
     return layout;
   }
 
-  /// Of the cells of the picture, units squared: those that the smallest charts have at most.
+  /// The smallest charts have at most this part of the picture's cells, units squared.
   static constexpr double kCells = 0.6;
   static constexpr double kCellsOfChart = 4;
 

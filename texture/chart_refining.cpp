@@ -68,7 +68,7 @@ class Refiner {
   Vec3d position(std::uint32_t triangle, std::size_t corner) const {
     return to_double(positions_[raw(triangles_[triangle][corner])]);
   }
-  /// Of its rectangle, gutter and all.
+  /// The texels of a chart's rectangle, gutter and all.
   double texels_of(const ChartPlane& plane) const {
     const double width = plane.width * density_ + 2 * kBakeGutter;
     const double height = plane.height * density_ + 2 * kBakeGutter;

@@ -16,7 +16,7 @@
 namespace meshhier::texture {
 namespace {
 
-/// What a corner shows, and which one it is: 3 * triangle + its place in the triangle.
+/// A corner's look, and which one it is: 3 * triangle + its place in the triangle.
 struct Look {
   std::uint32_t normal = 0, u = 0, v = 0;  ///< their bits
   std::uint32_t corner = 0;
@@ -100,7 +100,7 @@ class Splitter {
     return looks;
   }
 
-  /// Of each corner the first one of the same vertex that looks alike.
+  /// Finds, for each corner, the first one of the same vertex that looks alike.
   std::vector<std::uint32_t> find_first_alike() {
     std::vector<std::uint32_t> ends, first(corner_count());
     std::vector<Look> looks = looks_by_vertex(ends);

@@ -36,9 +36,9 @@ class DistinctTriangles {
     }
   }
   std::span<const TileTriangle> triangles() const { return triangles_; }
-  /// Of each of them its number among all, where it comes first.
+  /// For each of them, its number among all triangles, where it comes first.
   std::span<const std::uint32_t> firsts() const { return firsts_; }
-  /// Of all triangles, from one entry for each distinct one.
+  /// Returns an entry for each triangle, from one for each distinct one.
   template <class T>
   std::vector<T> expanded(const std::vector<T>& of_distinct) const {
     std::vector<T> all;

@@ -13,7 +13,7 @@ namespace meshhier::texture {
 
 inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
 
-/// Of length 1; 0 of what has no length.
+/// The direction of a vector, of length 1; 0 if it has no length.
 inline Vec3d direction_of(const Vec3d& vector) {
   const double size = length(vector);
   return size > 0 ? vector * (1 / size) : Vec3d{};

@@ -17,7 +17,7 @@
 
 namespace meshhier::texture {
 
-/// Of a triangle's corners at a point of it.
+/// A point of a triangle as shares of its corners.
 using CornerWeights = std::array<double, 3>;
 
 /// The triangles of several surfaces, numbered through.

@@ -52,8 +52,8 @@ class Planner {
     return materials_[material_of(cell)];
   }
 
-  /// What charts share, in a level of its picture. It is flat where that has one texel, or is no
-  /// more.
+  /// The texels that charts share, in a level of their picture. They are flat where it has one
+  /// texel, or does not exist.
   Cell cell(std::uint32_t number, std::uint32_t level) const {
     const MaterialTexels& picture = picture_of(number);
     const bool is_flat =
@@ -117,7 +117,7 @@ class Planner {
     return true;
   }
 
-  /// Of the distinct cells, in units of the alignment.
+  /// Packs the distinct cells, in units of the alignment.
   std::optional<Packing> try_pack(std::uint32_t most_side) const {
     std::vector<RectSize> sizes;
     for (const std::uint32_t c : distinct_cells())

@@ -21,7 +21,7 @@ namespace meshhier::texture {
 inline constexpr std::uint32_t kLeafGutter = 4;
 inline constexpr std::uint32_t kLeafAlignment = 8;
 
-/// What a material looks like to the atlas.
+/// A material as the atlas sees it.
 struct MaterialTexels {
   std::uint32_t width = 0, height = 0;  ///< of its picture; 0: a colour alone
   std::uint32_t levels = 1;             ///< of the picture's pyramid

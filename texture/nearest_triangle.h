@@ -33,8 +33,8 @@ class NearestTriangle {
   /// O(n log n).
   NearestTriangle(const std::vector<Corners>& triangles, const Vec3d& centre, double unit);
 
-  /// Of those that face as `facing` and lie within `reach`, else of all. Of equally near ones, the
-  /// one of the lowest number. O(log n) for points near the triangles.
+  /// Finds the nearest of those that face as `facing` and lie within `reach`, else of all; the one
+  /// of the lowest number of equally near ones. O(log n) for points near the triangles.
   Found operator()(const Vec3d& point, const Vec3d& facing, double reach);
 
   /// Points within the box will be asked for, until the next one: collects what is near it, as near
@@ -48,7 +48,7 @@ class NearestTriangle {
     Four low_x, low_y, low_z, high_x, high_y, high_z;
     std::array<std::uint32_t, 4> children;  ///< nodes, or leaves with kIsLeaf; kNone
 
-    /// Of the children's boxes from another one, squared.
+    /// The squared distances of the children's boxes from another one.
     [[gnu::always_inline]] Four distances(Four from_x, Four from_y, Four from_z, Four to_x,
                                           Four to_y, Four to_z) const;
   };
@@ -73,7 +73,7 @@ class NearestTriangle {
   bool is_around(const Vec3f& point) const;
   void measure_around(Query& query) const;
 
-  /// What is near a box: boxes of leaves, four at a time.
+  /// The surface near a box: boxes of leaves, four at a time.
   struct Surroundings {
     Vec3f low, high;
     float reach = 0;  ///< squared: leaves within it are there

@@ -111,7 +111,7 @@ class MapMaker {
     return finer_.direction(point, samples_.facing(plane, sample), kFacingReach * texel_);
   }
 
-  /// Of the nearest point of a triangle to one in its plane.
+  /// The triangle's nearest point to one in its plane.
   CornerWeights weights_at(std::uint32_t t, const Vec3d& point) const {
     const auto corner = [&](std::size_t k) {
       return to_double(tile_.positions[raw(tile_.triangles[t][k])]);
@@ -136,7 +136,8 @@ class MapMaker {
     return interpolated(frames_[sample.triangle], weights_at(sample.triangle, point));
   }
 
-  /// Of unit length; what looks away from the tile's own normal is turned to its side.
+  /// Makes a direction of length 1; one that looks away from the tile's own normal is turned to its
+  /// side.
   static Vec3d in_front(Vec3d coefficients) {
     constexpr double kLeast = 0.05;
     coefficients = direction_of(coefficients);
@@ -248,7 +249,7 @@ class MapMaker {
   FinerNormals& finer_;
   double texel_;
   std::vector<std::array<TangentFrame, 3>> frames_;  ///< of triangles
-  /// Of texels, in their frames, and 1; all 0 of what is not known.
+  /// One per texel, in its frame, and 1; all 0 where nothing is known.
   std::vector<FourFloats> coefficients_;
 };
 

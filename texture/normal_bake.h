@@ -22,7 +22,7 @@
 
 namespace meshhier::texture {
 
-/// Of a triangle's corners, of any length; 0: it has no direction there.
+/// Normals of a triangle's corners, of any length; 0: it has no direction there.
 using CornerNormals = std::array<Vec3f, 3>;
 
 /// A surface whose directions are known: at its corners, or on texels.

@@ -16,7 +16,7 @@ namespace meshhier::texture {
 /// 32767 times a direction of length 1, rounded; all 0 of a texel that shows nothing.
 using NormalTexel = std::array<std::int16_t, 3>;
 
-/// Of a direction of length 1.
+/// The texel of a direction of length 1.
 NormalTexel normal_texel(const Vec3d& direction);
 
 /// A picture of them that holds only what is shown: charts leave half of it free. Immutable.

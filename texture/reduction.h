@@ -12,8 +12,8 @@
 
 namespace meshhier::texture {
 
-/// What reduced() gives, without the whole picture in memory. Which texels are means of which, and
-/// which ones are copies, follows from the triangles alone.
+/// Makes what reduced() gives, without the whole picture in memory. Which texels are means of
+/// which, and which ones are copies, follows from the triangles alone.
 class Reduction {
  public:
   /// The picture's size and its triangles' corners. Requires sides that are multiples of `factor`,
@@ -26,8 +26,8 @@ class Reduction {
   /// Requires all rows.
   images::Image operator()() &&;
 
-  /// What it holds at most, its result included, besides the few megabytes that ShownTexels takes
-  /// first.
+  /// The bytes that it holds at most, its result included, besides the few megabytes that
+  /// ShownTexels takes first.
   static std::uint64_t bytes(std::uint64_t texels, std::uint64_t reduced_texels);
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 /// The period is divided into so many cells each way, to find what lies near a place.
 constexpr int kCells = 16;
-/// What a cell knows at most, and so what a piece looks at.
+/// A cell knows so many shared parts at most, and a piece looks at no more.
 constexpr std::size_t kMostInCell = 16;
 
 TexcoordBox moved(const TexcoordBox& box, double u, double v) {
@@ -22,7 +22,7 @@ TexcoordBox joined(const TexcoordBox& a, const TexcoordBox& b) {
   return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
 }
 
-/// Of a material: what of its picture is shared, to be found by the place.
+/// A material's picture: its shared parts, to be found by the place.
 class Picture {
  public:
   explicit Picture(const MaterialTexels& texels) : texels_(texels) {

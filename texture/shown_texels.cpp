@@ -59,7 +59,7 @@ class ShownTexels::Marker {
     return double(std::max({corners_[t][0].v, corners_[t][1].v, corners_[t][2].v})) * height_;
   }
 
-  /// Of the triangles that begin above the band's end, those that reach into it.
+  /// Marks what triangles that reach into the band show of it. Bands come in order.
   void mark_band(const RowRange& rows) {
     first_ = std::size_t{rows.begin} * shown_.width_;
     next_.resize(std::size_t{rows.end - rows.begin} * shown_.width_ + 1);

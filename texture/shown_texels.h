@@ -16,9 +16,9 @@ namespace meshhier::texture {
 std::array<TexelPoint, 3> in_texels(const CornerTexcoords& corners, std::uint32_t width,
                                     std::uint32_t height);
 
-/// Of each texel whether its middle is in a triangle. A triangle that has no middle has the texel
-/// where its own middle is. O(texels + rows of all triangles) time, a bit a texel, and at work some
-/// megabytes more.
+/// Tells of each texel whether its middle is in a triangle. A triangle that has no such middle has
+/// the texel where its own middle is. O(texels + rows of all triangles) time, a bit a texel, and at
+/// work some megabytes more.
 class ShownTexels {
  public:
   ShownTexels(std::uint32_t width, std::uint32_t height, std::span<const CornerTexcoords> corners);

@@ -7,7 +7,8 @@
 namespace meshhier::texture {
 namespace {
 
-/// Of a texel's light filtered by a viewer, the mean around the middle of it and of one beside it.
+/// A viewer that filters gives a texel's light these weights in the mean around its own middle, and
+/// around that of a texel beside it.
 constexpr float kOwn = 4.0f / 6, kBeside = 1.0f / 6;
 
 /// More iterations come nearer to least squares, but make noise of the finer pictures stronger from

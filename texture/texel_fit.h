@@ -9,8 +9,8 @@
 
 namespace meshhier::texture {
 
-/// Of the surface around the middle of each texel, weighted by a tent that ends at the middles of
-/// the texels beside it.
+/// Mean lights of the surface around the middle of each texel, weighted by a tent that ends at the
+/// middles of the texels beside it.
 struct TexelMeans {
   std::uint32_t width = 0;  ///< of the picture
   std::vector<Light> lights;

@@ -28,7 +28,7 @@ class RasterTriangle {
     twice_area_ = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   }
 
-  /// Of 1/256 texels squared; below 0: turned the other way.
+  /// In squares of 1/256 texel; below 0 if the corners turn the other way.
   std::int64_t twice_area() const { return twice_area_; }
 
   /// Calls visit(x, y, part of the second corner, part of the third) for each texel whose middle is

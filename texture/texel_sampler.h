@@ -1,4 +1,4 @@
-// What a textured surface shows around a point of it.
+// Samples what a textured surface shows around a point of it.
 #pragma once
 
 #include "images/image.h"
@@ -20,7 +20,7 @@ class TexelSampler {
 
   /// A mean around a point, weighted by a tent that ends a texel of the larger of both sizes away.
   Light around(const NearestTriangle::Found& at) const { return mean(at, 1); }
-  /// Of a pixel around it that is as large as a texel: a tent of as much spread, about.
+  /// The mean of a pixel around it that is as large as a texel: a tent of as much spread, about.
   Light pixel(const NearestTriangle::Found& at) const { return mean(at, 0.7f); }
 
  private:

@@ -30,7 +30,7 @@ class TexelSamples {
  public:
   /// `tile` must outlive it: positions and triangles of it are used, no triangle is there twice.
   TexelSamples(const TexturedSurface& tile, const BakeSize& size);
-  /// Of the same charts with other texels; `size` has the same side.
+  /// Samples the same charts with other texels; `size` has the same side.
   TexelSamples(const TexelSamples& charts, const BakeSize& size);
 
   const ChartLayout& layout() const { return layout_; }
@@ -42,7 +42,7 @@ class TexelSamples {
   }
   /// One a triangle.
   std::vector<CornerTexcoords> texcoords() const;
-  /// Of a chart of the layout.
+  /// The triangles of a chart of the layout.
   std::span<const std::uint32_t> triangles_of(std::size_t chart) const {
     return std::span(charts_.triangles)
         .subspan(charts_.begin_of(chart), charts_.ends[chart] - charts_.begin_of(chart));

@@ -54,7 +54,7 @@ class TexelSegment {
     return {static_cast<std::uint32_t>(std::clamp<double>(std::floor(low - 0.5), least, end)),
             static_cast<std::uint32_t>(std::clamp<double>(std::ceil(high + 0.5), least, end))};
   }
-  /// Of the part of the line that is near a row.
+  /// The columns of the part of the line that is near a row.
   Ends columns(std::uint32_t y, const TexelRange& range) const {
     double first = 0, last = 1;
     if (dy_ != 0) {
