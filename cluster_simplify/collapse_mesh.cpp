@@ -133,7 +133,8 @@ std::array<std::uint32_t, 3> CollapseMesh::collapse_disc(const EdgeStar& star) {
     Edge& edge = edges_[links[i]->next_edge];
     (edge.a == star.from() ? edge.a : edge.b) = star.to();
   }
-  // At the first and the last ring vertex of `from` there is an edge to `to` already.
+  // At the first and the last ring vertex of `from` there is an edge to `to` already: it takes the
+  // place of the one to `from`, which dies. Its triangle count stays, one triangle for another.
   const Fan& begin = *links[0];
   const Fan& end = *links[turn - 1];
   faces_[begin.triangle].edges[begin.slot] = links[star.size() - 1]->previous_edge;

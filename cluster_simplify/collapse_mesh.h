@@ -1,4 +1,26 @@
 // The connectivity of a joined tile while edges collapse in it.
+//
+//      faces_[t]     corners, edges; edge k runs from corner k to the next one
+//      edges_[e]     ends a, b, and how many triangles have it
+//      stars_[v]     a run of corners_: each entry 4 t + k, triangle t's corner k is at v
+//
+//      collapse of `from` into `to`:
+//
+//              p                      p
+//            / | \                  / |             triangles at the edge die; their other two
+//           / dies \               /  |             edges become one: p-from is gone, p-to stays
+//      ---from -----to---   ->    --- to ---
+//           \ dies /               \  |             all others of `from` follow: corner and edges
+//            \ | /                  \ |             are renamed, edges that meet are merged
+//              q                      q
+//
+// Invariants. An edge's triangle_count is the number of living triangles that have it; a star's run
+// holds all living corners at its vertex, and dead ones until it is next looked at, so a count is
+// an upper bound. parents_ leads from a vertex to the one that stands for it (union by collapse,
+// with path halving). edge_to_ is kNone everywhere between collapses.
+//
+// Memory. Stars that join are appended to corners_; when it is twice as long as at first, the runs
+// in use move together (make_room()).
 #pragma once
 
 #include "hierarchy/bounds.h"

@@ -329,7 +329,7 @@ void FanGapMeter::overlap_all(double deviation, double gap) {
 void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place,
                             double deviation) {
   // The old edge's ends lie `beside` and `behind` the ray, in proportion to their distances from
-  // it. Lines along each other have no crossing; any point of both is as good.
+  // it. An edge along the ray crosses it nowhere: what is entered then is more than needed.
   const double beside = turn(flat_[ray], end.flat);
   const double behind = turn(flat_[ray], to);
   const double divisor = beside - behind;

@@ -40,7 +40,7 @@ std::uint32_t owners_number(const TileMesh& mesh, TileVertex ghost, std::uint32_
   return mesh.ghost_wedges[mesh.copies.first_of(raw(ghost)) - own_copies + wedge - 1];
 }
 
-/// The inverse: of a wedge that the tile has.
+/// The inverse, for a wedge that the tile has.
 std::uint32_t copies_number(const TileMesh& mesh, TileVertex ghost, std::uint32_t wedge) {
   const std::size_t own_copies = mesh.copies.size() - mesh.ghost_wedges.size();
   const auto begin = mesh.ghost_wedges.begin() +

@@ -1,7 +1,20 @@
-// Wedges across seams: what seams.h does with places, for the wedges of a tile's corners.
+// Wedges across seams: does with the wedges of a tile's corners what seams.h does with places.
 //
-// A tile names wedges of its own places by their numbers; those of a ghost by the copies that it
-// has of it, which are fewer than its own tile has (TileMesh::ghost_wedges).
+// Problem. A tile names wedges of its own places by their numbers; those of a ghost by the copies
+// that it has of it, which are fewer than the ghost's own tile has. So one wedge has two numbers,
+// and they must be translated whenever a ghost changes hands:
+//
+//      in the ghost's own tile:     wedge     0    1    2    3    4
+//      border triangles here use:             0         2         4
+//      copies here:                           0         1         2      local numbers
+//      TileMesh::ghost_wedges:                          2    4           per copy, ascending
+//
+//      own number   -- number_ghost_wedges() -->                   local number
+//      local number -- name_ghost_wedges(), wedges_of_images() --> own number
+//      local number in one tile -- joined_wedges() -->             local number in the joined one
+//
+// Invariant. Between apply() and resolve() a foreign corner's wedge has the number of the ghost's
+// own tile, which all tiles agree on; in a tile with ghosts it has the local one.
 #pragma once
 
 #include "hierarchy/build_tile.h"

@@ -1,4 +1,22 @@
 // The segments of all lines of an outline, over numbered points.
+//
+// Where sectors meet, a line runs through the triangles with corners in both:
+//
+//        two sectors in a triangle               three
+//
+//             A                                   A
+//            / \                                 / \           A, B, C: sectors of the corners
+//           m---m                               m   m          m: middle of a crossing edge
+//          /     \                             / \ / \         o: centroid
+//         /       \                           /   o   \        lines: m to m, m to o
+//        B---------B                         B----m----C
+//
+// The same edge has the same middle in all triangles, so lines of neighbours meet: an edge is found
+// in several triangles by sorting, and gets one number. A crossing edge that one triangle alone has
+// is on the mesh's border, which runs over the middle as well.
+//
+// Invariant. Points are numbered by the names of the vertices they lie between, not in the order of
+// arrival: equal meshes have equal networks.
 #pragma once
 
 #include "outline/placed_triangle.h"

@@ -8,13 +8,16 @@
 // even if its gain is negative, never move it back, and go on for a while; then take back all moves
 // behind the best state seen. So a search climbs out of small dents:
 //
-//      part a | part b      gain of v: arcs that stop being cut less arcs that begin to be
-//             |
-//      . . . .|_ .          total gain
-//      . . . v . |              ^      .*.  best state: kept
-//      . . . .|~~              |     /   \..
-//      . . . .| . .           0+----/-------'---.---> moves
-//             |                 | \/              '  taken back
+//      part a : part b           total gain
+//       o--o  :  o--o               |                 best state: kept
+//       |   \ : /   |               |                 *
+//       o--o--:v    o               |               .' '.
+//       |   / :     |             0 +--.----------.'-----'.------> moves
+//       o--o  :  o--o               |   '.      .'         '. taken back
+//                                   |     '....'  a dent
+//
+//      gain of v: weight of its arcs to the other part, here three, less that of its arcs within
+//      its own, here one
 //
 // Sizes: a move is allowed while the two parts stay within `explored` of their targets, or nears
 // them; a state counts as best by its excess beyond `kept` first, by gain then. With exact sizes a

@@ -2,8 +2,8 @@
 // exact medians from one streaming pass (docs/decisions/002).
 //
 // Problem. Partition sizes differ by one vertex at most, so each split needs the exact median of
-// its node. The mesh does not fit in memory, and a pass over it for each of eight levels would take
-// as long as all the rest of the stage.
+// its node. The mesh does not fit in memory; split node by node, it would be read and written once
+// for each level.
 //
 // Idea. A sample of fixed size plans everything that decides a split: its direction, and a window
 // of keys that all but surely holds the exact median. One sweep over all vertices then counts the

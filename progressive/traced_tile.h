@@ -1,10 +1,25 @@
-// A tile of a half_edge hierarchy that knows of which vertices and triangles of the original mesh
-// its own are what is left.
+// A tile of a half_edge hierarchy that knows which vertices and triangles of the original mesh are
+// left in it (docs/decisions/008).
 //
-// Where a contraction moves vertices onto others, every vertex of a tile is one of the original
-// mesh, and every triangle the image of one. Tiles are followed from the partitions up: two
-// children become their parent, and what is lost on the way is a part of that level's detail.
-// All that a step needs is in the three tiles: memory follows the size of tiles.
+// Problem. A progressive stream adds, level by level, the vertices and triangles that the level
+// before lacks, by their numbers in the original mesh. The hierarchy's files do not tell these.
+//
+// Idea. Where a contraction moves vertices onto others, every vertex of a tile is one of the
+// original mesh, and every triangle the image of one. So tiles are followed from the partitions up:
+//
+//      left child   right child      each: ranks of its vertices, numbers of its triangles
+//             \       /
+//              lift()  --------->    losses: vertices moved onto others, triangles that lost their
+//                |                   area or became equal to another one
+//              parent                ranks and numbers of what is left
+//
+// Invariants. Each vertex of the sector is lost once, or is left at its node; so is each triangle,
+// by the first partition that it touches. Of triangles with one image the first original stays,
+// seen from every tile that has them. As many triangles are left as the parent's file has, and each
+// vertex is at the place of one that it stands for: else the hierarchy is corrupt.
+//
+// Cost. O(t log t) a step. All that a step needs is in the three tiles: memory follows the size of
+// tiles, not of the mesh.
 #pragma once
 
 #include "hierarchy/published.h"

@@ -1,4 +1,15 @@
-// The smooth pieces of surface that meet at a place.
+// Finds the smooth pieces of surface that meet at a place: each has a normal of its own there.
+//
+//            sharp                    Triangles around the place, walked around once. They are cut
+//          t1 | t2                    into fans at sharp edges: t1 t6 and t2 t3 t4 t5. A single
+//        .    |    .                  sharp edge cuts nothing. Fans that face alike, though not
+//      t6 ----o---- t3                neighbours, are one group.
+//        .   / \   .
+//          t5   t4
+//          sharp at t5 | t6
+//
+// The walk takes O(n) where each edge has two triangles that turn alike, as inside a surface.
+// Anywhere else triangles are joined over edges found by sorting, O(n log n).
 #pragma once
 
 #include "hierarchy/tile_mesh.h"

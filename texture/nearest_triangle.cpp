@@ -171,7 +171,9 @@ void NearestTriangle::measure(std::uint32_t number, Query& q) const {
     const Four quotient = numerator > 0.0f ? numerator / denominator : zero;
     return quotient < 1.0f ? quotient : zero + 1.0f;
   };
-  // Whatever parts of the edges come out, they lead to a point of the triangle.
+  // The nearest point is the foot of the perpendicular, if it is inside, else on one of the edges.
+  // All four are measured for all lanes, without a branch; whatever parts of the edges come out,
+  // they lead to a point of the triangle.
   const Four v = cc * xb - bc * xc;
   const Four w = bb * xc - bc * xb;
   const Four area = bb * cc - bc * bc;
@@ -304,6 +306,7 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
   Query query{zero + at.x, zero + at.y, zero + at.z, zero + to.x, zero + to.y, zero + to.z};
   query.nearest = static_cast<float>(reach * scale_ * (reach * scale_));
   const bool has_around = is_around(at);
+  // First those that face alike, within reach; only if there is none, any at any distance.
   for (const bool any : {false, true}) {
     query.any = any;
     if (any)
@@ -314,7 +317,7 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
     }
     if (has_around)
       measure_around(query);
-    if (!has_around || query.nearest > around_.reach)
+    if (!has_around || query.nearest > around_.reach)  // a nearer one may not have been collected
       search(query);
     if (query.triangle != kNone)
       break;

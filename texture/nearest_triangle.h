@@ -1,9 +1,29 @@
-// The nearest of many triangles to a point.
+// Finds the nearest of many triangles to a point.
 //
-// A tree of boxes, four children each, over triangles sorted by halves; in its leaves four
-// triangles are measured at once. Who asks for points side by side begins with the last answer: it
-// is near, so that few boxes are nearer. Who asks for many points of a small box has its
-// surroundings looked up once for all of them.
+// Problem. Each texel of each simplified tile asks for its point on the finer surface: a third of
+// the time that textures take (decision 034).
+//
+// Idea. A tree of boxes with four children each, over triangles sorted by halves. Boxes and
+// triangles are measured four at a time, and a search leaves out boxes that are farther than what
+// it has found:
+//
+//                   node: 4 boxes                  query point o
+//                /     |      |     \              o    +--box 1--+   +--box 2--+
+//             leaf   leaf   node   leaf            |    |    x    |   |         |
+//             4 tri  4 tri   ...   4 tri           o----|----x    |   |  not    |
+//                                                  near | found   |   |  opened |
+//                                                       +---------+   +---------+
+//
+// Two short cuts begin with something near, so that few boxes are nearer: the leaf of the last
+// answer (points are asked for side by side), and look_around(), which collects the leaves around a
+// small box of points once for all of them.
+//
+// Invariant. Neither short cut changes an answer: it only makes the first bound smaller. Of equally
+// near triangles the lowest number wins, whatever the order of boxes; boxes are compared with a
+// margin for the rounding of single precision.
+//
+// Cost. O(n log n) to build, O(log n) a query for points near the triangles; 42 ns a leaf, 2.3
+// leaves a texel.
 #pragma once
 
 #include "hierarchy/bounds.h"
@@ -19,6 +39,7 @@
 
 namespace meshhier::texture {
 
+/// A tree over triangles, and what it remembers from one query to the next: for one thread.
 class NearestTriangle {
  public:
   using Corners = std::array<Vec3f, 3>;
