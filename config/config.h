@@ -257,8 +257,8 @@ struct CommandLine {
 /// text has. `output` also decides the container by its ending, ".3tz", unless a key does; without
 /// any output, that of one mesh is beside it: scan.hier of scan.ply.gz.
 ///
-/// Throws Error(usage) naming origin, key, what was expected, what was found and the nearest known
-/// key.
+/// Pure: looks at no file. Throws Error(usage) naming origin, key, what was expected, what was
+/// found and the nearest known key.
 Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words);
 
 /// parse_config() of a file, whole; its paths are relative to the file's directory. Throws also

@@ -23,7 +23,7 @@ struct ExpectedStage {
 ///
 /// Work that a resumed job does not do again counts as done, but not for the pace. A stage that was
 /// not expected, or comes more often than expected, adds nothing. Without expectations each stage
-/// is a job of its own.
+/// is a job of its own. One thread at a time; `now`: seconds, never less than in the call before.
 class JobProgress {
  public:
   /// Announces all stages to come. Said again, it is about what is left of the job.

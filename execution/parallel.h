@@ -1,6 +1,7 @@
 // Bounded parallelism: serial in, parallel work, serial out in order. Results never depend on
 // completion order. All run on the caller's TBB arena; what waits may do other work of it
-// meanwhile.
+// meanwhile, so a caller must hold no lock that any of it takes. Each call returns, or throws, when
+// all of its own work has ended.
 #pragma once
 
 #include "execution/cancel.h"
@@ -37,7 +38,8 @@ struct OrderedSteps {
 /// Runs the steps of all items, one after the other for each, at most `in_flight` items at a time.
 /// Those in order run one at a time. All is done with i, and its place i % in_flight left, before
 /// i + in_flight is read. If several fail, the exception of the least i is thrown here, behind the
-/// sinks of all i before; none of an i behind the one that ended it.
+/// sinks of all i before; none of an i behind the one that ended it. Throws Error(interrupted) once
+/// cancelled.
 void ordered_steps(std::size_t in_flight, const CancelToken& cancel, const OrderedSteps& steps);
 
 /// work(i) for all i in [0, count), each result to sink(i, result), as ordered_steps.
@@ -87,7 +89,8 @@ void ordered_read_blocks(std::size_t in_flight, const CancelToken& cancel, const
 
 /// Parallel work on items that a visitor hands out one by one: gathers `batch` of them in slots,
 /// works on all in parallel, hands the slots to the sink in order, and runs after() on all in
-/// parallel, if there is one. finish() does the rest.
+/// parallel, if there is one. finish() does the rest. next() and finish() are for one thread, and
+/// throw what the steps throw.
 template <class Slot>
 class BatchedWork {
  public:

@@ -11,7 +11,8 @@
 
 namespace meshhier::execution {
 
-/// Reads a spool forwards.
+/// Reads a spool forwards, 128 KiB at a time. A cursor is for one thread; several may read one
+/// spool. Both arguments must outlive it, and nothing may be appended to the spool meanwhile.
 template <class Record>
 class SpoolCursor {
  public:
@@ -20,7 +21,9 @@ class SpoolCursor {
   SpoolCursor(const storage::RecordSpool<Record>& spool, const CancelToken& cancel)
       : spool_(spool), cancel_(cancel) {}
 
-  /// Record `index` < the spool's size; no call may ask for one before that of the call before.
+  /// Returns record `index` < the spool's size; no call may ask for one before that of the call
+  /// before. Valid until the next call. Throws Error(interrupted) once cancelled, and Error(io) if
+  /// the spool cannot be read.
   const Record& at(std::uint64_t index) {
     if (index >= first_ + buffer_.size())
       load(index);

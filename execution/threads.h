@@ -14,10 +14,12 @@ namespace meshhier::execution {
 std::size_t startable_threads(std::size_t wanted);
 
 /// From now on parallel work takes no more threads than can be started, to the end of the process:
-/// where a limit of processes or of memory leaves fewer than there are processors.
+/// where a limit of processes or of memory leaves fewer than there are processors. Call it once,
+/// before any parallel work.
 void limit_threads_to_startable();
 
-/// Runs `work` beside the caller, or, if no thread is to be had, before it returns.
+/// Runs `work` beside the caller, or, if no thread is to be had, before it returns. The future
+/// throws what `work` throws, and waits for its end when it is destroyed.
 std::future<void> run_beside(std::function<void()> work);
 
 /// Whether an exception says that no thread can be started, and so what to tell: "" if not.

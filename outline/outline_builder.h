@@ -64,8 +64,8 @@ inline constexpr double kShortestForm = 0.03;
 /// one sector.
 using Sectors = std::vector<std::vector<std::uint16_t>>;
 
-/// Collects sectors one by one, then makes the outline. Pure: no I/O, no threads; the result does
-/// not depend on the order of add().
+/// Collects sectors one by one, then makes the outline. A builder is for one thread; sectors may be
+/// made on many. The result does not depend on the order of add().
 class OutlineBuilder {
  public:
   /// The parts of one tile that make lines.

@@ -22,8 +22,9 @@ struct PaintingOptions {
 std::uint64_t painting_steps(const Scene& scene, const Camera& camera,
                              const PaintingOptions& options);
 
-/// As the viewer's page shows it, without its perspective. Alpha is how much of a pixel is covered.
-/// Rows are drawn one band behind the other. Throws what scene.load throws.
+/// Draws the scene as the viewer's page shows it, without its perspective. Alpha is how much of a
+/// pixel is covered. Rows are drawn one band behind the other, on the calling thread. Throws what
+/// scene.load and options.step throw.
 images::Image paint(const Scene& scene, const Camera& camera, const PaintingOptions& options);
 
 }  // namespace meshhier::render

@@ -11,7 +11,7 @@
 
 namespace meshhier::shading {
 
-/// The part of a tile's normals that its neighbours see.
+/// Returns the part of a tile's normals that its neighbours see. Pure.
 BoundaryShading boundary_of(const OwnShading& shading, const TileMesh& mesh);
 
 /// The same normals once place p has become place[p]. `copy_places`: of the tile's copies, as they

@@ -46,8 +46,9 @@ struct BakedTexture {
   std::uint32_t charts = 0;
 };
 
-/// Pure, deterministic, single-threaded. `tile`: positions and triangles of the coarse tile, its
-/// `corners` and `image` unused. `finer`: what it was made of and what lies around it, in a fixed
+/// Makes the picture of a coarse tile. Pure, deterministic, single-threaded: call it for several
+/// tiles at once. `tile`: positions and triangles of the coarse tile, its `corners` and `image`
+/// unused. `finer`: what it was made of and what lies around it, in a fixed
 /// order: of equally near points that of the first surface counts. The picture has at most side *
 /// side texels, fewer if `least_texel` allows. No texel is empty: those between charts have colours
 /// of the nearest chart; all are black if no finer surface has triangles. Equal triangles get equal
@@ -57,12 +58,12 @@ BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> 
 
 /// The picture with 1 / factor of its width and height (multiples of it), for bake() on the next
 /// level: means in linear light of those texels that triangles show, so that charts do not mix.
-/// Requires charts aligned to `factor`, a power of two.
+/// Requires charts aligned to `factor`, a power of two. Pure, single-threaded.
 images::Image reduced(const images::Image& image, std::span<const CornerTexcoords> corners,
                       std::uint32_t factor);
 
-/// Mean size of a texel on the surface: sqrt(area / texels that the triangles cover); 0 if there is
-/// no area in either.
+/// Returns the mean size of a texel on the surface, in units of its positions: sqrt(area / texels
+/// that the triangles cover); 0 if there is no area in either. Pure.
 float texel_size(const TexturedSurface& surface, std::uint32_t width, std::uint32_t height);
 
 }  // namespace meshhier::texture

@@ -52,13 +52,14 @@ struct LeafAtlas {
   std::uint64_t reduced = 0;  ///< triangles shown by a coarser level of their picture
 };
 
-/// Pure, deterministic. Charts that are larger than the atlas may be, such as those of a picture
-/// that repeats many times over few triangles, are cut, then shown by a coarser level; so is the
-/// largest of the charts, level by level, until all fit into most_side * most_side. Triangles of
-/// equal vertices get equal corners. Requires materials in range and triangles' corners below the
-/// vertex count; coordinates of any size: those beyond 2^23 are taken for it. Only if
-/// 8 x 8 texels a material have no room in most_side * most_side, the atlas is larger. A level of a
-/// picture is 0 ... 1 wide, however its sides were rounded. O(t log t), a few times over.
+/// Plans the picture of a partition. Pure, deterministic, single-threaded: call it for several
+/// tiles at once. Charts that are larger than the atlas may be, such as those of a picture that
+/// repeats many times over few triangles, are cut, then shown by a coarser level; so is the largest
+/// of the charts, level by level, until all fit into most_side * most_side. Triangles of equal
+/// vertices get equal corners. Requires materials in range and triangles' corners below the vertex
+/// count; coordinates of any size: those beyond 2^23 are taken for it. Only if 8 x 8 texels a
+/// material have no room in most_side * most_side, the atlas is larger. A level of a picture is 0
+/// ... 1 wide, however its sides were rounded. O(t log t), a few times over.
 LeafAtlas plan_leaf_atlas(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
                           std::uint32_t most_side);
 
