@@ -2,6 +2,7 @@
 #include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "inspection/inspect.h"
+#include "storage/io/json_text.h"
 
 #include <memory>
 #include <ostream>
@@ -23,8 +24,10 @@ struct InspectArguments {
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.json) {
-    environment.out
-        << inspection::inspect_json(place.files(), place.path(), arguments.options).dump(2) << '\n';
+    environment.out << storage::json_text(
+                           inspection::inspect_json(place.files(), place.path(), arguments.options),
+                           {.indent = 2})
+                    << '\n';
   } else {
     environment.out << inspection::inspect_text(place.files(), place.path(), arguments.options);
   }

@@ -6,6 +6,7 @@
 #include "execution/threads.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 
 #include <algorithm>
@@ -114,8 +115,7 @@ int report_failure(ErrorCode code, const std::string& message, execution::Progre
   if (mode == execution::ProgressMode::json) {
     const nlohmann::ordered_json event{
         {"event", "error"}, {"code", exit_code(code)}, {"message", message}};
-    std::cerr << event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << '\n';
+    std::cerr << storage::json_text(event) << '\n';
   } else {
     std::cerr << "meshhier: " << message << '\n';
   }

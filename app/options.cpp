@@ -4,6 +4,7 @@
 #include "app/process.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 
 #include <algorithm>
@@ -92,7 +93,7 @@ void require_region(const inspection::RegionRequest& region, const char* option)
 }
 
 std::string pretty_json(const nlohmann::ordered_json& object) {
-  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return storage::json_text(object, {.indent = 2}) + '\n';
 }
 
 std::optional<NodeId> parse_node(std::string_view text) {

@@ -14,6 +14,7 @@
 #include "render/scene.h"
 #include "render/shade.h"
 #include "render/tile_facets.h"
+#include "storage/io/json_text.h"
 
 #include <cmath>
 #include <numeric>
@@ -245,7 +246,7 @@ std::string json_text(const std::string& name, const ShadingComparison& comparis
                     {"views", comparison.options.views},
                     {"size", comparison.options.size},
                     {"levels", std::move(levels)}};
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return storage::json_text(object, {.indent = 2}) + "\n";
 }
 
 }  // namespace meshhier::bench

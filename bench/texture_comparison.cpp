@@ -13,6 +13,7 @@
 #include "render/raster.h"
 #include "render/shade.h"
 #include "render/tile_facets.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -304,7 +305,7 @@ std::string json_text(const std::string& name, const TextureComparison& comparis
                          {"views", comparison.options.views},
                          {"input_texel", comparison.input_texel},
                          {"levels", std::move(levels)}};
-  return object.dump(2, ' ', false, RatioJson::error_handler_t::replace) + "\n";
+  return storage::json_text(object, {.indent = 2}) + "\n";
 }
 
 }  // namespace meshhier::bench

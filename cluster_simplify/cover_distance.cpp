@@ -11,12 +11,12 @@ namespace {
 constexpr double kTight = 1.25;
 
 // Rounding of distances and of points on edges, relative.
-constexpr double kRounding = 0x1p-40;
+constexpr double kDistanceRounding = 0x1p-40;
 
 // Cuts are kept this part of an edge away from its ends: a cut at an end would cut nothing off.
 constexpr double kMargin = 1.0 / 32;
 
-constexpr double kNone = -1;  // in place of a distance
+constexpr double kNoDistance = -1;  // in place of a distance
 
 double distance_to(Vec3d position, const Cover& cover) {
   return std::sqrt(squared_distance(position, cover.frame)) + cover.extra;
@@ -126,16 +126,16 @@ double CoverDistance::near_one(const Corners& triangle, const Cover& cover, doub
   for (const Vec3d& corner : triangle) {
     farthest = std::max(farthest, distance_to(corner, cover));
     if (!(farthest <= enough))
-      return kNone;
+      return kNoDistance;
   }
-  return farthest * (1 + kRounding);
+  return farthest * (1 + kDistanceRounding);
 }
 
 double CoverDistance::operator()(const Corners& triangle, std::span<const Cover> covers,
                                  double enough) {
   if (covers.empty())
     return std::numeric_limits<double>::infinity();
-  landings_.assign(covers.size(), kNone);
+  landings_.assign(covers.size(), kNoDistance);
   set_covers(covers);
   distances_.clear();
   return whole({measured(triangle[0]), measured(triangle[1]), measured(triangle[2])}, enough);
@@ -152,7 +152,7 @@ void CoverDistance::begin(std::span<const Cover> covers, std::span<const Vec3d> 
 double CoverDistance::triangle(const std::array<std::size_t, 3>& corners, double enough) {
   if (covers_.empty())
     return std::numeric_limits<double>::infinity();
-  landings_.assign(covers_.size(), kNone);
+  landings_.assign(covers_.size(), kNoDistance);
   distances_.resize(points_.size() * row_size());
   return whole({points_[corners[0]], points_[corners[1]], points_[corners[2]]}, enough);
 }
@@ -167,7 +167,7 @@ double CoverDistance::whole(const Piece& triangle, double enough) {
     pieces_.pop_back();
     largest = std::max(largest, cut_or_bound(piece, std::max(enough, largest)));
   }
-  return largest * (1 + kRounding);
+  return largest * (1 + kDistanceRounding);
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -13,10 +13,10 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Below this part of the largest squared coordinate a doubled area has no certain sign.
-constexpr float kLeastArea = 1e-6F;
+constexpr float kLeastFloatArea = 1e-6F;
 
 // This part of the largest coordinate is more than the rounding of all sums and quotients here.
-constexpr float kRounding = 4e-6F;
+constexpr float kFloatRounding = 4e-6F;
 
 FourFloats four_at(const EdgeStar::Row& row, std::uint32_t i) {
   return load_four(&row[i]);
@@ -108,7 +108,7 @@ bool DiscGapMeter::faces_front() const {
     // A fan may face front and still go around twice: one that does once passes y = 0 upwards once.
     rounds += exist & (four_at(ring_.y, i) < 0.0F) & (four_at(ring_.y, i + 1) >= 0.0F);
   }
-  const FourInts large = smallest > kLeastArea * radius_ * radius_;
+  const FourInts large = smallest > kLeastFloatArea * radius_ * radius_;
   return !any_of(~large) && rounds[0] + rounds[1] + rounds[2] + rounds[3] == -1;
 }
 
@@ -289,7 +289,7 @@ bool DiscGapMeter::is_thin(float enough) {
 
 /// Deviation and gap of every link. False if they are beyond all numbers.
 bool DiscGapMeter::add_up() {
-  const float rounding = kRounding * radius_;
+  const float rounding = kFloatRounding * radius_;
   FourInts fails{};
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
     const FourFloats deviation = larger_of(four_at(deviations_, i), FourFloats{} + all_deviation_);

@@ -12,11 +12,11 @@ namespace meshhier::cluster_simplify {
 namespace {
 
 // Below this part of the squared size a doubled area has no certain sign.
-constexpr double kLeastArea = 1e-9;
+constexpr double kLeastFanArea = 1e-9;
 
 // This part of the largest coordinate is more than the rounding of all sums and quotients here, and
 // of the coordinates themselves.
-constexpr double kRounding = 1e-7;
+constexpr double kFanRounding = 1e-7;
 
 // An open fan is squeezed if it turns farther than this.
 constexpr double kWidest = 1.8 * std::numbers::pi;
@@ -197,7 +197,7 @@ bool FanGapMeter::unfold(std::span<const Vec3f> positions, const StarCollapse& c
   }
   if (!is_open())
     flat_[size_] = flat_[0];
-  const double least = kLeastArea * radius_ * radius_;
+  const double least = kLeastFanArea * radius_ * radius_;
   for (std::uint32_t i = 0; i < size_; ++i) {
     if (!(turn(flat_[i], flat_[i + 1]) > least))
       return false;
@@ -263,7 +263,7 @@ bool FanGapMeter::lay_ends(std::span<const Vec3f> positions, const StarCollapse&
 }
 
 bool FanGapMeter::run_lies_flat(const End& end, std::uint32_t begin, std::uint32_t until) const {
-  const double least = kLeastArea * radius_ * radius_;
+  const double least = kLeastFanArea * radius_ * radius_;
   for (std::uint32_t i = begin; i < until; ++i) {
     if (!(turn(between(end.flat, flat_[i]), between(end.flat, flat_[i + 1])) > least))
       return false;
@@ -275,7 +275,7 @@ bool FanGapMeter::run_lies_flat(const End& end, std::uint32_t begin, std::uint32
 bool FanGapMeter::lies_flat() const {
   const Flat a = first_.flat;
   const Flat b = second_.flat;
-  const double least = kLeastArea * radius_ * radius_;
+  const double least = kLeastFanArea * radius_ * radius_;
   switch (shape_) {
     case Shape::closed:
       return run_lies_flat(first_, 0, turn_) && run_lies_flat(second_, turn_, size_) &&
@@ -451,7 +451,7 @@ std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
   lay_edges();
   DiscGap result;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const double deviation = fresh_[i] + gap_[i] + kRounding * radius_;
+    const double deviation = fresh_[i] + gap_[i] + kFanRounding * radius_;
     deviations_[i] = static_cast<float>(deviation * (1 + 0x1p-22));
     if (!std::isfinite(deviations_[i]))
       return std::nullopt;

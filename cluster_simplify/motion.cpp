@@ -17,7 +17,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-constexpr double kRounding = 0x1p-22;  // of floats that hold what was summed up in double
+constexpr double kSumRounding = 0x1p-22;  // of floats that hold what was summed up in double
 
 /// Triangles by their edges: with each vertex those of higher number that it has an edge to.
 class EdgeSet {
@@ -116,7 +116,7 @@ class Motion {
 
   float deviation_of(const TileTriangle& t) const {
     const double farthest = std::max({moved_[raw(t[0])], moved_[raw(t[1])], moved_[raw(t[2])]});
-    return static_cast<float>(farthest * (1 + kRounding));
+    return static_cast<float>(farthest * (1 + kSumRounding));
   }
 
   void show(const Triangle<std::uint32_t>& images, float deviation) {
@@ -248,7 +248,7 @@ class Motion {
         });
       }
     }
-    deviation_.lost = static_cast<float>(farthest * (1 + kRounding));
+    deviation_.lost = static_cast<float>(farthest * (1 + kSumRounding));
   }
 
   /// The mean square of the distances from vertices to their images.

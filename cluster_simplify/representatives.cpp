@@ -18,11 +18,11 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-constexpr std::uint32_t kNone = CollapseMesh::kNone;
+constexpr std::uint32_t kNoVertex = CollapseMesh::kNone;
 
 // Larger stars are not looked through for every lost piece beside them, which would take quadratic
 // time; their middle is near enough.
-constexpr std::uint32_t kMostAround = 64;
+constexpr std::uint32_t kMostAroundVertex = 64;
 
 std::vector<Vec3f> positions_of(const VertexArray& vertices,
                                 const std::vector<std::uint32_t>& chosen) {
@@ -45,12 +45,12 @@ std::vector<std::uint32_t> join_neighbours(const VertexArray& vertices,
     means[cell_of[i]] = means[cell_of[i]] + to_double(positions[i]);
     ++counts[cell_of[i]];
   }
-  std::vector<std::uint32_t> best(cell_count, kNone);
+  std::vector<std::uint32_t> best(cell_count, kNoVertex);
   std::vector<double> least(cell_count, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < group.size(); ++i) {
     const std::uint32_t cell = cell_of[i];
     const Vec3d offset = to_double(positions[i]) - means[cell] * (1 / counts[cell]);
-    if (best[cell] == kNone || dot(offset, offset) < least[cell]) {
+    if (best[cell] == kNoVertex || dot(offset, offset) < least[cell]) {
       best[cell] = group[i];
       least[cell] = dot(offset, offset);
     }
@@ -216,7 +216,7 @@ class DeviationSum {
   void for_each_weight(const Visit& visit) const {
     for (std::uint32_t v = 0; v < into_.size(); ++v) {
       const float weight = tile_.deviation.weight(v);
-      if (into_[v] != kNone && weight > 0)
+      if (into_[v] != kNoVertex && weight > 0)
         visit(v, weight, into_[into_[v]]);
     }
   }
@@ -255,7 +255,7 @@ class DeviationSum {
       return most;
     };
     double least = farthest({at(vertex), at(vertex), at(vertex)});
-    if (tile_.mesh.most_triangles(vertex) > kMostAround)
+    if (tile_.mesh.most_triangles(vertex) > kMostAroundVertex)
       return least;
     std::vector<CollapseMesh::Fan> room;
     for (const CollapseMesh::Fan& fan : tile_.mesh.star_of(vertex, room)) {
@@ -310,7 +310,7 @@ LeftVertices left_vertices(CollapseMesh& mesh, const std::vector<std::uint32_t>&
 class Joins {
  public:
   Joins(const VertexArray& vertices, std::uint32_t own_count)
-      : vertices_(vertices), into_(own_count, kNone) {}
+      : vertices_(vertices), into_(own_count, kNoVertex) {}
 
   /// Returns how many were joined because there is no room for more than `target`.
   std::uint32_t join_shown(const std::vector<std::uint32_t>& shown, std::uint32_t target) {
@@ -345,13 +345,13 @@ class Joins {
   }
 
   const VertexArray& vertices_;
-  std::vector<std::uint32_t> into_;  ///< kNone: of those that collapsed
+  std::vector<std::uint32_t> into_;  ///< kNoVertex: of those that collapsed
 };
 
 /// For each own vertex the place among `chosen` of the one that stands for it.
 std::vector<std::uint32_t> parents_of(CollapseMesh& mesh, const std::vector<std::uint32_t>& into,
                                       const std::vector<std::uint32_t>& chosen) {
-  std::vector<std::uint32_t> number(mesh.own_count(), kNone);
+  std::vector<std::uint32_t> number(mesh.own_count(), kNoVertex);
   for (std::uint32_t i = 0; i < chosen.size(); ++i)
     number[chosen[i]] = i;
   std::vector<std::uint32_t> parents(mesh.own_count());

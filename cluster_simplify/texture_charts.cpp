@@ -109,9 +109,9 @@ float weighted(const std::array<double, 3>& weights, const std::array<float, 3>&
 }
 
 /// The triangles' points nearest to where charts come to lie, as far as they were offered.
-class NearestPoints {
+class NearestPlaces {
  public:
-  NearestPoints(const TileWedges& wedges, const AttributeLayout& layout)
+  NearestPlaces(const TileWedges& wedges, const AttributeLayout& layout)
       : wedges_(wedges),
         layout_(layout),
         distances_(wedges.count(), std::numeric_limits<double>::infinity()),
@@ -182,7 +182,7 @@ std::vector<TextureCoordinates> chart_coordinates(
     std::span<const Vec3f> positions, std::span<const char> wanted, const AttributeLayout& layout) {
   if (!layout.texcoords)
     return {};
-  NearestPoints nearest(wedges, layout);
+  NearestPlaces nearest(wedges, layout);
   for (const WedgeTriangle& t : wedges.triangles()) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t chart = charts[t[k]];

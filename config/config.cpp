@@ -8,6 +8,7 @@
 #include "hierarchy/mesh_name.h"
 #include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "storage/io/json_text.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -74,8 +75,7 @@ std::string described(const Json& value) {
     return "an object";
   if (value.is_array())
     return "a list";
-  const std::string text =
-      plain_text(value.dump(-1, ' ', false, Json::error_handler_t::replace), kLongestQuote);
+  const std::string text = plain_text(storage::json_text(value), kLongestQuote);
   if (value.is_string())
     return "the string " + text;
   return value.is_number() ? "the number " + text : text;
@@ -152,7 +152,7 @@ Json parse_text(std::string_view text, const std::string& name) {
   Json document;
   ParseGuard guard(name);
   try {
-    document = Json::parse(text, watched_by(guard), true, true);
+    document = storage::parse_ordered_json_text(text, watched_by(guard), {.takes_comments = true});
   } catch (const nlohmann::json::exception& failure) {
     refuse(name, plain_text(json_fault(failure.what()), kLongestParserMessage) +
                      " (expected JSON; // comments are allowed, trailing commas are not)");
@@ -184,7 +184,7 @@ Json override_value(const Override& setting) {
       (key->kind == KeyKind::path || key->kind == KeyKind::paths || key->kind == KeyKind::text ||
        key->kind == KeyKind::choice || key->kind == KeyKind::names);
   ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
-  Json value = Json::parse(setting.text, watched_by(guard), false);
+  Json value = storage::parse_ordered_json_text(setting.text, watched_by(guard), {.throws = false});
   const bool is_list = value.is_array() && key != nullptr &&
                        (key->kind == KeyKind::paths || key->kind == KeyKind::names);
   if (value.is_discarded() || (wants_text && !value.is_string() && !is_list))
@@ -558,7 +558,7 @@ std::string complete_text(const Config& config, const std::filesystem::path& dir
   if (config.partition.count)
     result["partition"].erase("vertices");
   try {
-    return result.dump();
+    return storage::json_text(result);
   } catch (const Json::exception&) {
     throw Error(ErrorCode::usage,
                 "a path or text of the config is not UTF-8: it cannot be written "

@@ -1,6 +1,7 @@
 #include "config/config_reference.h"
 
 #include "config/config_schema.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -178,7 +179,7 @@ std::string default_text(const ConfigKey& key, const char* quote) {
   const Json value = key.show(Config{});
   if (value.is_null())
     return key.required ? "required" : key.unset;
-  return quote + value.dump() + quote;
+  return quote + storage::json_text(value) + quote;
 }
 
 /// Breaks a text between words; each line starts with `indent`.
@@ -196,7 +197,7 @@ std::string wrapped(std::string_view text, const std::string& indent) {
 /// In one line: { "vertices": 8192, "axis": "compactness" }
 std::string in_one_line(const Json& value) {
   std::string line;
-  for (const char letter : value.dump(1)) {
+  for (const char letter : storage::json_text(value, {.indent = 1})) {
     const bool follows_break = !line.empty() && line.back() == ' ';
     if (letter == '\n' || (letter == ' ' && follows_break)) {
       line += follows_break ? "" : " ";
@@ -216,7 +217,7 @@ std::string schema_text() {
                "What `meshhier build` makes a hierarchy from, and how. Comments (// and /* */) are "
                "allowed."}};
   schema.update(object_schema(""));
-  return schema.dump(2) + '\n';
+  return storage::json_text(schema, {.indent = 2}) + '\n';
 }
 
 std::string keys_text() {

@@ -2,6 +2,7 @@
 
 #include "execution/size_text.h"
 #include "hierarchy/plain_text.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -302,9 +303,7 @@ class JsonProgress final : public PacedProgress {
                 {"job_eta_seconds", rounded(stage.job_seconds_left)}});
   }
 
-  void write_line(const Json& event) {
-    out() << event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n' << std::flush;
-  }
+  void write_line(const Json& event) { out() << storage::json_text(event) + '\n' << std::flush; }
 };
 
 }  // namespace

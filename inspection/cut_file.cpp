@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/text_mark.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -50,7 +51,7 @@ std::vector<NodeId> parse_json_nodes(std::string_view text, const std::string& n
   const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
     return depth < 2;  // a list of strings needs no more; deeper values are dropped and then missed
   };
-  const auto list = nlohmann::json::parse(text, shallow, /*allow_exceptions=*/false);
+  const auto list = storage::parse_json_text(text, shallow, {.throws = false});
   if (!list.is_array()) {
     throw Error(ErrorCode::usage,
                 name + ": expected a JSON array of strings such as [\"1/0\", \"2/2\"]");

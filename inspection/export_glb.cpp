@@ -9,6 +9,7 @@
 #include "storage/format/glb_material.h"
 #include "storage/format/showable.h"
 #include "storage/format/tile_colours.h"
+#include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -117,7 +118,7 @@ class GlbText {
     head["scene"] = 0;
     head["scenes"] = Json::array({Json::object({{"nodes", Json::array({0})}})});
     head["nodes"] = Json::array({storage::mesh_node(format_.frame)});
-    std::string text = head.dump();
+    std::string text = storage::json_text(head);
     text.pop_back();
     sink(text);
     sink(",\"meshes\":[{");
@@ -125,7 +126,7 @@ class GlbText {
     sink("}],");
     write_array(sink, "materials", &GlbText::materials);
     if (has_pictures()) {
-      sink(",\"samplers\":" + Json::array({storage::sampler_json()}).dump() + ",");
+      sink(",\"samplers\":" + storage::json_text(Json::array({storage::sampler_json()})) + ",");
       write_array(sink, "textures", &GlbText::textures);
       sink(",");
       write_array(sink, "images", &GlbText::images);
@@ -167,7 +168,8 @@ class GlbText {
                    void (GlbText::*items)(const Item&) const) const {
     sink(fmt::format("\"{}\":[", name));
     const char* separator = "";
-    (this->*items)([&](const Json& item) { sink(std::exchange(separator, ",") + item.dump()); });
+    (this->*items)(
+        [&](const Json& item) { sink(std::exchange(separator, ",") + storage::json_text(item)); });
     sink("]");
   }
 

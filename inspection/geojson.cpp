@@ -3,6 +3,7 @@
 #include "hierarchy/text_mark.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -115,7 +116,8 @@ void refuse_lines(std::string_view text, const std::filesystem::path& path) {
   const std::string_view first = text.substr(0, text.find('\n'));
   text.remove_prefix(first.size());
   const std::size_t next = text.find_first_not_of(" \t\r\n\x1e");
-  if (next == std::string_view::npos || text[next] != '{' || !GeoJson::accept(first))
+  if (next == std::string_view::npos || text[next] != '{' ||
+      storage::parse_json_text(first, nullptr, {.throws = false}).is_discarded())
     return;
   mesh_io::fail_file(path,
                      "has one GeoJSON text a line, expected one for all; join them: ogr2ogr -f "

@@ -11,6 +11,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/source_values.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -189,8 +190,9 @@ std::string source_text(const storage::Manifest& manifest) {
 /// {"a": {"b": 1}} as "a.b 1".
 void add_parameters(const std::string& prefix, const Json& value, std::string& text) {
   if (!value.is_object()) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", prefix,
-                        shown(value.is_string() ? value.get<std::string>() : value.dump()));
+    text += fmt::format(
+        "{}{} {}", text.empty() ? "" : ", ", prefix,
+        shown(value.is_string() ? value.get<std::string>() : storage::json_text(value)));
     return;
   }
   for (const auto& [key, inner] : value.items()) {

@@ -1,5 +1,7 @@
 #include "inspection/manifest_config.h"
 
+#include "storage/io/json_text.h"
+
 #include <nlohmann/json.hpp>
 
 namespace meshhier::inspection {
@@ -7,7 +9,7 @@ namespace meshhier::inspection {
 config::Config config_of(const storage::Manifest& manifest) {
   nlohmann::ordered_json text = {{"input", "input.ply"}, {"output", "output.hier"}};
   text.update(manifest.config);
-  return config::parse_config(text.dump(), {"\"config\"", {}}, {});
+  return config::parse_config(storage::json_text(text), {"\"config\"", {}}, {});
 }
 
 }  // namespace meshhier::inspection

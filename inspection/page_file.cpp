@@ -9,6 +9,7 @@
 #include "storage/format/build_name.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
+#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
@@ -57,8 +58,7 @@ std::string escaped(std::string_view text) {
 
 /// As JSON in a script element: no "<" can end it.
 std::string json_text(const std::string& text) {
-  std::string json =
-      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string json = storage::json_text(nlohmann::json(text));
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;)
     json.replace(at, 1, "\\u003c");
   return json;

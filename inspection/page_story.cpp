@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/base64.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -120,15 +121,14 @@ PageStory with_pictures(const std::string& text, const std::string& name, std::u
     is_shallow = is_shallow && depth < kDeepestStory;
     return depth < kDeepestStory;
   };
-  Json story = Json::parse(text, watch, /*allow_exceptions=*/false);
+  Json story = storage::parse_ordered_json_text(text, watch, {.throws = false});
   if (!is_shallow || !story.is_object())
     throw Error(ErrorCode::corrupt, name + ": it is no JSON object");
   Embedding embedding(most_bytes, open);
   embedding.keeps(story, false);
   if (!embedding.has_changed())
     return {text, 0, {}};
-  return {story.dump(-1, ' ', false, Json::error_handler_t::replace), embedding.pictures(),
-          std::move(embedding).left_out()};
+  return {storage::json_text(story), embedding.pictures(), std::move(embedding).left_out()};
 }
 
 }  // namespace meshhier::inspection

@@ -9,6 +9,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/sealed_json.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,14 +60,14 @@ void check_levels(const VerifyJob& job, const ManifestProblems& problems) {
   for (const storage::LevelSummary& level :
        storage::summarize_levels(job.tree(), job.reader.records()))
     expected.push_back(storage::to_json(level));
-  problems.require(job.reader.manifest().levels.dump() == expected.dump(),
+  problems.require(storage::json_text(job.reader.manifest().levels) == storage::json_text(expected),
                    "\"levels\" is not what the index adds up to");
 }
 
 /// The first key, dotted, whose value is not that of `whole`; "" if there is none.
 std::string first_difference(const Json& part, const Json& whole, const std::string& path) {
   if (!part.is_object() || !whole.is_object())
-    return part.dump() == whole.dump() ? "" : path;
+    return storage::json_text(part) == storage::json_text(whole) ? "" : path;
   for (const auto& [key, value] : part.items()) {
     const std::string here = path.empty() ? key : path + '.' + key;
     const auto found = whole.find(key);

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "mesh_io/input_error.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ constexpr std::size_t kLongestJsonText = 200;
 std::string brief(const Json& value) {
   if (value.is_structured())
     return value.is_array() ? "a list" : "an object";
-  return plain_text(value.dump(-1, ' ', true, Json::error_handler_t::replace), 60);
+  return plain_text(storage::json_text(value, {.only_ascii = true}), 60);
 }
 
 bool is_count(const Json& value) {
@@ -80,7 +81,7 @@ Json parse_gltf_json(std::string text, const std::filesystem::path& path, std::u
                      int most_depth) {
   ParseGuard guard(path, text.size(), most_bytes, most_depth);
   try {
-    return Json::parse(text.begin(), text.end(), std::ref(guard));
+    return storage::parse_json_text(text, std::ref(guard));
   } catch (const Json::exception& error) {
     fail_file(path, "is not valid JSON: " + plain_text(json_fault(error.what()), kLongestJsonText));
   }

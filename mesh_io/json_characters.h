@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -29,39 +28,6 @@ class JsonCharacters {
   std::size_t at_ = 0;
   bool in_text_ = false, escaped_ = false, kept_ = false;
   std::size_t token_ = 0;
-};
-
-/// As an iterator, for the parser.
-class JsonIterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  JsonIterator() = default;
-  explicit JsonIterator(JsonCharacters& characters) : characters_(&characters) { ++*this; }
-  const char& operator*() const { return c_; }
-  JsonIterator& operator++() {
-    const int c = characters_->next();
-    c_ = static_cast<char>(c);
-    if (c < 0)
-      characters_ = nullptr;
-    return *this;
-  }
-  JsonIterator operator++(int) {
-    const JsonIterator before = *this;
-    ++*this;
-    return before;
-  }
-  friend bool operator==(const JsonIterator& a, const JsonIterator& b) {
-    return a.characters_ == b.characters_;
-  }
-
- private:
-  JsonCharacters* characters_ = nullptr;
-  char c_ = 0;
 };
 
 }  // namespace meshhier::mesh_io

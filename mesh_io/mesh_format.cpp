@@ -10,6 +10,7 @@
 #include "mesh_io/off_reader.h"
 #include "mesh_io/stl_reader.h"
 #include "mesh_io/text_chars.h"
+#include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace meshhier::mesh_io {
 namespace {
@@ -121,7 +121,7 @@ bool begins_as_object(std::string_view start) {
 }
 
 /// Looks at the keys of an object of JSON until they tell a glTF from a tileset.
-class JsonKeys final : public nlohmann::json_sax<nlohmann::json> {
+class JsonKeys final : public storage::JsonVisitor {
  public:
   /// Of one that was read to its end or to its first defect, too.
   std::optional<MeshKind> kind() const {
@@ -131,29 +131,13 @@ class JsonKeys final : public nlohmann::json_sax<nlohmann::json> {
     return is_tileset ? std::optional(MeshKind::tileset) : std::nullopt;
   }
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool start_object(std::size_t) override { return ++depth_ <= kMostDepth; }
-  bool end_object() override { return end(); }
-  bool start_array(std::size_t) override { return ++depth_ <= kMostDepth; }
-  bool end_array() override { return end(); }
   bool key(string_t& value) override {
-    if (depth_ == 1)
+    if (depth() == 1)
       look_at(value);
     return !is_gltf_ && !(has_root_ && has_asset_);
   }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
-    return false;
-  }
 
  private:
-  static constexpr std::size_t kMostDepth = 1000;
-
   void look_at(std::string_view key) {
     static constexpr std::array<std::string_view, 14> kGltf{
         "accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
@@ -163,12 +147,7 @@ class JsonKeys final : public nlohmann::json_sax<nlohmann::json> {
     has_asset_ = has_asset_ || key == "asset";
     has_error_ = has_error_ || key == "geometricError";
   }
-  bool end() {
-    --depth_;
-    return true;
-  }
 
-  std::size_t depth_ = 0;
   bool is_gltf_ = false, has_root_ = false, has_asset_ = false;
   bool has_error_ = false;  ///< a geometric one, which nothing but a tileset has
 };
@@ -201,7 +180,7 @@ std::optional<MeshKind> json_kind(const storage::File& file, std::string_view st
   const auto stream = open_stream({file, file.size()}, {});
   JsonCharacters characters(*stream);
   JsonKeys keys;
-  nlohmann::json::sax_parse(JsonIterator(characters), JsonIterator(), &keys);
+  storage::visit_json([&] { return characters.next(); }, keys);
   if (const auto kind = keys.kind())
     return kind;
   return begins_as_gltf(start) ? std::optional(MeshKind::gltf) : std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "hierarchy/mesh_name.h"
 #include "storage/format/layout.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,7 +15,7 @@ namespace {
 
 /// As a manifest has it, in which what is no UTF-8 was replaced.
 std::string as_text(const std::string& name) {
-  return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return storage::json_text(nlohmann::json(name));
 }
 
 /// The name of its hierarchy, without the ending: a file in a folder is called as that.

@@ -3,6 +3,7 @@
 #include "server/folder_scan.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
+#include "storage/io/json_text.h"
 
 #include <utility>
 
@@ -59,7 +60,7 @@ std::string static_gallery_json(const std::vector<Model>& models) {
     listed.push_back(std::move(json));
   }
   const nlohmann::ordered_json document{{"models", std::move(listed)}};
-  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return storage::json_text(document, {.indent = 2}) + '\n';
 }
 
 std::string gallery_json(const std::vector<Model>& models,
@@ -81,7 +82,7 @@ std::string gallery_json(const std::vector<Model>& models,
   if (offer)
     document["upload"] = {{"limit", offer->limit_bytes}, {"token", offer->needs_token}};
   // Names of files may hold any bytes, JSON may not.
-  return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return storage::json_text(document) + '\n';
 }
 
 Gallery::Gallery(Hierarchies& hierarchies, Clock clock)

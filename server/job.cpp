@@ -1,6 +1,7 @@
 #include "server/job.h"
 
 #include "hierarchy/plain_text.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -60,7 +61,7 @@ Json to_json(const Job& job) {
 }
 
 void take_line(Job& job, std::string_view line) {
-  const Json event = Json::parse(line, nullptr, false);
+  const Json event = storage::parse_ordered_json_text(line, nullptr, {.throws = false});
   if (!event.is_object()) {
     if (!line.empty())
       job.message = plain_text(line, kLongestMessage);

@@ -8,6 +8,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <iterator>
@@ -72,7 +73,7 @@ using Leaves = std::map<std::string, std::string>;
 
 void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
   if (!value.is_object()) {
-    leaves[path] = value.dump(-1, ' ', false, Value::error_handler_t::replace);
+    leaves[path] = storage::json_text(value);
     return;
   }
   for (const auto& [key, inner] : value.items())

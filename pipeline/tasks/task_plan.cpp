@@ -9,6 +9,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 #include "storage/io/paths.h"
 #include "storage/io/process.h"
 
@@ -43,11 +44,12 @@ Json json_of(const TaskPlan& plan) {
           {"levels", plan.levels},
           {"textured", plan.textured},
           {"replace", plan.replace},
-          {"config", Json::parse(config::complete_text(plan.config, fs::current_path()))}};
+          {"config", storage::parse_ordered_json_text(
+                         config::complete_text(plan.config, fs::current_path()))}};
 }
 
 std::string text_of(const TaskPlan& plan) {
-  return json_of(plan).dump(2) + '\n';
+  return storage::json_text(json_of(plan), {.indent = 2}) + '\n';
 }
 
 /// What does not decide the result may change from one plan to the next.
@@ -56,7 +58,7 @@ std::uint64_t fingerprint_of(const TaskPlan& plan) {
   for (const char* key : {"memory_budget", "threads"})
     json["config"].erase(key);
   json.erase("replace");
-  return checksum_of(json.dump());
+  return checksum_of(storage::json_text(json));
 }
 
 Error not_a_plan(const fs::path& path) {
@@ -65,7 +67,7 @@ Error not_a_plan(const fs::path& path) {
 
 TaskPlan parse_plan(const std::string& text, const fs::path& path) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = storage::parse_ordered_json_text(text);
     if (json.at("meshhier_task_plan") != kPlanVersion)
       throw Error(ErrorCode::corrupt, path.string() + " is a plan of another version");
     const auto number = [&](const char* key, std::uint32_t most) {
@@ -80,7 +82,8 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
     plan.levels = number("levels", kDeepest);
     plan.textured = json.at("textured");
     plan.replace = json.at("replace");
-    plan.config = config::parse_config(json.at("config").dump(), {path.string(), {}}, {});
+    plan.config =
+        config::parse_config(storage::json_text(json.at("config")), {path.string(), {}}, {});
     plan.fingerprint = fingerprint_of(plan);
     if (plan.tasks == 0)
       throw not_a_plan(path);

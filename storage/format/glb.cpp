@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cassert>
@@ -59,7 +60,7 @@ constexpr const char* kFirstView = "firstView";
 /// JSON for a message, cut to a length that fits a line.
 std::string brief(const Json& value) {
   constexpr std::size_t kLength = 40;
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string text = json_text(value, {.only_ascii = true});
   if (text.size() > kLength)
     text = text.substr(0, kLength) + "...";
   return text;
@@ -167,7 +168,7 @@ Json parse_json(std::string_view text, const std::string& name) {
     return true;
   };
   try {
-    return Json::parse(text.begin(), text.end(), guard);
+    return parse_ordered_json_text(text, guard);
   } catch (const Json::exception& error) {
     fail(name, "is not valid JSON: " + plain_text(json_fault(error.what()), kMaxParserMessage));
   }

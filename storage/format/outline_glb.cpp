@@ -3,6 +3,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/error.h"
 #include "storage/format/glb.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +194,7 @@ std::vector<std::byte> encode_outline(const Outline& outline, const Frame& frame
   if (bin.size() != sizes.bin_bytes()) {
     throw Error(ErrorCode::internal, "an outline has a polyline of fewer than two vertices");
   }
-  const std::string json = document_json(sizes, bounds, frame, outline.first_view).dump();
+  const std::string json = json_text(document_json(sizes, bounds, frame, outline.first_view));
   if (json.size() > kJsonBytes) {
     throw Error(ErrorCode::internal, "the outline's JSON is longer than its fixed size");
   }

@@ -4,6 +4,7 @@
 #include "storage/format/glb.h"
 #include "storage/io/file.h"
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 
 #include <array>
 #include <cmath>
@@ -79,7 +80,7 @@ std::string sealed_text(const SealedFormat& format, const Json& document) {
   sealed.update(document);
   sealed["checksum"] = kZeros;
   // A file name need not be UTF-8, JSON must be.
-  std::string text = sealed.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(sealed, {.indent = 2});
   text += '\n';
   const std::uint64_t sum = text_checksum(text);
   text.replace(text.size() - kAfterSeal.size() - kDigits, kDigits, hex_digits(sum));

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ std::filesystem::path segment_path(const std::filesystem::path& work, const Segm
 }
 
 void SegmentWriter::append(const Entry& entry) {
-  const std::vector<std::uint8_t> text = Entry::to_cbor(entry);
+  const std::vector<std::uint8_t> text = cbor_of(entry);
   append_little(entries_, static_cast<std::uint32_t>(text.size()));
   const auto bytes = std::as_bytes(std::span(text));
   entries_.insert(entries_.end(), bytes.begin(), bytes.end());
@@ -100,7 +101,6 @@ Segment::Segment(std::unique_ptr<File> file, const SegmentName& name)
 }
 
 void Segment::for_each(const std::function<bool(const EntrySink::Entry&)>& visit) const {
-  constexpr bool kStrict = true, kThrow = false;
   std::span<const std::byte> left(entries_);
   while (!left.empty()) {
     constexpr std::size_t kLength = 4;
@@ -108,7 +108,7 @@ void Segment::for_each(const std::function<bool(const EntrySink::Entry&)>& visit
         left.size() < kLength ? left.size() : load_little<std::uint32_t>(left.data());
     if (bytes + kLength > left.size())
       refuse(path_, "is damaged");
-    const auto entry = EntrySink::Entry::from_cbor(left.subspan(kLength, bytes), kStrict, kThrow);
+    const auto entry = parse_cbor(left.subspan(kLength, bytes));
     if (entry.is_discarded() || !visit(entry))
       refuse(path_, "does not fit the plan");
     left = left.subspan(kLength + bytes);

@@ -2,6 +2,7 @@
 
 #include "hierarchy/percent_code.h"
 #include "hierarchy/small_letters.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -93,7 +94,7 @@ bool is_picture_name(std::string_view name) {
 
 std::vector<std::string> pictures_beside(std::string_view story) {
   const auto shallow = [](int depth, auto, const auto&) { return depth < kDeepestStory; };
-  const nlohmann::json document = nlohmann::json::parse(story, shallow, /*allow_exceptions=*/false);
+  const nlohmann::json document = parse_json_text(story, shallow, {.throws = false});
   std::set<std::string> found;
   if (!document.is_discarded())
     collect_pictures(document, found);

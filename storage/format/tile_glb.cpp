@@ -11,6 +11,7 @@
 #include "storage/format/tile_plan.h"
 #include "storage/format/tile_sections.h"
 #include "storage/format/tile_values.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -473,7 +474,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   const bool packed = has_packed_sections(format.compression);
   std::vector<std::byte> bytes =
       packed ? std::vector<std::byte>(plan.bytes())
-             : begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
+             : begin_glb(json_text(plan.document(tile.bounds, format.frame)), plan.bytes());
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(vertices.positions);
   writer.put_normals(shading.normals);
@@ -496,7 +497,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
     writer.put_image(Part::normal_map, tile.normal_map->bytes);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
-    bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);
+    bytes = join_glb(json_text(plan.document(tile.bounds, format.frame, &bin.packing)), bin.bin);
   }
   return is_gzipped(format.compression) ? gzip(bytes) : bytes;
 }

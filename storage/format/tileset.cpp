@@ -7,6 +7,7 @@
 #include "storage/format/sealed_json.h"
 #include "storage/format/tile_values.h"
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +107,7 @@ class TilesetWriter {
     document["root"] = tile_json(root, root);
     if (is_first && transform)
       document["root"]["transform"] = *transform;
-    return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    return json_text(document) + '\n';
   }
 
   void describe_source(Json& document) const {

@@ -1,6 +1,7 @@
 #include "storage/io/journal.h"
 
 #include "storage/io/hash.h"
+#include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
 #include <array>
@@ -18,8 +19,7 @@ constexpr std::array<std::byte, 8> kBegin{std::byte{'m'}, std::byte{'e'}, std::b
 constexpr std::size_t kHeadBytes = 12;
 
 std::optional<Journal::Entry> parse(std::span<const std::byte> bytes) {
-  constexpr bool kStrict = true, kThrow = false;
-  Journal::Entry entry = Journal::Entry::from_cbor(bytes, kStrict, kThrow);
+  Journal::Entry entry = parse_cbor(bytes);
   if (entry.is_discarded())
     return std::nullopt;
   return entry;
@@ -81,7 +81,7 @@ void Journal::read(const std::function<bool(const Entry&)>& take) {
 }
 
 void Journal::append(const Entry& entry) {
-  const std::vector<std::uint8_t> text = Entry::to_cbor(entry);
+  const std::vector<std::uint8_t> text = cbor_of(entry);
   const std::uint64_t sum = checksum(std::as_bytes(std::span(text)), last_checksum_);
   std::vector<std::byte> bytes;
   bytes.reserve(kBegin.size() + kHeadBytes + text.size());
