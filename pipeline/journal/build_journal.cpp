@@ -11,10 +11,12 @@
 #include "storage/io/json_text.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -236,29 +238,33 @@ void BuildJournal::look_ahead(const std::filesystem::path& path, storage::Scratc
 }
 
 bool BuildJournal::take(const Entry& entry) {
+  /// An entry's only key, or its first.
+  struct Kind {
+    std::string_view key;
+    bool (BuildJournal::*take)(const Entry& value);
+    bool outlives_scratch = false;
+  };
+  static constexpr std::array kKinds{
+      Kind{"partition", &BuildJournal::take_chunk},
+      Kind{"ingest", &BuildJournal::take_source, true},
+      Kind{"image", &BuildJournal::take_image},
+      Kind{"leaves", &BuildJournal::take_leaves},
+      Kind{"simplify", &BuildJournal::take_tile},
+      Kind{"root", &BuildJournal::take_root},
+      Kind{"texture", &BuildJournal::take_texture},
+      Kind{"publish", &BuildJournal::take_published, true},
+      Kind{"took", &BuildJournal::pass_over},
+  };
   cancel_.check();
   const auto first = entry.items().begin();
-  const std::string& kind = first.key();
-  const Entry& value = first.value();
-  if (is_complete_ && kind != "ingest" && kind != "publish")
+  const auto* const kind = std::ranges::find(kKinds, std::string_view(first.key()), &Kind::key);
+  if (is_complete_ && (kind == kKinds.end() || !kind->outlives_scratch))
     return true;
-  if (kind == "partition")
-    return value.at(0) < chunks_.count() && chunks_.restore(value.at(0), value.at(1));
-  if (kind == "ingest")
-    return take_source(value);
-  if (kind == "leaves")
-    return take_leaves(value);
-  if (kind == "image")
-    return take_image(value);
-  if (kind == "simplify")
-    return take_tile(value);
-  if (kind == "took")
-    return true;
-  if (kind == "root")
-    return take_root(value);
-  if (kind == "texture")
-    return take_texture(value);
-  return kind == "publish" && take_published(value);
+  return kind != kKinds.end() && (this->*kind->take)(first.value());
+}
+
+bool BuildJournal::take_chunk(const Entry& chunk) {
+  return chunk.at(0) < chunks_.count() && chunks_.restore(chunk.at(0), chunk.at(1));
 }
 
 bool BuildJournal::take_source(const Entry& source) {

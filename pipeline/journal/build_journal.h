@@ -169,6 +169,8 @@ class BuildJournal {
   void make_room();
   void look_ahead(const std::filesystem::path& path, storage::ScratchUse& use);
   bool take(const Entry& entry);
+  bool take_chunk(const Entry& chunk);
+  bool pass_over(const Entry& /*any*/) { return true; }
   bool take_source(const Entry& source);
   bool take_leaves(const Entry& leaves);
   bool take_image(const Entry& image);
