@@ -3,22 +3,15 @@
 #include "execution/allocator.h"
 #include "execution/threads.h"
 #include "hierarchy/error.h"
-#include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
-#include "pipeline/leaves_stage.h"
-#include "pipeline/normal_map_stage.h"
-#include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
-#include "pipeline/publish_stage.h"
 #include "pipeline/read_stage.h"
-#include "pipeline/simplify_stage.h"
 #include "pipeline/stage_costs.h"
-#include "pipeline/texture_stage.h"
+#include "pipeline/stages.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 
-#include <future>
 #include <optional>
 
 #include <fmt/format.h>
@@ -33,9 +26,10 @@ namespace {
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
                        storage::MemoryPool& pool, StageMeter& meter, const StageContext& context);
 
-/// The stages from leaves to publish, as far as the journal does not have their work: all files of
-/// the hierarchy in `directory`. Returns how much disk they need, as it is known after leaves and
-/// simplify, and throws Error(budget) then if there is less.
+/// All rows of the table (stages.cpp) between reading the input and packing the output, as far as
+/// the journal does not have their work: all files of the hierarchy in `directory`. Returns how
+/// much disk they need, as it is known after leaves and simplify, and throws Error(budget) then if
+/// there is less.
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context);
 
@@ -108,7 +102,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   storage::FileSystem& files = context.files;
   storage::ScratchUse& use = pool.scratch_use();
   pool.set_capacity(context.memory().pool_bytes);
-  meter.expect(wall_times(context.config, context.plan));
+  meter.expect(wall_times(context.plan));
   if (files.exists(storage::journal_path(work.path())))
     meter.stage("resume", 0, "entries");
   const OpenWorkshop open = open_workshop(work, input, pool, context);
@@ -149,41 +143,17 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
 
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context) {
-  auto& [mesh_scratch, tile_scratch, picture_scratch, chunks, forest, textures, pictures, journal] =
-      workshop;
-  const SourceSummary& source = journal.source()->summary;
-  images::MaterialList materials;
-  if (context.plan.textures.is_textured())
-    materials = decode_images(pictures, journal, context);
-  make_leaves(chunks, forest, journal, {}, context);
-  const std::optional<DiskNeed> refined = refine_disk(context.plan, forest.partition_sums());
-  if (refined)
-    check_disk(*refined, context.config.output, context.files);
-  // Without the chunks leaves cannot be made again, so these reach the disk before those go.
-  std::future<void> settled = execution::run_beside([&workshop, &context] {
-    workshop.tile_scratch.sync([&] { context.cancel.check(); });
-    workshop.journal.sync();
-    workshop.mesh_scratch.remove();
-  });
-  const int depth = raw(context.tree().depth());
-  simplify(forest, journal, source.attributes, {0, depth}, context);
-  settled.get();
-  if (source.textures) {
-    make_textures(forest, {materials, pictures}, textures, journal, {0, depth + 1}, context);
-    picture_scratch.remove();
+  Making making{workshop, {directory}, context.plan.disk};
+  const LevelRange all{0, raw(context.tree().depth()) + 1};
+  for (const Stage* stage : stages_of(context.plan.job)) {
+    if (stage->make == nullptr)
+      continue;
+    stage->make(making, all, context);
+    if (stage->then != nullptr)
+      stage->then(making, context);
   }
-  if (context.plan.job.normal_map_side > 0)
-    make_normal_maps(forest, textures, journal, {0, depth}, context);
-  DiskNeed need = refined.value_or(context.plan.disk);
-  if (const std::uint64_t splits = forest.split_count(); splits > 0) {
-    need = with_splits(context.plan, need, splits);
-    check_disk(need, context.config.output, context.files);
-  }
-  const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
-  publish(forest, textures, journal, {directory}, {}, context);
-  write_account(forest, textures, journal, outline, directory, context);
-  journal.note_complete();
-  return need;
+  workshop.journal.note_complete();
+  return making.disk;
 }
 
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,

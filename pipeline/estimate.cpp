@@ -114,10 +114,9 @@ std::string placement_of(const config::Config& config, importing::MeshInput& inp
 
 }  // namespace
 
-TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
-                           std::uint64_t input_bytes) {
+TimeEstimate estimate_time(const BuildPlan& plan, std::uint64_t input_bytes) {
   TimeEstimate time;
-  for (const StageTime& stage : cpu_times(config, plan))
+  for (const StageTime& stage : cpu_times(plan))
     time.cpu_seconds += stage.seconds;
   const double moved = kInputReads * static_cast<double>(input_bytes) +
                        kTemporaryMoves * static_cast<double>(plan.disk.temporary_bytes) +
@@ -154,7 +153,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   check_coders(estimate.plan.job);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(expected_tiles(estimate.plan.job));
-  estimate.time = estimate_time(config, estimate.plan, estimate.mesh.file_bytes);
+  estimate.time = estimate_time(estimate.plan, estimate.mesh.file_bytes);
   estimate.memory_budget_bytes = memory_budget(config);
   estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);

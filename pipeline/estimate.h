@@ -22,8 +22,7 @@ struct TimeEstimate {
   double wall_seconds = 0;
 };
 
-TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
-                           std::uint64_t input_bytes);
+TimeEstimate estimate_time(const BuildPlan& plan, std::uint64_t input_bytes);
 
 /// The machine the rates are of, for people.
 inline constexpr std::string_view kRateMachine =

@@ -130,10 +130,9 @@ Decoded decode(std::uint32_t image, const images::ImageStore& pictures,
 
 }  // namespace
 
-images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
-                                   const StageContext& context) {
+void decode_images(images::ImageStore& pictures, BuildJournal& journal,
+                   const StageContext& context) {
   const TexturePlan& plan = context.plan.textures;
-  images::MaterialList materials = plan.materials;
   const std::size_t first = pictures.size();
   std::uint64_t left = 0;
   for (std::size_t i = first; i < plan.heads.size(); ++i)
@@ -152,26 +151,33 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
         journal.note_image(decoded.stored, decoded.broken);
         pictures.add(std::move(decoded.stored));
         if (decoded.has_unsaid_alpha)
-          transparent.push_back(materials.images[image].name);
+          transparent.push_back(plan.materials.images[image].name);
       });
-  for (const auto& [image, why] : journal.broken_images())
-    leave_out(image, materials);
   warn_of_broken(broken_pictures(plan, journal), context.progress);
   warn_of_alpha(transparent, context.progress);
+}
+
+images::MaterialList shown_materials(const TexturePlan& plan, const BuildJournal& journal) {
+  images::MaterialList materials = plan.materials;
+  for (const auto& [image, why] : journal.broken_images())
+    leave_out(image, materials);
   return materials;
 }
 
 StageMemory images_memory(const JobSize& job) {
-  if (!job.textured)
-    return {};
   const std::uint64_t item = job.decoder_bytes + job.adding_bytes;
-  return {item, job.threads, item, job.threads * item};
+  return {item, job.threads, item, job.threads * item, &MemoryPlan::pictures_in_flight};
 }
 
-StageTime images_time(const JobSize& job) {
+StageTimes images_time(const JobSize& job, const TilePopulation& /*tiles*/) {
   constexpr double kTexelSeconds = 20e-9;
-  return {"images", "texels", job.source_texels,
-          static_cast<double>(job.source_texels) * kTexelSeconds};
+  return {{"images", "texels", job.source_texels,
+           static_cast<double>(job.source_texels) * kTexelSeconds}};
+}
+
+DiskVolumes images_disk(const JobSize& job, const TilePopulation& /*tiles*/,
+                        const MemoryPlan& /*memory*/) {
+  return {{static_cast<double>(job.picture_bytes), DiskMoment::leaves, DiskMoment::simplify}};
 }
 
 }  // namespace meshhier::pipeline

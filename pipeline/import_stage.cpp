@@ -60,7 +60,8 @@ std::vector<StageTime> import_time(const importing::MeshInput& input,
   return {{"import", "bytes", input.files().bytes(), bytes * kByteSeconds}, look, others};
 }
 
-DiskVolumes imported_disk(const JobSize& job) {
+DiskVolumes imported_disk(const JobSize& job, const TilePopulation& /*tiles*/,
+                          const MemoryPlan& /*memory*/) {
   return {{static_cast<double>(job.imported_bytes), DiskMoment::splits, DiskMoment::noted}};
 }
 

@@ -4,6 +4,7 @@
 
 #include "import/mesh_input.h"
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/spool.h"
 
@@ -20,7 +21,8 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
 
 /// What stays of it: the PLY, until the triangles are distributed.
-DiskVolumes imported_disk(const JobSize& job);
+DiskVolumes imported_disk(const JobSize& job, const TilePopulation& tiles,
+                          const MemoryPlan& memory);
 
 /// Of the import and of all that follows, from the files' sizes alone.
 std::vector<StageTime> import_time(const importing::MeshInput& input, const config::Config& config);

@@ -353,13 +353,14 @@ StageMemory ingest_memory(const JobSize& job) {
   return {block, 2 * job.threads, least, least};
 }
 
-StageTime ingest_time(const JobSize& job) {
+StageTimes ingest_time(const JobSize& job, const TilePopulation& /*tiles*/) {
   constexpr double kVertexSeconds = 47e-9;
-  return {"ingest", "vertices", job.vertex_count,
-          static_cast<double>(job.vertex_count) * kVertexSeconds};
+  return {{"ingest", "vertices", job.vertex_count,
+           static_cast<double>(job.vertex_count) * kVertexSeconds}};
 }
 
-DiskVolumes ingest_disk(const JobSize& job) {
+DiskVolumes ingest_disk(const JobSize& job, const TilePopulation& /*tiles*/,
+                        const MemoryPlan& /*memory*/) {
   if (job.vertices_in_place)
     return {};
   const double vertex = (job.wide_coordinates ? 24 : 12) + 4.0 * job.channels;

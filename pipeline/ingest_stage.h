@@ -14,6 +14,7 @@
 #include "pipeline/label_guess.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
 #include "storage/io/spool.h"
 
 #include <functional>
@@ -31,9 +32,9 @@ std::uint64_t sample_bytes(const JobSize& job);
 
 /// Items are blocks of input.
 StageMemory ingest_memory(const JobSize& job);
-StageTime ingest_time(const JobSize& job);
+StageTimes ingest_time(const JobSize& job, const TilePopulation& tiles);
 /// The vertices once more, if they cannot be read in place, until the triangles are distributed.
-DiskVolumes ingest_disk(const JobSize& job);
+DiskVolumes ingest_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 
 /// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
 /// read into is not used.

@@ -12,6 +12,7 @@
 #include "storage/format/work_tile.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -83,6 +84,17 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
 
 }  // namespace
 
+void check_chunks(const Chunks& chunks, const Share& share, const execution::CancelToken& cancel) {
+  for (std::uint64_t i = share.begin(chunks.count()); i < share.end(chunks.count()); ++i) {
+    cancel.check();
+    const auto chunk = static_cast<std::uint32_t>(i);
+    if (const std::optional<Error> change = chunks.find_change(chunk))
+      throw *change;
+    if (!chunks.is_whole(chunk))
+      throw Error(ErrorCode::corrupt, "vertices of a chunk are missing: plan the build again");
+  }
+}
+
 void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Share& share,
                  const StageContext& context) {
   const Tree& tree = context.tree();
@@ -125,16 +137,17 @@ StageMemory leaves_memory(const JobSize& job) {
   const std::uint64_t copies = job.part_copies(vertices) * (2 * job.vertex_bytes() + 24) +
                                std::min(triangles, 6 * job.part_copies(vertices)) * 24;
   const std::uint64_t chunk = (is_dense ? std::max(usual, dense) : usual) + copies;
-  return {chunk, job.threads + 1, chunk, (job.threads + 1) * chunk};
+  return {chunk, job.threads + 1, chunk, (job.threads + 1) * chunk, &MemoryPlan::chunks_in_flight};
 }
 
-StageTime leaves_time(const JobSize& job) {
+StageTimes leaves_time(const JobSize& job, const TilePopulation& /*tiles*/) {
   constexpr double kTriangleSeconds = 130e-9;
-  return {"leaves", "partitions", job.partition_count,
-          static_cast<double>(job.face_count) * kTriangleSeconds};
+  return {{"leaves", "partitions", job.partition_count,
+           static_cast<double>(job.face_count) * kTriangleSeconds}};
 }
 
-DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles) {
+DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles,
+                        const MemoryPlan& /*memory*/) {
   const double bytes = storage::expected_work_tile_bytes(tiles.partitions, job.vertex_bytes()) +
                        tiles.partitions.boundary * sizeof(partition::LeafPlace);
   return {{bytes, DiskMoment::leaves, DiskMoment::simplify}};

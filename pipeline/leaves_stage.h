@@ -12,13 +12,17 @@ namespace meshhier::pipeline {
 
 /// Items are chunks.
 StageMemory leaves_memory(const JobSize& job);
-StageTime leaves_time(const JobSize& job);
+StageTimes leaves_time(const JobSize& job, const TilePopulation& tiles);
 /// Partition tiles, until the end.
-DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles);
+DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
+
+/// Throws if not all of the share's chunks, which other processes have distributed, are there:
+/// Error(corrupt) that names the file, or Error(io).
+void check_chunks(const Chunks& chunks, const Share& share, const execution::CancelToken& cancel);
 
 /// Splits every chunk of the share and puts its partition tiles into the forest, but for those
 /// whose leaves the journal has. Throws Error(budget) for a chunk with more triangles than there is
-/// memory for, Error(io) if the disk has changed a chunk of another process.
+/// memory for.
 void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Share& share,
                  const StageContext& context);
 

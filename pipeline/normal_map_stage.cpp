@@ -251,8 +251,6 @@ void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal
 }
 
 StageMemory normal_map_memory(const JobSize& job) {
-  if (job.normal_map_side == 0)
-    return {};
   const std::uint64_t largest = map_bytes(job.normal_map_format, job.normal_map_side);
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kFramedTriangleBytes;
@@ -268,17 +266,16 @@ double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
   return map_texels(job, tiles) * texel + tiles.simplified.vertices * kVertex;
 }
 
-StageTime normal_map_time(const JobSize& job, const TilePopulation& tiles) {
+StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTileSeconds = 40e-3;
   const double texel = job.normal_map_format == ImageFormat::ktx2 ? 3000e-9 : 220e-9;
-  return {"normal maps", "tiles",
-          static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
-          tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel};
+  return {{"normal maps", "tiles",
+           static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
+           tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel}};
 }
 
-DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles) {
-  if (job.normal_map_side == 0)
-    return {};
+DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,
+                            const MemoryPlan& /*memory*/) {
   constexpr double kShown = 0.45;
   const double directions = map_texels(job, tiles) * (kShown * sizeof(texture::NormalTexel) + 0.2);
   constexpr double kTriangle =

@@ -13,13 +13,15 @@
 
 namespace meshhier::pipeline {
 
-/// Items are tiles, with their maps. None if the build makes no maps.
+/// Items are tiles, with their maps. Requires a build that makes maps, as all that is told of the
+/// stage.
 StageMemory normal_map_memory(const JobSize& job);
-/// Bytes of the published maps, with tangents and coordinates, about.
+/// Bytes of the published maps, with tangents and coordinates, about; of any build.
 double published_map_bytes(const JobSize& job, const TilePopulation& tiles);
-StageTime normal_map_time(const JobSize& job, const TilePopulation& tiles);
+StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles);
 /// Maps and directions of tiles, until the end.
-DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles);
+DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,
+                            const MemoryPlan& memory);
 
 /// Makes the maps of simplified tiles that the journal does not have, level by level from the last
 /// on. Requires all of level `end`, and those of the whole levels between if there are any.

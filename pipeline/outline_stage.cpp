@@ -91,13 +91,13 @@ std::vector<outline::CrestLine> crest_lines(Forest& forest) {
 
 }  // namespace
 
-StageTime outline_time(const config::Config& config, const TilePopulation& tiles) {
+StageTimes outline_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kVertexSeconds = 0.1e-6;  // of the tiles of one level
-  const double sectors = std::min<double>(config.outline.sectors, tiles.simplified.count);
+  const double sectors = std::min<double>(job.outline_sectors, tiles.simplified.count);
   const double vertices = tiles.simplified.count > 0
                               ? tiles.simplified.vertices / tiles.simplified.count
                               : tiles.partitions.vertices;
-  return {"outline", "sectors", 0, std::max(sectors, 1.0) * vertices * kVertexSeconds};
+  return {{"outline", "sectors", 0, std::max(sectors, 1.0) * vertices * kVertexSeconds}};
 }
 
 OutlineStageResult make_outline(Forest& forest, double diagonal, const StageContext& context) {

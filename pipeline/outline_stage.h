@@ -9,7 +9,7 @@
 
 namespace meshhier::pipeline {
 
-StageTime outline_time(const config::Config& config, const TilePopulation& tiles);
+StageTimes outline_time(const JobSize& job, const TilePopulation& tiles);
 
 struct OutlineStageResult {
   Outline outline;

@@ -1,5 +1,6 @@
 #include "pipeline/pack_stage.h"
 
+#include "pipeline/publish_stage.h"
 #include "storage/format/archive_writer.h"
 #include "storage/format/layout.h"
 #include "storage/format/tileset.h"
@@ -51,10 +52,14 @@ std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
   return writer.bytes();
 }
 
-StageTime pack_time(const TilePopulation& tiles, double output_bytes, double bytes_per_second) {
+double published_bytes(const JobSize& job, const TilePopulation& tiles) {
+  return publish_output(job, tiles).bytes + (job.packed ? archive_overhead_bytes(tiles) : 0);
+}
+
+StageTimes pack_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kMoves = 2;  // read and written
-  return {"pack", "files", static_cast<std::uint64_t>(tiles.files()),
-          kMoves * output_bytes / bytes_per_second};
+  return {{"pack", "files", static_cast<std::uint64_t>(tiles.files()),
+           kMoves * published_bytes(job, tiles) / kDiskBytesPerSecond}};
 }
 
 double archive_overhead_bytes(const TilePopulation& tiles) {

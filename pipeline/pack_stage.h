@@ -30,8 +30,11 @@ class TemporaryFiles {
 /// Of the archive, beside the files in it.
 double archive_overhead_bytes(const TilePopulation& tiles);
 
-/// Seconds on a disk that takes `bytes_per_second`.
-StageTime pack_time(const TilePopulation& tiles, double output_bytes, double bytes_per_second);
+/// Bytes of the output: all files, or their archive.
+double published_bytes(const JobSize& job, const TilePopulation& tiles);
+
+/// Seconds on the disk.
+StageTimes pack_time(const JobSize& job, const TilePopulation& tiles);
 
 /// Makes the archive `file` of all files of the hierarchy `made`: manifest, index, outline,
 /// tilesets, then tiles level by level; forces it to the disk. What is read counts in `use`.

@@ -178,10 +178,16 @@ StageMemory partition_memory(const JobSize& job) {
   const std::uint64_t table = (rank_bytes(job) * job.vertex_count + beside) /
                                   (ChunkSpools::kWorkParts - 1) * ChunkSpools::kWorkParts +
                               4 * kMiB;
-  return {block, 2 * job.threads, std::max(splits, distribution), table};
+  constexpr std::uint64_t kBlockParts = 4;
+  return {block,
+          2 * job.threads,
+          std::max(splits, distribution),
+          table,
+          &MemoryPlan::blocks_in_flight,
+          kBlockParts};
 }
 
-std::vector<StageTime> partition_time(const JobSize& job) {
+StageTimes partition_time(const JobSize& job, const TilePopulation& /*tiles*/) {
   constexpr double kVertexSeconds = 35e-9;
   constexpr double kTriangleSeconds = 35e-9;
   const StageTime vertices{kPartitionStage, "vertices", job.vertex_count,
@@ -192,7 +198,8 @@ std::vector<StageTime> partition_time(const JobSize& job) {
            static_cast<double>(job.face_count) * kTriangleSeconds}};
 }
 
-DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory) {
+DiskVolumes partition_disk(const JobSize& job, const TilePopulation& /*tiles*/,
+                           const MemoryPlan& memory) {
   const auto vertices = static_cast<double>(job.vertex_count);
   const partition::RenumberPlan renumbering =
       partition::plan_renumbering(job.vertex_count, rank_bytes(job), memory.table_bytes);

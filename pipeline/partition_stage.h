@@ -18,10 +18,11 @@ ChunkSpools chunk_spools(const JobSize& job);
 /// Items are blocks of input.
 StageMemory partition_memory(const JobSize& job);
 /// A sweep for the splits, then vertices and triangles distributed.
-std::vector<StageTime> partition_time(const JobSize& job);
+StageTimes partition_time(const JobSize& job, const TilePopulation& tiles);
 /// Windows of the medians until the splits are found; ranks, and triangles that wait for one, while
 /// triangles are distributed; chunks until the end of `leaves`.
-DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);
+DiskVolumes partition_disk(const JobSize& job, const TilePopulation& tiles,
+                           const MemoryPlan& memory);
 
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
 /// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside

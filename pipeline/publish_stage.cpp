@@ -264,6 +264,8 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
         journal.note_published(tile);
         context.progress.advance(1);
       });
+  if (!to.attempts.empty())
+    context.files.sync_tree(to.directory);
 }
 
 namespace {
@@ -366,16 +368,21 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
 }
 
-StageTime publish_time(const JobSize& job, const TilePopulation& tiles) {
+StageMemory publish_memory(const JobSize& job) {
+  const std::uint64_t bytes = job.draws_preview ? preview_memory(job) : first_view_memory(job);
+  return {bytes, 1, bytes, bytes};
+}
+
+StageTimes publish_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kVertexSeconds = 55e-9;
   constexpr double kPackedByteSeconds = 20e-9;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   const double packed = job.published_ratio < 1 ? publish_output(job, tiles).plain_bytes : 0;
-  return {"publish", "tiles",
-          static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
-                                     tiles.early.count),
-          vertices * kVertexSeconds + packed * kPackedByteSeconds + kFirstViewSeconds +
-              (job.draws_preview ? kPreviewSeconds : 0)};
+  return {{"publish", "tiles",
+           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
+                                      tiles.early.count),
+           vertices * kVertexSeconds + packed * kPackedByteSeconds + kFirstViewSeconds +
+               (job.draws_preview ? kPreviewSeconds : 0)}};
 }
 
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {

@@ -15,7 +15,9 @@ namespace meshhier::pipeline {
 
 /// The published files, for good or until they are packed.
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
-StageTime publish_time(const JobSize& job, const TilePopulation& tiles);
+/// What the preview or the first view holds: tiles on their way take less than in `simplify`.
+StageMemory publish_memory(const JobSize& job);
+StageTimes publish_time(const JobSize& job, const TilePopulation& tiles);
 
 /// Where tile files go.
 struct TileFiles {
@@ -25,7 +27,8 @@ struct TileFiles {
   std::filesystem::path attempts{};
 };
 
-/// Writes the files of the share of all tiles, but for those the journal has.
+/// Writes the files of the share of all tiles, but for those the journal has. All are on disk then,
+/// if other processes write, too.
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
              const TileFiles& to, const Share& share, const StageContext& context);
 

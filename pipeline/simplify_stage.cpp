@@ -175,15 +175,16 @@ void note_root(Simplifier& simplifier, BuildJournal& journal, const Tree& tree) 
 void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attributes,
               const LevelRange& levels, const StageContext& context) {
   const Tree& tree = context.tree();
+  const int end = std::min(levels.end, int{raw(tree.depth())});
   std::vector<std::vector<NodeId>> left;  // from levels.top on
   std::uint64_t total = 0;
-  for (int l = levels.top; l < levels.end; ++l) {
+  for (int l = levels.top; l < end; ++l) {
     left.push_back(tiles_left(tree, static_cast<Level>(l), levels.share, journal));
     total += left.back().size();
   }
   context.progress.stage("simplify", total, "tiles");
   Simplifier simplifier(forest, attributes, context);
-  for (int l = levels.end - 1; l >= levels.top; --l) {
+  for (int l = end - 1; l >= levels.top; --l) {
     const std::vector<NodeId>& nodes = left[l - levels.top];
     TileRoom::Heaviest heaviest{heaviest_contracted(forest, nodes)};
     if (heaviest.now > context.memory().work_bytes) {
@@ -225,21 +226,22 @@ StageMemory simplify_memory(const JobSize& job) {
                        : 0;
   const std::uint64_t tile =
       vertices * (6 * (job.vertex_bytes() + 8) + 260) + job.part_triangles(vertices) * 80 + copies;
-  return {tile, 2 * job.threads, tile, 2 * job.threads * tile};
+  return {tile, 2 * job.threads, tile, 2 * job.threads * tile, &MemoryPlan::tiles_in_flight};
 }
 
-StageTime simplify_time(const JobSize& job, const TilePopulation& tiles) {
+StageTimes simplify_time(const JobSize& job, const TilePopulation& tiles) {
   // Of each vertex that is joined to be contracted, with its two triangles.
   constexpr double kCollapsed = 1.12e-6;
   constexpr double kClustered = 0.62e-6;
   constexpr double kShaded = 0.1e-6;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
-  return {"simplify", "tiles", static_cast<std::uint64_t>(tiles.simplified.count),
-          vertices *
-              ((job.clustered ? kClustered : kCollapsed) + (job.computes_normals ? kShaded : 0))};
+  return {{"simplify", "tiles", static_cast<std::uint64_t>(tiles.simplified.count),
+           vertices *
+               ((job.clustered ? kClustered : kCollapsed) + (job.computes_normals ? kShaded : 0))}};
 }
 
-DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles) {
+DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles,
+                          const MemoryPlan& /*memory*/) {
   // A tile of far fewer vertices than half of its children's (simplify.vertices by level) has long
   // seams with what is one level finer: foreign corners and seam strips. With steps from 400 to 20
   // and from 4,000 to 4, temporary files are so predicted 2 to 14 % too large, as with equal tiles

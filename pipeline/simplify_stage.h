@@ -13,15 +13,15 @@ namespace meshhier::pipeline {
 
 /// Items are pairs of children and their parent.
 StageMemory simplify_memory(const JobSize& job);
-StageTime simplify_time(const JobSize& job, const TilePopulation& tiles);
+StageTimes simplify_time(const JobSize& job, const TilePopulation& tiles);
 /// Simplified tiles, parent maps and seam strips, until the end.
-DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles);
+DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles,
+                          const MemoryPlan& memory);
 
-/// Contracts, level by level from the last to the top one, the tiles that the journal does not
-/// have. `attributes`: of the
-/// input. Requires all tiles of level `end`, and those of the whole levels between if there are
-/// any. If normals are computed, every tile that is read gets those of its own surface
-/// (shading/own_normals.h); the root, if it is made, too.
+/// Contracts, level by level from the last above the partitions to the top one, the tiles that the
+/// journal does not have. `attributes`: of the input. Requires all tiles of level `end`, and those
+/// of the whole levels between if there are any. If normals are computed, every tile that is read
+/// gets those of its own surface (shading/own_normals.h); the root, if it is made, too.
 ///
 /// How far a contraction moves the surface is measured while it is carried out (deviation.h), and
 /// at the seams when its level is complete (seam_strip.h): such steps are noted in the journal.

@@ -1,18 +1,12 @@
 #include "pipeline/stage_costs.h"
 
 #include "config/placement.h"
-#include "pipeline/images_stage.h"
-#include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/leaves_stage.h"
-#include "pipeline/normal_map_stage.h"
-#include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
-#include "pipeline/preview.h"
 #include "pipeline/publish_stage.h"
-#include "pipeline/simplify_stage.h"
-#include "pipeline/texture_stage.h"
+#include "pipeline/stages.h"
 #include "storage/format/archive_writer.h"
 #include "storage/format/tile_plan.h"
 
@@ -29,26 +23,40 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
          (job.has_map ? config::kMapMemoryBytes : 0);
 }
 
+/// Returns the times of one kind of all stages that apply.
+StageTimes times_of(const BuildPlan& plan,
+                    StageTimes (*Stage::*kind)(const JobSize& job, const TilePopulation& tiles)) {
+  const TilePopulation tiles = expected_tiles(plan.job);
+  StageTimes all;
+  for (const Stage* stage : stages_of(plan.job)) {
+    if (stage->*kind == nullptr)
+      continue;
+    const StageTimes times = (stage->*kind)(plan.job, tiles);
+    all.insert(all.end(), times.begin(), times.end());
+  }
+  return all;
+}
+
 }  // namespace
 
 MemoryCosts memory_costs(const JobSize& job) {
-  return {bookkeeping_bytes(job),
-          ingest_memory(job),
-          partition_memory(job),
-          leaves_memory(job),
-          simplify_memory(job),
-          images_memory(job),
-          job.textured ? texture_memory(job) : normal_map_memory(job),
-          job.draws_preview ? preview_memory(job) : first_view_memory(job),
-          chunk_spools(job)};
+  MemoryCosts costs{.bookkeeping_bytes = bookkeeping_bytes(job),
+                    .chunk_spools = chunk_spools(job),
+                    .block_bytes = input_block_bytes(job)};
+  for (const Stage* stage : stages_of(job)) {
+    if (stage->memory != nullptr)
+      costs.stages.push_back(stage->memory(job));
+  }
+  return costs;
 }
 
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles) {
   DiskCosts costs;
-  for (const DiskVolumes& stage :
-       {imported_disk(job), ingest_disk(job), partition_disk(job, memory), leaves_disk(job, tiles),
-        simplify_disk(job, tiles), texture_disk(job, tiles), normal_map_disk(job, tiles)}) {
-    costs.volumes.insert(costs.volumes.end(), stage.begin(), stage.end());
+  for (const Stage* stage : stages_of(job)) {
+    if (stage->disk == nullptr)
+      continue;
+    const DiskVolumes volumes = stage->disk(job, tiles, memory);
+    costs.volumes.insert(costs.volumes.end(), volumes.begin(), volumes.end());
   }
   costs.output = publish_output(job, tiles);
   costs.packed = job.packed;
@@ -71,20 +79,8 @@ BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescriptio
           std::move(textures)};
 }
 
-std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& plan) {
-  const JobSize& job = plan.job;
-  const TilePopulation tiles = expected_tiles(job);
-  std::vector<StageTime> times = partition_time(job);
-  times.insert(times.begin(), ingest_time(job));
-  if (job.textured)
-    times.push_back(images_time(job));
-  times.insert(times.end(), {leaves_time(job), simplify_time(job, tiles)});
-  if (job.textured)
-    times.push_back(texture_time(job, tiles));
-  if (job.normal_map_side > 0)
-    times.push_back(normal_map_time(job, tiles));
-  times.insert(times.end(), {outline_time(config, tiles), publish_time(job, tiles)});
-  return times;
+StageTimes cpu_times(const BuildPlan& plan) {
+  return times_of(plan, &Stage::time);
 }
 
 double wall_seconds(double cpu_seconds, std::size_t threads) {
@@ -92,14 +88,12 @@ double wall_seconds(double cpu_seconds, std::size_t threads) {
   return cpu_seconds * (kSerialShare + (1 - kSerialShare) / static_cast<double>(threads));
 }
 
-std::vector<StageTime> wall_times(const config::Config& config, const BuildPlan& plan) {
-  std::vector<StageTime> times = cpu_times(config, plan);
+StageTimes wall_times(const BuildPlan& plan) {
+  StageTimes times = cpu_times(plan);
   for (StageTime& stage : times)
     stage.seconds = wall_seconds(stage.seconds, plan.threads);
-  const auto output = static_cast<double>(plan.disk.output_bytes);
-  if (plan.job.packed)
-    times.push_back(pack_time(expected_tiles(plan.job), output, kDiskBytesPerSecond));
-  times.push_back({"sync", "bytes", 0, output / kDiskBytesPerSecond});
+  const StageTimes waiting = times_of(plan, &Stage::disk_time);
+  times.insert(times.end(), waiting.begin(), waiting.end());
   return times;
 }
 
@@ -109,7 +103,7 @@ std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSu
   const TilePopulation expected = expected_tiles(job);
   const TilePopulation counted = with_counted(expected, partitions);
   const auto leaves_bytes = [&](const TilePopulation& tiles) {
-    return temporary_bytes_at(DiskMoment::leaves, leaves_disk(job, tiles), 0);
+    return temporary_bytes_at(DiskMoment::leaves, leaves_disk(job, tiles, plan.memory), 0);
   };
   if (leaves_bytes(counted) <= kFarMore * leaves_bytes(expected))
     return std::nullopt;

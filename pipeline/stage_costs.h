@@ -1,4 +1,4 @@
-// What all stages of a build take together, and the plan that follows from it.
+// What all stages of a build (pipeline/stages.h) take together, and the plan that follows from it.
 //
 // What is written when, and how long it stays:
 //
@@ -38,20 +38,18 @@ MemoryCosts memory_costs(const JobSize& job);
 /// `tiles`: expected_tiles(job), or what is known better.
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles);
 
-/// A disk on its own, a cloud volume or a laptop's SSD when its cache is full.
-inline constexpr double kDiskBytesPerSecond = 500e6;
 /// Of a whole build, about, for what is to be said before a mesh is known: an input triangle's.
 inline constexpr double kBuildTriangleSeconds = 1.4e-6;
 
 /// CPU seconds of all stages from ingest to publish, in the order of a build.
-std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& plan);
+StageTimes cpu_times(const BuildPlan& plan);
 
 /// So many CPU seconds on the threads that a build uses: a part of it one thread does while the
 /// others wait.
 double wall_seconds(double cpu_seconds, std::size_t threads);
 
 /// Wall seconds of all stages to the end, import left out.
-std::vector<StageTime> wall_times(const config::Config& config, const BuildPlan& plan);
+StageTimes wall_times(const BuildPlan& plan);
 
 /// What the disk needs when all partitions are there, if these take far more than was expected from
 /// the header: around vertices of very many triangles, or in a soup. Else none.

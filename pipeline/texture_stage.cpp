@@ -340,8 +340,6 @@ TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& 
 }
 
 StageMemory texture_memory(const JobSize& job) {
-  if (!job.textured)
-    return {};
   const images::WrittenImage leaf{stored_format(job.pictures, job.alpha), job.pictures.quality,
                                   leaf_side(job.pictures.format), leaf_side(job.pictures.format),
                                   4};
@@ -354,18 +352,18 @@ StageMemory texture_memory(const JobSize& job) {
           2 * kMostPictureCache + waiting + (job.threads + 1) * largest};
 }
 
-StageTime texture_time(const JobSize& job, const TilePopulation& tiles) {
+StageTimes texture_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTexelSeconds = 60e-9;
   constexpr double kBakedSeconds = 500e-9, kEtc1sSeconds = 2500e-9, kUastcSeconds = 700e-9;
   const double side = job.picture_side;
   const double coded = job.pictures.format != ImageFormat::ktx2 ? 0
                        : job.pictures.quality == 100            ? kUastcSeconds
                                                                 : kEtc1sSeconds;
-  return {"texture", "tiles",
-          static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
-                                     tiles.early.count),
-          static_cast<double>(job.source_texels) * (kTexelSeconds + coded) +
-              tiles.simplified.count * side * side * (kBakedSeconds + coded)};
+  return {{"texture", "tiles",
+           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
+                                      tiles.early.count),
+           static_cast<double>(job.source_texels) * (kTexelSeconds + coded) +
+               tiles.simplified.count * side * side * (kBakedSeconds + coded)}};
 }
 
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) {
@@ -384,9 +382,8 @@ double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) 
   return (static_cast<double>(job.source_texels) * 0.8 + baked) * texel;
 }
 
-DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles) {
-  if (!job.textured)
-    return {};
+DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles,
+                         const MemoryPlan& /*memory*/) {
   const double side = job.picture_side;
   // What is baked from a partition has up to twice the texels of a simplified tile's picture, and
   // no more than it shows.
@@ -396,8 +393,7 @@ DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles) {
       (tiles.simplified.count * side * side + cut) * 3 + published_picture_bytes(job, tiles);
   const double triangles = tiles.partitions.triangles + tiles.simplified.triangles;
   constexpr double kTriangle = 3 * sizeof(Vec2f) * 2 + 12 + 6;
-  return {{static_cast<double>(job.picture_bytes), DiskMoment::leaves, DiskMoment::simplify},
-          {pictures + triangles * kTriangle, DiskMoment::simplify, DiskMoment::simplify}};
+  return {{pictures + triangles * kTriangle, DiskMoment::simplify, DiskMoment::simplify}};
 }
 
 }  // namespace meshhier::pipeline

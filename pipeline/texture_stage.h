@@ -28,13 +28,14 @@ constexpr std::uint32_t leaf_side(ImageFormat format) {
   return format == ImageFormat::ktx2 ? images::kMostKtx2Side : kLeafSide;
 }
 
-/// Items are tiles, with their pictures. None if the mesh has no textures.
+/// Items are tiles, with their pictures. Requires a textured mesh, as all that is told of the
+/// stage.
 StageMemory texture_memory(const JobSize& job);
-/// Bytes of the published pictures, about.
+/// Bytes of the published pictures, about; of any mesh.
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles);
-StageTime texture_time(const JobSize& job, const TilePopulation& tiles);
+StageTimes texture_time(const JobSize& job, const TilePopulation& tiles);
 /// Pictures of tiles, until the end.
-DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles);
+DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 
 /// Makes the pictures of tiles that the journal does not have, level by level from the last on.
 /// Requires all of level `end`, and those of the whole levels between if there are any.

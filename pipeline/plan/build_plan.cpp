@@ -118,6 +118,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
                                   (job.computes_normals ? sizeof(NormalCode) : 0);
   job.published_ratio = storage::expected_ratio(config.storage.compression);
   job.draws_preview = config.preview;
+  job.outline_sectors = config.outline.sectors;
   job.has_map = config.placement.crs.has_value();
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);

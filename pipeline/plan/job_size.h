@@ -39,6 +39,7 @@ struct JobSize {
   std::uint32_t normal_map_side = 0;    ///< of a simplified tile, texels at most; 0: there are none
   ImageFormat normal_map_format = ImageFormat::jpeg;
   bool draws_preview = false;
+  std::uint32_t outline_sectors = 0;
   bool has_map = false;  ///< PROJ places the model
 
   /// Vertices at places that have one already, for each place.

@@ -16,28 +16,28 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // more behind a look at all vertices by several threads.
 constexpr std::uint64_t kBaseBytes = 22 * kMiB;
 
-// Of a stage's memory, one part in so many may be blocks of input.
-constexpr std::uint64_t kBlockParts = 4;
-
 // The table of ranks has what the blocks and the spools leave, and this at least.
 constexpr std::uint64_t kLeastTableBytes = 4 * kMiB;
 
 /// What the hungriest stage holds with one item in flight.
 std::uint64_t least_work_bytes(const MemoryCosts& costs) {
-  return std::max({costs.ingest.least_bytes, costs.partition.least_bytes, costs.leaves.least_bytes,
-                   costs.simplify.least_bytes, costs.images.least_bytes, costs.texture.least_bytes,
-                   costs.preview_bytes});
+  std::uint64_t most = 0;
+  for (const StageMemory& stage : costs.stages)
+    most = std::max(most, stage.least_bytes);
+  return most;
 }
 
 std::uint64_t wanted_work_bytes(const MemoryCosts& costs) {
-  return std::max({least_work_bytes(costs), costs.ingest.wanted_bytes, costs.partition.wanted_bytes,
-                   costs.leaves.wanted_bytes, costs.simplify.wanted_bytes,
-                   costs.images.wanted_bytes, costs.texture.wanted_bytes});
+  std::uint64_t most = least_work_bytes(costs);
+  for (const StageMemory& stage : costs.stages)
+    most = std::max(most, stage.wanted_bytes);
+  return most;
 }
 
-std::size_t items_in_flight(std::uint64_t bytes, const StageMemory& stage) {
-  return std::clamp<std::uint64_t>(bytes / std::max<std::uint64_t>(stage.item_bytes, 1), 1,
-                                   stage.most_items);
+std::size_t items_in_flight(std::uint64_t work_bytes, const StageMemory& stage) {
+  return std::clamp<std::uint64_t>(
+      work_bytes / stage.item_parts / std::max<std::uint64_t>(stage.item_bytes, 1), 1,
+      stage.most_items);
 }
 
 }  // namespace
@@ -65,14 +65,14 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const MemoryCosts& costs) {
   plan.work_bytes = std::min(wanted_work_bytes(costs), least_work + spare / 2);
   const std::uint64_t rest = budget_bytes - fixed - plan.work_bytes;
   plan.pool_bytes = rest - std::min(rest, budget_bytes / kAllocatorParts);
-  plan.blocks_in_flight = items_in_flight(plan.work_bytes / kBlockParts, costs.partition);
-  plan.chunks_in_flight = items_in_flight(plan.work_bytes, costs.leaves);
-  plan.tiles_in_flight = items_in_flight(plan.work_bytes, costs.simplify);
-  plan.pictures_in_flight = items_in_flight(plan.work_bytes, costs.images);
+  for (const StageMemory& stage : costs.stages) {
+    if (stage.in_flight != nullptr)
+      plan.*stage.in_flight = items_in_flight(plan.work_bytes, stage);
+  }
   plan.spool_block_bytes = costs.chunk_spools.block_bytes(plan.work_bytes);
   plan.table_bytes =
       plan.work_bytes - std::min(plan.work_bytes - kLeastTableBytes,
-                                 plan.blocks_in_flight * costs.partition.item_bytes +
+                                 plan.blocks_in_flight * costs.block_bytes +
                                      costs.chunk_spools.bytes(plan.spool_block_bytes));
   return plan;
 }

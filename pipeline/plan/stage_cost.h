@@ -1,5 +1,6 @@
 // What the stages of a build take, as values: each stage tells it beside its code (*_memory(),
-// *_disk(), *_time()), pipeline/stage_costs collects it, and the plan adds it up.
+// *_disk(), *_time()), its row in pipeline/stages.cpp names these functions, pipeline/stage_costs
+// walks the rows, and the plan adds up.
 #pragma once
 
 #include "execution/job_progress.h"
@@ -11,6 +12,8 @@
 
 namespace meshhier::pipeline {
 
+struct MemoryPlan;
+
 /// Memory of a stage at work: upper bounds for tiles as they are on average (TileRoom has the
 /// others).
 struct StageMemory {
@@ -18,19 +21,25 @@ struct StageMemory {
   std::size_t most_items = 1;      ///< in flight; more gain nothing
   std::uint64_t least_bytes = 0;   ///< all of the stage, with one item in flight
   std::uint64_t wanted_bytes = 0;  ///< all of the stage; more gains nothing
+  /// Where the plan notes how many items are in flight; null: it does not ask.
+  std::size_t MemoryPlan::*in_flight = nullptr;
+  std::uint64_t item_parts = 1;  ///< of the stage's memory one part in so many is for items
 };
 
-/// Outline and publish hold less than simplify, with as many tiles in flight, but for the preview.
 struct MemoryCosts {
   std::uint64_t bookkeeping_bytes = 0;  ///< held all the time
-  StageMemory ingest, partition, leaves, simplify, images, texture;
-  std::uint64_t preview_bytes = 0;
+  std::vector<StageMemory> stages{};
   ChunkSpools chunk_spools;
+  std::uint64_t block_bytes = 0;  ///< a block of input
 };
 
 /// CPU seconds of a stage on the machine of kRateMachine, as `scripts/benchmark scale` measured
 /// them, disk to disk; an entry for each pass that it tells progress of.
 using StageTime = execution::ExpectedStage;
+using StageTimes = std::vector<StageTime>;
+
+/// A disk on its own, a cloud volume or a laptop's SSD when its cache is full.
+inline constexpr double kDiskBytesPerSecond = 500e6;
 
 /// When the most lies on disk, in the order of a build.
 enum class DiskMoment {

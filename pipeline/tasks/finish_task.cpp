@@ -3,10 +3,9 @@
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "pipeline/build_report.h"
-#include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/plan/share.h"
-#include "pipeline/publish_stage.h"
+#include "pipeline/stages.h"
 #include "pipeline/tasks/task_record.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -74,7 +73,7 @@ std::optional<Finished> look_at(storage::FileSystem& files, const fs::path& path
 }
 
 Finished read_finished(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
-  const storage::SegmentName name{plan.fingerprint, "finish", 0};
+  const storage::SegmentName name{plan.fingerprint, std::string(kFinishTask), 0};
   std::optional<Finished> finished;
   open_segment(files, work, name)->for_each([&](const storage::EntrySink::Entry& entry) {
     if (!entry.contains("finished"))
@@ -94,7 +93,8 @@ Finished read_finished(const TaskPlan& plan, const fs::path& work, storage::File
 /// What tasks sealed or left, but for what says that all is done.
 void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
                                storage::FileSystem& files) {
-  const fs::path last = storage::segment_path(work, {plan.fingerprint, "finish", 0});
+  const fs::path last =
+      storage::segment_path(work, {plan.fingerprint, std::string(kFinishTask), 0});
   for (const fs::path& segment : files.children(storage::segments_path(work))) {
     if (segment != last)
       files.remove_all(segment);
@@ -153,16 +153,16 @@ void check_no_others(const fs::path& built, storage::FileSystem& files) {
 
 }  // namespace
 
-void finish_hierarchy(Workshop& workshop, const fs::path& work, std::uint32_t tasks,
-                      storage::SegmentWriter& entries, const StageContext& context) {
+void finish_hierarchy(const TaskKind& kind, Workshop& workshop, const fs::path& work,
+                      std::uint32_t tasks, storage::SegmentWriter& entries,
+                      const StageContext& context) {
   storage::FileSystem& files = context.files;
   const storage::Container container = context.config.storage.container;
   const fs::path built = storage::built_path(work);
   check_tiles(workshop.journal, work, tasks, context);
   check_no_others(built, files);
-  const OutlineStageResult outline =
-      make_outline(workshop.forest, workshop.journal.source()->summary.diagonal(), context);
-  write_account(workshop.forest, workshop.textures, workshop.journal, outline, built, context);
+  Making making{workshop, {built}};
+  make_stages(kind, making, {}, context);
   if (container == storage::Container::archive) {
     const storage::HierarchyReader made(files, built);
     pack(made, storage::packed_path(work), workshop.tile_scratch.pool().scratch_use(), context);
@@ -213,7 +213,7 @@ std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
 
 bool is_named(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
   return !files.exists(storage::built_path(work)) && !files.exists(storage::packed_path(work)) &&
-         storage::Segment::is_whole(files, work, {plan.fingerprint, "finish", 0});
+         storage::Segment::is_whole(files, work, {plan.fingerprint, std::string(kFinishTask), 0});
 }
 
 }  // namespace meshhier::pipeline

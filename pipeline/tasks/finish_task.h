@@ -12,11 +12,13 @@
 
 namespace meshhier::pipeline {
 
-/// Completes the hierarchy in `work`, or its archive, of which all tiles are published, and notes
-/// what it is in `entries`. Reads all tiles. `tasks`: of the stage `publish`. Throws Error(corrupt)
-/// that names the task to run again if a tile is missing or not what was published.
-void finish_hierarchy(Workshop& workshop, const std::filesystem::path& work, std::uint32_t tasks,
-                      storage::SegmentWriter& entries, const StageContext& context);
+/// Completes the hierarchy in `work`, or its archive, of which all tiles are published, by what a
+/// task of that kind makes, and notes what it is in `entries`. Reads all tiles. `tasks`: of the
+/// stage `publish`. Throws Error(corrupt) that names the task to run again if a tile is missing or
+/// not what was published.
+void finish_hierarchy(const TaskKind& kind, Workshop& workshop, const std::filesystem::path& work,
+                      std::uint32_t tasks, storage::SegmentWriter& entries,
+                      const StageContext& context);
 
 /// Gives what was finished the output's name and removes what tasks have sealed, unless that is
 /// done already. Returns what there is, for people. Throws Error(exists) as check_output() does,

@@ -163,7 +163,7 @@ void InputSlices::take_faces(storage::EntrySink& entries) {
   workshop_.journal.note_chunks();
 }
 
-void InputSlices::join() {
+void InputSlices::join(storage::EntrySink& /*entries*/) {
   SlicedInput in = input_with_ranks();
   const mesh_io::FaceCounts rest = distribute_triangles_from(counts_.faces, in, workshop_.chunks,
                                                              workshop_.mesh_scratch, context_);

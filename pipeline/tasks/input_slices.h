@@ -53,7 +53,7 @@ class InputSlices {
   void distribute(storage::EntrySink& entries);
   void take_faces(storage::EntrySink& entries);
   /// The faces that no slice could take, and what all slices learnt of the source.
-  void join();
+  void join(storage::EntrySink& entries);
 
  private:
   bool take_splits(const Entry& planes);

@@ -3,30 +3,25 @@
 #include "execution/allocator.h"
 #include "hierarchy/error.h"
 #include "import/mesh_input.h"
-#include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
-#include "pipeline/leaves_stage.h"
-#include "pipeline/normal_map_stage.h"
 #include "pipeline/plan/build_stats.h"
-#include "pipeline/publish_stage.h"
 #include "pipeline/read_stage.h"
-#include "pipeline/simplify_stage.h"
 #include "pipeline/stage_costs.h"
+#include "pipeline/stages.h"
 #include "pipeline/tasks/attempt.h"
 #include "pipeline/tasks/finish_task.h"
 #include "pipeline/tasks/input_slices.h"
 #include "pipeline/tasks/task_record.h"
-#include "pipeline/texture_stage.h"
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
 #include "storage/format/work_directory.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <memory>
-#include <optional>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -62,7 +57,7 @@ class Task {
 
   /// Makes what the task is for and seals it.
   void run() {
-    if (stage_.kind == TaskKind::read)
+    if (stage_.kind->takes == Takes::nothing)
       read();
     else
       go_on();
@@ -70,8 +65,8 @@ class Task {
 
  private:
   storage::FileSystem& files() const { return environment_.files; }
-  storage::SegmentName name(const std::string& stage, std::uint32_t index) const {
-    return {plan_.fingerprint, stage, index};
+  storage::SegmentName name(std::string_view stage, std::uint32_t index) const {
+    return {plan_.fingerprint, std::string(stage), index};
   }
 
   void read();
@@ -82,23 +77,19 @@ class Task {
                      const AttributeLayout& layout, const StageContext& context);
   /// Takes what the tasks before have made, as far as this one needs it.
   void mount_inputs();
-  void mount(const TaskStage& stage, storage::ScratchFile& scratch);
+  void mount(const TaskStage& stage);
   /// Takes an entry of a segment that is mounted. False if it does not fit the plan.
-  bool take(const storage::EntrySink::Entry& entry, const TaskStage& stage, std::uint32_t index);
+  bool take(const storage::EntrySink::Entry& entry, std::uint32_t index);
   /// Of the journal's entry of a chunk.
   bool needs_chunk(const storage::EntrySink::Entry& partition) const;
-  bool is_slice() const {
-    return stage_.kind == TaskKind::distribute || stage_.kind == TaskKind::faces ||
-           stage_.kind == TaskKind::join;
-  }
-  bool needs(const TaskStage& before) const;
-  storage::ScratchFile& scratch_of(TaskKind kind);
+  bool is_slice() const { return stage_.kind->takes == Takes::slices; }
+  /// Tells whether the task reads what tasks of a stage before have made. `is_next`: its own stage
+  /// comes right behind that.
+  bool needs(const TaskStage& before, bool is_next) const;
 
   void make(const StageContext& context);
-  void leaves(const StageContext& context);
-  void textures(const LevelRange& levels, const StageContext& context);
-  /// Those of the stage; none if the tree is not so deep.
-  LevelRange levels() const;
+  /// Returns the part of its stages that the task does; no levels if the tree is not so deep.
+  LevelRange part() const;
   /// So many levels above the partitions are cut into tasks.
   int cut_levels() const;
 
@@ -140,7 +131,7 @@ void Task::read() {
   check_coders(plan.job);
   check_disk(plan.disk, config.output, files());
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
-  meter_.expect(wall_times(config, plan));
+  meter_.expect(wall_times(plan));
   open_workshop(plan, identity_of(config, input, plan), input.description().attributes, context);
   if (const auto splits = read_splits(input, *workshop_, context))
     InputSlices::note(*splits, *entries_);
@@ -149,13 +140,13 @@ void Task::read() {
 
 EarlierBuild Task::find_source() {
   EarlierBuild source;
-  const auto segment = open_segment(files(), work_, name("read", 0));
+  const auto segment = open_segment(files(), work_, name(kReadTask, 0));
   segment->for_each([&](const storage::EntrySink::Entry& entry) {
     has_slices_ = has_slices_ || InputSlices::has_slices(entry);
     return add_entry(entry, source);
   });
   if (!source.is_whole)
-    throw damaged_segment(work_, name("read", 0));
+    throw damaged_segment(work_, name(kReadTask, 0));
   return source;
 }
 
@@ -181,52 +172,35 @@ void Task::go_on() {
   seal();
 }
 
-bool Task::needs(const TaskStage& before) const {
-  switch (stage_.kind) {
-    case TaskKind::images:
-      return before.kind == TaskKind::read;
-    case TaskKind::level:
-      return before.kind == TaskKind::read ||
-             (stage_.levels_up == 1
-                  ? before.kind == TaskKind::leaves
-                  : before.kind == TaskKind::level && before.levels_up + 1 == stage_.levels_up);
-    case TaskKind::distribute:
-    case TaskKind::faces:
-    case TaskKind::join:
-    case TaskKind::leaves:
+bool Task::needs(const TaskStage& before, bool is_next) const {
+  switch (stage_.kind->takes) {
+    case Takes::nothing:
+      return false;
+    case Takes::input:
+      return before.kind->takes == Takes::nothing;
+    case Takes::slices:
+    case Takes::chunks:
       return true;
-    default:
-      return before.kind != TaskKind::distribute && before.kind != TaskKind::faces;
+    case Takes::level:
+      return before.kind->takes == Takes::nothing || is_next;
+    case Takes::tiles:
+    case Takes::pictures:
+      break;
   }
+  return before.kind->takes != Takes::slices || before.kind->cut != TaskCut::shares;
 }
 
-storage::ScratchFile& Task::scratch_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::read:
-    case TaskKind::distribute:
-    case TaskKind::faces:
-    case TaskKind::join:
-      return workshop_->mesh_scratch;
-    case TaskKind::images:
-      return workshop_->picture_scratch;
-    default:
-      return workshop_->tile_scratch;
-  }
-}
-
-void Task::mount(const TaskStage& stage, storage::ScratchFile& scratch) {
+void Task::mount(const TaskStage& stage) {
   for (std::uint32_t i = 0; i < stage.tasks; ++i) {
     environment_.cancel.check();
     const auto segment = open_segment(files(), work_, name(stage.name, i));
     if (segment->data_bytes() > 0)  // or there is nothing to be read, and no file to be kept open
-      scratch.mount(segment->take_file());
-    segment->for_each(
-        [&](const storage::EntrySink::Entry& entry) { return take(entry, stage, i); });
+      (*workshop_.*stage.kind->scratch).mount(segment->take_file());
+    segment->for_each([&](const storage::EntrySink::Entry& entry) { return take(entry, i); });
   }
 }
 
-bool Task::take(const storage::EntrySink::Entry& entry, const TaskStage& stage,
-                std::uint32_t index) {
+bool Task::take(const storage::EntrySink::Entry& entry, std::uint32_t index) {
   if (InputSlices::is_entry(entry)) {
     if (InputSlices::ends_faces(entry))
       last_faces_ = std::min(last_faces_, index);
@@ -236,7 +210,7 @@ bool Task::take(const storage::EntrySink::Entry& entry, const TaskStage& stage,
     return workshop_->journal.take_sealed(entry);
   if (!needs_chunk(entry.at("partition")))
     return true;
-  return stage.kind == TaskKind::faces && index > last_faces_
+  return index > last_faces_  // known when `faces` itself is read
              ? workshop_->journal.take_sealed_copies(entry)
              : workshop_->journal.take_sealed(entry);
 }
@@ -247,16 +221,15 @@ bool Task::needs_chunk(const storage::EntrySink::Entry& partition) const {
   const Share share{index_, plan_.tasks};
   const std::uint32_t chunks = workshop_->chunks.count();
   const auto chunk = partition[0].get<std::uint64_t>();
-  return stage_.kind == TaskKind::leaves && share.begin(chunks) <= chunk &&
+  return stage_.kind->takes == Takes::chunks && share.begin(chunks) <= chunk &&
          chunk < share.end(chunks);
 }
 
 void Task::mount_inputs() {
-  for (const TaskStage& before : stages_of(plan_)) {
-    if (before.name == stage_.name)
-      break;
-    if (needs(before))
-      mount(before, scratch_of(before.kind));
+  const std::vector<TaskStage> all = stages_of(plan_);
+  for (auto before = all.begin(); before->name != stage_.name; ++before) {
+    if (needs(*before, std::next(before)->name == stage_.name))
+      mount(*before);
   }
 }
 
@@ -270,89 +243,48 @@ int Task::cut_levels() const {
   return count;
 }
 
-LevelRange Task::levels() const {
+LevelRange Task::part() const {
   const int depth = raw(workshop_->forest.tree().depth());
+  const Share share{index_, stage_.tasks};
   const int cut = cut_levels();
-  if (stage_.kind == TaskKind::top || stage_.kind == TaskKind::texture_top)
-    return {0, depth - cut, {}};
   const int up = static_cast<int>(stage_.levels_up);
-  if (up > cut)
-    return {depth, depth, {}};
-  return {depth - up, depth - up + 1, {index_, plan_.tasks}};
-}
-
-void Task::leaves(const StageContext& context) {
-  const Share share{index_, plan_.tasks};
-  const Chunks& chunks = workshop_->chunks;
-  for (std::uint64_t i = share.begin(chunks.count()); i < share.end(chunks.count()); ++i) {
-    environment_.cancel.check();
-    const auto chunk = static_cast<std::uint32_t>(i);
-    if (const std::optional<Error> change = chunks.find_change(chunk))
-      throw *change;
-    if (!chunks.is_whole(chunk))
-      throw Error(ErrorCode::corrupt, "vertices of a chunk are missing: plan the build again");
+  switch (stage_.kind->cut) {
+    case TaskCut::top:
+      return {0, depth - cut, share};
+    case TaskCut::levels:
+      return up > cut ? LevelRange{depth, depth, share}
+                      : LevelRange{depth - up, depth - up + 1, share};
+    case TaskCut::whole:
+    case TaskCut::shares:
+      break;
   }
-  make_leaves(workshop_->chunks, workshop_->forest, workshop_->journal, share, context);
-}
-
-void Task::textures(const LevelRange& levels, const StageContext& context) {
-  if (context.plan.job.normal_map_side > 0 && levels.top < levels.end)
-    make_normal_maps(workshop_->forest, workshop_->textures, workshop_->journal, levels, context);
-  if (!context.plan.textures.is_textured() || levels.top == levels.end)
-    return;
-  if (!workshop_->journal.restore_pictures())
-    throw damaged_segment(work_, name("images", 0));
-  const images::MaterialList materials =
-      decode_images(workshop_->pictures, workshop_->journal, context);
-  make_textures(workshop_->forest, {materials, workshop_->pictures}, workshop_->textures,
-                workshop_->journal, levels, context);
+  return {0, depth + 1, share};
 }
 
 void Task::make(const StageContext& context) {
-  Workshop& workshop = *workshop_;
-  const Share share{index_, plan_.tasks};
-  if (is_slice() && !slices_)
-    return;  // `read` has made all chunks
-  switch (stage_.kind) {
-    case TaskKind::distribute:
-      return slices_->distribute(*entries_);
-    case TaskKind::faces:
-      return slices_->take_faces(*entries_);
-    case TaskKind::join:
-      return slices_->join();
-    case TaskKind::leaves:
-      return leaves(context);
-    case TaskKind::level:
-      if (const LevelRange range = levels(); range.top < range.end)
-        simplify(workshop.forest, workshop.journal, workshop.journal.source()->summary.attributes,
-                 range, context);
-      return;
-    case TaskKind::top:
-      return simplify(workshop.forest, workshop.journal,
-                      workshop.journal.source()->summary.attributes, levels(), context);
-    case TaskKind::images:
-      if (context.plan.textures.is_textured())
-        decode_images(workshop.pictures, workshop.journal, context);
-      return;
-    case TaskKind::texture:
-    case TaskKind::texture_top:
-      return textures(levels(), context);
-    case TaskKind::publish: {
-      const std::filesystem::path built = storage::built_path(work_);
-      publish(workshop.forest, workshop.textures, workshop.journal,
-              {built, attempt_.shared_directory()}, share, context);
-      files().sync_tree(built);
-      return;
-    }
-    default:
-      return finish_hierarchy(workshop, work_, plan_.tasks, *entries_, context);
+  const TaskKind& kind = *stage_.kind;
+  if (kind.slice != nullptr) {
+    if (slices_)  // else `read` has made all chunks
+      (*slices_.*kind.slice)(*entries_);
+    return;
   }
+  if (kind.name == kFinishTask)
+    return finish_hierarchy(kind, *workshop_, work_, plan_.tasks, *entries_, context);
+  const LevelRange part = this->part();
+  const bool has_levels = part.top < part.end;
+  if (kind.cut == TaskCut::levels && !has_levels)
+    return;
+  if (kind.takes == Takes::pictures && has_levels && context.plan.textures.is_textured() &&
+      !workshop_->journal.restore_pictures())
+    throw damaged_segment(work_, name(kImagesTask, 0));
+  Making making{*workshop_, {storage::built_path(work_), attempt_.shared_directory()}};
+  make_stages(kind, making, part, context);
 }
 
 void Task::seal() {
   meter_.end();
   entries_->append(took_entry(meter_.total()));
-  const std::filesystem::path data = scratch_of(stage_.kind).path();
+  const std::filesystem::path data = (*workshop_.*stage_.kind->scratch).path();
   attempt_.seal(*entries_, files().exists(data) ? data : std::filesystem::path(),
                 name(stage_.name, index_), environment_.cancel);
 }
@@ -389,7 +321,7 @@ TaskReport run_tasks(const TaskRequest& request, const BuildEnvironment& environ
   execution::configure_allocator(memory_budget(plan.config));
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(plan.config));
-  if (stage.kind == TaskKind::finish)
+  if (stage.kind->name == kFinishTask)
     return finish(plan, stage, request, environment);
   TaskReport report;
   const bool is_finished = is_named(plan, request.work, files);  // the segments are gone then

@@ -6,6 +6,7 @@
 #include "import/mesh_input.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/stage_costs.h"
+#include "pipeline/stages.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/hash.h"
@@ -256,22 +257,18 @@ void make_directories(const fs::path& work, const fs::path& output, storage::Fil
 }  // namespace
 
 std::vector<TaskStage> stages_of(const TaskPlan& plan) {
-  std::vector<TaskStage> stages{{"read", TaskKind::read, 1},
-                                {"distribute", TaskKind::distribute, plan.tasks},
-                                {"faces", TaskKind::faces, plan.tasks},
-                                {"join", TaskKind::join, 1},
-                                {"leaves", TaskKind::leaves, plan.tasks}};
-  for (std::uint32_t k = 1; k <= plan.levels; ++k)
-    stages.push_back({fmt::format("level-{}", k), TaskKind::level, plan.tasks, k});
-  stages.push_back({"top", TaskKind::top, 1});
-  if (plan.textured) {
-    stages.push_back({"images", TaskKind::images, 1});
-    for (std::uint32_t k = 0; k <= plan.levels; ++k)
-      stages.push_back({fmt::format("texture-{}", k), TaskKind::texture, plan.tasks, k});
-    stages.push_back({"texture-top", TaskKind::texture_top, 1});
+  std::vector<TaskStage> stages;
+  for (const TaskKind& kind : task_kinds()) {
+    if (kind.is_of_pictures && !plan.textured)
+      continue;
+    if (kind.cut == TaskCut::levels) {
+      for (std::uint32_t k = kind.first_level; k <= plan.levels; ++k)
+        stages.push_back({fmt::format("{}-{}", kind.name, k), &kind, plan.tasks, k});
+      continue;
+    }
+    const std::uint32_t tasks = kind.cut == TaskCut::shares ? plan.tasks : 1;
+    stages.push_back({std::string(kind.name), &kind, tasks});
   }
-  stages.push_back({"publish", TaskKind::publish, plan.tasks});
-  stages.push_back({"finish", TaskKind::finish, 1});
   return stages;
 }
 

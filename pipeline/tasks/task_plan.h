@@ -2,7 +2,8 @@
 // (docs/cluster.md). No task talks to another: each reads what those before it have sealed
 // (storage/format/segment.h) in a directory that all machines see.
 //
-// The stages, in their order; `N`: what the plan says.
+// The stages, in their order, which follow from task_kinds() (pipeline/stages.cpp); `N`: what the
+// plan says.
 //
 //   stage             tasks   makes
 //   read              1       splits of the mesh; all chunks of an input that has no slices
@@ -33,6 +34,8 @@
 
 namespace meshhier::pipeline {
 
+struct TaskKind;
+
 /// The most tasks that a stage is cut into.
 inline constexpr std::uint32_t kMostTasks = 65536;
 
@@ -46,26 +49,11 @@ struct TaskPlan {
   std::uint64_t fingerprint = 0;  ///< of all this
 };
 
-enum class TaskKind {
-  read,
-  distribute,
-  faces,
-  join,
-  leaves,
-  level,
-  top,
-  images,
-  texture,
-  texture_top,
-  publish,
-  finish
-};
-
 struct TaskStage {
   std::string name;
-  TaskKind kind{};
+  const TaskKind* kind = nullptr;  ///< a row of task_kinds()
   std::uint32_t tasks = 1;
-  std::uint32_t levels_up = 0;  ///< of `level` and `texture`: from the partitions
+  std::uint32_t levels_up = 0;  ///< of a kind that is cut by levels: from the partitions
 };
 
 /// In the order in which they are to run: each when all tasks of those before it are done.

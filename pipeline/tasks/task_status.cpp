@@ -5,6 +5,7 @@
 #include "hierarchy/plain_text.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/stage_costs.h"
+#include "pipeline/stages.h"
 #include "pipeline/tasks/finish_task.h"
 #include "pipeline/tasks/task_record.h"
 #include "storage/format/layout.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -65,70 +67,37 @@ StageStatus stage_status(const TaskPlan& plan, const TaskStage& stage,
   return status;
 }
 
+/// The part of a kind's time that the tasks of one of its stages take, in a tree of that depth: a
+/// level has half the tiles of the one below.
+double part_of(const TaskStage& stage, const TaskPlan& plan, int depth) {
+  const auto halvings = [&](std::uint32_t levels_up) {
+    return static_cast<int>(levels_up + 1 - stage.kind->first_level);
+  };
+  if (stage.kind->cut == TaskCut::top)
+    return std::ldexp(1.0, -std::min(halvings(plan.levels), depth));
+  if (stage.kind->cut != TaskCut::levels)
+    return 1;
+  const int own = halvings(stage.levels_up);
+  return own > depth ? 0 : std::ldexp(1.0, -own);
+}
+
 /// What each stage will take by the model that progress is told by (stage_costs.h), in CPU seconds.
 std::map<std::string, double> expected_seconds(const TaskPlan& plan, const BuildPlan& build) {
-  std::map<std::string, double> by_stage;
-  for (const StageTime& stage : cpu_times(plan.config, build))
-    by_stage[stage.name] += stage.seconds;
-  std::map<std::string, double> by_task_stage;
-  const Tree& tree = build.tree;
-  // A level has half the tiles of the one below.
-  const auto share = [&](std::uint32_t up) {
-    return static_cast<int>(up) > raw(tree.depth()) ? 0 : std::ldexp(1.0, -static_cast<int>(up));
-  };
-  // Of the time of `partition`: a sweep, the vertices, and twice as many triangles.
-  constexpr double kSweep = 0.25, kVertices = 0.25, kTriangles = 0.5;
-  const double partition = by_stage["partition"];
-  const double texture = by_stage["texture"] + by_stage["normal maps"];  // a mesh has one of them
-  double rest = 1, texture_rest = 1;
-  for (const TaskStage& stage : stages_of(plan)) {
-    double& seconds = by_task_stage[stage.name];
-    switch (stage.kind) {
-      case TaskKind::read:
-        for (const auto& [name, time] : by_stage) {
-          if (name != "partition" && name != "leaves" && name != "simplify" && name != "texture" &&
-              name != "normal maps" && name != "publish" && name != "outline" && name != "images")
-            seconds += time;
-        }
-        seconds += partition * kSweep;
-        break;
-      case TaskKind::distribute:
-        seconds = partition * kVertices;
-        break;
-      case TaskKind::faces:
-        seconds = partition * kTriangles;
-        break;
-      case TaskKind::join:
-        break;
-      case TaskKind::leaves:
-        seconds = by_stage["leaves"];
-        break;
-      case TaskKind::level:
-        seconds = by_stage["simplify"] * share(stage.levels_up);
-        rest -= share(stage.levels_up);
-        break;
-      case TaskKind::top:
-        seconds = by_stage["simplify"] * rest;
-        break;
-      case TaskKind::images:
-        seconds = by_stage["images"];
-        break;
-      case TaskKind::texture:
-        seconds = texture * share(stage.levels_up + 1);
-        texture_rest -= share(stage.levels_up + 1);
-        break;
-      case TaskKind::texture_top:
-        seconds = texture * texture_rest;
-        break;
-      case TaskKind::publish:
-        seconds = by_stage["publish"];
-        break;
-      case TaskKind::finish:
-        seconds = by_stage["outline"];
-        break;
+  const TilePopulation tiles = expected_tiles(build.job);
+  std::map<std::string_view, double> by_kind;
+  for (const Stage* stage : stages_of(build.job)) {
+    if (stage->time == nullptr)
+      continue;
+    for (const StageTime& pass : stage->time(build.job, tiles)) {
+      for (const TaskPart& part : stage->tasks)
+        by_kind[part.task] += part.time * pass.seconds;
     }
   }
-  return by_task_stage;
+  std::map<std::string, double> by_stage;
+  for (const TaskStage& stage : stages_of(plan))
+    by_stage[stage.name] =
+        by_kind[stage.kind->name] * part_of(stage, plan, raw(build.tree.depth()));
+  return by_stage;
 }
 
 std::uint32_t count_attempts(const std::filesystem::path& work, storage::FileSystem& files) {

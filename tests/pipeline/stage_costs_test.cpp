@@ -91,11 +91,11 @@ class StageCostsTest : public testing::Test {
     std::map<std::string, double> measured = measure(config);
     const std::map<std::string, std::pair<double, double>> told = {
         // The last block of its spool stays open.
-        {"ingest", {bytes_written(ingest_disk(plan.job)), 1.1}},
+        {"ingest", {bytes_written(ingest_disk(plan.job, tiles, plan.memory)), 1.1}},
         // Triangles within a chunk take 8 bytes and are counted with 12, as those of several.
-        {"partition", {bytes_written(partition_disk(plan.job, plan.memory)), 1.45}},
-        {"leaves", {bytes_written(leaves_disk(plan.job, tiles)), most}},
-        {"simplify", {bytes_written(simplify_disk(plan.job, tiles)), most}}};
+        {"partition", {bytes_written(partition_disk(plan.job, tiles, plan.memory)), 1.45}},
+        {"leaves", {bytes_written(leaves_disk(plan.job, tiles, plan.memory)), most}},
+        {"simplify", {bytes_written(simplify_disk(plan.job, tiles, plan.memory)), most}}};
     double all = 0;
     for (const auto& [stage, cost] : told) {
       all += measured[stage];
