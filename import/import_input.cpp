@@ -3,28 +3,15 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "import/crop_mesh.h"
-#include "import/gltf_import.h"
+#include "import/file_reader.h"
 #include "import/join_layouts.h"
-#include "import/obj_import.h"
-#include "import/off_import.h"
 #include "import/place_vertices.h"
-#include "import/ply_import.h"
 #include "import/raw_mesh.h"
-#include "import/stl_import.h"
-#include "import/text_blocks.h"
 #include "import/weld.h"
-#include "mesh_io/input_error.h"
-#include "mesh_io/part_of_file.h"
-#include "mesh_io/ply_lines.h"
-#include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
-#include "mesh_io/renamed_file.h"
-#include "mesh_io/unpadded_stream.h"
-#include "storage/io/file_checksum.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <string_view>
 #include <utility>
 
@@ -32,9 +19,6 @@
 
 namespace meshhier::importing {
 namespace {
-
-using mesh_io::InputStream;
-using mesh_io::MeshKind;
 
 constexpr std::uint64_t kImportMiB = std::uint64_t{1} << 20;
 
@@ -45,16 +29,18 @@ class Import {
       : input_(input),
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
-        named_(input.system()),
-        mesh_(environment.scratch) {}
+        mesh_(environment.scratch),
+        reader_(input, environment, mesh_) {}
 
   ImportFacts run(TemporaryFile& ply) {
     env_.progress.stage("import", input_.bytes(), "bytes");
     if (input_.is_unpacked_only()) {
-      unpack(input_.all()[0], ply);
+      reader_.unpack(input_.all()[0], ply);
     } else {
       for (const InputFileFacts& file : input_.all())
         add(file, ply);
+      for (const SourceCount& one : reader_.counts())
+        count(one.name, one.count);
       facts_.faces = faces_;
       require_triangles();
       join();
@@ -104,50 +90,7 @@ class Import {
     count("converted_colours", counts.converted_colours);
   }
 
-  /// What a file adds to the mesh besides vertices and triangles.
-  struct Added {
-    AttributeLayout layout;
-    bool fits_float = true;
-    std::uint64_t faces = 0;
-    std::uint64_t degenerate_triangles = 0;
-    std::uint64_t material_colours = 0;  ///< that vertices have
-    bool is_painted = false;             ///< no vertex has another one
-    mesh_io::UnplacedVertices unplaced{};
-  };
-
   void count(std::string_view name, std::uint64_t count) { add_count(facts_.counts, name, count); }
-
-  /// Whatever source_counts() knows.
-  template <class Counts>
-  void count(const Counts& counts) {
-    for (const SourceCount& one : source_counts(counts))
-      count(one.name, one.count);
-  }
-
-  /// Reads the file's content by `read(stream)`, and its checksum on the way.
-  template <class Read>
-  void read_stream(const InputFileFacts& facts, const Read& read) {
-    const auto file = input_.system().open(facts.path);
-    const std::uint64_t bytes = file->size();
-    storage::FileChecksum checksum(bytes);
-    const auto stream =
-        mesh_io::open_stream({*file, bytes, &checksum}, [this](std::uint64_t count) {
-          env_.cancel.check();
-          env_.progress.advance(count);
-        });
-    read(*stream);
-    checksums_.push_back(checksum.complete(*file, [this] { env_.cancel.check(); }));
-  }
-
-  /// The same of a text.
-  template <class Read>
-  void read_text(const InputFileFacts& facts, const Read& read) {
-    read_stream(facts, [&](InputStream& stream) {
-      mesh_io::UnpaddedStream text(stream);
-      read(text);
-      count(mesh_io::OddSyntax{.bytes_behind = text.padding()});
-    });
-  }
 
   /// When all is read. Pictures are read for their checksums, which is little beside decoding them.
   void note_files() {
@@ -160,11 +103,12 @@ class Import {
     }
     all.await(mesh_.materials.companions().awaited());
     input_.set_companions(std::move(all));
-    facts_.record = input_.record(checksums_, env_.cancel, [this](const CompanionFile& file) {
-      if (file.part == InputPart::buffer ||
-          file.part == InputPart::tileset)  // the others were not known when the stage began
-        env_.progress.advance(file.identity.bytes);
-    });
+    facts_.record =
+        input_.record(reader_.checksums(), env_.cancel, [this](const CompanionFile& file) {
+          if (file.part == InputPart::buffer ||
+              file.part == InputPart::tileset)  // the others were not known when the stage began
+            env_.progress.advance(file.identity.bytes);
+        });
     facts_.files = input_.describe(facts_.record);
     input_.check_unchanged();
   }
@@ -187,49 +131,9 @@ class Import {
                        .missing_images = table.missing()};
   }
 
-  void unpack(const InputFileFacts& facts, TemporaryFile& to) {
-    read_stream(facts, [&](InputStream& stream) {
-      const auto file = env_.files.create(to.path());
-      std::vector<std::byte> buffer(kImportMiB);
-      std::uint64_t offset = 0;
-      for (std::size_t count = buffer.size(); count == buffer.size(); offset += count) {
-        count = stream.read(buffer);
-        file->write_at(offset, std::span(buffer).first(count));
-      }
-    });
-    to.counted();
-  }
-
   void add(const InputFileFacts& facts, TemporaryFile& ply) {
     const std::uint64_t vertices = mesh_.vertex_count();
-    Added added;
-    switch (facts.format.kind) {
-      case MeshKind::ply:
-        added = add_ply(facts, ply.path());
-        break;
-      case MeshKind::obj:
-        read_text(facts, [&](InputStream& stream) { added = add_obj(stream, facts.path); });
-        break;
-      case MeshKind::stl_binary:
-        read_stream(facts, [&](InputStream& stream) {
-          added = add_stl(StlForm::binary, stream, facts.path);
-        });
-        break;
-      case MeshKind::stl_text:
-        read_text(facts,
-                  [&](InputStream& stream) { added = add_stl(StlForm::text, stream, facts.path); });
-        break;
-      case MeshKind::off:
-        read_text(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
-        break;
-      case MeshKind::tileset:  // its tiles are the files
-        throw Error(ErrorCode::internal, facts.path.string() + " is a tileset");
-      case MeshKind::gltf:
-      case MeshKind::glb:
-      case MeshKind::b3dm:
-        added = add_gltf(facts, ply.path());
-        break;
-    }
+    const AddedFile added = reader_.read(facts, ply.path());
     count(kMaterialColours, added.material_colours);
     joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.is_painted});
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
@@ -240,245 +144,10 @@ class Import {
     unplaced_.count += added.unplaced.count;
   }
 
-  std::uint32_t checked_base(const std::filesystem::path& path, std::uint64_t more) const {
-    const std::uint64_t base = mesh_.vertex_count();
-    if (base + more >= UINT32_MAX)
-      mesh_io::fail_file(path, "with it the input has 2^32 vertices or more");
-    return static_cast<std::uint32_t>(base);
-  }
-
-  void append(std::span<const Triangle<VertexId>> triangles, std::uint32_t base) {
-    env_.cancel.check();
-    for (const Triangle<VertexId>& t : triangles)
-      mesh_.triangles.append(
-          Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
-  }
-
-  std::unique_ptr<mesh_io::PlySource> open_ply(std::unique_ptr<storage::File> file) const {
-    return mesh_io::make_ply_source(std::move(file), {.unplaced = mesh_io::Unplaced::visited,
-                                                      .attributes = input_.attributes()});
-  }
-
-  Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
-    if (!facts.format.is_gzip) {
-      const auto source = open_ply(input_.system().open(facts.path));
-      const Added added = add_open_ply(*source, facts.path);
-      checksums_.push_back(source->checksum([this] { env_.cancel.check(); }));
-      env_.progress.advance(facts.identity.bytes);
-      return added;
-    }
-    TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
-    unpack(facts, unpacked);
-    const auto source = open_ply(mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
-    return add_open_ply(*source, facts.path);
-  }
-
-  Added add_open_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
-    Added added = add_plain_ply(source, path);
-    count(source.odd_syntax());
-    return added;
-  }
-
-  Added add_cornered_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
-    const PlyImport import =
-        import_ply_corners(source, path, input_.textures(), mesh_, named_, room_);
-    checked_base(path, 0);
-    count("split_vertices", import.split_vertices);
-    warn_of_split(source, import, path);
-    count(kHiddenColours, import.hidden_colours);
-    count(import.counts.polygons);
-    count(import.zeroed);
-    return {.layout = import.layout,
-            .fits_float = import.fits_float,
-            .faces = import.counts.faces,
-            .degenerate_triangles = import.counts.degenerate_triangles,
-            .unplaced = import.unplaced};
-  }
-
-  /// Where nearly each face has values of its own, each vertex becomes about six.
-  void warn_of_split(const mesh_io::PlySource& source, const PlyImport& import,
-                     const std::filesystem::path& path) {
-    const std::uint64_t given = source.description().vertex_count;
-    if (source.plan().face_values.empty() || import.split_vertices <= given)
-      return;
-    env_.progress.warn(mesh_io::file_message(
-        path, fmt::format("values of faces make {} of {}, and the hierarchy larger; \"attributes\" "
-                          "of the config chooses which are read",
-                          counted(given + import.split_vertices, "vertices"), given)));
-  }
-
-  Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
-    const mesh_io::MeshDescription& description = source.description();
-    const std::uint32_t base = checked_base(path, description.vertex_count);
-    if (has_corner_attributes(source.plan(), input_.textures()))
-      return add_cornered_ply(source, path);
-    if (input_.crop() && description.vertices_in_place && description.face_count > 0)
-      return add_near(source, path);
-    Added added{.layout = description.attributes};
-    const mesh_io::BlockRunner runner = parallel_blocks(mesh_io::kPlyLinesBytes, room_);
-    source.read_vertices(
-        [&](const mesh_io::VertexBlock& block) {
-          env_.cancel.check();
-          for (const Vec3f& p : block.positions)
-            mesh_.positions.append(to_double(p));
-          mesh_.positions.append(block.exact);
-          added.fits_float = added.fits_float && block.fits_float();
-          count_unplaced(block, path, added.unplaced);
-          mesh_.attributes.append(block.attributes);
-          count(block.zeroed);
-        },
-        runner);
-    const mesh_io::FaceCounts counts = source.read_triangles(
-        [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); }, runner);
-    added.faces = counts.faces;
-    added.degenerate_triangles = counts.degenerate_triangles;
-    count(counts.polygons);
-    return added;
-  }
-
-  /// Of a PLY that is read in place: a piece of a large file leaves no copy of it.
-  Added add_near(mesh_io::PlySource& source, const std::filesystem::path& path) {
-    Added added{.layout = source.description().attributes};
-    const std::uint64_t before = mesh_.triangles.size();
-    const mesh_io::FaceCounts counts = append_near(
-        source, *input_.crop(), mesh_,
-        [&](const mesh_io::VertexBlock& block) {
-          added.fits_float = added.fits_float && block.fits_float();
-          count_unplaced(block, path, added.unplaced);
-          count(block.zeroed);
-        },
-        room_);
-    near_apart_ += counts.triangles - (mesh_.triangles.size() - before);
-    added.faces = counts.faces;
-    added.degenerate_triangles = counts.degenerate_triangles;
-    count(counts.polygons);
-    return added;
-  }
-
-  Added add_gltf(const InputFileFacts& facts, const std::filesystem::path& room) {
-    if (!facts.format.is_gzip) {
-      const Added added = add_plain_gltf(facts, facts.content(input_.system()));
-      checksums_.push_back(checksum_of(facts.path));
-      env_.progress.advance(facts.identity.bytes);
-      return added;
-    }
-    TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
-    unpack(facts, unpacked);
-    return add_plain_gltf(facts, mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
-  }
-
-  /// Of a file that may hold many meshes, one behind the other.
-  std::uint64_t checksum_of(const std::filesystem::path& path) {
-    const auto known = checked_.find(path);
-    if (known != checked_.end())
-      return known->second;
-    const auto file = input_.system().open(path);
-    const std::uint64_t checksum =
-        storage::FileChecksum(file->size()).complete(*file, [this] { env_.cancel.check(); });
-    checked_.emplace(path, checksum);
-    return checksum;
-  }
-
-  static mesh_io::GltfContent content_of(const InputFileFacts& facts) {
-    if (facts.tile && facts.tile->data)
-      return mesh_io::GltfContent::fleeting;
-    return facts.format.is_gzip ? mesh_io::GltfContent::packed : mesh_io::GltfContent::stored;
-  }
-
-  Added add_plain_gltf(const InputFileFacts& facts, std::shared_ptr<const storage::File> content) {
-    // While the reader decodes no sort runs.
-    constexpr std::uint64_t kLeast = 4 * kImportMiB;
-    const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
-    if (facts.tile && tile.offset + tile.bytes > content->size())
-      mesh_io::fail_file(facts.path, "ends within a tile (truncated?)");
-    if (facts.tile)
-      content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
-    mesh_io::GltfFile file(
-        std::move(content), facts.path.parent_path(),
-        {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast), content_of(facts),
-         facts.path, [this] { env_.cancel.check(); }, tile.offset});
-    const GltfImport import =
-        import_gltf(file, tile.placement, mesh_, input_.textures(), input_.attributes(), room_);
-    for (const SourceCount& one : import.counts)
-      count(one.name, one.count);
-    count(import.zeroed);
-    return {import.layout,           import.fits_float,
-            import.triangles,        import.degenerate_triangles,
-            import.material_colours, import.is_painted};
-  }
-
-  Added add_obj(InputStream& stream, const std::filesystem::path& path) {
-    const ObjImport import =
-        import_obj(stream, path, mesh_, named_, input_.textures(), input_.attributes(), room_);
-    checked_base(path, 0);
-    const mesh_io::ObjCounts& counts = import.counts;
-    count("split_vertices", import.split_vertices);
-    count(kMadeWhite, import.filled_colours);
-    count(kHiddenColours, import.hidden_colours);
-    count("vertices_without_texcoord", import.filled_texcoords);
-    count("vertices_without_normal", import.filled_normals);
-    count("missing_material_libraries", import.missing_libraries);
-    count("undefined_materials", import.undefined_materials);
-    count("ignored_alpha_images", import.other_alphas);
-    count("ignored_polypaint", import.ignored_polypaint);
-    count("libraries_with_colours_of_bytes", import.byte_libraries);
-    if (import.byte_libraries > 0) {
-      env_.progress.warn(mesh_io::file_message(
-          path,
-          "the colours (Kd) of its materials are whole numbers up to 255: they are taken for "
-          "bytes"));
-    }
-    count(counts.zeroed);
-    count(counts.odd);
-    count("groups", counts.groups);
-    count("objects", counts.objects);
-    count("material_uses", counts.materials);
-    count("material_libraries", counts.libraries);
-    count(kPointsAndLines, counts.points_and_lines);
-    count(counts.polygons);
-    count("ignored_statements", counts.others);
-    return {import.layout,           import.fits_float, counts.faces,   counts.degenerate_triangles,
-            import.material_colours, import.is_painted, counts.unplaced};
-  }
-
-  Added add_stl(StlForm form, InputStream& stream, const std::filesystem::path& path) {
-    const StlImport import = import_stl(form, stream, path, mesh_, room_);
-    checked_base(path, 0);
-    const mesh_io::StlCounts& counts = import.counts;
-    count("welded_corners", import.welded_corners);
-    count("ignored_facet_normals", counts.facets);
-    count("ignored_facet_attributes", import.ignored_attributes);
-    count("ignored_bytes_behind", counts.bytes_behind);
-    count(kFacesMadeWhite, import.white_facets);
-    count("dropped_facets", counts.dropped.count);
-    count(counts.odd);
-    if (counts.dropped.count > 0) {
-      env_.progress.warn(fmt::format("{}: {} left out", counts.dropped.first,
-                                     counted(counts.dropped.count, "such facets")));
-    }
-    return {import.layout, counts.fits_float, counts.facets, import.degenerate_triangles};
-  }
-
-  Added add_off(InputStream& stream, const std::filesystem::path& path) {
-    const OffImport import = import_off(stream, path, mesh_, room_);
-    checked_base(path, 0);
-    const mesh_io::OffCounts& counts = import.counts;
-    count("split_vertices", import.split_vertices);
-    count(counts.faces.polygons);
-    count("ignored_face_colours", import.ignored_colours);
-    count(kFacesMadeWhite, import.white_faces);
-    count(counts.odd);
-    count(counts.zeroed);
-    return {.layout = import.layout,
-            .fits_float = counts.fits_float,
-            .faces = counts.faces.faces,
-            .degenerate_triangles = counts.faces.degenerate_triangles,
-            .unplaced = counts.unplaced};
-  }
-
   RawMesh& crop(RawMesh& whole) {
     cropped_.emplace(env_.scratch);
-    count("cropped_triangles", near_apart_ + crop_mesh(whole, *cropped_, *input_.crop(), room_));
+    count("cropped_triangles",
+          reader_.near_apart() + crop_mesh(whole, *cropped_, *input_.crop(), room_));
     if (cropped_->vertex_count() == 0) {
       throw Error(ErrorCode::usage, "nothing of " + input_.name() +
                                         " lies in the box of \"crop\"; compare it with where the "
@@ -544,15 +213,12 @@ class Import {
   InputFiles& input_;
   const ImportEnvironment& env_;
   ImportRoom room_;
-  mesh_io::NamedFiles named_;
   RawMesh mesh_;
+  FileReader reader_;
   std::optional<RawMesh> placed_, cropped_, welded_;
-  std::uint64_t near_apart_ = 0;  ///< triangles that were not read, as they are not near the crop
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   std::vector<JoinedFile> joined_;
-  std::vector<std::uint64_t> checksums_;                    ///< of the meshes that are read
-  std::map<std::filesystem::path, std::uint64_t> checked_;  ///< files of glTF
   ImportFacts facts_;
 };
 

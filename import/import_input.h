@@ -1,6 +1,6 @@
 // The stage `import`: input that cannot be read where it lies becomes one PLY that can.
 //
-// A PLY that is packed and nothing else is unpacked. All other input (OBJ, glTF, STL, OFF, several
+// A PLY that is packed and nothing else is unpacked. All other input (other formats, several
 // files, vertices to be welded) is read once as a stream into spools and written from there as a
 // binary little endian PLY: coordinates as float, or as double if one of them does not fit;
 // attributes in the types they have inside (hierarchy/attributes.h).
