@@ -5,9 +5,9 @@
 #include "config/suggest.h"
 #include "hierarchy/error.h"
 #include "hierarchy/flat_axes.h"
-#include "hierarchy/mesh_name.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/formats.h"
+#include "mesh_io/output_name.h"
 #include "storage/io/json_text.h"
 #include "storage/io/paths.h"
 
@@ -368,12 +368,13 @@ void check_output(const Config& config, const Draft& draft) {
                          in_quotes(config.output.string()), in_quotes(input.string())));
     }
   }
-  require_true_ending(config.output.string(),
-                      config.storage.container == Container::archive
-                          ? std::initializer_list<std::string_view>{".3tz", ".hier", ".zip"}
-                          : std::initializer_list<std::string_view>{".3tz", ".hier"},
-                      "a build makes a hierarchy, a directory or one file that ends in .3tz; of "
-                      "that `meshhier export` makes meshes, `meshhier page` an HTML file");
+  mesh_io::require_true_ending(
+      config.output.string(),
+      config.storage.container == Container::archive
+          ? std::initializer_list<std::string_view>{".3tz", ".hier", ".zip"}
+          : std::initializer_list<std::string_view>{".3tz", ".hier"},
+      "a build makes a hierarchy, a directory or one file that ends in .3tz; of "
+      "that `meshhier export` makes meshes, `meshhier page` an HTML file");
 }
 
 /// Whether what is moved by it has no volume left, but for rounding.
@@ -434,7 +435,7 @@ void put_meshes(Draft& draft, const CommandLine& words) {
 /// "models/scan.hier" of "models/scan.ply.gz".
 std::filesystem::path beside(const std::filesystem::path& mesh, const std::string& ending) {
   const std::string name = mesh.filename().string();
-  const std::string stem = mesh_stem(name);
+  const std::string stem = mesh_io::mesh_stem(name);
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
 }
 

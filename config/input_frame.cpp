@@ -1,8 +1,7 @@
 #include "config/input_frame.h"
 
 #include "config/placement.h"
-#include "hierarchy/mesh_name.h"
-#include "mesh_io/mesh_format.h"
+#include "mesh_io/formats.h"
 #include "mesh_io/tileset.h"
 
 #include <algorithm>
@@ -14,7 +13,8 @@ namespace {
 /// A file that is not there is told when it is read; one with the name of a mesh is not looked
 /// into.
 bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
-  if (is_mesh_name(path.filename().string()) || files.kind(path) != storage::FileKind::regular)
+  if (mesh_io::is_mesh_name(path.filename().string()) ||
+      files.kind(path) != storage::FileKind::regular)
     return false;
   const auto format = mesh_io::find_format(*files.open(path));
   return format && format->kind == mesh_io::MeshKind::tileset;

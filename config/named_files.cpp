@@ -2,11 +2,10 @@
 
 #include "config/input_frame.h"
 #include "hierarchy/error.h"
-#include "hierarchy/mesh_name.h"
 #include "hierarchy/text_mark.h"
-#include "mesh_io/foreign_format.h"
+#include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
-#include "mesh_io/mesh_format.h"
+#include "mesh_io/other_formats.h"
 
 #include <algorithm>
 #include <string>
@@ -35,10 +34,10 @@ bool begins_as_config(std::string_view text) {
 
 /// Throws if the file is known to be something else.
 void refuse_foreign(const fs::path& path, const std::string& start) {
-  if (const std::string found = mesh_io::foreign_format(start); !found.empty()) {
-    throw Error(ErrorCode::usage, fmt::format("{}: expected a mesh (PLY, OBJ, glTF, STL or OFF) or "
-                                              "a config (JSON), found {}",
-                                              path.string(), found));
+  if (const std::string found = mesh_io::other_format(start); !found.empty()) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: expected a mesh ({}) or a config (JSON), found {}", path.string(),
+                            mesh_io::format_names(), found));
   }
 }
 
@@ -62,14 +61,13 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
   refuse_foreign(path, start);
   if (begins_as_config(start))
     return true;
-  if (is_mesh_name(path.filename().string()))
+  if (mesh_io::is_mesh_name(path.filename().string()))
     return false;
   files.input().open(path);  // what must not be read is not quoted
-  throw Error(
-      ErrorCode::usage,
-      fmt::format("{}: expected a mesh (PLY, OBJ, glTF, STL or OFF, perhaps in gzip) or a "
-                  "config (JSON), found {}",
-                  path.string(), start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
+  throw Error(ErrorCode::usage,
+              fmt::format("{}: expected a mesh ({}, perhaps in gzip) or a config (JSON), found {}",
+                          path.string(), mesh_io::format_names(),
+                          start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
 }
 
 /// As other programs take it: behind the meshes.

@@ -2,7 +2,6 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
@@ -59,9 +58,9 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
 
 void InputFiles::add_mesh(const std::filesystem::path& path) {
   if (files_.is_directory(path)) {
-    throw Error(ErrorCode::io, path.string() +
-                                   " is a folder; name the mesh in it (PLY, OBJ, glTF, STL "
-                                   "or OFF, or a tileset.json)");
+    throw Error(ErrorCode::io,
+                fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json)",
+                            path.string(), mesh_io::format_names()));
   }
   const auto file = files_.open(path);
   const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
@@ -147,9 +146,9 @@ void InputFiles::look_for_picture(const InputFileFacts& facts) {
 }
 
 std::optional<Unit> InputFiles::units() const {
-  const bool is_gltf = std::ranges::all_of(
-      all_, [](const InputFileFacts& file) { return mesh_io::is_gltf(file.format.kind); });
-  return is_gltf ? std::optional(Unit::m) : std::nullopt;
+  const bool in_metres = std::ranges::all_of(
+      all_, [](const InputFileFacts& file) { return file.format.row().in_metres; });
+  return in_metres ? std::optional(Unit::m) : std::nullopt;
 }
 
 std::vector<std::string> InputFiles::unused() const {
@@ -162,9 +161,10 @@ std::vector<std::string> InputFiles::unused() const {
 }
 
 void InputFiles::find_buffers(const InputFileFacts& file, const storage::File& content) {
-  if (file.format.kind != mesh_io::MeshKind::gltf && file.format.kind != mesh_io::MeshKind::glb)
-    return;  // a b3dm has its buffer within
-  for (const std::filesystem::path& path : mesh_io::gltf_buffer_files(content)) {
+  const auto& buffers = file.format.row().buffers;
+  if (buffers == nullptr)
+    return;
+  for (const std::filesystem::path& path : buffers(content)) {
     if (files_.kind(path) == storage::FileKind::regular)
       companions_.add({path, InputPart::buffer, files_.identity(path)});
   }

@@ -5,8 +5,8 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/published.h"
 #include "import/input_record.h"
+#include "mesh_io/formats.h"
 #include "mesh_io/input_paths.h"
-#include "mesh_io/mesh_format.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_plan.h"
 #include "mesh_io/tileset.h"
@@ -76,7 +76,7 @@ class InputFiles {
   /// Takes those of an earlier build, as they are now. False if one is not there any more, or if
   /// one that was not there is; then nothing is changed.
   bool recall(const InputRecord& earlier);
-  /// As SourceSummary's: metres if all meshes are glTF.
+  /// As SourceSummary's: metres if those of all meshes are.
   std::optional<Unit> units() const;
   /// As SourceSummary's, each once: the first kMostUnused and how many more.
   std::vector<std::string> unused() const;

@@ -71,11 +71,11 @@ void MeshInput::recall(const mesh_io::MeshDescription& found) {
 }
 
 bool MeshInput::is_sure_label(const std::string& name) const {
-  const auto is_gltf = [](const InputFileFacts& file) {
-    return mesh_io::is_gltf(file.format.kind);
+  const auto names_features = [](const InputFileFacts& file) {
+    return file.format.row().names_features;
   };
   return facts_.label_names.contains(name) ||
-         (is_feature_name(name) && std::ranges::any_of(input_.all(), is_gltf));
+         (is_feature_name(name) && std::ranges::any_of(input_.all(), names_features));
 }
 
 void MeshInput::drop() {

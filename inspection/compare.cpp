@@ -3,7 +3,6 @@
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "hierarchy/flat_axes.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/text_mark.h"
 #include "inspection/cut_surface.h"
@@ -12,6 +11,7 @@
 #include "inspection/surface_samples.h"
 #include "inspection/surface_sides.h"
 #include "mesh_io/coordinate_range.h"
+#include "mesh_io/output_name.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive.h"
 #include "storage/format/archive_files.h"
@@ -507,8 +507,8 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
   if (!options.output.empty()) {
     if (!storage::is_standard_output(files, options.output))
       storage::require_outside(files, options.output);
-    require_true_ending(options.output.string(), {".ply"},
-                        "compare writes .ply, .hier and .3tz; choose one of these");
+    mesh_io::require_true_ending(options.output.string(), {".ply"},
+                                 "compare writes .ply, .hier and .3tz; choose one of these");
     storage::OutputRequest request{options.output, options.replace, options.inputs};
     request.inputs.insert(request.inputs.end(), {from.path, to.path});
     output = std::make_unique<DifferencePly>(files, request, spare_bytes(options) / 8, check);

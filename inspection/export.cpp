@@ -2,7 +2,6 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
@@ -11,6 +10,7 @@
 #include "inspection/piece.h"
 #include "inspection/ply_vertices.h"
 #include "inspection/tile_vertices.h"
+#include "mesh_io/output_name.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -175,10 +175,11 @@ ExportFormat format_of(const fs::path& output) {
 }
 
 void require_own_ending(const fs::path& output) {
-  require_true_ending(output.string(), {".ply", ".glb", ".obj"},
-                      storage::lower_extension(output) == ".gz"
-                          ? "export packs nothing; pack it yourself: -o - | gzip"
-                          : "export writes .ply, .glb, .obj, .hier and .3tz; choose one of these");
+  mesh_io::require_true_ending(
+      output.string(), {".ply", ".glb", ".obj"},
+      storage::lower_extension(output) == ".gz"
+          ? "export packs nothing; pack it yourself: -o - | gzip"
+          : "export writes .ply, .glb, .obj, .hier and .3tz; choose one of these");
 }
 
 VertexArray first_vertices(const VertexArray& from, std::size_t count) {

@@ -1,10 +1,10 @@
 #include "inspection/page_file.h"
 
 #include "hierarchy/error.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/byte_stream.h"
 #include "inspection/page_tiles.h"
+#include "mesh_io/output_name.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"
 #include "storage/format/hierarchy_reader.h"
@@ -256,8 +256,8 @@ std::string story_text(const PageStory& story, execution::Progress& progress) {
 std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel) {
-  require_true_ending(options.output.string(), {".html", ".htm"},
-                      "of a hierarchy page makes one HTML file; name it .html");
+  mesh_io::require_true_ending(options.output.string(), {".html", ".htm"},
+                               "of a hierarchy page makes one HTML file; name it .html");
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   const PageSource source{place.files(), reader, options, progress, cancel};

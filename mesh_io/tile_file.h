@@ -3,7 +3,7 @@
 #pragma once
 
 #include "hierarchy/vec.h"
-#include "mesh_io/mesh_format.h"
+#include "mesh_io/formats.h"
 #include "storage/io/file.h"
 
 #include <cstdint>

@@ -5,9 +5,9 @@
 // before the point and no axis is up, are turned into a local frame: east, north, up.
 #pragma once
 
+#include "mesh_io/formats.h"
 #include "mesh_io/globe_frame.h"
 #include "mesh_io/gltf_transform.h"
-#include "mesh_io/mesh_format.h"
 #include "storage/io/file.h"
 
 #include <cstdint>

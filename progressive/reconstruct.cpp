@@ -3,8 +3,8 @@
 #include "execution/size_text.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/output_name.h"
 #include "mesh_io/ply_writer.h"
 #include "progressive/detail_file.h"
 #include "progressive/reconstruction.h"
@@ -188,7 +188,8 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   require_memory(size, index.source.attributes, options.memory_budget);
   if (!storage::is_standard_output(files, options.output))
     storage::require_outside(files, options.output);
-  require_true_ending(options.output.string(), {".ply"}, "reconstruct writes a PLY; name it .ply");
+  mesh_io::require_true_ending(options.output.string(), {".ply"},
+                               "reconstruct writes a PLY; name it .ply");
   storage::OutputFile output(files, {options.output, options.replace, {stream}},
                              [&] { cancel.check(); });
 

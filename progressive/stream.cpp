@@ -5,8 +5,8 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/output_name.h"
 #include "progressive/detail_writer.h"
 #include "progressive/foreign_corners.h"
 #include "progressive/level_lists.h"
@@ -265,8 +265,8 @@ std::string summary_of(const fs::path& output, const progressive::ProgressiveInd
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel) {
-  require_true_ending(options.output.string(), {},
-                      "progressive makes a directory of its own kind; name it NAME.prog");
+  mesh_io::require_true_ending(options.output.string(), {},
+                               "progressive makes a directory of its own kind; name it NAME.prog");
   const storage::Output output{storage::followed(files, options.output), storage::Container::files,
                                storage::Content::progressive_stream};
   storage::check_output(files, output, options.replace);

@@ -1,6 +1,6 @@
 #include "server/build_target.h"
 
-#include "hierarchy/mesh_name.h"
+#include "mesh_io/formats.h"
 #include "storage/format/layout.h"
 #include "storage/io/json_text.h"
 
@@ -21,7 +21,7 @@ std::string as_text(const std::string& name) {
 /// The name of its hierarchy, without the ending: a file in a folder is called as that.
 std::string stem_of(const std::string& name) {
   const std::size_t slash = name.find('/');
-  return slash == std::string::npos ? mesh_stem(name) : name.substr(0, slash);
+  return slash == std::string::npos ? mesh_io::mesh_stem(name) : name.substr(0, slash);
 }
 
 /// Another one, which no other file of an inbox has as its stem.

@@ -1,7 +1,7 @@
 #include "server/inbox.h"
 
 #include "hierarchy/error.h"
-#include "hierarchy/mesh_name.h"
+#include "mesh_io/formats.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,7 +20,7 @@ std::vector<InboxFile> Inbox::look() {
     if (entry.is_directory) {
       if (auto file = look_into(*inbox, entry.name, now, seen))
         files.push_back(std::move(*file));
-    } else if (is_mesh_name(entry.name)) {
+    } else if (mesh_io::is_mesh_name(entry.name)) {
       const InputVersion version{entry.version, options_.mark(entry.name)};
       const Time since = note(entry.name, version, now, seen);
       files.push_back({entry.name, version, now - since >= options_.settle});
@@ -53,7 +53,7 @@ std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const st
         continue;
       const std::string name = folder + '/' + entry.name;
       InputVersion version{entry.version};
-      if (is_mesh_name(entry.name)) {
+      if (mesh_io::is_mesh_name(entry.name)) {
         version.companions = options_.mark(name);
         meshes.push_back({name, version, false});
       }

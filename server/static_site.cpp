@@ -1,8 +1,8 @@
 #include "server/static_site.h"
 
 #include "hierarchy/error.h"
-#include "hierarchy/output_name.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/output_name.h"
 #include "server/folder_scan.h"
 #include "server/gallery.h"
 #include "server/hierarchies.h"
@@ -211,8 +211,9 @@ std::string write_site(storage::FileSystem& files, const SiteJob& given,
                        const SiteProgress& progress) {
   const SiteJob job{given.models, given.viewer, storage::without_last_slash(given.output),
                     given.replace};
-  require_true_ending(job.output.string(), {},
-                      "of a folder page makes a folder, the site; name it without an ending");
+  mesh_io::require_true_ending(
+      job.output.string(), {},
+      "of a folder page makes a folder, the site; name it without an ending");
   require_place(files, job);
   const fs::path part = storage::unfinished_path(job.output);
   files.remove_all(part);

@@ -2,8 +2,8 @@
 
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
-#include "hierarchy/mesh_name.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/formats.h"
 #include "server/build_target.h"
 #include "server/multipart.h"
 #include "server/staged_upload.h"
@@ -106,8 +106,8 @@ class FolderFiles {
     if (next == MultipartReader::Next::malformed)
       return text_reply(400, "The body is no form of files.");
     if (meshes_ == 0)
-      return text_reply(400,
-                        "There is no mesh among the files: .ply, .obj, .gltf, .glb, .stl or .off.");
+      return text_reply(
+          400, fmt::format("There is no mesh among the files: {}.", mesh_io::mesh_endings_text()));
     files_.sync_directory(folder_);
     return std::nullopt;
   }
@@ -116,14 +116,14 @@ class FolderFiles {
   std::optional<Reply> refuse_name(const std::string& name) {
     if (!is_plain_name(name))
       return text_reply(400, "A file has a name that cannot be taken: rename it.");
-    meshes_ += is_mesh_name(name) ? 1 : 0;
+    meshes_ += mesh_io::is_mesh_name(name) ? 1 : 0;
     if (meshes_ > 1)
       return text_reply(400, "There are several meshes among the files: send them one by one.");
     if (!names_.insert(lower_case(name)).second)
       return text_reply(400, "Two files have the same name.");
     if (names_.size() > kMostFiles)
       return text_reply(400, fmt::format("There are more than {} files.", kMostFiles));
-    if (is_mesh_name(name))
+    if (mesh_io::is_mesh_name(name))
       return refuse_length(name_ + '/' + name, suffix_);
     return std::nullopt;
   }
@@ -253,10 +253,11 @@ Reply Uploads::take(const Request& request, std::string_view place) {
 
 Reply Uploads::take_whole(const Request& request, const std::string& name) {
   const bool is_file = request.method == "PUT";
-  if (is_file && !is_mesh_name(name)) {
+  if (is_file && !mesh_io::is_mesh_name(name)) {
     return text_reply(400,
-                      "A mesh ends in .ply, .obj, .gltf, .glb, .stl or .off; what belongs to it is "
-                      "sent with it, as a form.");
+                      fmt::format("A mesh ends in {}; what belongs to it is sent with it, as a "
+                                  "form.",
+                                  mesh_io::mesh_endings_text()));
   }
   const std::string type = request.content_type.value_or("");
   const auto boundary = is_file ? std::string() : form_boundary(type);

@@ -1,8 +1,8 @@
 // The parts of glTF reading that need no whole file: URIs, transforms, buffers' files, formats.
+#include "mesh_io/formats.h"
 #include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/gltf_transform.h"
 #include "mesh_io/gltf_uri.h"
-#include "mesh_io/mesh_format.h"
 #include "support/gltf_builder.h"
 #include "support/gzip.h"
 #include "tests/support/memory_files.h"

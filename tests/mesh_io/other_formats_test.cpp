@@ -1,6 +1,6 @@
-#include "mesh_io/foreign_format.h"
+#include "mesh_io/other_formats.h"
 
-#include "mesh_io/mesh_format.h"
+#include "mesh_io/formats.h"
 #include "streams.h"
 
 #include <string>
@@ -20,7 +20,7 @@ std::string refusal_of_start(std::string_view start) {
   return input_error_of([&] { detect_format(Streamed(std::string(start)).file()); });
 }
 
-TEST(ForeignFormat, SaysWhatAFileIs) {
+TEST(OtherFormats, SaysWhatAFileIs) {
   const auto tar = std::string(257, 'x') + "ustar\00000";
   for (const auto& [start, name] : {
            std::pair("PK\x03\x04\x14"sv, "a zip archive"),
@@ -51,17 +51,17 @@ TEST(ForeignFormat, SaysWhatAFileIs) {
            {"version https://git-lfs.github.com/spec/v1"sv, "a pointer of Git LFS"},
            {"newmtl wall\n"sv, "a material library"},
        }) {
-    EXPECT_THAT(foreign_format(start), StartsWith(name)) << start;
-    EXPECT_THAT(foreign_format(start), HasSubstr("; ")) << start;  // and what to do
+    EXPECT_THAT(other_format(start), StartsWith(name)) << start;
+    EXPECT_THAT(other_format(start), HasSubstr("; ")) << start;  // and what to do
     EXPECT_THAT(refusal_of_start(start), HasSubstr(name)) << start;
   }
 }
 
-TEST(ForeignFormat, KnowsNothingOfOthers) {
+TEST(OtherFormats, KnowsNothingOfOthers) {
   for (const std::string_view start :
        {""sv, "hello"sv, "{}"sv, "{\"input\": \"a.ply\", \"output\": \"meshhier\"}"sv,
         "1 2\n3 4 5"sv, "0 1 x"sv, "PK"sv, "<"sv, "-"sv})
-    EXPECT_EQ(foreign_format(start), "") << start;
+    EXPECT_EQ(other_format(start), "") << start;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Which kind of mesh a file is, whatever its name.
-#include "mesh_io/mesh_format.h"
+#include "mesh_io/formats.h"
 
 #include "streams.h"
 #include "support/gzip.h"
@@ -117,6 +117,19 @@ TEST(MeshFormat, ABinaryStlMayBeLongerThanItsCountSays) {
   odd.replace(84 + 12, 4, std::string("\1\0\0\0", 4));  // smaller than any coordinate
   EXPECT_NE(format_refusal(odd), "");
   EXPECT_NE(format_refusal("PK\3\4" + binary_stl("", 2, 101).substr(4)), "");
+}
+
+TEST(MeshFormat, NamesOfMeshesAreKnownByTheirEndings) {
+  for (const char* name : {"a.ply", "a.obj", "a.stl", "a.off", "a.gltf", "a.glb.gz", "a.PLY",
+                           "a.Ply.GZ", "a.b.obj.gz", "ä ö.stl"})
+    EXPECT_TRUE(is_mesh_name(name)) << name;
+  for (const char* name : {"a", "a.txt", ".a.ply", ".ply", "a.ply.part", "a.ply.tmp",
+                           "a.ply.crdownload", "a.ply~", "a.gz", "a.ply.bz2", "a.hier", "ply"})
+    EXPECT_FALSE(is_mesh_name(name)) << name;
+  EXPECT_EQ(mesh_stem("david.ply"), "david");
+  EXPECT_EQ(mesh_stem("david.2.OBJ.gz"), "david.2");
+  EXPECT_EQ(mesh_stem("david"), "");
+  EXPECT_EQ(mesh_stem("@ply"), "");
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <initializer_list>
 #include <string_view>
 
-namespace meshhier {
+namespace meshhier::mesh_io {
 
 /// Throws Error(usage), "NAME: ADVICE", if the name ends as files of a known format do, other than
 /// those of `own` (in small letters, with the dot). Capitals and small letters are the same.
 void require_true_ending(std::string_view name, std::initializer_list<std::string_view> own,
                          std::string_view advice);
 
-}  // namespace meshhier
+}  // namespace meshhier::mesh_io
