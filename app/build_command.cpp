@@ -7,6 +7,7 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "mesh_io/formats.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
 #include "pipeline/plan/build_plan.h"
@@ -43,8 +44,9 @@ struct BuildArguments {
   bool no_links = false;
   std::string within;  ///< the folder that holds all input; empty: anywhere
   bool dry_run = false;
-  bool json = false;        ///< the estimate as JSON
-  std::string help_config;  ///< one of kReferences, or empty
+  bool json = false;         ///< the estimate as JSON
+  std::string help_config;   ///< a form of key_references(), or empty
+  std::string help_formats;  ///< a form of format_references(), or empty
 };
 
 /// Which must not take the place of what the build reads or makes.
@@ -201,16 +203,34 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   return 0;
 }
 
+using References = std::map<std::string, std::string (*)()>;
+
 /// What --help-config prints.
-const std::map<std::string, std::string (*)()>& references() {
-  static const std::map<std::string, std::string (*)()> all = {{"text", config::keys_text},
-                                                               {"schema", config::schema_text},
-                                                               {"markdown", config::keys_markdown}};
+const References& key_references() {
+  static const References all = {{"text", config::keys_text},
+                                 {"schema", config::schema_text},
+                                 {"markdown", config::keys_markdown}};
   return all;
 }
 
+/// What --help-formats prints.
+const References& format_references() {
+  static const References all = {{"text", config::formats_text},
+                                 {"json", config::formats_json},
+                                 {"markdown", config::formats_markdown}};
+  return all;
+}
+
+/// What to print instead of a build; null: nothing.
+std::string (*reference_of(const BuildArguments& arguments))() {
+  if (!arguments.help_config.empty())
+    return key_references().at(arguments.help_config);
+  return arguments.help_formats.empty() ? nullptr : format_references().at(arguments.help_formats);
+}
+
 std::string footer() {
-  return R"(FILE is a mesh: a PLY, OBJ, glTF, STL or OFF, perhaps in gzip, or a tileset.json. The hierarchy of scan.ply is made beside
+  return "FILE is a mesh: a " + mesh_io::format_names() +
+         R"(, perhaps in gzip, or a tileset.json. The hierarchy of scan.ply is made beside
 it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
 config; `meshhier build --help-config` says what they mean.
 
@@ -287,13 +307,18 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->add_flag("--help-config{text}", arguments->help_config,
                  "List the keys of the config; =schema: as a JSON schema, for editors; =markdown: "
                  "as a table")
-      ->check(CLI::IsMember(references()));
+      ->check(CLI::IsMember(key_references()));
+  command
+      ->add_flag("--help-formats{text}", arguments->help_formats,
+                 "List the formats of meshes and what is kept of each; =json: their endings, for "
+                 "programs; =markdown: as a table")
+      ->check(CLI::IsMember(format_references()));
   add_progress_option(*command, invocation.progress);
   command->footer(footer());
   command->callback([arguments, &invocation] {
-    if (!arguments->help_config.empty()) {
-      invocation.run = [arguments](Environment& environment) {
-        environment.out << references().at(arguments->help_config)();
+    if (const auto reference = reference_of(*arguments); reference != nullptr) {
+      invocation.run = [reference](Environment& environment) {
+        environment.out << reference();
         return 0;
       };
       return;

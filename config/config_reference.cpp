@@ -1,6 +1,8 @@
 #include "config/config_reference.h"
 
 #include "config/config_schema.h"
+#include "mesh_io/formats.h"
+#include "mesh_io/other_formats.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
@@ -194,6 +196,17 @@ std::string wrapped(std::string_view text, const std::string& indent) {
   return lines;
 }
 
+/// The endings of all kinds of a format, as code of Markdown: "`.gltf`, `.glb`".
+std::string endings_of(std::string_view format) {
+  std::vector<std::string> all;
+  for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
+    std::string ending = fmt::format("`{}`", row.ending);
+    if (row.format == format && !row.ending.empty() && !has(all, ending))
+      all.push_back(std::move(ending));
+  }
+  return all.empty() ? "`tileset.json`" : fmt::format("{}", fmt::join(all, ", "));
+}
+
 /// In one line: { "vertices": 8192, "axis": "compactness" }
 std::string in_one_line(const Json& value) {
   std::string line;
@@ -254,6 +267,45 @@ std::string defaults_text() {
   for (const auto& [name, value] : defaults.items())
     lines.push_back(fmt::format("  \"{}\": {}", name, in_one_line(value)));
   return fmt::format("{{\n{}\n}}\n", fmt::join(lines, ",\n"));
+}
+
+std::string formats_text() {
+  std::string text =
+      "The formats of meshes, each also packed by gzip. What is in a file decides, not its name.\n";
+  for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
+    if (row.kept.empty())
+      continue;
+    text += fmt::format("\n  {}: {}\n", row.format, with_quotes(endings_of(row.format)));
+    text += wrapped(with_quotes(fmt::format("kept: {}", row.kept)), "      ");
+    text += wrapped(with_quotes(fmt::format("not kept: {}", row.left_out)), "      ");
+  }
+  return text;
+}
+
+std::string formats_markdown() {
+  std::string table =
+      "| format | files | what is kept | what is not |\n"
+      "|---|---|---|---|\n";
+  for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
+    if (!row.kept.empty())
+      table += fmt::format("| {} | {} | {} | {} |\n", row.format, endings_of(row.format), row.kept,
+                           row.left_out);
+  }
+  return table;
+}
+
+std::string formats_json() {
+  std::vector<std::string_view> naming, companions;
+  for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
+    if (!row.companions.empty())
+      naming.push_back(row.ending);
+    companions.insert(companions.end(), row.companions.begin(), row.companions.end());
+  }
+  for (const std::string_view ending : mesh_io::picture_endings())
+    companions.push_back(ending);
+  const Json formats{
+      {"meshes", mesh_io::mesh_endings()}, {"namesOthers", naming}, {"companions", companions}};
+  return formats.dump(2) + '\n';
 }
 
 }  // namespace meshhier::config

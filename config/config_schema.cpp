@@ -1,12 +1,12 @@
 #include "config/config_schema.h"
 
 #include "execution/size_text.h"
+#include "mesh_io/formats.h"
 #include "storage/format/manifest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -35,7 +35,7 @@ constexpr double kMostThreads = 4096;
 constexpr double kMostInputs = 100000;
 /// A mesh has no more.
 constexpr double kMostAttributes = kMaxValueChannels;
-/// Texts are repeated in the manifest, which has 1 MiB.
+/// Of texts that the manifest repeats, which has 1 MiB.
 constexpr double kMostTextBytes = 32768;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
@@ -168,7 +168,7 @@ ConfigKey text(ConfigKey key, Field field) {
   return key;
 }
 
-/// A key with an optional string, for which an empty one is a value.
+/// Of an optional string, for which an empty one is a value.
 template <class Field>
 ConfigKey optional_text(ConfigKey key, Field field) {
   key.kind = KeyKind::text;
@@ -180,7 +180,7 @@ ConfigKey optional_text(ConfigKey key, Field field) {
   return key;
 }
 
-/// A key with an optional array.
+/// Of an optional array.
 template <class Field>
 ConfigKey numbers(ConfigKey key, Field field) {
   using Array =
@@ -192,7 +192,7 @@ ConfigKey numbers(ConfigKey key, Field field) {
   return key;
 }
 
-/// A key with optional TargetVertexCounts. A list of one is the number: it means the same.
+/// Of optional TargetVertexCounts. A list of one is the number: it means the same.
 template <class Field>
 ConfigKey levels(ConfigKey key, Limits limits, Field field) {
   key.kind = KeyKind::levels;
@@ -282,301 +282,266 @@ ConfigKey deciding(ConfigKey key) {
   return key;
 }
 
-using ConfigKeys = std::vector<ConfigKey>;
-
-// The rows, by what they are about. Each is a statement of its own: a list of all would take the
-// compiler as long as ten files, since it has to know how to undo any part of one. A change here
-// changes the documents too: scripts/config_reference writes them anew.
-
-ConfigKeys input_keys() {
-  ConfigKeys keys;
-  keys.push_back(ignored_text(
-      {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}));
-  keys.push_back(required_paths(
-      {.path = "input",
-       .meaning =
-           "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip, or a tileset of 3D "
-           "Tiles; the files of a list are joined in its order",
-       .decides_result = true},
-      kMostInputs, [](auto& c) -> auto& { return c.input; }));
-  keys.push_back(path(
-      {.path = "output",
-       .meaning = "the hierarchy to make: a directory, or a file if `storage.container` is "
-                  "`3tz`; missing parent directories are made",
-       .required = true},
-      [](auto& c) -> auto& { return c.output; }));
-  keys.push_back(bytes(
-      {.path = "memory_budget",
-       .meaning = "peak resident memory of the build",
-       .unset = "a quarter of the memory that the process may use, from 512 MiB to 16 GiB"},
-      [](auto& c) -> auto& { return c.memory_budget; }));
-  keys.push_back(number(
-      {.path = "threads", .meaning = "threads at work; 0: as many as the machine has"},
-      {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }));
-  keys.push_back(deciding(numbers(
-      {.path = "crop",
-       .meaning = "two corners of a box, in the input's coordinates: only triangles that touch "
-                  "it are built, whole",
-       .unset = "all"},
-      [](auto& c) -> auto& { return c.crop; })));
-  keys.push_back(deciding(boolean(
-      {.path = "weld",
-       .meaning = "vertices of equal position and equal attributes become one; those of an STL "
-                  "file, which have no numbers of their own, always do"},
-      [](auto& c) -> auto& { return c.weld; })));
-  keys.push_back(deciding(choice(
-      {.path = "topology",
-       .meaning = "which vertices are one point of the surface: all at one place, whatever "
-                  "their attributes (`place`), or each by itself (`index`)"},
-      kTopologies, [](auto& c) -> auto& { return c.topology; })));
-  keys.push_back(deciding(attributes(
-      {.path = "attributes",
-       .meaning = "which numbers of vertices are kept besides normals, colours and texture "
-                  "coordinates: `all`, `none`, or a list of their names"})));
-  keys.push_back(deciding(
-      labels({.path = "labels",
-              .meaning = "which of them are labels, of which no means are made: those of integer "
-                         "types (`integers`), or a list of names"})));
-  return keys;
-}
-
-ConfigKeys tree_keys() {
-  ConfigKeys keys;
-  keys.push_back(deciding(number(
-      {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
-      [](auto& c) -> auto& { return c.partition.vertices; })));
-  keys.push_back(deciding(number(
-      {.path = "partition.count", .meaning = "number of partitions, any", .excludes = {"vertices"}},
-      {1, kMostPartitions}, [](auto& c) -> auto& { return c.partition.count; })));
-  keys.push_back(deciding(choice(
-      {.path = "partition.axis",
-       .meaning = "how a split direction is chosen: the shortest boundary "
-                  "(`compactness`), or the longest axis of the bounding box"},
-      kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })));
-  keys.push_back(deciding(choice(
-      {.path = "simplify.method",
-       .meaning = "how coarser tiles are made: `edge_collapse` moves an edge to the point of "
-                  "least quadric error; `half_edge` moves a vertex onto another, so coarse "
-                  "vertices are a subset of the finer ones; `cluster` makes one vertex of each "
-                  "cell of equal vertex count"},
-      kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })));
-  keys.push_back(deciding(levels(
-      {.path = "simplify.vertices",
-       .meaning = "target vertex count of simplified tiles; a list is by level, from the root "
-                  "down, and its last entry holds for all deeper levels",
-       .unset = "as a partition has"},
-      kTileVertices, [](auto& c) -> auto& { return c.simplify.vertices; })));
-  keys.push_back(deciding(choice(
-      {.path = "simplify.representative",
-       .meaning = "of `cluster`: which point stands for a cell, the `mean` of its "
-                  "vertices, the point of least `quadric` error, or the best "
-                  "original `vertex`"},
-      kRepresentatives, [](auto& c) -> auto& { return c.simplify.representative; })));
-  keys.push_back(deciding(choice(
-      {.path = "simplify.cost",
-       .meaning = "of `half_edge`: what a collapse costs, by `quadric` error, or by "
-                  "length and curvature (`melax`)"},
-      kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })));
-  return keys;
-}
-
-ConfigKeys first_sight_keys() {
-  ConfigKeys keys;
-  keys.push_back(deciding(number(
-      {.path = "outline.sectors",
-       .meaning = "about how many sectors the outline draws the boundaries of: tiles of one "
-                  "level, or parts of these"},
-      {1, kMostSectors}, [](auto& c) -> auto& { return c.outline.sectors; })));
-  keys.push_back(deciding(number(
-      {.path = "outline.tolerance",
-       .meaning = "how far a line may move to have fewer points, as a part of the "
-                  "bounding-box diagonal"},
-      {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })));
-  keys.push_back(deciding(boolean(
-      {.path = "preview",
-       .meaning = "`preview.webp`, a picture of the whole model for galleries and file managers"},
-      [](auto& c) -> auto& { return c.preview; })));
-  keys.push_back(deciding(number(
-      {.path = "first_view.azimuth",
-       .meaning = "where `preview.webp`, the outline, viewers and `meshhier preview` look "
-                  "from first: degrees from the model's front to its right",
-       .unset = "chosen by the build",
-       .needs = {"elevation"}},
-      {-2 * kHalfTurn, 2 * kHalfTurn}, [](auto& c) -> auto& { return c.first_view.azimuth; })));
-  keys.push_back(deciding(number(
-      {.path = "first_view.elevation",
-       .meaning = "degrees above its equator; 90 is from above, -90 from below",
-       .unset = "chosen by the build",
-       .needs = {"azimuth"},
-       .takes_minimum = true},
-      {-kHalfTurn / 2, kHalfTurn / 2}, [](auto& c) -> auto& { return c.first_view.elevation; })));
-  return keys;
-}
-
-ConfigKeys storage_keys() {
-  ConfigKeys keys;
-  keys.push_back(choice(
-      {.path = "storage.container",
-       .meaning = "a directory (`files`), or one file, a 3D Tiles archive with the same "
-                  "files in it (`3tz`)"},
-      kContainers, [](auto& c) -> auto& { return c.storage.container; }));
-  keys.push_back(deciding(choice(
-      {.path = "storage.compression",
-       .meaning = "how tiles are packed: plain glTF (`none`), a gzip stream each (`zlib`), "
-                  "`EXT_meshopt_compression` (`meshopt`), or both, the smallest; none of them "
-                  "loses anything"},
-      kCompressions, [](auto& c) -> auto& { return c.storage.compression; })));
-  keys.push_back(deciding(number(
-      {.path = "storage.positions.bits",
-       .meaning = "rounds all positions to one lattice of so many bits an axis; up "
-                  "to 16 bits, tiles hold 16-bit numbers (`KHR_mesh_quantization`)",
-       .unset = "none: exact"},
-      {Lattice::kFewestBits, Lattice::kMostBits},
-      [](auto& c) -> auto& { return c.storage.position_bits; })));
-  keys.push_back(deciding(choice(
-      {.path = "storage.normals",
-       .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
-                  "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
-                  "they are. `map`: simplified tiles get a normal map of the original surface "
-                  "besides; `auto`: those where its bytes are worth more than triangles. "
-                  "Meshes with pictures have no maps"},
-      kNormals, [](auto& c) -> auto& { return c.storage.normals; })));
-  return keys;
-}
-
-ConfigKeys picture_keys() {
-  ConfigKeys keys;
-  keys.push_back(deciding(number(
-      {.path = "normal_map.texels",
-       .meaning = "side of a normal map, at most; there are fewer texels where the "
-                  "original has no more to show"},
-      kTexels, [](auto& c) -> auto& { return c.normal_map.texels; })));
-  keys.push_back(deciding(choice(
-      {.path = "normal_map.format",
-       .meaning = "how normal maps are stored; `png` and `webp` lose nothing, `ktx2` (UASTC) stays "
-                  "compressed in the memory of graphics devices"},
-      kImageFormats, [](auto& c) -> auto& { return c.normal_map.format.format; })));
-  keys.push_back(deciding(number(
-      {.path = "normal_map.quality", .meaning = "of `jpeg`"}, {1, kBestQuality},
-      [](auto& c) -> auto& { return c.normal_map.format.quality; })));
-  keys.push_back(deciding(boolean(
-      {.path = "texture.use",
-       .meaning = "tiles show the pictures or colours of the mesh's materials; `false` leaves both "
-                  "out and keeps texture coordinates as they are"},
-      [](auto& c) -> auto& { return c.texture.use; })));
-  keys.push_back(deciding(number(
-      {.path = "texture.texels",
-       .meaning = "side of the picture of a simplified tile, at most; partitions have the "
-                  "input's texels"},
-      kTexels, [](auto& c) -> auto& { return c.texture.texels; })));
-  keys.push_back(deciding(choice(
-      {.path = "texture.format",
-       .meaning =
-           "how pictures of tiles are stored; with `jpeg`, those with transparent texels "
-           "are PNG; `ktx2` stays compressed in the memory of graphics devices, where others "
-           "take four to eight times as much, and wants Node.js where it is built"},
-      kImageFormats, [](auto& c) -> auto& { return c.texture.format.format; })));
-  keys.push_back(deciding(number(
-      {.path = "texture.quality",
-       .meaning = "of `jpeg`, `webp` and `ktx2`; with 100 WebP loses nothing and KTX2 is UASTC "
-                  "instead of ETC1S; PNG never loses anything"},
-      {1, kBestQuality}, [](auto& c) -> auto& { return c.texture.format.quality; })));
-  keys.push_back(deciding(boolean(
-      {.path = "texture.unlit",
-       .meaning = "viewers show the pictures as they are (`KHR_materials_unlit`): those of "
-                  "photogrammetry have their light already"},
-      [](auto& c) -> auto& { return c.texture.format.unlit; })));
-  keys.push_back(deciding(choice(
-      {.path = "missing_images",
-       .meaning = "a picture that is not there is a warning, and its material's colour is shown; "
-                  "a broken one is an error (`warn`) or likewise a warning (`ignore`)"},
-      kMissingImages, [](auto& c) -> auto& { return c.missing_images; })));
-  return keys;
-}
-
-ConfigKeys placement_keys() {
-  ConfigKeys keys;
-  keys.push_back(deciding(choice(
-      {.path = "up",
-       .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
-                  "medical images",
-       .unset = "`z` of a tileset of 3D Tiles, else `y`"},
-      kUpAxes, [](auto& c) -> auto& { return c.up; })));
-  keys.push_back(deciding(choice(
-      {.path = "units",
-       .meaning = "what lengths of the input are in: the tileset and its place are in metres, "
-                  "and viewers show it (`us_ft`: the foot of US surveys)",
-       .unset = "metres of glTF, else not known: placed as metres, or as the map's unit"},
-      kUnits, [](auto& c) -> auto& { return c.units; })));
-  keys.push_back(deciding(number(
-      {.path = "placement.longitude", .meaning = "degrees east", .needs = {"latitude"}},
-      {-kHalfTurn, kHalfTurn}, [](auto& c) -> auto& { return c.placement.longitude; })));
-  keys.push_back(deciding(number(
-      {.path = "placement.latitude", .meaning = "degrees north", .needs = {"longitude"}},
-      {-kHalfTurn / 2, kHalfTurn / 2}, [](auto& c) -> auto& { return c.placement.latitude; })));
-  keys.push_back(deciding(number(
-      {.path = "placement.height",
-       .meaning = "metres above the ellipsoid",
-       .unset = "0",
-       .needs = {"longitude"}},
-      {-kMostMetres, kMostMetres}, [](auto& c) -> auto& { return c.placement.height; })));
-  keys.push_back(deciding(optional_text(
-      {.path = "placement.crs",
-       .meaning = "instead of a place: the reference system (CRS) of a model in map "
-                  "coordinates, as PROJ takes it: `EPSG:25832`, `EPSG:32633+5773`, WKT, a "
-                  "PROJ string",
-       .excludes = {"longitude", "transform"}},
-      [](auto& c) -> auto& { return c.placement.crs; })));
-  keys.push_back(deciding(numbers(
-      {.path = "placement.offset",
-       .meaning = "what makes map coordinates when it is added to the model's z-up coordinates",
-       .unset = "[0, 0, 0]",
-       .needs = {"crs", "metadata"}},
-      [](auto& c) -> auto& { return c.placement.offset; })));
-  keys.push_back(deciding(path(
-      {.path = "placement.metadata",
-       .meaning = "a file that crs and offset are read from, unless they are given: "
-                  "`metadata.xml`, `coords.txt`, `offset.xyz`, a `.prj`",
-       .excludes = {"longitude", "transform"}},
-      [](auto& c) -> auto& { return c.placement.metadata; })));
-  keys.push_back(deciding(numbers(
-      {.path = "placement.anchor",
-       .meaning = "the point of the model, in input coordinates, that stands at that place; "
-                  "with a map, the point where the transform is exact",
-       .unset = "[0, 0, 0]; with a map, the middle of the bounding box",
-       .needs = {"longitude", "crs", "metadata"}},
-      [](auto& c) -> auto& { return c.placement.anchor; })));
-  keys.push_back(deciding(numbers(
-      {.path = "placement.transform",
-       .meaning = "instead of a place: the matrix of the tileset's root, column "
-                  "by column, from z-up coordinates (in metres, if `units` are given)",
-       .excludes = {"longitude"}},
-      [](auto& c) -> auto& { return c.placement.transform; })));
-  return keys;
-}
-
-ConfigKeys tileset_keys() {
-  ConfigKeys keys;
-  keys.push_back(deciding(number(
-      {.path = "tileset.pixels",
-       .meaning = "the tileset's `geometricError` is a tile's error times this: pixels that a "
-                  "viewer of 3D Tiles allows for by default, where the error shall be one "
-                  "pixel; 1: the error itself",
-       .takes_minimum = true},
-      {storage::kFewestTilesetPixels, storage::kMostTilesetPixels},
-      [](auto& c) -> auto& { return c.tileset.pixels; })));
-  keys.push_back(deciding(text(
-      {.path = "licence", .meaning = "the licence of the model, a text in the tileset"},
-      [](auto& c) -> auto& { return c.licence; })));
-  return keys;
-}
-
-ConfigKeys make_config_keys() {
-  ConfigKeys all;
-  for (const auto& make : {input_keys, tree_keys, first_sight_keys, storage_keys, picture_keys,
-                           placement_keys, tileset_keys})
-    std::ranges::move(make(), std::back_inserter(all));
-  return all;
+/// A change here changes the documents too: scripts/references writes them anew.
+std::vector<ConfigKey> make_config_keys() {
+  return {
+      ignored_text(
+          {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}),
+      required_paths(
+          {.path = "input",
+           .meaning =
+               fmt::format("the mesh: a {} file, perhaps in gzip, or a tileset of 3D Tiles; the "
+                           "files of a list are joined in its order",
+                           mesh_io::format_names()),
+           .decides_result = true},
+          kMostInputs, [](auto& c) -> auto& { return c.input; }),
+      path(
+          {.path = "output",
+           .meaning = "the hierarchy to make: a directory, or a file if `storage.container` is "
+                      "`3tz`; missing parent directories are made",
+           .required = true},
+          [](auto& c) -> auto& { return c.output; }),
+      bytes(
+          {.path = "memory_budget",
+           .meaning = "peak resident memory of the build",
+           .unset = "a quarter of the memory that the process may use, from 512 MiB to 16 GiB"},
+          [](auto& c) -> auto& { return c.memory_budget; }),
+      number(
+          {.path = "threads", .meaning = "threads at work; 0: as many as the machine has"},
+          {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
+      deciding(numbers(
+          {.path = "crop",
+           .meaning = "two corners of a box, in the input's coordinates: only triangles that touch "
+                      "it are built, whole",
+           .unset = "all"},
+          [](auto& c) -> auto& { return c.crop; })),
+      deciding(boolean(
+          {.path = "weld",
+           .meaning = "vertices of equal position and equal attributes become one; those of an STL "
+                      "file, which have no numbers of their own, always do"},
+          [](auto& c) -> auto& { return c.weld; })),
+      deciding(choice(
+          {.path = "topology",
+           .meaning = "which vertices are one point of the surface: all at one place, whatever "
+                      "their attributes (`place`), or each by itself (`index`)"},
+          kTopologies, [](auto& c) -> auto& { return c.topology; })),
+      deciding(attributes(
+          {.path = "attributes",
+           .meaning = "which numbers of vertices are kept besides normals, colours and texture "
+                      "coordinates: `all`, `none`, or a list of their names"})),
+      deciding(labels({.path = "labels",
+                       .meaning =
+                           "which of them are labels, of which no means are made: those of integer "
+                           "types (`integers`), or a list of names"})),
+      deciding(number(
+          {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
+          [](auto& c) -> auto& { return c.partition.vertices; })),
+      deciding(number(
+          {.path = "partition.count",
+           .meaning = "number of partitions, any",
+           .excludes = {"vertices"}},
+          {1, kMostPartitions}, [](auto& c) -> auto& { return c.partition.count; })),
+      deciding(choice(
+          {.path = "partition.axis",
+           .meaning = "how a split direction is chosen: the shortest boundary "
+                      "(`compactness`), or the longest axis of the bounding box"},
+          kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })),
+      deciding(choice(
+          {.path = "simplify.method",
+           .meaning = "how coarser tiles are made: `edge_collapse` moves an edge to the point of "
+                      "least quadric error; `half_edge` moves a vertex onto another, so coarse "
+                      "vertices are a subset of the finer ones; `cluster` makes one vertex of each "
+                      "cell of equal vertex count"},
+          kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })),
+      deciding(levels(
+          {.path = "simplify.vertices",
+           .meaning = "target vertex count of simplified tiles; a list is by level, from the root "
+                      "down, and its last entry holds for all deeper levels",
+           .unset = "as a partition has"},
+          kTileVertices, [](auto& c) -> auto& { return c.simplify.vertices; })),
+      deciding(choice(
+          {.path = "simplify.representative",
+           .meaning = "of `cluster`: which point stands for a cell, the `mean` of its "
+                      "vertices, the point of least `quadric` error, or the best "
+                      "original `vertex`"},
+          kRepresentatives, [](auto& c) -> auto& { return c.simplify.representative; })),
+      deciding(choice(
+          {.path = "simplify.cost",
+           .meaning = "of `half_edge`: what a collapse costs, by `quadric` error, or by "
+                      "length and curvature (`melax`)"},
+          kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })),
+      deciding(number(
+          {.path = "outline.sectors",
+           .meaning = "about how many sectors the outline draws the boundaries of: tiles of one "
+                      "level, or parts of these"},
+          {1, kMostSectors}, [](auto& c) -> auto& { return c.outline.sectors; })),
+      deciding(number(
+          {.path = "outline.tolerance",
+           .meaning = "how far a line may move to have fewer points, as a part of the "
+                      "bounding-box diagonal"},
+          {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
+      deciding(boolean(
+          {.path = "preview",
+           .meaning =
+               "`preview.webp`, a picture of the whole model for galleries and file managers"},
+          [](auto& c) -> auto& { return c.preview; })),
+      deciding(number(
+          {.path = "first_view.azimuth",
+           .meaning = "where `preview.webp`, the outline, viewers and `meshhier preview` look "
+                      "from first: degrees from the model's front to its right",
+           .unset = "chosen by the build",
+           .needs = {"elevation"}},
+          {-2 * kHalfTurn, 2 * kHalfTurn}, [](auto& c) -> auto& { return c.first_view.azimuth; })),
+      deciding(number(
+          {.path = "first_view.elevation",
+           .meaning = "degrees above its equator; 90 is from above, -90 from below",
+           .unset = "chosen by the build",
+           .needs = {"azimuth"},
+           .takes_minimum = true},
+          {-kHalfTurn / 2, kHalfTurn / 2},
+          [](auto& c) -> auto& { return c.first_view.elevation; })),
+      choice(
+          {.path = "storage.container",
+           .meaning = "a directory (`files`), or one file, a 3D Tiles archive with the same "
+                      "files in it (`3tz`)"},
+          kContainers, [](auto& c) -> auto& { return c.storage.container; }),
+      deciding(choice(
+          {.path = "storage.compression",
+           .meaning = "how tiles are packed: plain glTF (`none`), a gzip stream each (`zlib`), "
+                      "`EXT_meshopt_compression` (`meshopt`), or both, the smallest; none of them "
+                      "loses anything"},
+          kCompressions, [](auto& c) -> auto& { return c.storage.compression; })),
+      deciding(number(
+          {.path = "storage.positions.bits",
+           .meaning = "rounds all positions to one lattice of so many bits an axis; up "
+                      "to 16 bits, tiles hold 16-bit numbers (`KHR_mesh_quantization`)",
+           .unset = "none: exact"},
+          {Lattice::kFewestBits, Lattice::kMostBits},
+          [](auto& c) -> auto& { return c.storage.position_bits; })),
+      deciding(choice(
+          {.path = "storage.normals",
+           .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
+                      "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
+                      "they are. `map`: simplified tiles get a normal map of the original surface "
+                      "besides; `auto`: those where its bytes are worth more than triangles. "
+                      "Meshes with pictures have no maps"},
+          kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
+      deciding(number(
+          {.path = "normal_map.texels",
+           .meaning = "side of a normal map, at most; there are fewer texels where the "
+                      "original has no more to show"},
+          kTexels, [](auto& c) -> auto& { return c.normal_map.texels; })),
+      deciding(choice(
+          {.path = "normal_map.format",
+           .meaning =
+               "how normal maps are stored; `png` and `webp` lose nothing, `ktx2` (UASTC) stays "
+               "compressed in the memory of graphics devices"},
+          kImageFormats, [](auto& c) -> auto& { return c.normal_map.format.format; })),
+      deciding(number(
+          {.path = "normal_map.quality", .meaning = "of `jpeg`"}, {1, kBestQuality},
+          [](auto& c) -> auto& { return c.normal_map.format.quality; })),
+      deciding(boolean(
+          {.path = "texture.use",
+           .meaning =
+               "tiles show the pictures or colours of the mesh's materials; `false` leaves both "
+               "out and keeps texture coordinates as they are"},
+          [](auto& c) -> auto& { return c.texture.use; })),
+      deciding(number(
+          {.path = "texture.texels",
+           .meaning = "side of the picture of a simplified tile, at most; partitions have the "
+                      "input's texels"},
+          kTexels, [](auto& c) -> auto& { return c.texture.texels; })),
+      deciding(choice(
+          {.path = "texture.format",
+           .meaning =
+               "how pictures of tiles are stored; with `jpeg`, those with transparent texels "
+               "are PNG; `ktx2` stays compressed in the memory of graphics devices, where others "
+               "take four to eight times as much, and wants Node.js where it is built"},
+          kImageFormats, [](auto& c) -> auto& { return c.texture.format.format; })),
+      deciding(number(
+          {.path = "texture.quality",
+           .meaning = "of `jpeg`, `webp` and `ktx2`; with 100 WebP loses nothing and KTX2 is UASTC "
+                      "instead of ETC1S; PNG never loses anything"},
+          {1, kBestQuality}, [](auto& c) -> auto& { return c.texture.format.quality; })),
+      deciding(boolean(
+          {.path = "texture.unlit",
+           .meaning = "viewers show the pictures as they are (`KHR_materials_unlit`): those of "
+                      "photogrammetry have their light already"},
+          [](auto& c) -> auto& { return c.texture.format.unlit; })),
+      deciding(choice(
+          {.path = "missing_images",
+           .meaning =
+               "a picture that is not there is a warning, and its material's colour is shown; "
+               "a broken one is an error (`warn`) or likewise a warning (`ignore`)"},
+          kMissingImages, [](auto& c) -> auto& { return c.missing_images; })),
+      deciding(choice(
+          {.path = "up",
+           .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
+                      "medical images",
+           .unset = "`z` of a tileset of 3D Tiles, else `y`"},
+          kUpAxes, [](auto& c) -> auto& { return c.up; })),
+      deciding(choice(
+          {.path = "units",
+           .meaning = "what lengths of the input are in: the tileset and its place are in metres, "
+                      "and viewers show it (`us_ft`: the foot of US surveys)",
+           .unset = "metres of glTF, else not known: placed as metres, or as the map's unit"},
+          kUnits, [](auto& c) -> auto& { return c.units; })),
+      deciding(number(
+          {.path = "placement.longitude", .meaning = "degrees east", .needs = {"latitude"}},
+          {-kHalfTurn, kHalfTurn}, [](auto& c) -> auto& { return c.placement.longitude; })),
+      deciding(number(
+          {.path = "placement.latitude", .meaning = "degrees north", .needs = {"longitude"}},
+          {-kHalfTurn / 2, kHalfTurn / 2}, [](auto& c) -> auto& { return c.placement.latitude; })),
+      deciding(number(
+          {.path = "placement.height",
+           .meaning = "metres above the ellipsoid",
+           .unset = "0",
+           .needs = {"longitude"}},
+          {-kMostMetres, kMostMetres}, [](auto& c) -> auto& { return c.placement.height; })),
+      deciding(optional_text(
+          {.path = "placement.crs",
+           .meaning = "instead of a place: the reference system (CRS) of a model in map "
+                      "coordinates, as PROJ takes it: `EPSG:25832`, `EPSG:32633+5773`, WKT, a "
+                      "PROJ string",
+           .excludes = {"longitude", "transform"}},
+          [](auto& c) -> auto& { return c.placement.crs; })),
+      deciding(numbers(
+          {.path = "placement.offset",
+           .meaning = "what makes map coordinates when it is added to the model's z-up coordinates",
+           .unset = "[0, 0, 0]",
+           .needs = {"crs", "metadata"}},
+          [](auto& c) -> auto& { return c.placement.offset; })),
+      deciding(path(
+          {.path = "placement.metadata",
+           .meaning = "a file that crs and offset are read from, unless they are given: "
+                      "`metadata.xml`, `coords.txt`, `offset.xyz`, a `.prj`",
+           .excludes = {"longitude", "transform"}},
+          [](auto& c) -> auto& { return c.placement.metadata; })),
+      deciding(numbers(
+          {.path = "placement.anchor",
+           .meaning = "the point of the model, in input coordinates, that stands at that place; "
+                      "with a map, the point where the transform is exact",
+           .unset = "[0, 0, 0]; with a map, the middle of the bounding box",
+           .needs = {"longitude", "crs", "metadata"}},
+          [](auto& c) -> auto& { return c.placement.anchor; })),
+      deciding(numbers(
+          {.path = "placement.transform",
+           .meaning = "instead of a place: the matrix of the tileset's root, column "
+                      "by column, from z-up coordinates (in metres, if `units` are given)",
+           .excludes = {"longitude"}},
+          [](auto& c) -> auto& { return c.placement.transform; })),
+      deciding(number(
+          {.path = "tileset.pixels",
+           .meaning = "the tileset's `geometricError` is a tile's error times this: pixels that a "
+                      "viewer of 3D Tiles allows for by default, where the error shall be one "
+                      "pixel; 1: the error itself",
+           .takes_minimum = true},
+          {storage::kFewestTilesetPixels, storage::kMostTilesetPixels},
+          [](auto& c) -> auto& { return c.tileset.pixels; })),
+      deciding(text(
+          {.path = "licence", .meaning = "the licence of the model, a text in the tileset"},
+          [](auto& c) -> auto& { return c.licence; })),
+  };
 }
 
 bool is_number_within(const ConfigKey& key, const Json& value) {

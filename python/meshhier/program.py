@@ -171,7 +171,7 @@ def build(
     """Makes a hierarchy of a mesh, or of several together, and opens it. A build that was stopped goes on.
 
     Args:
-        mesh: a PLY, OBJ, glTF, STL, OFF, perhaps packed by gzip, a tileset.json, or a list of such.
+        mesh: a file of any format that `meshhier build --help-formats` lists, or a list of such.
         output: "david.hier", or "david.3tz" for one file.
         settings: keys of the config, dotted: {"memory_budget": "2GiB", "storage.compression": "meshopt_zlib"}.
         force: replaces a hierarchy that is there.

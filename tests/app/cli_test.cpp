@@ -159,6 +159,7 @@ TEST_F(CommandLine, HelpOfABuildShowsTheDefaultsAndHelpOfTheConfigAllKeys) {
   EXPECT_EQ(schema.code, 0) << schema.messages;
   EXPECT_TRUE(nlohmann::json::parse(schema.out).at("properties").contains("partition"));
   EXPECT_EQ(run({"build", "--help-config=poem"}).code, kUsage);
+  EXPECT_THAT(run({"build", "--help-formats"}).out, HasSubstr("ASCII"));
 }
 
 TEST_F(CommandLine, ABuildNeedsNoConfigIfAllIsSet) {

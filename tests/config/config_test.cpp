@@ -820,7 +820,7 @@ TEST(ConfigSchema, KnowsWhichKeysExcludeAndNeedEachOther) {
 
 TEST(ConfigReference, TheCommittedSchemaIsTheTables) {
   EXPECT_EQ(text_of(configs_directory() / "meshhier.schema.json"), schema_text())
-      << "scripts/config_reference writes it anew";
+      << "scripts/references writes it anew";
 }
 
 TEST(ConfigReference, TheDocumentHasTheTable) {
@@ -828,7 +828,26 @@ TEST(ConfigReference, TheDocumentHasTheTable) {
       text_of(std::filesystem::path(MESHHIER_SOURCE_DIR) / "docs" / "config.md");
   EXPECT_THAT(text,
               HasSubstr("<!-- keys: begin -->\n\n" + keys_markdown() + "\n<!-- keys: end -->"))
-      << "scripts/config_reference writes it anew";
+      << "scripts/references writes it anew";
+}
+
+TEST(FormatReference, WhatIsKeptInFilesIsTheTables) {
+  const std::filesystem::path sources = MESHHIER_SOURCE_DIR;
+  EXPECT_EQ(text_of(sources / "viewer/page/upload/formats.json"), formats_json())
+      << "scripts/references writes it anew";
+  EXPECT_THAT(
+      text_of(sources / "docs/input_formats.md"),
+      HasSubstr("<!-- formats: begin -->\n\n" + formats_markdown() + "\n<!-- formats: end -->"))
+      << "scripts/references writes it anew";
+}
+
+TEST(FormatReference, TheTerminalsListIsInShortLines) {
+  const std::string text = formats_text();
+  EXPECT_THAT(text, AllOf(HasSubstr("\n  STL: \".stl\"\n      kept: binary and ASCII"),
+                          HasSubstr("\n  glTF: \".gltf\", \".glb\"\n")));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_LE(line.size(), 96U) << line;
 }
 
 TEST(ConfigReference, TheTerminalsListHasAllKeysInShortLines) {

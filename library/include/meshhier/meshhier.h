@@ -169,7 +169,7 @@ struct Progress {
 
 struct BuildRequest {
   std::vector<std::string>
-      meshes;          ///< PLY, OBJ, glTF, STL, OFF, tileset.json: joined; or one config
+      meshes;          ///< of any format, which are joined; or one config
   std::string output;  ///< "scan.hier", or "scan.3tz" for one file
   std::map<std::string, std::string> settings;  ///< {"memory_budget", "2GiB"}; docs/config.md
   bool replace = false;                         ///< an output that is there

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What becomes of files that were dropped or chosen: which are meshes, and which belong to which of them.
 import { words } from '../words/words.js';
+import formats from './formats.json'; // scripts/references writes it
 
 export interface Chosen {
   file: File;
@@ -23,10 +24,15 @@ export interface Plan {
   problems: string[];
 }
 
-const MESH = /^(.+)\.(ply|obj|gltf|glb|stl|off)(\.gz)?$/i;
-/// Formats that name other files. What else is chosen with several meshes belongs to the only one of these.
-const NAMES_OTHERS = /\.(obj|gltf)(\.gz)?$/i;
-const COMPANION = /\.(mtl|bin|jpe?g|png|webp|bmp|gif|tga|tiff?|ktx2|dds)(\.gz)?$/i;
+/// Of names that have one of the endings, perhaps with ".gz" behind it; what is before that is the first group.
+function namesEndingIn(endings: readonly string[]): RegExp {
+  return new RegExp(`^(.+)(?:${endings.map((ending) => ending.replace('.', '\\.')).join('|')})(?:\\.gz)?$`, 'i');
+}
+
+const MESH = namesEndingIn(formats.meshes);
+/// What else is chosen with several meshes belongs to the only one of these.
+const NAMES_OTHERS = namesEndingIn(formats.namesOthers);
+const COMPANION = namesEndingIn(formats.companions);
 
 /// Folder, with a slash at its end, and name.
 function split(path: string): [string, string] {
@@ -84,7 +90,7 @@ function problemOf(upload: Upload, limit: number, limitText: string): string | n
 export function plan(chosen: readonly Chosen[], limit: number, limitText: string): Plan {
   const visible = chosen.filter(({ path }) => !isHidden(path));
   const meshes = visible.filter(isMesh);
-  if (meshes.length === 0) return { uploads: [], problems: [words.upload.noMesh] };
+  if (meshes.length === 0) return { uploads: [], problems: [words.upload.noMesh(formats.meshes.join(', '))] };
   const belonging = new Map<Chosen, Chosen[]>(meshes.map((mesh) => [mesh, []]));
   for (const file of visible.filter(({ path }) => COMPANION.test(path))) {
     const owner = ownerOf(file, meshes);

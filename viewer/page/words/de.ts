@@ -84,7 +84,7 @@ export const de: Words = {
     saving: 'wird gespeichert',
     progress: (name) => `${name}: wie viel gesendet ist`,
     cancel: (name) => `${name} abbrechen`,
-    noMesh: 'Unter diesen Dateien ist kein Netz: .ply, .obj, .gltf, .glb, .stl oder .off.',
+    noMesh: (endings) => `Unter diesen Dateien ist kein Netz (${endings}).`,
     whose: (file) => `Zu welchem Netz ${file} gehört, ist nicht klar: Senden Sie jedes Netz mit seinen eigenen Dateien.`,
     sameName: (name, file) => `${name} hat zwei Dateien namens ${file}: Benennen Sie eine um.`,
     tooLarge: (name, limit) => `${name} ist größer als ${limit}; mehr nimmt dieser Server nicht an.`,

@@ -87,7 +87,7 @@ export const en = {
     saving: 'is being saved',
     progress: (name: string) => `${name}: how much was sent`,
     cancel: (name: string) => `Cancel ${name}`,
-    noMesh: 'There is no mesh among these files: .ply, .obj, .gltf, .glb, .stl or .off.',
+    noMesh: (endings: string) => `There is no mesh among these files (${endings}).`,
     whose: (file: string) => `It is not clear which mesh ${file} belongs to: send each mesh with its own files.`,
     sameName: (name: string, file: string) => `${name} has two files called ${file}: rename one.`,
     tooLarge: (name: string, limit: string) => `${name} is larger than ${limit}, the most that this server takes.`,

@@ -84,7 +84,7 @@ export const es: Words = {
     saving: 'se está guardando',
     progress: (name) => `${name}: cuánto se ha enviado`,
     cancel: (name) => `Cancelar ${name}`,
-    noMesh: 'Entre estos archivos no hay ninguna malla: .ply, .obj, .gltf, .glb, .stl u .off.',
+    noMesh: (endings) => `Entre estos archivos no hay ninguna malla (${endings}).`,
     whose: (file) => `No está claro a qué malla pertenece ${file}: envíe cada malla con sus propios archivos.`,
     sameName: (name, file) => `${name} tiene dos archivos llamados ${file}: cambie el nombre de uno.`,
     tooLarge: (name, limit) => `${name} ocupa más de ${limit}, lo máximo que acepta este servidor.`,
