@@ -42,17 +42,15 @@ void store_tolerance(const std::string& text, inspection::CompareOptions& option
   const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
   const auto number = parse_number<double>(std::string_view(text).substr(0, end));
   const std::string_view unit = std::string_view(text).substr(end);
-  const auto known = std::ranges::find(kUnitNames, unit);
-  if (!number || !(*number >= 0) || (!unit.empty() && known == kUnitNames.end())) {
+  const auto known = value_named(kUnits, unit);
+  if (!number || !(*number >= 0) || (!unit.empty() && !known)) {
     throw CLI::ValidationError(
         "--tolerance",
-        fmt::format("expected a length of 0 or more, perhaps with mm, cm, m, km, in, ft or us_ft, "
-                    "found \"{}\"",
-                    text));
+        fmt::format("expected a length of 0 or more, perhaps with one of {}, found \"{}\"",
+                    names_in(kUnits), text));
   }
   options.tolerance = *number;
-  if (!unit.empty())
-    options.tolerance_unit = static_cast<Unit>(known - kUnitNames.begin());
+  options.tolerance_unit = known;
 }
 
 inspection::PlaceTransform read_transform(storage::FileSystem& files, const std::string& path) {

@@ -6,6 +6,7 @@
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/named_value.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/texture.h"
@@ -32,15 +33,6 @@
 #include <nlohmann/json.hpp>
 
 namespace meshhier::config {
-
-/// The name that an enumerator has in the config.
-template <class Enum>
-struct NamedValue {
-  std::string_view name;
-  Enum value;
-};
-template <class Enum>
-NamedValue(std::string_view, Enum) -> NamedValue<Enum>;
 
 /// How a node's split direction is chosen.
 using AxisRule = partition::Axis;
@@ -98,11 +90,7 @@ struct FirstViewConfig {
 };
 
 using Compression = storage::Compression;
-inline constexpr std::array kCompressions{
-    NamedValue{storage::kCompressionNames[0], Compression::none},
-    NamedValue{storage::kCompressionNames[1], Compression::zlib},
-    NamedValue{storage::kCompressionNames[2], Compression::meshopt},
-    NamedValue{storage::kCompressionNames[3], Compression::meshopt_zlib}};
+using storage::kCompressions;
 
 using Container = storage::Container;
 inline constexpr std::array kContainers{NamedValue{"files", Container::files},
@@ -160,12 +148,6 @@ enum class MissingImages {
 };
 inline constexpr std::array kMissingImages{NamedValue{"warn", MissingImages::warn},
                                            NamedValue{"ignore", MissingImages::ignore}};
-
-inline constexpr std::array kUnits{
-    NamedValue{name_of(Unit::mm), Unit::mm},      NamedValue{name_of(Unit::cm), Unit::cm},
-    NamedValue{name_of(Unit::m), Unit::m},        NamedValue{name_of(Unit::km), Unit::km},
-    NamedValue{name_of(Unit::in), Unit::in},      NamedValue{name_of(Unit::ft), Unit::ft},
-    NamedValue{name_of(Unit::us_ft), Unit::us_ft}};
 
 inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
                                     NamedValue{name_of(UpAxis::z), UpAxis::z}};

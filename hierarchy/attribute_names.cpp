@@ -1,7 +1,5 @@
 #include "hierarchy/attribute_names.h"
 
-#include <array>
-#include <cstddef>
 #include <string_view>
 
 namespace meshhier {
@@ -13,9 +11,8 @@ std::string attribute_names(const AttributeLayout& layout) {
       names.append(names.empty() ? "" : ", ").append(name);
   };
   add(layout.normals, "normals");
-  constexpr std::array kTypes{"", "8-bit", "16-bit", "float"};
   add(layout.colour != ColourType::none,
-      std::string(kTypes[static_cast<std::size_t>(layout.colour)]) + " colours" +
+      std::string(row_with(kColourTypes, layout.colour).for_people) + " colours" +
           (layout.alpha ? " with alpha" : ""));
   add(layout.texcoords && !layout.material, "texture coordinates");
   add(layout.material, "textures");

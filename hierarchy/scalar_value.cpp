@@ -1,5 +1,7 @@
 #include "hierarchy/scalar_value.h"
 
+#include "hierarchy/named_value.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,8 +11,10 @@
 namespace meshhier {
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames{"i8",  "u8",  "i16", "u16",
-                                                 "i32", "u32", "f32", "f64"};
+constexpr std::array kTypes{NamedValue{"i8", ValueType::i8},   NamedValue{"u8", ValueType::u8},
+                            NamedValue{"i16", ValueType::i16}, NamedValue{"u16", ValueType::u16},
+                            NamedValue{"i32", ValueType::i32}, NamedValue{"u32", ValueType::u32},
+                            NamedValue{"f32", ValueType::f32}, NamedValue{"f64", ValueType::f64}};
 
 template <class T>
 double nearest(double value) {
@@ -24,14 +28,11 @@ double nearest(double value) {
 }  // namespace
 
 std::string_view name_of(ValueType type) {
-  return kNames[static_cast<std::size_t>(type)];
+  return name_in(kTypes, type);
 }
 
 std::optional<ValueType> value_type_of(std::string_view name) {
-  const auto found = std::ranges::find(kNames, name);
-  if (found == kNames.end())
-    return std::nullopt;
-  return static_cast<ValueType>(found - kNames.begin());
+  return value_named(kTypes, name);
 }
 
 bool is_attribute_name(std::string_view name) {

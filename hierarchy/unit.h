@@ -1,6 +1,8 @@
 // Units of length.
 #pragma once
 
+#include "hierarchy/named_value.h"
+
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -9,18 +11,24 @@ namespace meshhier {
 
 enum class Unit : std::uint8_t { mm, cm, m, km, in, ft, us_ft };
 
-inline constexpr std::array<std::string_view, 7> kUnitNames{"mm", "cm", "m",    "km",
-                                                            "in", "ft", "us_ft"};
+struct UnitRow {
+  std::string_view name;
+  Unit value;
+  double metres;
+};
+inline constexpr std::array kUnits{UnitRow{"mm", Unit::mm, 0.001},
+                                   UnitRow{"cm", Unit::cm, 0.01},
+                                   UnitRow{"m", Unit::m, 1},
+                                   UnitRow{"km", Unit::km, 1000},
+                                   UnitRow{"in", Unit::in, 0.0254},
+                                   UnitRow{"ft", Unit::ft, 0.3048},
+                                   UnitRow{"us_ft", Unit::us_ft, 1200.0 / 3937}};
 
 constexpr std::string_view name_of(Unit unit) {
-  return kUnitNames[static_cast<std::size_t>(unit)];
+  return name_in(kUnits, unit);
 }
-
-/// A survey foot of the US is 1200 / 3937 m.
 constexpr double metres_of(Unit unit) {
-  constexpr std::array<double, kUnitNames.size()> kMetres{0.001,  0.01,         1, 1000, 0.0254,
-                                                          0.3048, 1200.0 / 3937};
-  return kMetres[static_cast<std::size_t>(unit)];
+  return row_with(kUnits, unit).metres;
 }
 
 }  // namespace meshhier

@@ -1,5 +1,6 @@
 #include "import/input_record.h"
 
+#include "hierarchy/named_value.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>
@@ -12,14 +13,16 @@
 namespace meshhier::importing {
 namespace {
 
-constexpr std::array<const char*, 5> kPartNames{"mesh", "buffer", "material library", "picture",
-                                                "tileset"};
+constexpr std::array kParts{
+    NamedValue{"mesh", InputPart::mesh}, NamedValue{"buffer", InputPart::buffer},
+    NamedValue{"material library", InputPart::library}, NamedValue{"picture", InputPart::picture},
+    NamedValue{"tileset", InputPart::tileset}};
 
 /// Of at least one file of a part.
 SourceFile joined(std::span<const ReadFile> files) {
   SourceFile all;
   all.name = files[0].path.filename().string();
-  all.format = kPartNames[static_cast<std::size_t>(files[0].part)];
+  all.format = name_in(kParts, files[0].part);
   std::vector<std::uint64_t> checksums;
   for (const ReadFile& file : files) {
     all.bytes += file.identity.bytes;
@@ -108,7 +111,7 @@ bool shows_materials(const SourceSummary& source) {
       }))
     return true;
   const auto is_of = [](const SourceFile& file, InputPart part) {
-    return file.format == kPartNames[static_cast<std::size_t>(part)];
+    return file.format == name_in(kParts, part);
   };
   return std::ranges::any_of(source.files, [&](const SourceFile& file) {
     return is_of(file, InputPart::library) || is_of(file, InputPart::picture);

@@ -1,16 +1,24 @@
 #include "import/obj_labels.h"
 
+#include "hierarchy/named_value.h"
+
 namespace meshhier::importing {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNames{"group", "object", "material"};
+constexpr std::array kLabelRows{NamedValue{"group", ObjLabel::group},
+                                NamedValue{"object", ObjLabel::object},
+                                NamedValue{"material", ObjLabel::material}};
+
+std::string label_name(std::size_t label) {
+  return std::string(name_in(kLabelRows, static_cast<ObjLabel>(label)));
+}
 
 }  // namespace
 
 ObjLabels::ObjLabels(const mesh_io::AttributeChoice& choice, AllLabelNames& names) : names_(names) {
-  for (std::size_t label = 0; label < kLabels; ++label) {
-    if (choice.which == mesh_io::AttributeChoice::Which::named && choice.takes(kNames[label]))
-      asked_.push_back(label);
+  for (const auto& [name, label] : kLabelRows) {
+    if (choice.which == mesh_io::AttributeChoice::Which::named && choice.takes(name))
+      asked_.push_back(static_cast<std::size_t>(label));
   }
 }
 
@@ -25,7 +33,7 @@ std::uint32_t ObjLabels::use() {
   Combination combination{};
   for (const std::size_t label : asked_) {
     if (names_now_[label])
-      combination[label] = names_[std::string(kNames[label])].number(*names_now_[label]);
+      combination[label] = names_[label_name(label)].number(*names_now_[label]);
   }
   const auto [known, is_new] =
       numbers_.try_emplace(combination, static_cast<std::uint32_t>(combinations_.size() + 1));
@@ -38,7 +46,7 @@ std::vector<ScalarAttribute> ObjLabels::attributes() const {
   std::vector<ScalarAttribute> all;
   for (const std::size_t label : asked_) {
     if (names_now_[label])
-      all.push_back({std::string(kNames[label]), ValueType::u16, true});
+      all.push_back({label_name(label), ValueType::u16, true});
   }
   return all;
 }

@@ -1,11 +1,13 @@
 #include "mesh_io/gltf_document.h"
 
+#include "hierarchy/named_value.h"
 #include "hierarchy/plain_text.h"
 #include "mesh_io/gltf_extensions.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/gltf_techniques.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -25,14 +27,14 @@ constexpr std::size_t kLongestGltfName = 255;
 constexpr std::array<GltfPictureFormat, 3> kUnreadFormats{
     {{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_avif", "AVIF"}, {"MSFT_texture_dds", "DDS"}}};
 
-/// The number of `text` in `names`.
-template <std::size_t size>
-std::size_t choice(const GltfObject& object, const char* key, const std::string& text,
-                   const std::array<std::string_view, size>& names) {
-  const auto found = std::ranges::find(names, text);
-  if (found == names.end())
+/// The value of a table that `text` names.
+template <class Table>
+auto choice(const GltfObject& object, const char* key, const std::string& text,
+            const Table& table) {
+  const auto value = value_named(table, text);
+  if (!value)
     object.fail(fmt::format("has the unknown {} \"{}\"", key, plain_text(text, kLongestGltfName)));
-  return static_cast<std::size_t>(found - names.begin());
+  return *value;
 }
 
 template <std::size_t size>
@@ -49,21 +51,31 @@ Vec3d as_vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
+struct Component {
+  std::uint64_t number;  ///< in files
+  GltfComponent value;
+  std::size_t bytes;
+};
+constexpr std::array kComponents{
+    Component{5120, GltfComponent::i8, 1},  Component{5121, GltfComponent::u8, 1},
+    Component{5122, GltfComponent::i16, 2}, Component{5123, GltfComponent::u16, 2},
+    Component{5125, GltfComponent::u32, 4}, Component{5126, GltfComponent::f32, 4}};
+
 GltfComponent read_component(const GltfObject& object) {
-  static const std::map<std::uint64_t, GltfComponent> kComponents{
-      {5120, GltfComponent::i8},  {5121, GltfComponent::u8},  {5122, GltfComponent::i16},
-      {5123, GltfComponent::u16}, {5125, GltfComponent::u32}, {5126, GltfComponent::f32}};
-  const auto found = kComponents.find(object.require_count("componentType", kMostGltfElements));
+  const std::uint64_t number = object.require_count("componentType", kMostGltfElements);
+  const auto found = std::ranges::find(kComponents, number, &Component::number);
   if (found == kComponents.end())
     object.fail("has an unknown componentType");
-  return found->second;
+  return found->value;
 }
 
 std::uint32_t read_components(const GltfObject& object) {
-  static constexpr std::array<std::string_view, 7> kTypes{"SCALAR", "VEC2", "VEC3", "VEC4",
-                                                          "MAT2",   "MAT3", "MAT4"};
-  static constexpr std::array<std::uint32_t, 7> kSizes{1, 2, 3, 4, 4, 9, 16};
-  return kSizes[choice(object, "type", object.text("type").value_or(""), kTypes)];
+  static constexpr std::array kSizes{
+      NamedValue{"SCALAR", std::uint32_t{1}}, NamedValue{"VEC2", std::uint32_t{2}},
+      NamedValue{"VEC3", std::uint32_t{3}},   NamedValue{"VEC4", std::uint32_t{4}},
+      NamedValue{"MAT2", std::uint32_t{4}},   NamedValue{"MAT3", std::uint32_t{9}},
+      NamedValue{"MAT4", std::uint32_t{16}}};
+  return choice(object, "type", object.text("type").value_or(""), kSizes);
 }
 
 /// `name` of the object; of hostile length, or with control characters, not.
@@ -127,18 +139,22 @@ class DocumentReader {
   }
 
   GltfMeshopt read_meshopt(const GltfObject& o) const {
-    static constexpr std::array<std::string_view, 3> kModes{"ATTRIBUTES", "TRIANGLES", "INDICES"};
-    static constexpr std::array<std::string_view, 4> kFilters{"NONE", "OCTAHEDRAL", "QUATERNION",
-                                                              "EXPONENTIAL"};
+    using Mode = GltfMeshopt::Mode;
+    using Filter = GltfMeshopt::Filter;
+    static constexpr std::array kModes{NamedValue{"ATTRIBUTES", Mode::attributes},
+                                       NamedValue{"TRIANGLES", Mode::triangles},
+                                       NamedValue{"INDICES", Mode::indices}};
+    static constexpr std::array kFilters{NamedValue{"NONE", Filter::none},
+                                         NamedValue{"OCTAHEDRAL", Filter::octahedral},
+                                         NamedValue{"QUATERNION", Filter::quaternion},
+                                         NamedValue{"EXPONENTIAL", Filter::exponential}};
     return {.buffer = o.require_index("buffer", document_.buffers.size()),
             .offset = o.count("byteOffset", kMostBytes).value_or(0),
             .bytes = o.require_count("byteLength", kMostBytes),
             .stride = o.require_count("byteStride", kMostStride),
             .count = o.require_count("count", kMostGltfElements),
-            .mode = static_cast<GltfMeshopt::Mode>(
-                choice(o, "mode", o.text("mode").value_or(""), kModes)),
-            .filter = static_cast<GltfMeshopt::Filter>(
-                choice(o, "filter", o.text("filter").value_or("NONE"), kFilters))};
+            .mode = choice(o, "mode", o.text("mode").value_or(""), kModes),
+            .filter = choice(o, "filter", o.text("filter").value_or("NONE"), kFilters)};
   }
 
   void read_view(const GltfObject& o) {
@@ -254,7 +270,9 @@ class DocumentReader {
   }
 
   void read_material(const GltfObject& o) {
-    constexpr std::array<std::string_view, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
+    static constexpr std::array kAlphaModes{NamedValue{"OPAQUE", AlphaMode::opaque},
+                                            NamedValue{"MASK", AlphaMode::mask},
+                                            NamedValue{"BLEND", AlphaMode::blend}};
     GltfMaterial material{.name = read_name(o)};
     const auto metallic = o.object("pbrMetallicRoughness");
     const bool has_base =
@@ -267,8 +285,7 @@ class DocumentReader {
     else if (const auto shader = o.extension("KHR_techniques_webgl"))
       read_technique(*shader, material);
     read_emission(o, material);
-    material.alpha = static_cast<AlphaMode>(
-        choice(o, "alphaMode", o.text("alphaMode").value_or("OPAQUE"), kAlphaModes));
+    material.alpha = choice(o, "alphaMode", o.text("alphaMode").value_or("OPAQUE"), kAlphaModes);
     material.alpha_cutoff = o.number("alphaCutoff", material.alpha_cutoff);
     document_.materials.push_back(std::move(material));
   }
@@ -378,8 +395,7 @@ class DocumentReader {
 }  // namespace
 
 std::size_t bytes_of(GltfComponent component) {
-  constexpr std::array<std::size_t, 6> kBytes{1, 1, 2, 2, 4, 4};
-  return kBytes[static_cast<std::size_t>(component)];
+  return row_with(kComponents, component).bytes;
 }
 
 std::optional<std::uint32_t> GltfPrimitive::attribute(const std::string& name) const {

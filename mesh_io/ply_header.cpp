@@ -1,5 +1,6 @@
 #include "mesh_io/ply_header.h"
 
+#include "hierarchy/named_value.h"
 #include "hierarchy/small_letters.h"
 #include "hierarchy/text_mark.h"
 #include "mesh_io/input_error.h"
@@ -18,31 +19,6 @@ namespace meshhier::mesh_io {
 namespace {
 
 constexpr std::string_view kHeaderBlanks = " \t\r\n\v\f";
-
-struct TypeName {
-  std::string_view name;
-  PlyType type;
-};
-
-/// One name each in the order of PlyType, those of the 1994 paper first, then the sized ones.
-constexpr std::array<TypeName, 18> kTypeNames{{{"char", PlyType::i8},
-                                               {"uchar", PlyType::u8},
-                                               {"short", PlyType::i16},
-                                               {"ushort", PlyType::u16},
-                                               {"int", PlyType::i32},
-                                               {"uint", PlyType::u32},
-                                               {"float", PlyType::f32},
-                                               {"double", PlyType::f64},
-                                               {"int64", PlyType::i64},
-                                               {"uint64", PlyType::u64},
-                                               {"int8", PlyType::i8},
-                                               {"uint8", PlyType::u8},
-                                               {"int16", PlyType::i16},
-                                               {"uint16", PlyType::u16},
-                                               {"int32", PlyType::i32},
-                                               {"uint32", PlyType::u32},
-                                               {"float32", PlyType::f32},
-                                               {"float64", PlyType::f64}}};
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kHeaderBlanks);
@@ -264,10 +240,11 @@ void HeaderParser::parse_property(std::string_view rest) {
 
 PlyType HeaderParser::parse_type(std::string_view word) {
   const std::string name = small_letters(word);
-  const auto known = std::ranges::find(kTypeNames, std::string_view(name), &TypeName::name);
-  if (known != kTypeNames.end()) {
-    is_odd_ = is_odd_ || name != word || has_64_bits(known->type);
-    return known->type;
+  const auto known = std::ranges::find_if(
+      kPlyTypes, [&](const PlyTypeRow& row) { return row.name == name || row.sized_name == name; });
+  if (known != kPlyTypes.end()) {
+    is_odd_ = is_odd_ || name != word || has_64_bits(known->value);
+    return known->value;
   }
   fail(
       "expected a type (char, uchar, short, ushort, int, uint, float, double or int8 to "
@@ -278,12 +255,14 @@ PlyType HeaderParser::parse_type(std::string_view word) {
 }  // namespace
 
 std::string_view name_of(PlyType type) {
-  return kTypeNames[static_cast<std::size_t>(type)].name;
+  return row_of(type).name;
 }
 
 std::string_view name_of(PlyEncoding encoding) {
-  constexpr std::string_view kNames[] = {"ASCII", "binary little endian", "binary big endian"};
-  return kNames[static_cast<std::size_t>(encoding)];
+  constexpr std::array kEncodings{NamedValue{"ASCII", PlyEncoding::ascii},
+                                  NamedValue{"binary little endian", PlyEncoding::little_endian},
+                                  NamedValue{"binary big endian", PlyEncoding::big_endian}};
+  return name_in(kEncodings, encoding);
 }
 
 PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path) {

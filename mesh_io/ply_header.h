@@ -3,6 +3,9 @@
 
 #include "hierarchy/scalar_value.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -27,9 +30,29 @@ constexpr PlyType ply_type(ValueType type) {
 }
 static_assert(value_type(PlyType::f64) == ValueType::f64 && ply_type(ValueType::i8) == PlyType::i8);
 
+struct PlyTypeRow {
+  std::string_view name;  ///< that of the 1994 paper, as most files write it
+  std::string_view sized_name;
+  PlyType value;
+  std::uint8_t bytes;
+};
+inline constexpr std::array kPlyTypes{PlyTypeRow{"char", "int8", PlyType::i8, 1},
+                                      PlyTypeRow{"uchar", "uint8", PlyType::u8, 1},
+                                      PlyTypeRow{"short", "int16", PlyType::i16, 2},
+                                      PlyTypeRow{"ushort", "uint16", PlyType::u16, 2},
+                                      PlyTypeRow{"int", "int32", PlyType::i32, 4},
+                                      PlyTypeRow{"uint", "uint32", PlyType::u32, 4},
+                                      PlyTypeRow{"float", "float32", PlyType::f32, 4},
+                                      PlyTypeRow{"double", "float64", PlyType::f64, 8},
+                                      PlyTypeRow{"int64", "int64", PlyType::i64, 8},
+                                      PlyTypeRow{"uint64", "uint64", PlyType::u64, 8}};
+static_assert(std::ranges::is_sorted(kPlyTypes, {}, &PlyTypeRow::value));
+
+constexpr const PlyTypeRow& row_of(PlyType type) {
+  return kPlyTypes[static_cast<std::size_t>(type)];
+}
 constexpr std::uint64_t size_of(PlyType type) {
-  constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8};
-  return kSizes[static_cast<std::size_t>(type)];
+  return row_of(type).bytes;
 }
 constexpr bool is_integer(PlyType type) {
   return type != PlyType::f32 && type != PlyType::f64;

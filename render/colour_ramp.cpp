@@ -1,5 +1,6 @@
 #include "render/colour_ramp.h"
 
+#include "hierarchy/named_value.h"
 #include "hierarchy/srgb.h"
 
 #include <algorithm>
@@ -24,9 +25,14 @@ constexpr std::array<std::uint32_t, 11> kCoolwarm{0x3b4cc0, 0x5977e3, 0x7b9ff9, 
                                                   0xc0d4f5, 0xdddcdc, 0xf2cbb7, 0xf7ac8e,
                                                   0xee8468, 0xd65244, 0xb40426};
 
-/// In the order of ColourRamp.
-constexpr std::array<std::pair<std::string_view, std::span<const std::uint32_t>>, 4> kRamps{
-    {{"viridis", kViridis}, {"cividis", kCividis}, {"turbo", kTurbo}, {"coolwarm", kCoolwarm}}};
+struct Ramp {
+  std::string_view name;
+  ColourRamp value;
+  std::span<const std::uint32_t> colours;
+};
+constexpr std::array kRamps{
+    Ramp{"viridis", ColourRamp::viridis, kViridis}, Ramp{"cividis", ColourRamp::cividis, kCividis},
+    Ramp{"turbo", ColourRamp::turbo, kTurbo}, Ramp{"coolwarm", ColourRamp::coolwarm, kCoolwarm}};
 
 Vec3d screen_colour(std::uint32_t hex) {
   return {static_cast<double>(hex >> 16) / 255, static_cast<double>((hex >> 8) & 255) / 255,
@@ -48,14 +54,11 @@ Vec3d screen_light(std::uint32_t rgb) {
 }
 
 std::optional<ColourRamp> ramp_named(std::string_view name) {
-  const auto found = std::ranges::find(kRamps, name, [](const auto& ramp) { return ramp.first; });
-  if (found == kRamps.end())
-    return std::nullopt;
-  return static_cast<ColourRamp>(found - kRamps.begin());
+  return value_named(kRamps, name);
 }
 
 Vec3f ramp_colour(ColourRamp ramp, double part) {
-  const std::span<const std::uint32_t> stops = kRamps[static_cast<std::size_t>(ramp)].second;
+  const std::span<const std::uint32_t> stops = row_with(kRamps, ramp).colours;
   const double at = std::clamp(part, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
   const auto first = std::min(static_cast<std::size_t>(at), stops.size() - 2);
   const Vec3d a = screen_colour(stops[first]), b = screen_colour(stops[first + 1]);

@@ -1,5 +1,6 @@
 #include "server/job.h"
 
+#include "hierarchy/named_value.h"
 #include "hierarchy/plain_text.h"
 #include "storage/io/json_text.h"
 
@@ -12,7 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStateNames{"waiting", "building", "failed"};
+constexpr std::array kStates{NamedValue{"waiting", JobState::waiting},
+                             NamedValue{"building", JobState::building},
+                             NamedValue{"failed", JobState::failed}};
 constexpr std::size_t kLongestMessage = 1000;
 constexpr std::size_t kMostWarnings = 100;
 
@@ -48,7 +51,7 @@ void take_warning(Job& job, const std::string& message) {
 }  // namespace
 
 Json to_json(const Job& job) {
-  Json object{{"name", job.name}, {"state", kStateNames[static_cast<std::size_t>(job.state)]}};
+  Json object{{"name", job.name}, {"state", name_in(kStates, job.state)}};
   if (!job.stage.empty())
     object["stage"] = job.stage;
   if (job.progress)

@@ -1,6 +1,7 @@
 #include "storage/format/manifest.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/named_value.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/source_values.h"
@@ -143,6 +144,15 @@ Json manifest_json(const Manifest& manifest) {
 
 // ---- reading -------------------------------------------------------------------------------
 
+/// The value of a table that is named.
+template <class Table>
+auto read_named(const JsonObject& object, const char* key, const Table& table) {
+  const auto value = value_named(table, object.text(key));
+  if (!value)
+    object.wrong(key, "one of " + names_in(table));
+  return *value;
+}
+
 /// One of `names`, by its place among them.
 template <class Choice, std::size_t N>
 Choice read_choice(const JsonObject& object, const char* key,
@@ -240,7 +250,7 @@ void read_import(const JsonObject& object, SourceSummary& source) {
 std::optional<Unit> read_units(const JsonObject& object) {
   if (!object.has("units"))
     return std::nullopt;
-  return read_choice<Unit>(object, "units", kUnitNames);
+  return read_named(object, "units", kUnits);
 }
 
 SourceSummary read_source(const JsonObject& object) {
@@ -422,7 +432,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
                                            kTilesADirectory, kOldestFormatVersion));
   }
   const JsonObject storage = object.object("storage");
-  manifest.compression = read_choice<Compression>(storage, "compression", kCompressionNames);
+  manifest.compression = read_named(storage, "compression", kCompressions);
   manifest.quantization = read_quantization(storage);
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);

@@ -1,5 +1,6 @@
 #include "storage/format/sealed_json.h"
 
+#include "hierarchy/attribute_names.h"
 #include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/file.h"
@@ -22,9 +23,6 @@ constexpr std::string_view kBeforeSeal = ",\n  \"checksum\": \"";
 constexpr std::string_view kAfterSeal = "\"\n}\n";
 constexpr std::size_t kDigits = 16;
 constexpr std::string_view kZeros = "0000000000000000";
-
-/// In the order of ColourType.
-constexpr std::array<std::string_view, 4> kColourTypes{"none", "u8", "u16", "f32"};
 
 std::uint64_t text_checksum(const std::string& text) {
   return checksum(std::as_bytes(std::span(text)));
@@ -231,18 +229,15 @@ AttributeLayout JsonObject::attributes(const char* key) const {
   if (from.has("linear_colours") && from.boolean("linear_colours"))
     attributes.space = ColourSpace::linear;
   attributes.tints = from.has("tints") && from.boolean("tints");
-  const std::string colours = from.text("colours");
-  for (std::size_t i = 0; i < kColourTypes.size(); ++i) {
-    if (colours != kColourTypes[i])
-      continue;
-    attributes.colour = static_cast<ColourType>(i);
-    if (attributes.alpha && attributes.colour == ColourType::none)
-      from.wrong("alpha", "false without colours");
-    if (attributes.tints && attributes.colour == ColourType::none)
-      from.wrong("tints", "false without colours");
-    return attributes;
-  }
-  from.wrong("colours", "none, u8, u16 or f32");
+  const auto colours = value_named(kColourTypes, from.text("colours"));
+  if (!colours)
+    from.wrong("colours", "one of " + names_in(kColourTypes));
+  attributes.colour = *colours;
+  if (attributes.alpha && attributes.colour == ColourType::none)
+    from.wrong("alpha", "false without colours");
+  if (attributes.tints && attributes.colour == ColourType::none)
+    from.wrong("tints", "false without colours");
+  return attributes;
 }
 
 UpAxis JsonObject::up(const char* key) const {
@@ -262,7 +257,7 @@ Json point_json(Vec3d point) {
 
 Json attributes_json(const AttributeLayout& attributes) {
   Json json{{"normals", attributes.normals},
-            {"colours", kColourTypes[static_cast<std::size_t>(attributes.colour)]},
+            {"colours", name_in(kColourTypes, attributes.colour)},
             {"alpha", attributes.alpha},
             {"texcoords", attributes.texcoords}};
   if (attributes.space == ColourSpace::linear)

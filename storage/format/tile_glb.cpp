@@ -415,7 +415,7 @@ double expected_ratio(Compression compression) {
 }
 
 std::string_view name_of(Compression compression) {
-  return kCompressionNames[static_cast<std::size_t>(compression)];
+  return name_in(kCompressions, compression);
 }
 
 std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,

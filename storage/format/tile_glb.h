@@ -5,6 +5,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/named_value.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
@@ -31,9 +32,10 @@ enum class Compression {
   meshopt,      ///< the sections by EXT_meshopt_compression
   meshopt_zlib  ///< both
 };
-/// In the order of Compression.
-inline constexpr std::array<std::string_view, 4> kCompressionNames{"none", "zlib", "meshopt",
-                                                                   "meshopt_zlib"};
+inline constexpr std::array kCompressions{NamedValue{"none", Compression::none},
+                                          NamedValue{"zlib", Compression::zlib},
+                                          NamedValue{"meshopt", Compression::meshopt},
+                                          NamedValue{"meshopt_zlib", Compression::meshopt_zlib}};
 /// As in configs and manifests.
 std::string_view name_of(Compression compression);
 

@@ -1,5 +1,6 @@
 #include "storage/format/tile_plan.h"
 
+#include "hierarchy/named_value.h"
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/tile_values.h"
@@ -15,18 +16,57 @@ using Json = nlohmann::ordered_json;
 constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
-constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION",    "NORMAL", "TANGENT",  "COLOR_0",    "TEXCOORD_0", "TEXCOORD_0",
-    "interior",    "border", "values",   "parentMap",  "neighbours", "ghostStarts",
-    "ghostChains", "copyOf", "splitOf",  "rawNormals", "rawColours", "rawTexcoords",
-    "rawValues",   "image",  "normalMap"};
+/// What of a part is the same in all tiles.
+struct PartRow {
+  Part part;
+  const char* key;
+  ViewMode mode;
+  unsigned target = 0;  ///< of its buffer view; 0: none
+};
+constexpr std::array<PartRow, kPartCount> kParts{{
+    {Part::position, "POSITION", ViewMode::attributes, kVertexTarget},
+    {Part::normal, "NORMAL", ViewMode::attributes, kVertexTarget},
+    {Part::tangent, "TANGENT", ViewMode::attributes, kVertexTarget},
+    {Part::colour, "COLOR_0", ViewMode::attributes, kVertexTarget},
+    {Part::texcoord, "TEXCOORD_0", ViewMode::attributes, kVertexTarget},
+    {Part::map_texcoord, "TEXCOORD_0", ViewMode::attributes, kVertexTarget},
+    {Part::interior, "interior", ViewMode::triangles, kIndexTarget},
+    {Part::border, "border", ViewMode::triangles, kIndexTarget},
+    {Part::values, "values", ViewMode::attributes, kVertexTarget},
+    {Part::parent_map, "parentMap", ViewMode::indices},
+    {Part::neighbours, "neighbours", ViewMode::raw},
+    {Part::ghost_starts, "ghostStarts", ViewMode::raw},
+    {Part::ghost_chains, "ghostChains", ViewMode::indices},
+    {Part::copy_of, "copyOf", ViewMode::indices},
+    {Part::split_of, "splitOf", ViewMode::indices},
+    {Part::raw_normals, "rawNormals", ViewMode::attributes},
+    {Part::raw_colours, "rawColours", ViewMode::attributes},
+    {Part::raw_texcoords, "rawTexcoords", ViewMode::attributes},
+    {Part::raw_values, "rawValues", ViewMode::attributes},
+    {Part::image, "image", ViewMode::raw},
+    {Part::normal_map, "normalMap", ViewMode::raw},
+}};
+constexpr bool are_in_order() {
+  for (std::size_t i = 0; i < kPartCount; ++i) {
+    if (kParts[i].part != static_cast<Part>(i))
+      return false;
+  }
+  return true;
+}
+static_assert(are_in_order());
+
+constexpr const PartRow& row_of(Part part) {
+  return kParts[static_cast<std::size_t>(part)];
+}
 
 std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
 }
 
-/// In the order of ViewMode.
-constexpr std::array<const char*, 4> kModes{"", "ATTRIBUTES", "TRIANGLES", "INDICES"};
+/// As EXT_meshopt_compression calls them.
+constexpr std::array kModes{NamedValue{"ATTRIBUTES", ViewMode::attributes},
+                            NamedValue{"TRIANGLES", ViewMode::triangles},
+                            NamedValue{"INDICES", ViewMode::indices}};
 
 // Buffers: the BIN chunk, and what compressed views are decoded to, which no file holds.
 constexpr int kBin = 0;
@@ -37,7 +77,7 @@ Json packed_json(const Section& section, Part part, const Packing& packing) {
                  {"byteOffset", packing.offset(part)},
                  {"byteLength", packing.bytes[static_cast<std::size_t>(part)]},
                  {"byteStride", section.stride},
-                 {"mode", kModes[static_cast<std::size_t>(mode_of(part))]},
+                 {"mode", name_in(kModes, mode_of(part))},
                  {"count", section.count}};
   if (part == Part::position && packing.exponential)
     packed["filter"] = "EXPONENTIAL";
@@ -54,10 +94,8 @@ Json view_json(const Section& section, Part part, const Packing* packing) {
                       section.stride != component_bytes(section.component) * section.components;
   if (padded)
     view["byteStride"] = section.stride;
-  if (part <= Part::map_texcoord || part == Part::values)
-    view["target"] = kVertexTarget;
-  if (part == Part::interior || part == Part::border)
-    view["target"] = kIndexTarget;
+  if (const unsigned target = row_of(part).target; target > 0)
+    view["target"] = target;
   if (packed)
     view["extensions"][kMeshoptExtension] = packed_json(section, part, *packing);
   return view;
@@ -208,9 +246,9 @@ Json extension_json(const TilePlan& plan) {
     extension["normalMapWidth"] = shape.normal_map.width;
     extension["normalMapHeight"] = shape.normal_map.height;
   }
-  for (std::size_t i = static_cast<std::size_t>(Part::values); i < kPartCount; ++i) {
-    if (is_told(static_cast<Part>(i), plan))
-      extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
+  for (const PartRow& row : kParts) {
+    if (row.part >= Part::values && is_told(row.part, plan))
+      extension[row.key] = plan[row.part].view;
   }
   return extension;
 }
@@ -250,23 +288,7 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
 }  // namespace
 
 ViewMode mode_of(Part part) {
-  switch (part) {
-    case Part::interior:
-    case Part::border:
-      return ViewMode::triangles;
-    case Part::parent_map:
-    case Part::ghost_chains:
-    case Part::copy_of:
-    case Part::split_of:
-      return ViewMode::indices;
-    case Part::neighbours:
-    case Part::ghost_starts:
-    case Part::image:
-    case Part::normal_map:
-      return ViewMode::raw;
-    default:
-      return ViewMode::attributes;
-  }
+  return row_of(part).mode;
 }
 
 std::uint64_t Packing::offset(Part part) const {
@@ -281,7 +303,7 @@ std::uint64_t Packing::total() const {
 }
 
 const char* key_of(Part part) {
-  return kKeys[static_cast<std::size_t>(part)];
+  return row_of(part).key;
 }
 
 std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout) {

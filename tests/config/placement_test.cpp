@@ -248,8 +248,8 @@ TEST(PlacementUnits, OfTheMapAreTakenIfNoneAreGiven) {
 }
 
 TEST(PlacementUnits, AreNamed) {
-  for (const auto& [name, unit] : kUnits)
-    EXPECT_EQ(placed("", fmt::format(R"("units": "{}")", name)).units, unit);
+  for (const UnitRow& row : kUnits)
+    EXPECT_EQ(placed("", fmt::format(R"("units": "{}")", row.name)).units, row.value);
   EXPECT_EQ(placed("").units, std::nullopt);
   EXPECT_THROW(placed("", R"("units": "feet")"), Error);
 }

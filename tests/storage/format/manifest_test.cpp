@@ -533,7 +533,7 @@ TEST(Manifest, EveryWrongValueIsNamed) {
       {"/source/checksum", "00000000000000AB", "16 hexadecimal digits"},
       {"/source/bounds/min", Json::array({1, 2}), "three numbers"},
       {"/source/bounds/min", Json::array({1, 2, 3}), "min <= max"},
-      {"/source/attributes/colours", "u32", "none, u8, u16 or f32"},
+      {"/source/attributes/colours", "u32", "one of none, u8, u16, f32"},
       {"/source/double_precision", 1, "true or false"},
       {"/origin", Json::array({1, nullptr, 2}), "\"origin\" is wrong"},
       {"/up", "x", "\"up\" is wrong"},
