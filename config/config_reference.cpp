@@ -305,7 +305,7 @@ std::string formats_json() {
     companions.push_back(ending);
   const Json formats{
       {"meshes", mesh_io::mesh_endings()}, {"namesOthers", naming}, {"companions", companions}};
-  return formats.dump(2) + '\n';
+  return storage::json_text(formats, {.indent = 2}) + '\n';
 }
 
 }  // namespace meshhier::config

@@ -81,4 +81,23 @@ std::string own_code() {
   return path.empty() ? running_file() : (libraries_of(path) / path.filename()).string();
 }
 
+CompanionFolder::CompanionFolder(const char* variable, std::span<const char* const> places,
+                                 const char* file) {
+  if (const char* const given = std::getenv(variable); given != nullptr && *given != '\0') {
+    path_ = given;
+    return;
+  }
+  const fs::path program = own_directory();
+  for (const char* const place : places) {
+    path_ = (program / place).lexically_normal();
+    if (has(file))
+      break;
+  }
+}
+
+bool CompanionFolder::has(const char* file) const {
+  std::error_code error;
+  return fs::exists(path_ / file, error);
+}
+
 }  // namespace meshhier::storage

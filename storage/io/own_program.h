@@ -5,6 +5,8 @@
 // which the process was started.
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
 
 namespace meshhier::storage {
@@ -15,5 +17,19 @@ std::string own_program();
 std::string own_directory();
 /// The file with its code, which tells one version from another: for reading.
 std::string own_code();
+
+/// A folder with files that come with the program.
+class CompanionFolder {
+ public:
+  /// The one that the environment variable names, else the first of `places`, seen from
+  /// own_directory(), that has `file`, else the last of them.
+  CompanionFolder(const char* variable, std::span<const char* const> places, const char* file);
+
+  const std::filesystem::path& path() const { return path_; }
+  bool has(const char* file) const;
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace meshhier::storage
