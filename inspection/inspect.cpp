@@ -308,7 +308,7 @@ std::string tile_sizes_text(const storage::CountRange& bytes) {
 
 std::string storage_text(const storage::Manifest& manifest) {
   std::string text =
-      fmt::format("storage      {}, positions ", storage::name_of(manifest.compression));
+      fmt::format("storage      {}, positions ", storage::row_of(manifest.compression).name);
   if (!manifest.quantization)
     return text + "exact\n";
   const storage::Quantization& q = *manifest.quantization;
@@ -444,7 +444,7 @@ Json partitions_json(const storage::LevelSummary& last,
 }
 
 Json storage_json(const storage::Manifest& manifest) {
-  Json json = {{"compression", storage::name_of(manifest.compression)},
+  Json json = {{"compression", storage::row_of(manifest.compression).name},
                {"positions", nullptr},
                {"normals", normals_of(manifest)},
                {"texture", nullptr}};

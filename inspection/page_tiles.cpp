@@ -183,7 +183,7 @@ storage::Manifest PagePacker::manifest(std::span<const TileRecord> records, doub
                                        std::span<const std::byte> index) const {
   storage::Manifest manifest = reader_.manifest();
   manifest.compression = format_.compression;
-  manifest.config["storage"]["compression"] = storage::name_of(format_.compression);
+  manifest.config["storage"]["compression"] = storage::row_of(format_.compression).name;
   if (format_.lattice) {
     const double before = manifest.quantization ? manifest.quantization->worst_rounding : 0;
     manifest.quantization = storage::Quantization{*format_.lattice, before + rounding};

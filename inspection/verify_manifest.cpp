@@ -92,8 +92,8 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
   if (says("/partition/count") || says("/partition/vertices"))
     problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
   if (says("/storage/compression")) {
-    problems.compare("storage.compression", storage::name_of(manifest.compression),
-                     storage::name_of(config.storage.compression));
+    problems.compare("storage.compression", storage::row_of(manifest.compression).name,
+                     storage::row_of(config.storage.compression).name);
   }
   problems.require(!manifest.computed_normals || config.storage.normals != config::Normals::none,
                    "\"storage.normals\" are computed, but \"config\" asks for none");

@@ -116,7 +116,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
                          !(textures.is_textured() && config.texture.format.unlit);
   job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes) +
                                   (job.computes_normals ? sizeof(NormalCode) : 0);
-  job.published_ratio = storage::expected_ratio(config.storage.compression);
+  job.published_ratio = row_of(config.storage.compression).expected_ratio;
   job.draws_preview = config.preview;
   job.outline_sectors = config.outline.sectors;
   job.has_map = config.placement.crs.has_value();

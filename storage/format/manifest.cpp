@@ -37,7 +37,7 @@ Json texture_storage_json(const TextureFormat& textures) {
 }
 
 Json storage_json(const Manifest& manifest) {
-  Json storage = {{"compression", name_of(manifest.compression)}, {"positions", nullptr}};
+  Json storage = {{"compression", row_of(manifest.compression).name}, {"positions", nullptr}};
   if (const auto& quantization = manifest.quantization) {
     storage["positions"] = {{"bits", quantization->lattice.bits},
                             {"step", quantization->lattice.step},

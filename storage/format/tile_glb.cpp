@@ -4,7 +4,6 @@
 #include "hierarchy/value_channels.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
-#include "storage/format/gzip.h"
 #include "storage/format/showable.h"
 #include "storage/format/tile_colours.h"
 #include "storage/format/tile_pack.h"
@@ -378,7 +377,7 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
   const Json document = parse_json(glb.json, name);
   const TilePlan plan(read_shape(document, node, tree, format, name), format.attributes,
                       format.lattice);
-  const bool is_packed = has_packed_sections(format.compression);
+  const bool is_packed = row_of(format.compression).packs_sections;
   if (!is_packed && plan.bytes() != glb.bin.size()) {
     throw Error(ErrorCode::corrupt, fmt::format("{}: the BIN chunk has {} bytes, expected {}", name,
                                                 glb.bin.size(), plan.bytes()));
@@ -399,24 +398,6 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
 }
 
 }  // namespace
-
-double expected_ratio(Compression compression) {
-  switch (compression) {
-    case Compression::none:
-      return 1;
-    case Compression::zlib:
-      return 0.79;
-    case Compression::meshopt:
-      return 0.66;
-    case Compression::meshopt_zlib:
-      break;
-  }
-  return 0.56;
-}
-
-std::string_view name_of(Compression compression) {
-  return name_in(kCompressions, compression);
-}
 
 std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                                    const TileFormat& format) {
@@ -471,7 +452,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   const TilePlan plan(shape, format.attributes, format.lattice);
 
   // A GLB if it may stay as it is, else the BIN chunk alone.
-  const bool packed = has_packed_sections(format.compression);
+  const bool packed = row_of(format.compression).packs_sections;
   std::vector<std::byte> bytes =
       packed ? std::vector<std::byte>(plan.bytes())
              : begin_glb(json_text(plan.document(tile.bounds, format.frame)), plan.bytes());
@@ -499,7 +480,8 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(json_text(plan.document(tile.bounds, format.frame, &bin.packing)), bin.bin);
   }
-  return is_gzipped(format.compression) ? gzip(bytes) : bytes;
+  const auto pack = row_of(format.compression).pack_file;
+  return pack == nullptr ? bytes : pack(bytes);
 }
 
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
@@ -514,9 +496,10 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
                           const TileFormat& format, const std::string& name) {
   assert(tree.contains(node));
-  if (!is_gzipped(format.compression))
+  const auto unpack = row_of(format.compression).unpack_file;
+  if (unpack == nullptr)
     return decode_glb(bytes, node, tree, format, name);
-  return decode_glb(gunzip_glb(bytes, name), node, tree, format, name);
+  return decode_glb(unpack(bytes, name), node, tree, format, name);
 }
 
 }  // namespace meshhier::storage

@@ -10,45 +10,19 @@
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tree.h"
+#include "storage/format/tile_compression.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace meshhier::storage {
 
 /// Own vertices of a tile, at most: parent maps and ghost chains hold their numbers in 16 bits.
 inline constexpr std::uint32_t kMaxOwnVertices = 32768;
-
-/// How tiles are stored. None loses anything.
-enum class Compression {
-  none,
-  zlib,         ///< the file as a gzip stream
-  meshopt,      ///< the sections by EXT_meshopt_compression
-  meshopt_zlib  ///< both
-};
-inline constexpr std::array kCompressions{NamedValue{"none", Compression::none},
-                                          NamedValue{"zlib", Compression::zlib},
-                                          NamedValue{"meshopt", Compression::meshopt},
-                                          NamedValue{"meshopt_zlib", Compression::meshopt_zlib}};
-/// As in configs and manifests.
-std::string_view name_of(Compression compression);
-
-/// What tiles take of plain ones, about: the most that was seen with exact scans of more than
-/// 20,000 vertices (docs/performance.md). Quantized ones take less.
-double expected_ratio(Compression compression);
-
-constexpr bool has_packed_sections(Compression compression) {
-  return compression == Compression::meshopt || compression == Compression::meshopt_zlib;
-}
-constexpr bool is_gzipped(Compression compression) {
-  return compression == Compression::zlib || compression == Compression::meshopt_zlib;
-}
 
 /// What all tiles of a hierarchy share.
 struct TileFormat {

@@ -161,7 +161,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   Bounds bounds;
   if (!bounds_in(bin, plan, bounds))
     bounds = {{0, 0, 0}, {0, 0, 0}};
-  if (!storage::has_packed_sections(place.format.compression) || !has_vertices_below(plan, bin))
+  if (!storage::row_of(place.format.compression).packs_sections || !has_vertices_below(plan, bin))
     return storage::join_glb(plan.document(bounds, place.format.frame).dump(), bin);
   const storage::PackedBin packed = storage::pack_bin(plan, bin);
   return storage::join_glb(plan.document(bounds, place.format.frame, &packed.packing).dump(),
@@ -346,7 +346,7 @@ void tile(Bytes input) {
     add_values(place.format);
   std::vector<std::byte> file =
       is_glb ? std::vector(take.rest().begin(), take.rest().end()) : make_glb(take, place);
-  if (!is_gzip && storage::is_gzipped(place.format.compression))
+  if (!is_gzip && storage::row_of(place.format.compression).pack_file != nullptr)
     file = storage::gzip(file);
   PublishedTile read;
   const std::string refused = refusal({ErrorCode::corrupt}, "tile.glb: ", [&] {

@@ -74,6 +74,10 @@ export async function drain(stream: ReadableStream<Uint8Array>, most: number, na
   return joined(pieces, await pour(stream, most, name, (piece) => { pieces.push(piece); }));
 }
 
+/// How tiles are stored: whether in gzip as a whole.
+export const COMPRESSIONS = { none: false, zlib: true, meshopt: false, meshopt_zlib: true };
+export const COMPRESSION_NAMES = Object.keys(COMPRESSIONS) as (keyof typeof COMPRESSIONS)[];
+
 /// A host that does not send Content-Encoding with a file in gzip leaves it to us.
 export async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
   if (!isGzip(bytes)) return bytes;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
+import { COMPRESSIONS, COMPRESSION_NAMES } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
@@ -8,7 +9,6 @@ import { whole, type RemoteFiles } from './remote_files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 
-const COMPRESSIONS = ['none', 'zlib', 'meshopt', 'meshopt_zlib'] as const;
 export const MANIFEST_UNITS = ['mm', 'cm', 'm', 'km', 'in', 'ft', 'us_ft'] as const;
 
 export interface Manifest {
@@ -135,7 +135,7 @@ export function readManifest(text: string): Manifest {
     outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
     preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
     build: root.at('checksum').checksum(),
-    packedTiles: root.at('storage').at('compression').oneOf(...COMPRESSIONS).endsWith('zlib'),
+    packedTiles: COMPRESSIONS[root.at('storage').at('compression').oneOf(...COMPRESSION_NAMES)],
   };
 }
 
