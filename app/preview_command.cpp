@@ -98,10 +98,25 @@ std::optional<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
                                      static_cast<std::uint8_t>(number)};
 }
 
+/// Whether a picture of a hierarchy, whose ground may be transparent, can be of it.
+bool is_shown(const ImageFormatRow& row) {
+  return row.has_alpha && row.in_browsers;
+}
+
 std::optional<ImageFormat> format_named(std::string_view name) {
-  if (name == "png")
-    return ImageFormat::png;
-  return name == "webp" ? std::optional(ImageFormat::webp) : std::nullopt;
+  const auto* const found = std::ranges::find_if(
+      kImageFormats, [&](const ImageFormatRow& row) { return is_shown(row) && row.name == name; });
+  return found == kImageFormats.end() ? std::nullopt : std::optional(found->format);
+}
+
+/// Their names with something before each and between two: ".png or .webp".
+std::string all_formats(std::string_view before, std::string_view between) {
+  std::string text;
+  for (const ImageFormatRow& row : kImageFormats) {
+    if (is_shown(row))
+      text += fmt::format("{}{}{}", text.empty() ? "" : between, before, row.name);
+  }
+  return text;
 }
 
 /// By the ending of the output's name, unless it is given.
@@ -112,9 +127,8 @@ ImageFormat format_of(const PreviewArguments& arguments) {
   const auto format = format_named(ending.empty() ? "" : std::string_view(ending).substr(1));
   if (!format) {
     throw Error(ErrorCode::usage,
-                fmt::format("{}: expected a name that ends in .png or .webp, or --format png or "
-                            "--format webp",
-                            arguments.output));
+                fmt::format("{}: expected a name that ends in {}, or {}", arguments.output,
+                            all_formats(".", " or "), all_formats("--format ", " or ")));
   }
   return *format;
 }
@@ -147,7 +161,8 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
 /// An option whose text `store` takes, or refuses by returning false.
 template <class Store>
 CLI::Option* add_parsed_option(CLI::App& command, const char* name, const char* help,
-                               const char* type, const char* expected, const Store& store) {
+                               const std::string& type, const std::string& expected,
+                               const Store& store) {
   return command
       .add_option_function<std::string>(
           name,
@@ -203,7 +218,8 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                       return options.background.has_value();
                     });
   add_parsed_option(command, "--format", "What to write, whatever the name: -o - needs it",
-                    "png|webp", "png or webp", [&arguments](const std::string& text) {
+                    all_formats("", "|"), all_formats("", " or "),
+                    [&arguments](const std::string& text) {
                       arguments.format = format_named(text);
                       return arguments.format.has_value();
                     });
@@ -254,7 +270,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
   add_region_options(*command, arguments->options.region);
   add_look(*command, *arguments);
   add_attribute(*command, arguments->attribute);
-  add_file_output_options(*command, "The picture: .png or .webp", arguments->output,
+  add_file_output_options(*command, "The picture: " + all_formats(".", " or "), arguments->output,
                           arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);

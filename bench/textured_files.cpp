@@ -27,20 +27,20 @@ namespace {
 class Names {
  public:
   Names(std::filesystem::path mesh, ImageFormat format)
-      : mesh_(std::move(mesh)), extension_(format == ImageFormat::png ? "png" : "jpg") {}
+      : mesh_(std::move(mesh)), ending_(row_of(format).file.endings[0]) {}
 
   std::string material(std::uint32_t image) const {
     return fmt::format("{}_{:04}", mesh_.stem().string(), image);
   }
   std::string image(std::uint32_t image) const {
-    return fmt::format("{}.{}", material(image), extension_);
+    return fmt::format("{}{}", material(image), ending_);
   }
   std::string mtl_name() const { return mesh_.stem().string() + ".mtl"; }
   std::filesystem::path beside(const std::string& name) const { return mesh_.parent_path() / name; }
 
  private:
   std::filesystem::path mesh_;
-  std::string_view extension_;
+  std::string_view ending_;
 };
 
 /// A texture coordinate as OBJ and PLY have it: v from below.

@@ -120,10 +120,7 @@ struct StorageConfig {
 };
 
 using ImageFormat = meshhier::ImageFormat;
-inline constexpr std::array kImageFormats{NamedValue{kImageFormatNames[0], ImageFormat::jpeg},
-                                          NamedValue{kImageFormatNames[1], ImageFormat::png},
-                                          NamedValue{kImageFormatNames[2], ImageFormat::webp},
-                                          NamedValue{kImageFormatNames[3], ImageFormat::ktx2}};
+using meshhier::kImageFormats;
 
 /// Options of storage.normals map and auto.
 struct NormalMapConfig {

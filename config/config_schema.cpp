@@ -52,7 +52,6 @@ struct Limits {
 
 /// The picture of a simplified tile: smaller ones show nothing, larger ones are no tile's.
 constexpr Limits kTexels{64, 4096};
-constexpr double kBestQuality = 100;
 
 constexpr Limits kTileVertices{kFewestTileVertices, kMostTileVertices};
 

@@ -1,6 +1,8 @@
 // Textures: coordinates, and the picture that a tile shows on its triangles.
 #pragma once
 
+#include "hierarchy/image_format.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +26,10 @@ enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 inline constexpr std::array<std::string_view, 3> kAlphaModeNames{"opaque", "mask", "blend"};
 
-/// How pictures of tiles are stored.
-enum class ImageFormat : std::uint8_t { jpeg, png, webp, ktx2 };
-inline constexpr std::array<std::string_view, 4> kImageFormatNames{"jpeg", "png", "webp", "ktx2"};
-
 /// The picture of a tile, as its file has it.
 struct TileImage {
   ImageFormat format = ImageFormat::jpeg;
-  AlphaMode alpha = AlphaMode::opaque;  ///< other than opaque: `format` is not jpeg
+  AlphaMode alpha = AlphaMode::opaque;  ///< other than opaque: `format` has alpha
   std::uint32_t width = 0, height = 0;  ///< texels, 1 ... kMaxImageSide; 0: there is none
   std::vector<std::byte> bytes;         ///< encoded
 
@@ -43,23 +41,23 @@ inline constexpr std::uint32_t kMaxImageSide = 8192;
 
 /// What a hierarchy says of all its tiles' pictures.
 struct TextureFormat {
-  ImageFormat format = ImageFormat::jpeg;  ///< of opaque ones; others are png where it is jpeg
-  int quality = 90;   ///< 1 ... 100, not of png; 100: lossless of webp, UASTC of ktx2
-  bool unlit = true;  ///< colours have their light already
+  ImageFormat format = ImageFormat::jpeg;  ///< see stored_format()
+  int quality = 90;                        ///< 1 ... kBestQuality
+  bool unlit = true;                       ///< colours have their light already
   friend constexpr bool operator==(const TextureFormat&, const TextureFormat&) = default;
 };
 
 /// What a hierarchy says of all its tiles' normal maps.
 struct NormalMapFormat {
   ImageFormat format = ImageFormat::jpeg;  ///< jpeg: of red, green and blue as they are
-  int quality = 85;  ///< 1 ... 100, of jpeg; ktx2 is UASTC, others lose nothing
+  int quality = 85;                        ///< 1 ... kBestQuality, if graded_maps
   friend constexpr bool operator==(const NormalMapFormat&, const NormalMapFormat&) = default;
 };
 
-/// How a picture of that alpha is stored.
+/// How a picture of that alpha is stored: as PNG if the format has none.
 constexpr ImageFormat stored_format(const TextureFormat& textures, AlphaMode alpha) {
-  const bool needs_alpha = alpha != AlphaMode::opaque && textures.format == ImageFormat::jpeg;
-  return needs_alpha ? ImageFormat::png : textures.format;
+  const bool lacks_alpha = alpha != AlphaMode::opaque && !row_of(textures.format).has_alpha;
+  return lacks_alpha ? ImageFormat::png : textures.format;
 }
 
 }  // namespace meshhier

@@ -2,7 +2,6 @@
 
 #include "hierarchy/error.h"
 #include "images/formats.h"
-#include "images/ktx2_coder.h"
 #include "images/source_buffer.h"
 
 #include <algorithm>
@@ -11,18 +10,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace meshhier::images {
 namespace {
 
-constexpr std::size_t kMarkBytes = 12;
-constexpr int kBestQuality = 100;
+/// No format's marks lie farther from the beginning.
+constexpr std::size_t kMarkBytes = 16;
 
 std::string read_mark(const ByteSource& source) {
   std::array<std::byte, kMarkBytes> mark{};
@@ -30,16 +27,12 @@ std::string read_mark(const ByteSource& source) {
   return {reinterpret_cast<const char*>(mark.data()), count};
 }
 
-std::optional<ImageFormat> format_of(std::string_view mark) {
-  if (mark.starts_with("\xff\xd8\xff"))
-    return ImageFormat::jpeg;
-  if (mark.starts_with("\x89PNG\r\n\x1a\n"))
-    return ImageFormat::png;
-  if (mark.size() == kMarkBytes && mark.starts_with("RIFF") && mark.ends_with("WEBP"))
-    return ImageFormat::webp;
-  if (mark == std::string_view("\xabKTX 20\xbb\r\n\x1a\n"))
-    return ImageFormat::ktx2;
-  return {};
+/// "neither JPEG nor PNG".
+std::string none_of_these() {
+  std::string text;
+  for (const ImageFormatRow& row : kImageFormats)
+    text += (text.empty() ? "neither " : " nor ") + std::string(row.file.title);
+  return text;
 }
 
 ByteSource source_of(std::span<const std::byte> bytes) {
@@ -54,20 +47,12 @@ ByteSource source_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::unique_ptr<ImageReader> open_image(ByteSource source, const std::string& name) {
-  const std::optional<ImageFormat> format = format_of(read_mark(source));
-  if (!format)
-    throw Error(ErrorCode::input, name + " is neither JPEG nor PNG nor WebP");
-  switch (*format) {
-    case ImageFormat::jpeg:
-      return open_jpeg(std::move(source), name);
-    case ImageFormat::png:
-      return open_png(std::move(source), name);
-    case ImageFormat::ktx2:
-      return open_ktx2(std::move(source), name);
-    case ImageFormat::webp:
-      break;
+  const std::string mark = read_mark(source);
+  for (const ImageFormatRow& row : kImageFormats) {
+    if (row.file.is_start(mark))
+      return coders_of(row.value).open(std::move(source), name);
   }
-  return open_webp(std::move(source), name);
+  throw Error(ErrorCode::input, name + " is " + none_of_these());
 }
 
 Image decode_image(std::span<const std::byte> bytes, const std::string& name,
@@ -86,33 +71,13 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality) {
   assert(image.width >= 1 && image.width <= kMaxSourceSide);
   assert(image.height >= 1 && image.height <= kMaxSourceSide);
-  assert(quality >= 1 && quality <= 100);
-  switch (format) {
-    case ImageFormat::jpeg:
-      return encode_jpeg(image, quality);
-    case ImageFormat::png:
-      return encode_png(image);
-    case ImageFormat::ktx2:
-      return encode_ktx2(image, quality == kBestQuality ? Ktx2Content::uastc : Ktx2Content::etc1s,
-                         quality);
-    case ImageFormat::webp:
-      break;
-  }
-  return encode_webp(image, quality);
+  assert(quality >= 1 && quality <= kBestQuality);
+  return coders_of(format).encode(image, quality);
 }
 
 std::vector<std::byte> encode_normal_map(const Image& image, const NormalMapFormat& format) {
   assert(image.channels == 3);
-  switch (format.format) {
-    case ImageFormat::jpeg:
-      return encode_normal_jpeg(image, format.quality);
-    case ImageFormat::ktx2:
-      return encode_ktx2(image, Ktx2Content::directions, kBestQuality);
-    case ImageFormat::png:
-    case ImageFormat::webp:
-      break;
-  }
-  return encode_image(image, format.format, kBestQuality);
+  return coders_of(format.format).encode_directions(image, format.quality);
 }
 
 }  // namespace meshhier::images

@@ -1,5 +1,4 @@
-// Pictures in the formats of files: JPEG (libjpeg-turbo), PNG (libpng), WebP (libwebp), KTX2 of
-// Basis Universal (ktx2_coder.h).
+// Pictures in the formats of files (formats.h).
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -56,11 +55,11 @@ std::unique_ptr<ImageReader> open_image(ByteSource source, const std::string& na
 Image decode_image(std::span<const std::byte> bytes, const std::string& name,
                    std::uint64_t most_texels);
 
-/// Deterministic for one version of the library. `quality`: 1 ... 100, of jpeg (4:4:4 from 90 on,
-/// below it 4:2:0), webp (lossless at 100) and ktx2 (ETC1S, at 100 UASTC); without effect on png.
-/// Requires sides that open_image() reads, or encode_ktx2() takes, and no alpha for jpeg. Besides
-/// the picture it holds the encoded bytes, and a texel takes up to 6 bytes of jpeg (all
-/// coefficients), 4 of webp, 21 of lossless webp; of ktx2 see coder_bytes().
+/// Deterministic for one version of the library. `quality`: 1 ... kBestQuality, of jpeg (4:4:4 from
+/// 90 on, below it 4:2:0), webp (the best one loses nothing) and ktx2 (ETC1S, the best one UASTC);
+/// without effect on png. Requires sides that open_image() reads, up to FormatRow::most_side, of
+/// ktx2 multiples of 4, and no alpha if the format has none. Besides the picture it holds the
+/// encoded bytes, and FormatRow::encoder_bytes().
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 
 /// Of directions instead of colours: a jpeg keeps red and green, which say nearly all, as exactly

@@ -1,6 +1,6 @@
 #include "hierarchy/error.h"
+#include "images/coders.h"
 #include "images/encode_rows.h"
-#include "images/formats.h"
 #include "images/library_call.h"
 
 #include <algorithm>

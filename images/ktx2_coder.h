@@ -4,7 +4,6 @@
 // (images/ktx2/coder.mjs) codes, in processes of its own, each for one picture at a time.
 #pragma once
 
-#include "hierarchy/texture.h"
 #include "images/image.h"
 
 #include <cstddef>
@@ -38,8 +37,8 @@ std::vector<std::byte> encode_ktx2(const Image& image, Ktx2Content content, int 
 Image decode_ktx2(std::span<const std::byte> file, const Image& shape, const std::string& name);
 
 /// Memory of the process that codes a picture, which it keeps for the next one: 130 MiB, and for
-/// 512 x 512 texels 250 MiB, for 2048 x 2048 600 MiB. Of other formats 0: no process codes them.
-std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels);
+/// 512 x 512 texels 250 MiB, for 2048 x 2048 600 MiB.
+std::uint64_t ktx2_coder_bytes(std::uint64_t texels);
 
 /// Ends the processes that wait for pictures. Thread-safe.
 void end_ktx2_coders();

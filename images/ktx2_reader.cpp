@@ -1,5 +1,5 @@
 #include "hierarchy/error.h"
-#include "images/formats.h"
+#include "images/coders.h"
 #include "images/ktx2_coder.h"
 #include "images/source_buffer.h"
 #include "storage/io/little_endian.h"
@@ -90,7 +90,7 @@ void Ktx2Reader::read_head() {
            .decoder_bytes = 0};
   file_bytes_ = end_of(head);
   const std::uint64_t texels = std::uint64_t{width} * height;
-  info_.decoder_bytes = file_bytes_ + 2 * 4 * texels + coder_bytes(info_.format, texels);
+  info_.decoder_bytes = file_bytes_ + 2 * 4 * texels + ktx2_coder_bytes(texels);
 }
 
 std::uint32_t Ktx2Reader::channels_of(std::span<const std::byte> head) const {

@@ -1,5 +1,5 @@
 #include "hierarchy/error.h"
-#include "images/formats.h"
+#include "images/coders.h"
 #include "images/library_call.h"
 #include "images/source_buffer.h"
 

@@ -2,7 +2,6 @@
 
 #include "images/formats.h"
 #include "images/image_codec.h"
-#include "images/ktx2_coder.h"
 
 #include <algorithm>
 #include <cassert>
@@ -12,16 +11,13 @@
 namespace meshhier::images {
 namespace {
 
-/// Larger ones have the standard's codes: 6 bytes a texel would wait for the best.
-constexpr std::uint64_t kMostHeldTexels = std::uint64_t{1} << 20;
-
 std::uint64_t texels_of(const WrittenImage& image) {
   return std::uint64_t{image.width} * image.height;
 }
 
 bool is_held(const WrittenImage& image) {
-  return image.format == ImageFormat::webp || image.format == ImageFormat::ktx2 ||
-         (image.format == ImageFormat::jpeg && texels_of(image) <= kMostHeldTexels);
+  const FormatRow& row = coders_of(image.format);
+  return row.open_rows == nullptr || texels_of(image) <= row.most_held_texels;
 }
 
 class HeldWriter final : public RowWriter {
@@ -52,24 +48,16 @@ std::unique_ptr<RowWriter> open_picture_writer(const WrittenImage& image, ByteSi
 }
 
 std::uint64_t held_bytes(const WrittenImage& image) {
-  constexpr std::uint64_t kJpeg = 6, kWebp = 4, kLosslessWebp = 21, kRgba = 4,
-                          kBuffers = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kBuffers = std::uint64_t{1} << 20;
   if (!is_held(image))
     return kBuffers;
-  if (image.format == ImageFormat::ktx2)
-    return texels_of(image) * (image.channels + 2 * kRgba) +
-           coder_bytes(image.format, texels_of(image));
-  const std::uint64_t encoder = image.format == ImageFormat::jpeg ? kJpeg
-                                : image.quality == 100            ? kLosslessWebp
-                                                                  : kWebp;
-  return texels_of(image) * (image.channels + encoder);
+  const std::uint64_t texels = texels_of(image);
+  return texels * image.channels + coders_of(image.format).encoder_bytes(texels, image.quality);
 }
 
 std::unique_ptr<RowWriter> open_row_writer(const WrittenImage& image, ByteSink sink) {
-  assert(image.format == ImageFormat::png || image.format == ImageFormat::jpeg);
-  return image.format == ImageFormat::png
-             ? open_png_writer(image, std::move(sink))
-             : open_jpeg_writer(image, JpegCodes::standard, std::move(sink));
+  assert(coders_of(image.format).open_rows != nullptr);
+  return coders_of(image.format).open_rows(image, std::move(sink));
 }
 
 }  // namespace meshhier::images

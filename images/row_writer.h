@@ -16,7 +16,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 
 /// What is written, as encode_image() has it.
 struct WrittenImage {
-  ImageFormat format = ImageFormat::jpeg;  ///< jpeg or png: others have no rows
+  ImageFormat format = ImageFormat::jpeg;  ///< of open_row_writer(): jpeg or png
   int quality = 90;
   std::uint32_t width = 0, height = 0;  ///< 1 ... 65500 each: more a JPEG cannot have
   std::uint32_t channels = 3;           ///< 3; not jpeg: or 4

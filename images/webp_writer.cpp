@@ -1,5 +1,5 @@
 #include "hierarchy/error.h"
-#include "images/formats.h"
+#include "images/coders.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Encoding {
 WebPConfig config_for(int quality) {
   WebPConfig config;
   WebPConfigInit(&config);
-  if (quality == 100) {
+  if (is_exact(ImageFormat::webp, quality)) {
     WebPConfigLosslessPreset(&config, kLosslessLevel);
   } else {
     config.quality = static_cast<float>(quality);

@@ -132,7 +132,7 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
 /// A picture beside may be the mesh's texture, or of anything else, as a photograph of the object.
 void InputFiles::look_for_picture(const InputFileFacts& facts) {
   std::filesystem::path name = without_gz(facts.path);
-  for (const char* ending : {".png", ".jpg", ".jpeg", ".webp"}) {
+  for (const std::string_view ending : picture_endings()) {
     name.replace_extension(ending);
     if (files_.kind(name) != storage::FileKind::regular)
       continue;

@@ -17,8 +17,8 @@ std::vector<std::string> names_of(std::int32_t texture, const mesh_io::PlyPlan& 
   if (number < plan.texture_files.size())
     return {plan.texture_files[number]};
   std::vector<std::string> names;
-  for (const char* ending : {"jpg", "jpeg", "png", "webp"})
-    names.push_back(fmt::format("{}_{}.{}", without_gz(ply).stem().string(), texture, ending));
+  for (const std::string_view ending : picture_endings())
+    names.push_back(fmt::format("{}_{}{}", without_gz(ply).stem().string(), texture, ending));
   return names;
 }
 

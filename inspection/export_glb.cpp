@@ -152,7 +152,7 @@ class GlbText {
 
   void add_extensions(Json& document) const {
     const char* const required =
-        has_pictures() ? storage::required_extension(format_.textures->format) : nullptr;
+        has_pictures() ? row_of(format_.textures->format).gltf_extension : nullptr;
     Json used = Json::array();
     if (has_pictures() && format_.textures->unlit)
       used.push_back(storage::kUnlitExtension);

@@ -28,6 +28,13 @@ std::string file_name_of(NodeId node) {
   return fmt::format("{:02}_{:06}", raw(node.level), node.index);
 }
 
+/// The formats that readers of OBJ know; pictures of others are written as the last one.
+constexpr std::array kObjFormats{ImageFormat::jpeg, ImageFormat::png};
+
+std::string_view ending_of(ImageFormat format) {
+  return row_of(format).file.endings[0];
+}
+
 /// Of a tile: "02_000017.jpg".
 bool is_picture_name(std::string_view name) {
   const std::size_t low = name.find('_'), dot = name.find('.');
@@ -38,7 +45,7 @@ bool is_picture_name(std::string_view name) {
   };
   const std::string_view ending = name.substr(dot);
   return are_digits(name.substr(0, low), 2) && are_digits(name.substr(low + 1, dot - low - 1), 6) &&
-         (ending == ".jpg" || ending == ".png");
+         std::ranges::find(kObjFormats, ending, ending_of) != kObjFormats.end();
 }
 
 /// The material file and the pictures, which are there when they are published, or not at all.
@@ -73,9 +80,9 @@ class ObjPictures {
 
   void add(NodeId node, const TileImage& image) {
     const std::string name = file_name_of(node);
-    const bool is_read = image.format == ImageFormat::jpeg || image.format == ImageFormat::png;
+    const bool is_read = std::ranges::find(kObjFormats, image.format) != kObjFormats.end();
     const std::string picture =
-        fmt::format("{}.{}", name, image.format == ImageFormat::jpeg ? "jpg" : "png");
+        fmt::format("{}{}", name, ending_of(is_read ? image.format : kObjFormats.back()));
     storage::write_file(files_, unfinished_ / picture, is_read ? image.bytes : as_png(image));
     text_.put(fmt::format("newmtl {}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum {}\nmap_Kd {}/{}\n", name,
                           unlit_ ? 0 : 1, folder_.filename().string(), picture));
@@ -121,7 +128,7 @@ class ObjPictures {
   static std::vector<std::byte> as_png(const TileImage& image) {
     const std::uint64_t texels = std::uint64_t{image.width} * image.height;
     return images::encode_image(images::decode_image(image.bytes, "a picture", texels),
-                                ImageFormat::png, 100);
+                                kObjFormats.back(), kBestQuality);
   }
 
   storage::FileSystem& files_;

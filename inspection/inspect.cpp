@@ -5,6 +5,7 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "images/formats.h"
 #include "import/import_input.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -257,17 +258,10 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
 
 /// Of a texel in the memory of a graphics device that knows blocks, with smaller and smaller
 /// copies.
-double gpu_bytes(ImageFormat format, bool is_best) {
-  constexpr double kCopies = 4.0 / 3, kPlain = 4, kUastc = 1, kEtc1s = 0.5;
-  return kCopies * (format != ImageFormat::ktx2 ? kPlain : is_best ? kUastc : kEtc1s);
-}
-
-double gpu_bytes(const TextureFormat& format) {
-  return gpu_bytes(format.format, format.quality == 100);
-}
-
-double gpu_bytes(const NormalMapFormat& format) {
-  return gpu_bytes(format.format, true);
+template <class Format>
+double gpu_bytes(const Format& format) {
+  constexpr double kCopies = 4.0 / 3;
+  return kCopies * images::costs_of(format).device_bytes;
 }
 
 std::string gpu_text(double texel, const storage::PictureSummary& pictures) {
@@ -278,9 +272,9 @@ std::string gpu_text(double texel, const storage::PictureSummary& pictures) {
 
 /// Those of all tiles.
 std::string pictures_text(const TextureFormat& format, const storage::PictureSummary& pictures) {
-  const bool has_quality = format.format != ImageFormat::png;
+  const bool has_quality = !is_exact(format.format, 1);
   return fmt::format("pictures     {}{}, {}: {} of {:.0f} x {:.0f} texels on average, {}\n",
-                     kImageFormatNames[static_cast<std::size_t>(format.format)],
+                     row_of(format.format).name,
                      has_quality ? fmt::format(" of quality {}", format.quality) : "",
                      format.unlit ? "unlit" : "lit", grouped(pictures.tiles), pictures.width,
                      pictures.height, gpu_text(gpu_bytes(format), pictures));
@@ -294,8 +288,8 @@ std::string normal_maps_text(const NormalMapFormat& format,
       std::ranges::count_if(records, [](const TileRecord& r) { return r.error > 0; }));
   return fmt::format(
       "normal maps  {}{}: {} of {} simplified tiles, {:.0f} x {:.0f} on average, {}\n",
-      kImageFormatNames[static_cast<std::size_t>(format.format)],
-      format.format == ImageFormat::jpeg ? fmt::format(" of quality {}", format.quality) : "",
+      row_of(format.format).name,
+      row_of(format.format).graded_maps ? fmt::format(" of quality {}", format.quality) : "",
       grouped(maps.tiles), grouped(simplified), maps.width, maps.height,
       gpu_text(gpu_bytes(format), maps));
 }
@@ -449,12 +443,12 @@ Json storage_json(const storage::Manifest& manifest) {
                {"normals", normals_of(manifest)},
                {"texture", nullptr}};
   if (const auto& maps = manifest.normal_maps) {
-    json["normal_map"] = {{"format", kImageFormatNames[static_cast<std::size_t>(maps->format)]},
+    json["normal_map"] = {{"format", row_of(maps->format).name},
                           {"quality", maps->quality},
                           {"gpu_bytes_a_texel", gpu_bytes(*maps)}};
   }
   if (const auto& textures = manifest.textures) {
-    json["texture"] = {{"format", kImageFormatNames[static_cast<std::size_t>(textures->format)]},
+    json["texture"] = {{"format", row_of(textures->format).name},
                        {"quality", textures->quality},
                        {"unlit", textures->unlit},
                        {"gpu_bytes_a_texel", gpu_bytes(*textures)}};

@@ -1,6 +1,7 @@
 #include "inspection/page_story.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/image_format.h"
 #include "hierarchy/plain_text.h"
 #include "inspection/base64.h"
 #include "storage/io/json_text.h"
@@ -34,6 +35,16 @@ std::string shown_address(const std::string& address) {
       shown.erase(host + 2, user - host - 1);
   }
   return plain_text(shown, kMostShown);
+}
+
+/// "it is no JPEG, PNG or GIF".
+std::string no_browser_picture() {
+  std::string text = "it is no ";
+  for (std::size_t i = 0; i < kBrowserPictures.size(); ++i) {
+    const bool is_last = i + 1 == kBrowserPictures.size();
+    text += fmt::format("{}{}", i == 0 ? "" : is_last ? " or " : ", ", kBrowserPictures[i].title);
+  }
+  return text;
 }
 
 class Embedding {
@@ -72,9 +83,9 @@ class Embedding {
       return true;
     try {
       const std::vector<std::byte> bytes = open_(address, room_);
-      const char* const type = picture_type(bytes);
-      if (type == nullptr)
-        throw Error(ErrorCode::input, "it is no PNG, JPEG, WebP, GIF or AVIF");
+      const std::string_view type = picture_type(bytes);
+      if (type.empty())
+        throw Error(ErrorCode::input, no_browser_picture());
       room_ -= std::min<std::uint64_t>(room_, bytes.size());
       address = fmt::format("data:{};base64,{}", type, base64(bytes));
       ++pictures_;
@@ -95,23 +106,11 @@ class Embedding {
 
 }  // namespace
 
-const char* picture_type(const std::vector<std::byte>& bytes) {
-  using namespace std::string_view_literals;
+std::string_view picture_type(const std::vector<std::byte>& bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto has = [&](std::size_t at, std::string_view mark) {
-    return text.size() >= at && text.substr(at).starts_with(mark);
-  };
-  if (has(0, "\x89PNG\r\n\x1a\n"))
-    return "image/png";
-  if (has(0, "\xff\xd8\xff"))
-    return "image/jpeg";
-  if (has(0, "RIFF") && has(8, "WEBP"))
-    return "image/webp";
-  if (has(0, "GIF87a") || has(0, "GIF89a"))
-    return "image/gif";
-  if (has(4, "ftypavif") || has(4, "ftypavis"))
-    return "image/avif";
-  return nullptr;
+  const auto* const found = std::ranges::find_if(
+      kBrowserPictures, [&](const PictureFile& file) { return file.is_start(text); });
+  return found == kBrowserPictures.end() ? std::string_view() : found->media_type;
 }
 
 PageStory with_pictures(const std::string& text, const std::string& name, std::uint64_t most_bytes,

@@ -27,13 +27,13 @@ struct PageStory {
 
 /// Puts the pictures of annotations (objects of the type "Image" in a "body") in the place of their
 /// addresses, as `data:` URIs, in their order, as long as they together have no more than
-/// `most_bytes`; removes those that cannot be had, or are no PNG, JPEG, WebP, GIF or AVIF. Where
+/// `most_bytes`; removes those that cannot be had, or that browsers do not show. Where
 /// nothing changes, the text is the same. Throws Error(corrupt) that starts with `name` if `text`
 /// is no JSON object.
 PageStory with_pictures(const std::string& text, const std::string& name, std::uint64_t most_bytes,
                         const OpenPicture& open);
 
-/// The type of a picture that browsers show, by its first bytes: "image/png"; null of all else.
-const char* picture_type(const std::vector<std::byte>& bytes);
+/// The type of a picture that browsers show, by its first bytes: "image/png"; empty for all else.
+std::string_view picture_type(const std::vector<std::byte>& bytes);
 
 }  // namespace meshhier::inspection

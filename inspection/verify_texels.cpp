@@ -173,12 +173,6 @@ struct Comparison {
   }
 };
 
-/// Whether nothing was lost since the texels were copied.
-bool is_exact(const TileImage& image, const TextureFormat& format) {
-  return image.format == ImageFormat::png ||
-         (image.format == ImageFormat::webp && format.quality == 100);
-}
-
 }  // namespace
 
 struct TexelCheck::Impl {
@@ -289,7 +283,7 @@ struct TexelCheck::Impl {
           tile = one.tile;
           const auto found = job.tiles.find({job.tree().depth(), one.tile});
           image = found ? decoded(*found) : Image{};
-          exact = found && is_exact(found->image, format);
+          exact = found && is_exact(found->image.format, format.quality);
         }
         if (image.width > 0)
           compare(one, image, of_tile);

@@ -1,7 +1,7 @@
 // What only tiles with a picture or a normal map have: splits by texture coordinates, and that.
 #include "hierarchy/error.h"
+#include "images/formats.h"
 #include "images/image_codec.h"
-#include "images/ktx2_coder.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
 
@@ -61,7 +61,7 @@ bool has_different_splits(const Shading& shading) {
   return std::adjacent_find(looks.begin(), looks.end()) == looks.end();
 }
 
-/// Decodes all of it, a few rows at a time; of a KTX2 nothing where this machine cannot.
+/// Decodes all of it, a few rows at a time; nothing where this machine cannot.
 void read_picture(const TileImage& image, const std::string& name) {
   const std::span<const std::byte> bytes = image.bytes;
   const auto read = [bytes](std::uint64_t offset, std::span<std::byte> into) {
@@ -75,13 +75,12 @@ void read_picture(const TileImage& image, const std::string& name) {
   if (info.format != image.format || info.width != image.width || info.height != image.height) {
     throw Error(ErrorCode::corrupt,
                 fmt::format("{} is a {} of {} x {} texels, expected a {} of {} x {}", name,
-                            kImageFormatNames[static_cast<std::size_t>(info.format)], info.width,
-                            info.height, kImageFormatNames[static_cast<std::size_t>(image.format)],
-                            image.width, image.height));
+                            row_of(info.format).name, info.width, info.height,
+                            row_of(image.format).name, image.width, image.height));
   }
   if (image.alpha == AlphaMode::opaque && info.channels != 3)
     throw Error(ErrorCode::corrupt, name + " has alpha, but the material is opaque");
-  if (info.format == ImageFormat::ktx2 && !images::missing_for_ktx2().empty())
+  if (!images::missing_coder(info.format).empty())
     return;
   constexpr std::uint32_t kRows = 16;
   std::vector<std::uint8_t> rows(std::size_t{kRows} * info.width * info.channels);

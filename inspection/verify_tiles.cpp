@@ -1,7 +1,7 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
-#include "images/ktx2_coder.h"
+#include "images/formats.h"
 #include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
 #include "partition/compactness.h"
@@ -290,8 +290,8 @@ void verify_tiles(const VerifyJob& job) {
   job.checks.push_back(fmt::format(
       "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
       records.size() - job.tiles.unreadable_count(), off_target));
-  if (job.reader.manifest().has_ktx2()) {
-    if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
+  if (const auto format = job.reader.manifest().image_format()) {
+    if (const std::string missing = images::missing_coder(*format); !missing.empty())
       job.checks.push_back("pictures: their heads alone, as " + missing);
   }
   job.checks.push_back(

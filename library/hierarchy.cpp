@@ -215,7 +215,7 @@ Part Cut::load(std::size_t position) {
     part.places = std::move(loaded.places);
     part.triangles.assign(loaded.triangles.begin(), loaded.triangles.end());
     if (!loaded.image.empty()) {
-      part.image_type = storage::mime_type(loaded.image.format);
+      part.image_type = row_of(loaded.image.format).file.media_type;
       part.image = std::move(loaded.image.bytes);
     }
     return part;

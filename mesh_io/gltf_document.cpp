@@ -215,8 +215,12 @@ class DocumentReader {
     root_.for_each("textures", [&](const GltfObject& o) {
       GltfTexture texture{o.index("source", document_.images.size()),
                           o.index("sampler", document_.samplers.size())};
-      if (const auto webp = o.extension("EXT_texture_webp"))
-        texture.image = webp->require_index("source", document_.images.size());
+      for (const ImageFormatRow& row : kImageFormats) {
+        if (row.gltf_extension == nullptr || !row.in_browsers)
+          continue;
+        if (const auto read = o.extension(row.gltf_extension))
+          texture.image = read->require_index("source", document_.images.size());
+      }
       for (const GltfPictureFormat& format : kUnreadFormats)
         texture.unread = o.extension(format.extension) ? &format : texture.unread;
       document_.textures.push_back(texture);

@@ -1,10 +1,12 @@
 #include "mesh_io/other_formats.h"
 
+#include "hierarchy/image_format.h"
 #include "hierarchy/text_mark.h"
 #include "mesh_io/formats.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -37,6 +39,8 @@ constexpr std::string_view kHierarchy =
     "it is part of what a build makes: `meshhier inspect` and `serve` take its directory";
 constexpr std::string_view kHeights = "if its values are heights, make a mesh of them first";
 constexpr std::string_view kOfMesh = "give the mesh that it belongs to";
+constexpr std::string_view kPicture =
+    "give the mesh that it belongs to, or if its values are heights, make a mesh of them first";
 
 /// A file is of the first row with a mark in its bytes, else of the first one with a word in it.
 std::vector<OtherFormat> make_others() {
@@ -100,15 +104,11 @@ std::vector<OtherFormat> make_others() {
       {"a file of a progressive stream", kHierarchy, {}, {{"MHDETAIL"sv}}},
       {"the manifest of a hierarchy", kHierarchy, {}, {{"\"format\": \"meshhier"sv, 0, "{"}}},
       {"a hierarchy", {}, {".hier", ".3tz"}},
-      {"a PNG picture", kHeights, {".png"}, {{"\x89PNG"sv}}, true},
-      {"a JPEG picture", kHeights, {".jpg", ".jpeg"}, {{"\xFF\xD8\xFF"sv}}, true},
       {"a TIFF picture",
        kHeights,
        {".tif", ".tiff"},
        {{"II*\0"sv}, {"MM\0*"sv}, {"II+\0"sv}},
        true},
-      {"a KTX2 picture", kOfMesh, {".ktx2"}, {{"\xABKTX 20\xBB"sv}}, true},
-      {"a WebP picture", kOfMesh, {".webp"}, {{"WEBP"sv, 8}}, true},
       {"a BMP picture", {}, {".bmp"}, {}, true},
       {"a GIF picture", kOfMesh, {".gif"}, {{"GIF8"sv}}, true},
       {"a TGA picture", {}, {".tga"}, {}, true},
@@ -180,6 +180,10 @@ const OtherFormat* first_with(const IsThere& is_there) {
 }  // namespace
 
 std::string other_format(std::string_view start) {
+  for (const ImageFormatRow& row : kImageFormats) {
+    if (row.file.is_start(start))
+      return told("a " + std::string(row.file.title) + " picture", kPicture);
+  }
   const std::string_view text = without_blanks(start);
   const std::string_view head = text.substr(0, kWordsWithin);
   const OtherFormat* found = first_with([&](const Mark& mark) {
@@ -203,12 +207,18 @@ bool is_known_ending(std::string_view ending) {
   const auto has_it = [&](const OtherFormat& other) {
     return std::ranges::find(other.endings, ending) != other.endings.end();
   };
-  const std::vector<std::string_view> meshes = mesh_endings();
-  return std::ranges::find(meshes, ending) != meshes.end() || std::ranges::any_of(others(), has_it);
+  const auto has = [&](const std::vector<std::string_view>& endings) {
+    return std::ranges::find(endings, ending) != endings.end();
+  };
+  return has(mesh_endings()) || has(all_picture_endings()) || std::ranges::any_of(others(), has_it);
 }
 
-std::vector<std::string_view> picture_endings() {
+std::vector<std::string_view> all_picture_endings() {
   std::vector<std::string_view> all;
+  for (const ImageFormatRow& row : kImageFormats) {
+    std::ranges::copy_if(row.file.endings, std::back_inserter(all),
+                         [](std::string_view ending) { return !ending.empty(); });
+  }
   for (const OtherFormat& other : others()) {
     if (other.is_picture)
       all.insert(all.end(), other.endings.begin(), other.endings.end());

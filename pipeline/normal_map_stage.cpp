@@ -2,8 +2,8 @@
 
 #include "execution/memory_gate.h"
 #include "hierarchy/vertex_numbers.h"
+#include "images/formats.h"
 #include "images/image_codec.h"
-#include "images/ktx2_coder.h"
 #include "pipeline/picture_levels.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/tiles/finer_surfaces.h"
@@ -261,14 +261,15 @@ StageMemory normal_map_memory(const JobSize& job) {
 double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
   if (job.normal_map_side == 0)
     return 0;
-  const double texel = job.normal_map_format == ImageFormat::jpeg ? 0.4 : 1.5;
+  const double texel = images::coders_of(job.normal_map_format).directions.file_bytes;
   constexpr double kVertex = sizeof(TangentCode) + 2 * sizeof(std::uint16_t);
   return map_texels(job, tiles) * texel + tiles.simplified.vertices * kVertex;
 }
 
 StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTileSeconds = 40e-3;
-  const double texel = job.normal_map_format == ImageFormat::ktx2 ? 3000e-9 : 220e-9;
+  constexpr double kBakedSeconds = 220e-9;
+  const double texel = kBakedSeconds + images::coders_of(job.normal_map_format).directions.seconds;
   return {{"normal maps", "tiles",
            static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
            tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel}};

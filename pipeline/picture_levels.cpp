@@ -1,7 +1,7 @@
 #include "pipeline/picture_levels.h"
 
 #include "execution/parallel.h"
-#include "images/ktx2_coder.h"
+#include "images/formats.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct EndOfCoders {
   EndOfCoders() = default;
   EndOfCoders(const EndOfCoders&) = delete;
   EndOfCoders& operator=(const EndOfCoders&) = delete;
-  ~EndOfCoders() { images::end_ktx2_coders(); }
+  ~EndOfCoders() { images::end_coders(); }
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "execution/memory_gate.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/vertex_numbers.h"
+#include "images/formats.h"
 #include "images/image_codec.h"
 #include "images/row_writer.h"
 #include "pipeline/picture_levels.h"
@@ -122,6 +123,14 @@ class SourcePicture {
 
 // ---- all tiles -----------------------------------------------------------------------------
 
+/// The largest side of a partition's picture: one of the input of 4,096 texels with the gutter
+/// around it, or what the format has; of KTX2 half of that. Where the input has more texels, as of
+/// pictures that repeat, a coarser level of them is shown, with a warning.
+std::uint32_t leaf_side(ImageFormat format) {
+  constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
+  return std::min(kLeafSide, images::coders_of(format).most_side);
+}
+
 /// Of a triangle at work: its corners, positions, and coordinates before and after.
 constexpr std::uint64_t kTriangleBytes = 300;
 
@@ -129,7 +138,7 @@ constexpr std::uint64_t kTriangleBytes = 300;
 /// and the smaller picture that others are baked from.
 std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side) {
   const std::uint64_t texels = std::uint64_t{picture.width} * picture.height;
-  const std::uint64_t encoded = picture.format == ImageFormat::png ? 4 : 1;
+  const std::uint64_t encoded = is_exact(picture.format, picture.quality) ? 4 : 1;
   const std::uint64_t factor = reduction(texels, side);
   return LeafPicture::bytes(picture.width, picture.height) + images::held_bytes(picture) +
          texels * encoded + texture::Reduction::bytes(texels, texels / (factor * factor));
@@ -354,11 +363,9 @@ StageMemory texture_memory(const JobSize& job) {
 
 StageTimes texture_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTexelSeconds = 60e-9;
-  constexpr double kBakedSeconds = 500e-9, kEtc1sSeconds = 2500e-9, kUastcSeconds = 700e-9;
+  constexpr double kBakedSeconds = 500e-9;
   const double side = job.picture_side;
-  const double coded = job.pictures.format != ImageFormat::ktx2 ? 0
-                       : job.pictures.quality == 100            ? kUastcSeconds
-                                                                : kEtc1sSeconds;
+  const double coded = images::costs_of(job.pictures).seconds;
   return {{"texture", "tiles",
            static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
                                       tiles.early.count),
@@ -369,14 +376,8 @@ StageTimes texture_time(const JobSize& job, const TilePopulation& tiles) {
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) {
   if (!job.textured)
     return 0;
-  // Of a texel, with a quality of 90; most of an atlas is covered, and little of the input's
-  // pictures is not.
-  const bool is_best = job.pictures.quality == 100;
-  const double texel = job.pictures.format == ImageFormat::png    ? 1.5
-                       : job.pictures.format == ImageFormat::jpeg ? 0.4
-                       : job.pictures.format == ImageFormat::webp ? 0.3
-                       : is_best                                  ? 1.4
-                                                                  : 0.4;
+  // Most of an atlas is covered, and little of the input's pictures is not.
+  const double texel = images::costs_of(job.pictures).file_bytes;
   const double baked = (tiles.simplified.count - tiles.early.count) *
                        static_cast<double>(job.picture_side) * job.picture_side;
   return (static_cast<double>(job.source_texels) * 0.8 + baked) * texel;

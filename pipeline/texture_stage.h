@@ -5,7 +5,6 @@
 #pragma once
 
 #include "hierarchy/texture.h"
-#include "images/ktx2_coder.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
@@ -19,14 +18,6 @@
 #include <vector>
 
 namespace meshhier::pipeline {
-
-/// The largest side of a partition's picture: one of the input of 4,096 texels with the gutter
-/// around it; of KTX2 half of that. Where the input has more texels, as of pictures that repeat, a
-/// coarser level of them is shown, with a warning.
-constexpr std::uint32_t leaf_side(ImageFormat format) {
-  constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
-  return format == ImageFormat::ktx2 ? images::kMostKtx2Side : kLeafSide;
-}
 
 /// Items are tiles, with their pictures. Requires a textured mesh, as all that is told of the
 /// stage.

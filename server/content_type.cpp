@@ -1,5 +1,6 @@
 #include "server/content_type.h"
 
+#include "hierarchy/image_format.h"
 #include "server/text.h"
 
 #include <array>
@@ -9,29 +10,22 @@
 namespace meshhier::server {
 namespace {
 
-// What hierarchies, streams, stories' pictures and the viewer's page consist of.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kTypes{
+// What hierarchies, streams and the viewer's page consist of, besides pictures.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{
     {{".3tz", "application/vnd.maxar.archive.3tz+zip"},
-     {".avif", "image/avif"},
      {".css", "text/css; charset=utf-8"},
-     {".gif", "image/gif"},
      {".glb", "model/gltf-binary"},
      {".gltf", "model/gltf+json"},
      {".html", "text/html; charset=utf-8"},
      {".ico", "image/x-icon"},
-     {".jpeg", "image/jpeg"},
-     {".jpg", "image/jpeg"},
      {".js", "text/javascript; charset=utf-8"},
      {".json", "application/json"},
-     {".ktx2", "image/ktx2"},
      {".map", "application/json"},
      {".mjs", "text/javascript; charset=utf-8"},
-     {".png", "image/png"},
      {".svg", "image/svg+xml"},
      {".txt", "text/plain; charset=utf-8"},
      {".wasm", "application/wasm"},
      {".webmanifest", "application/manifest+json"},
-     {".webp", "image/webp"},
      {".woff", "font/woff"},
      {".woff2", "font/woff2"}}};
 
@@ -42,6 +36,14 @@ std::string_view content_type(std::string_view file_name) {
   for (const auto& [extension, type] : kTypes) {
     if (name.ends_with(extension))
       return type;
+  }
+  for (const ImageFormatRow& row : kImageFormats) {
+    if (row.file.is_name(name))
+      return row.file.media_type;
+  }
+  for (const PictureFile& file : kOtherPictures) {
+    if (file.is_name(name))
+      return file.media_type;
   }
   return "application/octet-stream";
 }

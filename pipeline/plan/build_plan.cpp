@@ -5,7 +5,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/normal_code.h"
 #include "hierarchy/plain_text.h"
-#include "images/ktx2_coder.h"
+#include "images/formats.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
@@ -142,17 +142,17 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
 }
 
 void check_coders(const JobSize& job) {
-  const bool codes = (job.textured && job.pictures.format == ImageFormat::ktx2) ||
-                     (job.normal_map_side > 0 && job.normal_map_format == ImageFormat::ktx2);
-  if (!codes)
+  if (!job.textured && job.normal_map_side == 0)
     return;
-  if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
+  const ImageFormat format = job.textured ? job.pictures.format : job.normal_map_format;
+  if (const std::string missing = images::missing_coder(format); !missing.empty())
     throw Error(ErrorCode::usage, missing);
   const std::uint32_t side = job.textured ? job.picture_side : job.normal_map_side;
-  if (side > images::kMostKtx2Side) {
-    throw Error(ErrorCode::usage,
-                fmt::format("{}.texels is {}: in KTX2 there are at most {} a side",
-                            job.textured ? "texture" : "normal_map", side, images::kMostKtx2Side));
+  const std::uint32_t most = images::coders_of(format).most_side;
+  if (side > most) {
+    throw Error(ErrorCode::usage, fmt::format("{}.texels is {}: in {} there are at most {} a side",
+                                              job.textured ? "texture" : "normal_map", side,
+                                              row_of(format).file.title, most));
   }
 }
 

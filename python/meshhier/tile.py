@@ -49,7 +49,7 @@ class Tile:
         neighbours: (m,) int64, indices of the tiles of this level that have ghosts here.
         ghost_starts: (m + 1,) int64: ghosts [ghost_starts[i], ghost_starts[i + 1]) are of neighbours[i].
         chains: one array for each neighbour, (ghosts of it, levels) int64: the vertex in that tile, in its parent, and so on.
-        image_bytes: the picture's file (JPEG, PNG or WebP), or None.
+        image_bytes: the picture's file (JPEG, PNG, WebP or KTX2), or None.
     """
 
     node: Node

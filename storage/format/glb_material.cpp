@@ -9,11 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// In the order of ImageFormat and AlphaMode.
-constexpr std::array<const char*, 4> kMimeTypes{"image/jpeg", "image/png", "image/webp",
-                                                "image/ktx2"};
-constexpr std::array<const char*, 4> kImageExtensions{nullptr, nullptr, "EXT_texture_webp",
-                                                      "KHR_texture_basisu"};
+/// In the order of AlphaMode.
 constexpr std::array<const char*, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
 
 // Filters and wrap modes of the glTF 2.0 specification.
@@ -45,17 +41,9 @@ Json normal_texture_json(std::size_t texture, unsigned texcoord_set) {
   return normals;
 }
 
-const char* required_extension(ImageFormat format) {
-  return kImageExtensions[static_cast<std::size_t>(format)];
-}
-
-const char* mime_type(ImageFormat format) {
-  return kMimeTypes[static_cast<std::size_t>(format)];
-}
-
 Json texture_json(std::size_t image, ImageFormat format) {
   Json texture = {{"sampler", 0}};
-  if (const char* const extension = required_extension(format))
+  if (const char* const extension = row_of(format).gltf_extension)
     texture["extensions"][extension] = {{"source", image}};
   else
     texture["source"] = image;
@@ -70,7 +58,7 @@ Json sampler_json() {
 }
 
 Json image_json(std::size_t view, ImageFormat format) {
-  return {{"bufferView", view}, {"mimeType", mime_type(format)}};
+  return {{"bufferView", view}, {"mimeType", row_of(format).file.media_type}};
 }
 
 }  // namespace meshhier::storage

@@ -26,12 +26,7 @@ nlohmann::ordered_json material_json(std::size_t texture, AlphaMode alpha, bool 
 /// Of a texture that is a normal map, by its number, with the coordinates of that set.
 nlohmann::ordered_json normal_texture_json(std::size_t texture, unsigned texcoord_set);
 
-/// What a document requires to show pictures of that format; null: nothing.
-const char* required_extension(ImageFormat format);
-/// As it is in files and on the web.
-const char* mime_type(ImageFormat format);
-
-/// Of an image, by its number, with the sampler 0; the document has required_extension().
+/// Of an image, by its number, with the sampler 0; the document has the format's extension.
 nlohmann::ordered_json texture_json(std::size_t image, ImageFormat format);
 /// Linear, with mipmaps, without repeats.
 nlohmann::ordered_json sampler_json();

@@ -31,7 +31,7 @@ constexpr const char* kComputedNormals = "computed";
 // ---- writing -------------------------------------------------------------------------------
 
 Json texture_storage_json(const TextureFormat& textures) {
-  return {{"format", kImageFormatNames[static_cast<std::size_t>(textures.format)]},
+  return {{"format", row_of(textures.format).name},
           {"quality", textures.quality},
           {"unlit", textures.unlit}};
 }
@@ -47,9 +47,8 @@ Json storage_json(const Manifest& manifest) {
   if (manifest.computed_normals)
     storage["normals"] = kComputedNormals;
   if (manifest.normal_maps) {
-    storage["normal_map"] = {
-        {"format", kImageFormatNames[static_cast<std::size_t>(manifest.normal_maps->format)]},
-        {"quality", manifest.normal_maps->quality}};
+    storage["normal_map"] = {{"format", row_of(manifest.normal_maps->format).name},
+                             {"quality", manifest.normal_maps->quality}};
   }
   if (manifest.textures)
     storage["texture"] = texture_storage_json(*manifest.textures);
@@ -153,16 +152,6 @@ auto read_named(const JsonObject& object, const char* key, const Table& table) {
   return *value;
 }
 
-/// One of `names`, by its place among them.
-template <class Choice, std::size_t N>
-Choice read_choice(const JsonObject& object, const char* key,
-                   const std::array<std::string_view, N>& names) {
-  const auto found = std::find(names.begin(), names.end(), object.text(key));
-  if (found == names.end())
-    object.wrong(key, fmt::format("one of {}", fmt::join(names, ", ")));
-  return static_cast<Choice>(found - names.begin());
-}
-
 std::optional<Quantization> read_quantization(const JsonObject& object) {
   if (object.at("positions").is_null())
     return std::nullopt;
@@ -194,8 +183,8 @@ bool read_computed_normals(const JsonObject& object, const AttributeLayout& sour
 template <class Format>
 Format read_picture_format(const JsonObject& object) {
   Format format;
-  format.format = read_choice<ImageFormat>(object, "format", kImageFormatNames);
-  format.quality = static_cast<int>(object.count("quality", 100));
+  format.format = read_named(object, "format", kImageFormats);
+  format.quality = static_cast<int>(object.count("quality", kBestQuality));
   if (format.quality == 0)
     object.wrong("quality", "at least 1");
   return format;

@@ -95,11 +95,13 @@ struct Manifest {
   /// Of the nodes of tiles and of the outline.
   Frame tile_frame() const { return {tileset_pixels ? Vec3d{} : origin, up}; }
 
-  /// Whether graphics devices keep its pictures or normal maps compressed.
-  bool has_ktx2() const {
-    return (textures && textures->format == ImageFormat::ktx2) ||
-           (normal_maps && normal_maps->format == ImageFormat::ktx2);
+  /// Of pictures or normal maps: there are never both.
+  std::optional<ImageFormat> image_format() const {
+    return textures      ? std::optional(textures->format)
+           : normal_maps ? std::optional(normal_maps->format)
+                         : std::nullopt;
   }
+  bool has_ktx2() const { return image_format() == ImageFormat::ktx2; }
 
   int format_version() const {
     return tileset_pixels                      ? kFormatVersion

@@ -1,11 +1,11 @@
 #include "storage/format/story_pictures.h"
 
+#include "hierarchy/image_format.h"
 #include "hierarchy/percent_code.h"
 #include "hierarchy/small_letters.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <set>
@@ -14,9 +14,6 @@
 
 namespace meshhier::storage {
 namespace {
-
-constexpr std::array<std::string_view, 6> kPictureEndings{".avif", ".gif", ".jpeg",
-                                                          ".jpg",  ".png", ".webp"};
 
 /// A manifest's picture is some twenty deep.
 constexpr int kDeepestStory = 64;
@@ -85,11 +82,9 @@ void collect_pictures(const nlohmann::json& value, std::set<std::string>& found)
 }  // namespace
 
 bool is_picture_name(std::string_view name) {
-  const std::string small = small_letters(name);
-  return std::ranges::any_of(kPictureEndings, [&](std::string_view ending) {
-    return small.size() > ending.size() && small.ends_with(ending) &&
-           small[small.size() - ending.size() - 1] != '/';
-  });
+  const std::string small = small_letters(name.substr(name.rfind('/') + 1));
+  return std::ranges::any_of(kBrowserPictures,
+                             [&](const PictureFile& file) { return file.is_name(small); });
 }
 
 std::vector<std::string> pictures_beside(std::string_view story) {

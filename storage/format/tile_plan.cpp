@@ -276,9 +276,9 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
   const TileShape& shape = plan.shape();
   if (plan.has_short_positions() || shape.computed_normals || shape.has_normal_map())
     names.push_back(kQuantizationExtension);
-  const char* const extension = shape.has_image() ? required_extension(image_format(shape))
+  const char* const extension = shape.has_image() ? row_of(image_format(shape)).gltf_extension
                                 : shape.has_normal_map()
-                                    ? required_extension(shape.normal_maps->format)
+                                    ? row_of(shape.normal_maps->format).gltf_extension
                                     : nullptr;
   if (extension != nullptr)
     names.push_back(extension);

@@ -1423,7 +1423,7 @@ TEST_F(CommandLinePage, AStorysPicturesOfOtherHostsAreFetchedWhereThatIsAsked) {
       page({hierarchy(), "-o", file.string(), "--force", "--fetch-pictures", "--size", "2MB"});
   ASSERT_EQ(outcome.code, 0) << outcome.messages;
   EXPECT_THAT(outcome.out, HasSubstr("2 of 5 pictures of the story"));
-  EXPECT_THAT(outcome.messages, HasSubstr("text.gif: it is no PNG"));
+  EXPECT_THAT(outcome.messages, HasSubstr("text.gif: it is no JPEG"));
   EXPECT_THAT(outcome.messages, HasSubstr("large.gif: it has 2.86 MiB"));
   EXPECT_THAT(outcome.messages, HasSubstr("none.gif: there is no such file on the host"));
   EXPECT_THAT(text_of(file), Not(HasSubstr(host.url())));

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Files, HostileTest, testing::ValuesIn(small_files()),
 
 TEST(HostileImageTest, OtherFormatsAreNamedAsSuch) {
   for (const char* text : {"", "GIF89a", "\xff\xd8", "\x89PNG", "RIFF1234WAVEfmt ", "RIFF1234WEB"})
-    EXPECT_EQ(refused(bytes_of(text)), "a.img is neither JPEG nor PNG nor WebP");
+    EXPECT_EQ(refused(bytes_of(text)), "a.img is neither JPEG nor PNG nor WebP nor KTX2");
 }
 
 TEST(HostileImageTest, NothingIsSizedByALyingHead) {

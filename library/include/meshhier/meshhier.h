@@ -98,7 +98,7 @@ struct Part {
   std::vector<std::uint32_t> places;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::byte> image;  ///< the picture's file; empty: there is none
-  std::string image_type;        ///< "image/jpeg", "image/png", "image/webp"
+  std::string image_type;        ///< "image/jpeg", "image/png", "image/webp", "image/ktx2"
 };
 
 class Cut;
@@ -168,9 +168,8 @@ struct Progress {
 };
 
 struct BuildRequest {
-  std::vector<std::string>
-      meshes;          ///< of any format, which are joined; or one config
-  std::string output;  ///< "scan.hier", or "scan.3tz" for one file
+  std::vector<std::string> meshes;              ///< of any format, which are joined; or one config
+  std::string output;                           ///< "scan.hier", or "scan.3tz" for one file
   std::map<std::string, std::string> settings;  ///< {"memory_budget", "2GiB"}; docs/config.md
   bool replace = false;                         ///< an output that is there
   /// Is called four times a second at most, on any thread, one call at a time. False: stop.

@@ -4,6 +4,7 @@ import { JsonValue, type Fail } from '../json_value.js';
 import { COMPRESSIONS, COMPRESSION_NAMES } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
+import { PICTURE_FORMATS } from './picture_size.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { whole, type RemoteFiles } from './remote_files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
@@ -79,7 +80,7 @@ function readTransform(value: JsonValue): readonly number[] | null {
 /// With how they are stored, which is there if and only if they are.
 function readTextures(source: JsonValue, storage: JsonValue): Manifest['source']['textures'] {
   if (!source.has('textures') && !storage.has('texture')) return null;
-  storage.at('texture').at('format').oneOf('jpeg', 'png', 'webp', 'ktx2');
+  storage.at('texture').at('format').oneOf(...PICTURE_FORMATS.map(({ name }) => name));
   const textures = source.at('textures');
   const images = textures.at('images').count();
   return { images, missingImages: textures.at('missing_images').count(0, images) };

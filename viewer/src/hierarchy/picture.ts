@@ -2,7 +2,7 @@
 // The picture of a tile (docs/file_format.md, section 4.10).
 import type { Glb } from './glb.js';
 import { texelBytes, transcode, type CompressedTexels } from './basis.js';
-import { KTX2, pictureSize, type Size } from './picture_size.js';
+import { KTX2, PICTURE_FORMATS, pictureSize, type Size } from './picture_size.js';
 
 export type Alpha = 'OPAQUE' | 'MASK' | 'BLEND';
 
@@ -22,6 +22,7 @@ interface StoredPicture extends Omit<Picture, 'texels'> {
 }
 
 export const BITMAP_TEXEL_BYTES = 4;
+const TITLES = PICTURE_FORMATS.map(({ title }) => title);
 const ALPHAS: readonly Alpha[] = ['OPAQUE', 'MASK', 'BLEND'];
 
 export function isCompressed(texels: Picture['texels']): texels is CompressedTexels {
@@ -61,7 +62,7 @@ export function findPicture(glb: Glb, number: number, size: Size): StoredPicture
   const material = glb.gltf.materials?.[0];
   const bytes = glb.file(number);
   const found = pictureSize(bytes, type);
-  if (found === null) glb.fail('its picture is no JPEG, PNG, WebP or KTX2');
+  if (found === null) glb.fail(`its picture is no ${TITLES.slice(0, -1).join(', ')} or ${TITLES.at(-1)}`);
   if (found.width !== size.width || found.height !== size.height) glb.fail('its picture has another size than it says');
   const alpha = ALPHAS.find((each) => each === (material?.alphaMode ?? 'OPAQUE')) ?? glb.fail('its picture has an alpha mode that is not known');
   const unlit = material?.extensions?.KHR_materials_unlit !== undefined;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How large a picture is, out of the beginning of its file: known before anything decodes it.
+// The formats of pictures, as hierarchy/image_format.h has them, and how large a picture is, out of the beginning of its file: known
+// before anything decodes it.
 
 export interface Size {
   readonly width: number;
@@ -60,9 +61,28 @@ function ofKtx2(bytes: DataView): Size | null {
   return size.width % 4 === 0 && size.height % 4 === 0 ? size : null;
 }
 
-const READERS: ReadonlyMap<string, Read> = new Map([['image/png', ofPng], ['image/jpeg', ofJpeg], ['image/webp', ofWebp], [KTX2, ofKtx2]]);
+interface PictureFormat {
+  /// In manifests.
+  readonly name: string;
+  readonly title: string;
+  readonly type: string;
+  readonly endings: readonly string[];
+  readonly inBrowsers: boolean;
+  readonly sizeOf: Read;
+}
+
+export const PICTURE_FORMATS: readonly PictureFormat[] = [
+  { name: 'jpeg', title: 'JPEG', type: 'image/jpeg', endings: ['jpg', 'jpeg'], inBrowsers: true, sizeOf: ofJpeg },
+  { name: 'png', title: 'PNG', type: 'image/png', endings: ['png'], inBrowsers: true, sizeOf: ofPng },
+  { name: 'webp', title: 'WebP', type: 'image/webp', endings: ['webp'], inBrowsers: true, sizeOf: ofWebp },
+  { name: 'ktx2', title: 'KTX2', type: KTX2, endings: ['ktx2'], inBrowsers: false, sizeOf: ofKtx2 },
+];
+
+/// All that browsers show.
+export const BROWSER_PICTURES: readonly string[] = [...PICTURE_FORMATS.filter(({ inBrowsers }) => inBrowsers).map(({ type }) => type), 'image/gif', 'image/avif'];
 
 /// Null of what is no picture of that type.
 export function pictureSize(bytes: Uint8Array, type: string): Size | null {
-  return READERS.get(type)?.(new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength)) ?? null;
+  const format = PICTURE_FORMATS.find((each) => each.type === type);
+  return format?.sizeOf(new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength)) ?? null;
 }

@@ -1,0 +1,120 @@
+#include "images/formats.h"
+
+#include "hierarchy/rows.h"
+#include "images/coders.h"
+#include "images/ktx2_coder.h"
+
+#include <array>
+#include <utility>
+
+namespace meshhier::images {
+namespace {
+
+constexpr CoderProcesses kKtx2Processes{missing_for_ktx2, ktx2_coder_bytes, end_ktx2_coders};
+constexpr std::uint32_t kMostJpegSide = 65500, kMostWebpSide = 16383;
+constexpr std::uint64_t kRgba = 4;
+
+/// Larger ones have the standard's codes: all coefficients would wait for the best.
+constexpr std::uint64_t kMostHeldJpeg = std::uint64_t{1} << 20;
+
+// Costs of files: with a quality of 90, most of an atlas covered.
+constexpr auto kFormats = std::to_array<FormatRow>({
+    {.format = ImageFormat::jpeg,
+     .open = open_jpeg,
+     .encode = encode_jpeg,
+     .encode_directions = encode_normal_jpeg,
+     .open_rows =
+         [](const WrittenImage& image, ByteSink sink) {
+           return open_jpeg_writer(image, JpegCodes::standard, std::move(sink));
+         },
+     .most_held_texels = kMostHeldJpeg,
+     .encoder_bytes = [](std::uint64_t texels, int) { return 6 * texels; },
+     .most_side = kMostJpegSide,
+     .colours = {0.4, 4, 0},
+     .best_colours = {0.4, 4, 0},
+     .directions = {0.4, 4, 0},
+     .processes = nullptr},
+    {.format = ImageFormat::png,
+     .open = open_png,
+     .encode = [](const Image& image, int) { return encode_png(image); },
+     .encode_directions = [](const Image& image, int) { return encode_png(image); },
+     .open_rows = open_png_writer,
+     .most_held_texels = 0,
+     .encoder_bytes = [](std::uint64_t, int) { return std::uint64_t{0}; },
+     .most_side = kMaxSourceSide,
+     .colours = {1.5, 4, 0},
+     .best_colours = {1.5, 4, 0},
+     .directions = {1.5, 4, 0},
+     .processes = nullptr},
+    {.format = ImageFormat::webp,
+     .open = open_webp,
+     .encode = encode_webp,
+     .encode_directions = [](const Image& image, int) { return encode_webp(image, kBestQuality); },
+     .open_rows = nullptr,
+     .most_held_texels = 0,
+     .encoder_bytes =
+         [](std::uint64_t texels, int quality) {
+           return (is_exact(ImageFormat::webp, quality) ? 21 : 4) * texels;
+         },
+     .most_side = kMostWebpSide,
+     .colours = {0.3, 4, 0},
+     .best_colours = {0.3, 4, 0},
+     .directions = {1.5, 4, 0},
+     .processes = nullptr},
+    {.format = ImageFormat::ktx2,
+     .open = open_ktx2,
+     .encode =
+         [](const Image& image, int quality) {
+           const bool is_best = quality == kBestQuality;
+           return encode_ktx2(image, is_best ? Ktx2Content::uastc : Ktx2Content::etc1s, quality);
+         },
+     .encode_directions =
+         [](const Image& image, int) {
+           return encode_ktx2(image, Ktx2Content::directions, kBestQuality);
+         },
+     .open_rows = nullptr,
+     .most_held_texels = 0,
+     .encoder_bytes = [](std::uint64_t texels,
+                         int) { return 2 * kRgba * texels + ktx2_coder_bytes(texels); },
+     .most_side = kMostKtx2Side,
+     .colours = {0.4, 0.5, 2500e-9},
+     .best_colours = {1.4, 1, 700e-9},
+     .directions = {1.5, 1, 2780e-9},
+     .processes = &kKtx2Processes},
+});
+static_assert(kFormats.size() == kImageFormats.size());
+static_assert(are_in_order(kFormats, &FormatRow::format));
+
+}  // namespace
+
+const FormatRow& coders_of(ImageFormat format) {
+  return kFormats[static_cast<std::size_t>(format)];
+}
+
+const TexelCosts& costs_of(const TextureFormat& textures) {
+  const FormatRow& row = coders_of(textures.format);
+  return textures.quality == kBestQuality ? row.best_colours : row.colours;
+}
+
+const TexelCosts& costs_of(const NormalMapFormat& maps) {
+  return coders_of(maps.format).directions;
+}
+
+std::string missing_coder(ImageFormat format) {
+  const CoderProcesses* const processes = coders_of(format).processes;
+  return processes == nullptr ? "" : processes->missing();
+}
+
+std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels) {
+  const CoderProcesses* const processes = coders_of(format).processes;
+  return processes == nullptr ? 0 : processes->bytes(texels);
+}
+
+void end_coders() {
+  for (const FormatRow& row : kFormats) {
+    if (row.processes != nullptr)
+      row.processes->end();
+  }
+}
+
+}  // namespace meshhier::images
