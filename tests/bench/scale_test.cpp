@@ -56,7 +56,7 @@ class ScaleScript : public testing::Test {
   tests::TemporaryDirectory directory_;
 };
 
-TEST_F(ScaleScript, MeasuresEverySettingAndRemovesAllItMade) {
+TEST_F(ScaleScript, SLOW_MeasuresEverySettingAndRemovesAllItMade) {
   const Outcome outcome = scale("--largest 10k --threads 1,2 --budgets 128MiB,256MiB");
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_TRUE(is_clean());
@@ -68,14 +68,14 @@ TEST_F(ScaleScript, MeasuresEverySettingAndRemovesAllItMade) {
             HasSubstr("\n| cluster | "), HasSubstr("| 0.009 M | random | ")));
 }
 
-TEST_F(ScaleScript, WhatTheBudgetDoesNotAllowIsLeftOut) {
+TEST_F(ScaleScript, SLOW_WhatTheBudgetDoesNotAllowIsLeftOut) {
   const Outcome outcome = scale("--largest 4k --threads 1 --budgets 128MiB,1MiB");
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("at least"), HasSubstr("### Sizes"), Not(HasSubstr("### Budgets"))));
 }
 
-TEST_F(ScaleScript, FailuresEndItAndLeaveNothing) {
+TEST_F(ScaleScript, SLOW_FailuresEndItAndLeaveNothing) {
   EXPECT_EQ(scale("--threads 1 --programs /absent").code, 3);
   EXPECT_EQ(scale("--threads 1 --largest 10").code, 2);
   EXPECT_EQ(scale("--lagrest 10").code, 2);

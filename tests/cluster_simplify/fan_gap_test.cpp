@@ -48,7 +48,7 @@ std::optional<DiscGap> measure(FanGapMeter& meter, const Star& star, const StarM
   return meter.measure(star.mesh.positions, star.deviations, mesh.collapse());
 }
 
-TEST(FanGapTest, NoSampleIsBeyondTheDeviations) {
+TEST(FanGapTest, SLOW_NoSampleIsBeyondTheDeviations) {
   FanGapMeter meter;
   for (const auto& [shape, relief, least] : families()) {
     const int measured = expect_all_covered(

@@ -220,7 +220,7 @@ std::vector<tests::NamedMesh> meshes() {
           {"mirrored", tests::mirrored(tests::sphere(100, 0.02F))}};
 }
 
-TEST(SeamGapTest, StepsOfNeighbouringTilesHoldBothWays) {
+TEST(SeamGapTest, SLOW_StepsOfNeighbouringTilesHoldBothWays) {
   for (const auto& [name, mesh] : meshes()) {
     for (const ContractionOptions& options :
          {ContractionOptions{Method::edge_collapse, {}, {}},

@@ -103,16 +103,16 @@ struct Golden {
 const Golden kGolden[] = {
     {"edge_collapse", with(config::SimplifyMethod::edge_collapse), config::AxisRule::compactness,
      29, 0xbef3d7070ae645fa},
-    {"half_edge_quadric", half_edge(config::HalfEdgeCost::quadric), config::AxisRule::longest, 16,
-     0xe03d5fe3bd5fb995},
-    {"half_edge_melax", half_edge(config::HalfEdgeCost::melax), config::AxisRule::compactness, 7,
-     0x636cf00c980a4227},
-    {"cluster_quadric", cluster(config::Representative::quadric), config::AxisRule::compactness, 29,
-     0x790b7a85eeb09b68},
-    {"cluster_mean", cluster(config::Representative::mean), config::AxisRule::longest, 16,
+    {"SLOW_half_edge_quadric", half_edge(config::HalfEdgeCost::quadric), config::AxisRule::longest,
+     16, 0xe03d5fe3bd5fb995},
+    {"SLOW_half_edge_melax", half_edge(config::HalfEdgeCost::melax), config::AxisRule::compactness,
+     7, 0x636cf00c980a4227},
+    {"SLOW_cluster_quadric", cluster(config::Representative::quadric),
+     config::AxisRule::compactness, 29, 0x790b7a85eeb09b68},
+    {"SLOW_cluster_mean", cluster(config::Representative::mean), config::AxisRule::longest, 16,
      0x572df83ec8d9d7ac},
-    {"cluster_vertex", cluster(config::Representative::vertex), config::AxisRule::compactness, 7,
-     0x34c9206c848a23f6},
+    {"SLOW_cluster_vertex", cluster(config::Representative::vertex), config::AxisRule::compactness,
+     7, 0x34c9206c848a23f6},
 };
 
 class GoldenTest : public testing::TestWithParam<Golden> {

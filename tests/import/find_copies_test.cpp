@@ -236,13 +236,13 @@ PositionList lattice(int side) {
   return positions;
 }
 
-TEST_F(FindCopiesTest, PositionsThatAllDifferHaveNone) {
+TEST_F(FindCopiesTest, SLOW_PositionsThatAllDifferHaveNone) {
   expect_found({}, {});
   expect_found({{1, 2, 3}}, {});
   expect_found(lattice(50), {});
 }
 
-TEST_F(FindCopiesTest, OnePairIsFoundWhereverItIs) {
+TEST_F(FindCopiesTest, SLOW_OnePairIsFoundWhereverItIs) {
   const PositionList lattice_points = lattice(42);  // in two blocks of the file, at least
   const auto count = static_cast<std::uint32_t>(lattice_points.size());
   for (const std::uint32_t from : {0U, 43'689U, 65'536U, count - 1}) {
@@ -264,11 +264,11 @@ TEST_F(FindCopiesTest, DoublesThatAreOneFloatAreOtherPlaces) {
   expect_found(positions, false, {{2, 0, 1}});
 }
 
-TEST_F(FindCopiesTest, OneAxisIsEnoughToDiffer) {
+TEST_F(FindCopiesTest, SLOW_OneAxisIsEnoughToDiffer) {
   expect_found({{1, 2, 3}, {1, 2, 4}, {1, 4, 3}, {4, 2, 3}, {3, 2, 1}, {2, 1, 3}}, {});
 }
 
-TEST_F(FindCopiesTest, OnePositionAMillionTimes) {
+TEST_F(FindCopiesTest, SLOW_OnePositionAMillionTimes) {
   // No bucket of them fits into little memory: it is sorted externally.
   PositionList positions(1'000'000, Vec3d{1, 2, 3});
   CopyRecords all;
@@ -284,7 +284,7 @@ TEST_F(FindCopiesTest, OnePositionAMillionTimes) {
   expect_found(positions, false, halves);
 }
 
-TEST_F(FindCopiesTest, EveryPositionTwice) {
+TEST_F(FindCopiesTest, SLOW_EveryPositionTwice) {
   PositionList positions = lattice(48);
   const std::size_t count = positions.size();
   for (std::size_t i = 0; i < count; ++i)

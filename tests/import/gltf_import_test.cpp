@@ -257,7 +257,7 @@ TEST_F(GltfImportTest, NodesThatAreReachedTwiceAreRefused) {
   EXPECT_THAT(failure(gltf), HasSubstr("nodes[0] is reached twice"));
 }
 
-TEST_F(GltfImportTest, ADeepTreeIsNoProblem) {
+TEST_F(GltfImportTest, SLOW_ADeepTreeIsNoProblem) {
   GltfBuilder gltf;
   constexpr int kDepth = 20000;
   for (int i = 1; i < kDepth; ++i)
@@ -1158,7 +1158,7 @@ TEST_F(GltfImportTest, ZerosWithoutBytesAreFew) {
   EXPECT_THAT(failure(gltf), HasSubstr("accessors[0] has no bufferView for its 4000000000"));
 }
 
-TEST_F(GltfImportTest, JsonBeyondTheMemoryIsRefused) {
+TEST_F(GltfImportTest, SLOW_JsonBeyondTheMemoryIsRefused) {
   std::string json = R"({"asset":{"version":"2.0"},"extras":[)";
   for (int i = 0; i < 100000; ++i)
     json += "{},";

@@ -224,7 +224,7 @@ constexpr ImportMemory kTight{0, 1};  // all is spooled and merged in many runs
 
 // ---- formats -------------------------------------------------------------------------------
 
-TEST_F(ImportTest, EveryFormatOfAMeshGivesTheSameTiles) {
+TEST_F(ImportTest, SLOW_EveryFormatOfAMeshGivesTheSameTiles) {
   const TestMesh mesh = tests::by_first_appearance(tests::torus(5000, 0.01F));
   put_ply("mesh.ply", mesh);
   put("mesh.obj", obj_text(mesh));
@@ -466,7 +466,7 @@ TEST_F(ImportTest, WhatAnObjHoldsBesidesIsCounted) {
 
 // ---- welding -------------------------------------------------------------------------------
 
-TEST_F(ImportTest, AWeldedSoupIsTheMeshItWasMadeOf) {
+TEST_F(ImportTest, SLOW_AWeldedSoupIsTheMeshItWasMadeOf) {
   const TestMesh mesh = tests::by_first_appearance(tests::torus(5000, 0.01F));
   put_ply("mesh.ply", mesh);
   put_ply("soup.ply", as_soup(mesh));
@@ -477,7 +477,7 @@ TEST_F(ImportTest, AWeldedSoupIsTheMeshItWasMadeOf) {
   EXPECT_THAT(problems(with, with.input), IsEmpty());
 }
 
-TEST_F(ImportTest, AWeldedSoupDoesNotDependOnTheMemory) {
+TEST_F(ImportTest, SLOW_AWeldedSoupDoesNotDependOnTheMemory) {
   const TestMesh mesh = tests::torus(30'000, 0.01F);
   put_ply("soup.ply", as_soup(mesh));
   put("tight.ply", imported({"soup.ply"}, true, kTight));
@@ -518,7 +518,7 @@ TEST_F(ImportTest, FacetsThatVanishInAnStlAreCounted) {
 
 // ---- several files -------------------------------------------------------------------------
 
-TEST_F(ImportTest, SeveralFilesAreOneMesh) {
+TEST_F(ImportTest, SLOW_SeveralFilesAreOneMesh) {
   const TestMesh one = tests::by_first_appearance(tests::sphere(2000));
   TestMesh other = tests::by_first_appearance(tests::torus(2000));
   for (Vec3f& p : other.positions)

@@ -211,7 +211,7 @@ std::vector<CutShape> cut_shapes() {
           {"duplicates", tests::duplicates(300)}};
 }
 
-TEST(CutMesh, EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
+TEST(CutMesh, SLOW_EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
   for (const CutShape& shape : cut_shapes()) {
     for (std::uint32_t partitions : {1U, 2U, 3U, 6U, 13U}) {
       for (bool scatter : {false, true}) {

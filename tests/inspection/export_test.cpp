@@ -169,7 +169,7 @@ TEST_F(ExportTest, ACutOfMixedLevelsSharesItsVertices) {
   EXPECT_EQ(bytes_of(output()), bytes);
 }
 
-TEST_F(ExportTest, ResultDoesNotDependOnTheBudget) {
+TEST_F(ExportTest, SLOW_ResultDoesNotDependOnTheBudget) {
   const tests::Sample sample = publish(tests::sphere(300000), {40, 2000, false, false, {}});
   run(sample.tree.depth());
   const std::string bytes = bytes_of(output());

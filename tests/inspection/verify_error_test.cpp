@@ -307,7 +307,7 @@ TEST_F(VerifyErrorTest, RoundingOfFarCoordinatesIsNoProblem) {
   EXPECT_THAT(measure_level(sample, 0).problems, ElementsAre(HasSubstr("its bound is 0")));
 }
 
-TEST_F(VerifyErrorTest, ResultsAreTheSameForAnyBudgetAndAnyThreads) {
+TEST_F(VerifyErrorTest, SLOW_ResultsAreTheSameForAnyBudgetAndAnyThreads) {
   tests::Sample sample = make(tests::torus(2000, 0.02F), {13, 100, false, false, {}});
   constexpr std::uint64_t kSamples = 150'000;  // more than are looked up at a time
   const auto selection = static_cast<Level>(2);
@@ -462,7 +462,7 @@ TEST(ErrorReportTest, TextHasInputUnitsAndPartsOfTheDiagonal) {
 class VerifyErrorModelTest : public VerifyErrorTest,
                              public testing::WithParamInterface<const char*> {};
 
-TEST_P(VerifyErrorModelTest, BoundsHoldForEveryTileOfAScan) {
+TEST_P(VerifyErrorModelTest, SLOW_BoundsHoldForEveryTileOfAScan) {
   const fs::path model = fs::path(MESHHIER_MODELS_DIR) / GetParam();
   if (!fs::exists(model))
     GTEST_SKIP() << "no " << model << ": real scans are not there";

@@ -141,7 +141,7 @@ TEST_F(VerifyTest, APieceIsVerifiedByItsTilesAlone) {
   EXPECT_THROW(verify_again(left), Error);
 }
 
-TEST_F(VerifyTest, ResultDoesNotDependOnTheBudget) {
+TEST_F(VerifyTest, SLOW_ResultDoesNotDependOnTheBudget) {
   tests::Sample sample = make(tests::open_grid(450, 400, 0.2F), {13, 2000, false, false, {}});
   VerifyOptions options;
   options.input = mesh_path();
@@ -159,7 +159,7 @@ TEST_F(VerifyTest, ResultDoesNotDependOnTheBudget) {
 }
 
 // Every tile is the neighbour of all others, and few of them fit into memory at a time.
-TEST_F(VerifyTest, TilesAreReadAFewTimesHoweverManyNeighboursTheyHave) {
+TEST_F(VerifyTest, SLOW_TilesAreReadAFewTimesHoweverManyNeighboursTheyHave) {
   tests::Sample sample = make(tests::soup(20'000), {96, 600, false, false, {}});
   VerifyOptions options;
   options.cuts = 1;

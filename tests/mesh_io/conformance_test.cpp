@@ -284,7 +284,7 @@ TEST(Conformance, TheTableHasEveryFile) {
   EXPECT_EQ(found, listed);
 }
 
-TEST(Conformance, TheModelsHaveTheirPublishedCounts) {
+TEST(Conformance, SLOW_TheModelsHaveTheirPublishedCounts) {
   const std::vector<Expected> models{
       {"srtm_n53_e027_e028.ply", mesh(2883601, 5760000, ""), ""},
       {"ch2_head_skin.ply", mesh(1795356, 3593496, ""), ""},

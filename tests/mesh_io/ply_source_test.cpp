@@ -594,7 +594,7 @@ TEST(PlySource, ManyBlocksInEveryEncoding) {
 }
 
 /// A comb of so many corners, whose area is 4.5 a tooth, or is refused.
-TEST(PlySource, AHugePolygon) {
+TEST(PlySource, SLOW_AHugePolygon) {
   for (const std::uint32_t corners : {100'002U, 1'000'002U}) {
     for (const PlyEncoding encoding : kEncodings) {
       PlyText ply(encoding);

@@ -376,7 +376,7 @@ TEST(SplitChunk, DegenerateTrianglesAreSplitAsPointsAre) {
   EXPECT_EQ(split_chunk(chunk, tree, Axis::compactness), expected);
 }
 
-TEST(SplitChunk, ThousandsOfPartitionsHaveTheirExactSizes) {
+TEST(SplitChunk, SLOW_ThousandsOfPartitionsHaveTheirExactSizes) {
   const ChunkMesh chunk = root_chunk(tests::shuffled(tests::sphere(60000, 0.002F), 1));
   for (const std::uint32_t partitions : {65U, 129U, 3000U, 7500U}) {
     const Tree tree = tree_of(chunk, partitions);

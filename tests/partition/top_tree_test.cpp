@@ -201,7 +201,7 @@ TEST_F(TopTreeTest, AMeshOfOneChunkHasNoSplits) {
   EXPECT_EQ(TopTree(plan.chunks, {}).chunk_of(positions[5], 5), 0U);
 }
 
-TEST_F(TopTreeTest, EveryVertexGoesWhereSortingPutsIt) {
+TEST_F(TopTreeTest, SLOW_EveryVertexGoesWhereSortingPutsIt) {
   for (const Axis axis : {Axis::longest, Axis::compactness}) {
     for (const std::uint32_t n : {131073U, kCount, 600001U}) {
       const std::vector<Vec3f> positions = cloud(n);
@@ -225,7 +225,7 @@ void expect_exact_sizes(const SettledSplit& split, const std::vector<Vec3f>& pos
     EXPECT_EQ(sizes[i], tree.ranks({split.tree.chunks(), i}).size()) << i;
 }
 
-TEST_F(TopTreeTest, PartsAreExactForEveryKindOfPoints) {
+TEST_F(TopTreeTest, SLOW_PartsAreExactForEveryKindOfPoints) {
   std::vector<Vec3f> sorted = cloud(kCount);
   std::sort(sorted.begin(), sorted.end(), [](Vec3f a, Vec3f b) { return a.x < b.x; });
   std::vector<Vec3f> lattice = cloud(kCount);
@@ -340,7 +340,7 @@ TEST_F(TopTreeTest, AWindowHoldsTheMedianOrIsMissedToTheVertex) {
   EXPECT_EQ(sweeps_with(median + 1, median + 100), 2);
 }
 
-TEST_F(TopTreeTest, WithoutASampleEverythingIsDecidedAfterwards) {
+TEST_F(TopTreeTest, SLOW_WithoutASampleEverythingIsDecidedAfterwards) {
   const std::vector<Vec3f> positions = cloud(kCount);
   const Tree tree = tree_of(kCount);
   for (const std::size_t size : {0U, 1U, 2U, 3U}) {
@@ -362,7 +362,7 @@ TEST_F(TopTreeTest, FewVerticesOfALargeMeshAreKeptAside) {
 // Splits of a long thin model all run across it. Where the sample's plane above differs from the
 // exact one, all planes below differ in the same direction, and by as many vertices: more and more
 // of the ever smaller nodes.
-TEST_F(TopTreeTest, ALongModelInRandomOrderSettlesInAFewSweeps) {
+TEST_F(TopTreeTest, SLOW_ALongModelInRandomOrderSettlesInAFewSweeps) {
   constexpr std::size_t kLong = 8400000;  // 128 chunks
   const std::vector<Vec3f> positions = cloud(kLong, {1000, 1, 1});
   const Tree tree = tree_of(kLong);

@@ -271,11 +271,11 @@ TEST_F(BuildTest, TwoVerticesInTwoPartitions) {
   expect_builds({{{0, 0, 0}, {1, 0, 0}}, {}}, two);
 }
 
-TEST_F(BuildTest, AHundredThousandSeparateTriangles) {
+TEST_F(BuildTest, SLOW_AHundredThousandSeparateTriangles) {
   expect_builds(tests::soup(100'000), config(8192));
 }
 
-TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
+TEST_F(BuildTest, SLOW_AVertexOfAHundredThousandTriangles) {
   TestMesh fan;
   fan.positions.push_back({0, 0, 1});
   for (std::uint32_t i = 0; i < 100'000; ++i) {
@@ -298,7 +298,7 @@ TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
 }
 
 /// Its triangles reach across it: nearly all are in each tile of every level.
-TEST_F(BuildTest, ASoupIsToldOnceWhatDoes) {
+TEST_F(BuildTest, SLOW_ASoupIsToldOnceWhatDoes) {
   constexpr std::uint32_t kVertices = 12'000, kTriangles = 80'000;
   TestMesh soup = tests::points(kVertices);
   const auto corner = [](std::uint32_t i, std::uint64_t stream) {
@@ -342,7 +342,7 @@ TEST_F(BuildTest, TheLargestCoordinates) {
   expect_builds(mesh, config());
 }
 
-TEST_F(BuildTest, ShapesOfAllKinds) {
+TEST_F(BuildTest, SLOW_ShapesOfAllKinds) {
   const std::vector<std::pair<std::string, TestMesh>> meshes = {
       {"sphere", tests::sphere(4000, 0.01F)},
       {"genus 5", tests::genus_n(5, 4000, 0.01F)},
@@ -458,7 +458,7 @@ TEST_F(BuildTest, PartitionSizesAreEqualForAnyCount) {
   }
 }
 
-TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountAskedFor) {
+TEST_F(BuildTest, SLOW_SimplifiedTilesHaveTheVertexCountAskedFor) {
   build(tests::sphere(20'000, 0.01F), config(300));
   const storage::HierarchyReader reader(files_, output_path());
   for (const TileRecord& record : reader.records()) {
@@ -469,7 +469,7 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountAskedFor) {
   }
 }
 
-TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
+TEST_F(BuildTest, SLOW_SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
   // Half a tile's children, more, fewer; the last one holds for all deeper levels.
   const TargetVertexCounts asked({250, 330, 120, 230, 200});
   tests::write_ply(tests::sphere(20'000, 0.01F), mesh_path());
@@ -588,7 +588,7 @@ TEST_F(BuildTest, MorePartitionsThanVerticesAreRefused) {
   EXPECT_THAT(error.what(), HasSubstr("99 vertices"));
 }
 
-TEST_F(BuildTest, TooFewPartitionsAreRefusedNamingTheLeastCount) {
+TEST_F(BuildTest, SLOW_TooFewPartitionsAreRefusedNamingTheLeastCount) {
   tests::write_ply(tests::points(70'000), mesh_path());
   config::Config with = config();
   with.partition.count = 2;
@@ -732,7 +732,7 @@ void expect_near(std::uint64_t predicted, std::uint64_t real) {
   EXPECT_LT(ratio, 1.2);
 }
 
-TEST_F(DiskTest, ThePredictionKnowsWhatIsAskedOfEachLevel) {
+TEST_F(DiskTest, SLOW_ThePredictionKnowsWhatIsAskedOfEachLevel) {
   tests::write_ply(tests::sphere(60'000, 0.01F), mesh_path());
   const std::vector<std::vector<std::uint32_t>> lists = {{937, 573, 364, 260, 198},
                                                          {50, 100, 200, 400, 800},
@@ -752,7 +752,7 @@ TEST_F(DiskTest, ThePredictionKnowsWhatIsAskedOfEachLevel) {
   }
 }
 
-TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
+TEST_F(DiskTest, SLOW_AWholeBuildTakesNoMoreRoomThanPredicted) {
   const std::vector<std::pair<std::string, TestMesh>> meshes = {
       {"sphere", tests::sphere(60'000, 0.01F)},
       {"scattered sphere", tests::shuffled(tests::sphere(60'000), 3)},
@@ -780,7 +780,7 @@ TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
   }
 }
 
-TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
+TEST_F(DiskTest, SLOW_ThePredictionIsNearWhatASurfaceTakes) {
   const std::vector<std::pair<std::string, TestMesh>> meshes = {
       {"sphere", tests::sphere(60'000, 0.01F)},
       {"torus", tests::torus(60'000)},
@@ -807,7 +807,7 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
 }
 
 // A header does not tell of a vertex that all triangles share.
-TEST_F(DiskTest, ThePredictionIsRefinedWhenThePartitionsAreKnown) {
+TEST_F(DiskTest, SLOW_ThePredictionIsRefinedWhenThePartitionsAreKnown) {
   bench::write_ply(files_, {mesh_path(), true},
                    *bench::as_generated(bench::make_stress("hub", 100'000)));
   const config::Config with = config(1000);

@@ -70,7 +70,7 @@ class EstimateTest : public testing::Test {
   tests::FaultyFileSystem files_;
 };
 
-TEST_F(EstimateTest, TellsWhatABuildMakes) {
+TEST_F(EstimateTest, SLOW_TellsWhatABuildMakes) {
   write_mesh(tests::sphere(20'000));
   for (const std::uint32_t vertices : {60U, 1000U, 32768U}) {
     const pipeline::BuildEstimate estimate =
@@ -85,7 +85,7 @@ TEST_F(EstimateTest, TellsWhatABuildMakes) {
   }
 }
 
-TEST_F(EstimateTest, TellsThePlaceAsTheBuildDoes) {
+TEST_F(EstimateTest, SLOW_TellsThePlaceAsTheBuildDoes) {
   write_mesh(tests::sphere(2000));
   EXPECT_EQ(pipeline::estimate_build(config(), true, files_).placement, "");
   for (const Topology topology : {Topology::place, Topology::index}) {

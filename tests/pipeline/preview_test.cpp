@@ -94,7 +94,7 @@ TEST_F(PreviewTest, ShowsTheModelOnATransparentGround) {
   EXPECT_GT(picture.at(160, 160)[0], picture.at(350, 370)[0] + 40) << "lit from the upper left";
 }
 
-TEST_F(PreviewTest, IsTheSameForAnyThreadsAndBudget) {
+TEST_F(PreviewTest, SLOW_IsTheSameForAnyThreadsAndBudget) {
   config::Config one = config();
   one.threads = 1;
   one.memory_budget = 64 * tests::kMiB;
@@ -107,7 +107,7 @@ TEST_F(PreviewTest, IsTheSameForAnyThreadsAndBudget) {
   EXPECT_EQ(bytes(), expected);
 }
 
-TEST_F(PreviewTest, EqualTrianglesAreDrawnOnce) {
+TEST_F(PreviewTest, SLOW_EqualTrianglesAreDrawnOnce) {
   tests::TestMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles.assign(200'000, {0, 1, 2});
@@ -116,7 +116,7 @@ TEST_F(PreviewTest, EqualTrianglesAreDrawnOnce) {
   EXPECT_EQ(std::max(picture.width, picture.height), 512U);
 }
 
-TEST_F(PreviewTest, LargeTrianglesWithoutNumberMakeItSmaller) {
+TEST_F(PreviewTest, SLOW_LargeTrianglesWithoutNumberMakeItSmaller) {
   tests::TestMesh mesh;
   constexpr std::uint32_t kCorners = 60;
   for (std::uint32_t i = 0; i < kCorners; ++i) {

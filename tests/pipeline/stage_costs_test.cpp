@@ -111,7 +111,7 @@ class StageCostsTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
 };
 
-TEST_F(StageCostsTest, EachStageWritesWhatItTells) {
+TEST_F(StageCostsTest, SLOW_EachStageWritesWhatItTells) {
   for (const TestMesh& mesh : {tests::sphere(60'000, 0.01F), tests::torus(300'000),
                                tests::shuffled(tests::sphere(60'000), 3)}) {
     tests::write_ply(mesh, mesh_path());
@@ -124,7 +124,7 @@ TEST_F(StageCostsTest, EachStageWritesWhatItTells) {
 }
 
 // Shares of CPU time, which are alike on any machine, whatever else runs on it.
-TEST_F(StageCostsTest, LittleOfAStageGoesOneStepAfterAnotherWithManyThreads) {
+TEST_F(StageCostsTest, SLOW_LittleOfAStageGoesOneStepAfterAnotherWithManyThreads) {
   tests::write_ply(tests::torus(6'000'000), mesh_path());
   config::Config with = config(4096);
   with.threads = 16;
@@ -144,12 +144,12 @@ TEST_F(StageCostsTest, LittleOfAStageGoesOneStepAfterAnotherWithManyThreads) {
   }
 }
 
-TEST_F(StageCostsTest, VerticesOfTextAreWrittenOnceMore) {
+TEST_F(StageCostsTest, SLOW_VerticesOfTextAreWrittenOnceMore) {
   write_text(tests::sphere(600'000));
   expect_told(config(1000), 1.2);
 }
 
-TEST_F(StageCostsTest, ThePublishedFilesAreAsLargeAsTold) {
+TEST_F(StageCostsTest, SLOW_ThePublishedFilesAreAsLargeAsTold) {
   tests::write_ply(tests::sphere(60'000, 0.01F), mesh_path());
   for (const auto container : {storage::Container::files, storage::Container::archive}) {
     config::Config with = config(300);

@@ -134,7 +134,7 @@ TEST_F(ProcessorsTest, EveryMethodMakesTheSame) {
     expect_equal(method, tests::sphere(40000, 0.004F), "simplify.method=" + method);
 }
 
-TEST_F(ProcessorsTest, AScanIsTheSame) {
+TEST_F(ProcessorsTest, SLOW_AScanIsTheSame) {
   const fs::path model = fs::path(MESHHIER_MODELS_DIR) / "bunny_range.ply";
   if (!fs::exists(model))
     GTEST_SKIP() << "no " << model << ": real scans are not there";

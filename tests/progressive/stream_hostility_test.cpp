@@ -165,7 +165,7 @@ class DamagedStreamTest : public StreamTest {
   std::vector<std::string> meshes_;  ///< by details
 };
 
-TEST_F(DamagedStreamTest, AFlippedBitAnywhereIsFoundAndNamed) {
+TEST_F(DamagedStreamTest, SLOW_AFlippedBitAnywhereIsFoundAndNamed) {
   ASSERT_EQ(paths_.size(), 5U);
   for (const fs::path& path : paths_) {
     SCOPED_TRACE(path);
@@ -179,7 +179,7 @@ TEST_F(DamagedStreamTest, AFlippedBitAnywhereIsFoundAndNamed) {
   }
 }
 
-TEST_F(DamagedStreamTest, AnyTruncationIsFoundAndNamed) {
+TEST_F(DamagedStreamTest, SLOW_AnyTruncationIsFoundAndNamed) {
   for (const fs::path& path : paths_) {
     SCOPED_TRACE(path);
     const StreamBytes whole = files_.bytes(path);
@@ -195,7 +195,7 @@ TEST_F(DamagedStreamTest, AnyTruncationIsFoundAndNamed) {
   }
 }
 
-TEST_F(DamagedStreamTest, AMissingFileIsNamedWhereItIsNeeded) {
+TEST_F(DamagedStreamTest, SLOW_AMissingFileIsNamedWhereItIsNeeded) {
   for (const fs::path& path : paths_) {
     SCOPED_TRACE(path);
     const StreamBytes whole = files_.bytes(path);
@@ -228,7 +228,7 @@ TEST_F(DamagedStreamTest, SwappedFilesAreNamed) {
   }
 }
 
-TEST_F(DamagedStreamTest, AFileOfAnotherStreamIsNamed) {
+TEST_F(DamagedStreamTest, SLOW_AFileOfAnotherStreamIsNamed) {
   build(0.06F);
   progressive::ProgressiveOptions other = options();
   other.output = "/models/other.prog";
@@ -544,7 +544,7 @@ class StreamFaultsTest : public StreamTest {
 };
 
 /// So large that lists go to the disk where memory is short.
-TEST_F(StreamFaultsTest, ListsOnTheDiskMayFailToo) {
+TEST_F(StreamFaultsTest, SLOW_ListsOnTheDiskMayFailToo) {
   tests::build_half_edge(files_, {tests::sphere(40000, 0.002F), {}, {}, {}},
                          tests::half_edge_config("/models", 300, 60));
   progressive::ProgressiveOptions tight = options();
@@ -593,13 +593,13 @@ TEST_F(StreamFaultsTest, AnyCallMayBeTheLastWhileAStreamIsMade) {
             20);
 }
 
-TEST_F(StreamFaultsTest, AnyCallMayFailWhileAStreamIsReplaced) {
+TEST_F(StreamFaultsTest, SLOW_AnyCallMayFailWhileAStreamIsReplaced) {
   EXPECT_GT(fail_every_call(
                 writing, [this] { with_old_stream(); }, 1),
             20);
 }
 
-TEST_F(StreamFaultsTest, AnyCallMayBeTheLastWhileAStreamIsReplaced) {
+TEST_F(StreamFaultsTest, SLOW_AnyCallMayBeTheLastWhileAStreamIsReplaced) {
   EXPECT_GT(fail_every_call(
                 writing, [this] { with_old_stream(); }, kAlways),
             20);

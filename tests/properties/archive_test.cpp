@@ -171,7 +171,7 @@ TEST_F(PackedTest, AFlippedBitAtAnyByteIsFoundByVerify) {
   }
 }
 
-TEST_F(PackedTest, ATruncatedOneIsOneErrorForEveryCommand) {
+TEST_F(PackedTest, SANITIZED_ATruncatedOneIsOneErrorForEveryCommand) {
   build(kArchive, storage::Container::archive);
   const Bytes whole = files_.bytes(kArchive);
   for (std::size_t size = 4; size < whole.size(); size += 97) {

@@ -124,7 +124,7 @@ std::vector<ShadedMesh> shaded_meshes() {
   return all;
 }
 
-TEST(ComputedNormals, ChangeNothingOfTheMesh) {
+TEST(ComputedNormals, SLOW_ChangeNothingOfTheMesh) {
   for (const auto& [name, mesh] : shaded_meshes()) {
     for (const auto& [method_name, method] : tests::all_simplify_methods()) {
       SCOPED_TRACE(name + ", " + method_name);

@@ -191,14 +191,14 @@ void expect_seamless(const Case& c) {
   }
 }
 
-TEST(Cuts, ClosedSurfacesHaveNoBorderInTwoHundredRandomCuts) {
+TEST(Cuts, SLOW_ClosedSurfacesHaveNoBorderInTwoHundredRandomCuts) {
   expect_seamless({"sphere", tests::sphere(100000, 0.01F), 200, 250, 200});
   expect_seamless({"torus", tests::torus(100000, 0.01F), 197, 400, 200});
   expect_seamless({"genus 5", tests::genus_n(5, 100000, 0.005F), 128, 390, 200});
   expect_seamless({"nested shells", tests::nested_shells(100000, 0.01F), 101, 300, 200});
 }
 
-TEST(Cuts, ClosedSurfacesHaveNoBorderWhateverTheMethod) {
+TEST(Cuts, SLOW_ClosedSurfacesHaveNoBorderWhateverTheMethod) {
   for (const auto& [name, method] : tests::all_simplify_methods()) {
     SCOPED_TRACE(name);
     expect_seamless({"torus", tests::torus(20000, 0.02F), 67, 150, 200, method});

@@ -251,7 +251,7 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatter) {
+TEST_F(DeterminismTest, SLOW_ThreadsAndMemoryDoNotMatter) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     write_binary(c.make());
@@ -343,14 +343,14 @@ TEST_F(DeterminismTest, AnotherConfigGivesAnotherResult) {
 /// So large that the upper part of the tree is settled by streaming, and planned with a sample.
 using LargeDeterminismTest = DeterminismTest;
 
-TEST_F(LargeDeterminismTest, AMeshOfSeveralChunks) {
+TEST_F(LargeDeterminismTest, SLOW_AMeshOfSeveralChunks) {
   const RichMesh mesh = rich(tests::shuffled(tests::sphere(500'000, 0.002F), 9));
   ASSERT_GT(mesh.shape.positions.size(), partition::kChunkVertices);
   write_binary(mesh);
   expect_one_result(config(), {1, 5});
 }
 
-TEST_F(LargeDeterminismTest, AMeshOfSeveralChunksWithSeveralVerticesAtEachPlace) {
+TEST_F(LargeDeterminismTest, SLOW_AMeshOfSeveralChunksWithSeveralVerticesAtEachPlace) {
   const TestMesh sphere = tests::shuffled(tests::sphere(500'000, 0.002F), 9);
   ASSERT_GT(sphere.positions.size(), partition::kChunkVertices);
   write_binary(split(sphere, "charts"));
@@ -359,7 +359,7 @@ TEST_F(LargeDeterminismTest, AMeshOfSeveralChunksWithSeveralVerticesAtEachPlace)
   expect_one_result(config(), {5});
 }
 
-TEST_F(LargeDeterminismTest, AMeshOfManyEqualCoordinates) {
+TEST_F(LargeDeterminismTest, SLOW_AMeshOfManyEqualCoordinates) {
   const TestMesh grid = tests::open_grid(500, 500);  // every median falls into a tie
   ASSERT_GT(grid.positions.size(), partition::kChunkVertices);
   write_binary(plain(grid));
@@ -368,7 +368,7 @@ TEST_F(LargeDeterminismTest, AMeshOfManyEqualCoordinates) {
   expect_one_result(with, {2});
 }
 
-TEST_F(LargeDeterminismTest, AMeshThatIsSampled) {
+TEST_F(LargeDeterminismTest, SLOW_AMeshThatIsSampled) {
   const RichMesh mesh = plain(tests::shuffled(tests::torus(1'200'000, 0.001F), 9));
   ASSERT_GT(mesh.shape.positions.size(), partition::kSampleVertices);
   write_binary(mesh);

@@ -118,7 +118,7 @@ std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
           {"spike", spike()}};
 }
 
-TEST_F(ErrorBoundsTest, NoSampleIsBeyondItsTilesBound) {
+TEST_F(ErrorBoundsTest, SLOW_NoSampleIsBeyondItsTilesBound) {
   for (const auto& [method, simplify] : tests::all_simplify_methods()) {
     for (const auto& [name, mesh] : meshes()) {
       SCOPED_TRACE(method + " of " + name);

@@ -222,7 +222,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
   std::string message_;
 };
 
-TEST_P(FaultsTest, AnyCallMayFail) {
+TEST_P(FaultsTest, SANITIZED_AnyCallMayFail) {
   EXPECT_GT(fail_every_call({}) * stride(), 200);
 }
 
@@ -252,7 +252,7 @@ TEST_P(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplacedByTwoRenames) {
       200);
 }
 
-TEST_P(FaultsTest, TheMessageNamesTheFile) {
+TEST_P(FaultsTest, SANITIZED_TheMessageNamesTheFile) {
   FaultyFileSystem files;
   files.fail(Call::write, 3, kForever);
   EXPECT_EQ(run(files), ErrorCode::io);
@@ -326,7 +326,7 @@ TEST_P(FaultsTest, AnInterruptionIsGoneOnFromWithSeveralVerticesAtAPlace) {
 }
 
 // One build, interrupted again and again, always goes on where it was.
-TEST_P(FaultsTest, InterruptionsAddUp) {
+TEST_P(FaultsTest, SANITIZED_InterruptionsAddUp) {
   config_.partition.vertices = 20;
   config_.memory_budget = std::uint64_t{1} << 28;
   const Snapshot after = expected();

@@ -290,25 +290,25 @@ TEST_F(MemoryTest, FreedMemoryIsUsedAgain) {
             1.4 * static_cast<double>(outcome.peak_bytes));
 }
 
-TEST_F(MemoryTest, AMillionVerticesIn64MiB) {
+TEST_F(MemoryTest, SLOW_AMillionVerticesIn64MiB) {
   write_mesh(million_vertices());
   expect_within("64MiB");
   expect_within("64MiB", {"threads=5"});
   expect_within("64MiB", {"partition.vertices=500"});
 }
 
-TEST_F(MemoryTest, EachTaskOfAMillionVerticesIn64MiB) {
+TEST_F(MemoryTest, SLOW_EachTaskOfAMillionVerticesIn64MiB) {
   write_mesh(million_vertices());
   for (const char* setting : {"threads=2", "partition.vertices=500"})
     expect_each_task_within("64MiB", setting);
 }
 
-TEST_F(MemoryTest, AMillionVerticesInMoreThanEnough) {
+TEST_F(MemoryTest, SLOW_AMillionVerticesInMoreThanEnough) {
   write_mesh(million_vertices());
   expect_within("256MiB", {"threads=8"});
 }
 
-TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
+TEST_F(MemoryTest, SLOW_AttributesAndDoubleCoordinatesInTheLeastBudget) {
   bench::SurfaceOptions options = million_vertices();
   options.normals = true;
   options.colours = true;
@@ -320,7 +320,7 @@ TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
 }
 
 // Pictures of partitions have up to 4096 x 4096 texels, whatever the budget.
-TEST_F(MemoryTest, LargePicturesInTheLeastBudget) {
+TEST_F(MemoryTest, SLOW_LargePicturesInTheLeastBudget) {
   write_textured({.images = 2, .side = 4096, .charts = 64});
   const std::string least = expect_within_least_budget();
   EXPECT_LE(execution::parse_size(least).value(), 128 * kMiB);
@@ -330,7 +330,7 @@ TEST_F(MemoryTest, LargePicturesInTheLeastBudget) {
 }
 
 // PROJ is loaded for it, and takes what the plan counts for it.
-TEST_F(MemoryTest, AModelInMapCoordinatesInTheLeastBudget) {
+TEST_F(MemoryTest, SLOW_AModelInMapCoordinatesInTheLeastBudget) {
   write_mesh(million_vertices());
   const std::vector<std::string> settings{"up=z", "placement.crs=\"EPSG:23032+5773\"",
                                           "placement.offset=[500000,5300000,0]"};
@@ -339,14 +339,14 @@ TEST_F(MemoryTest, AModelInMapCoordinatesInTheLeastBudget) {
 
 // Every tile is the neighbour of all others; a tile has many more triangles than the plan counts
 // with.
-TEST_F(MemoryTest, TrianglesBetweenAnyVerticesIn64MiB) {
+TEST_F(MemoryTest, SLOW_TrianglesBetweenAnyVerticesIn64MiB) {
   for (const char* name : {"soup", "tangle"}) {
     write_mesh(bench::make_stress(name, 100'000));
     expect_within("64MiB");
   }
 }
 
-TEST_F(MemoryTest, SeveralVerticesAtEachPlaceInTheLeastBudgetAndMore) {
+TEST_F(MemoryTest, SLOW_SeveralVerticesAtEachPlaceInTheLeastBudgetAndMore) {
   for (const char* name : {"soup", "charts", "mixed"}) {
     SCOPED_TRACE(name);
     write_split(name, 400'000);
@@ -357,7 +357,7 @@ TEST_F(MemoryTest, SeveralVerticesAtEachPlaceInTheLeastBudgetAndMore) {
   }
 }
 
-TEST_F(MemoryTest, EachTaskWithSeveralVerticesAtEachPlace) {
+TEST_F(MemoryTest, SLOW_EachTaskWithSeveralVerticesAtEachPlace) {
   write_split("soup", 400'000);
   const std::string least = expect_within_least_budget();
   expect_each_task_within(least, "threads=2");
@@ -379,7 +379,7 @@ bench::LoadedMesh partly_split(std::size_t smooth_triangles, std::size_t flat_tr
 }
 
 // Where the vertices lie together, chunks and tiles have many more than on average.
-TEST_F(MemoryTest, SeveralVerticesAtSomePlacesOnly) {
+TEST_F(MemoryTest, SLOW_SeveralVerticesAtSomePlacesOnly) {
   write_apart([] { return partly_split(2'400'000, 250'000); });
   expect_within_least_budget();
   fs::remove_all(path("mesh.hier"));
@@ -389,7 +389,7 @@ TEST_F(MemoryTest, SeveralVerticesAtSomePlacesOnly) {
 
 // As scanners put what they could not measure. A plan counts with copies spread over the mesh: what
 // one tile alone takes is known late, and may be refused then, but never taken.
-TEST_F(MemoryTest, AMillionVerticesAtOnePlaceOfALargerMesh) {
+TEST_F(MemoryTest, SLOW_AMillionVerticesAtOnePlaceOfALargerMesh) {
   write_apart([] {
     bench::LoadedMesh mesh = tests::loaded(tests::sphere(800'000, 0.002F));
     mesh.positions.resize(mesh.positions.size() + 1'000'000);
@@ -404,7 +404,7 @@ TEST_F(MemoryTest, AMillionVerticesAtOnePlaceOfALargerMesh) {
 }
 
 // One chunk of two partitions: leaves and simplify take more than the stages before.
-TEST_F(MemoryTest, SeveralVerticesAtEachPlaceOfLargeTiles) {
+TEST_F(MemoryTest, SLOW_SeveralVerticesAtEachPlaceOfLargeTiles) {
   const std::vector<std::string> settings{"partition.vertices=32768"};
   for (const char* name : {"soup", "mixed"}) {
     SCOPED_TRACE(name);
@@ -427,7 +427,7 @@ TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {
 
 // The first is hungriest in ingest and partition; of the second, one chunk and two tiles, leaves
 // and simplify take more than the stages before.
-TEST_F(MemoryTest, NoStageHoldsMoreThanItTells) {
+TEST_F(MemoryTest, SLOW_NoStageHoldsMoreThanItTells) {
   write_mesh(million_vertices());
   expect_told(8192);
   bench::SurfaceOptions options;
@@ -438,7 +438,7 @@ TEST_F(MemoryTest, NoStageHoldsMoreThanItTells) {
 
 // ---- progressive streams
 
-TEST_F(MemoryTest, AStreamIsMadeInTheBudgetAndPutTogetherInItsArrays) {
+TEST_F(MemoryTest, SLOW_AStreamIsMadeInTheBudgetAndPutTogetherInItsArrays) {
   bench::SurfaceOptions options;
   options.triangles = 500'000;
   options.colours = true;

@@ -232,7 +232,7 @@ TEST_F(NormalMapsTest, PointsAndFewTrianglesHaveNone) {
   EXPECT_THAT(problems(job), testing::IsEmpty());
 }
 
-TEST_F(NormalMapsTest, ThreadsAndBudgetDecideNothing) {
+TEST_F(NormalMapsTest, SLOW_ThreadsAndBudgetDecideNothing) {
   config::Config job = config(rough_torus(), Normals::map_or_none);
   build(job);
   const auto expected = files_of(job.output);
@@ -244,7 +244,7 @@ TEST_F(NormalMapsTest, ThreadsAndBudgetDecideNothing) {
   }
 }
 
-TEST_F(NormalMapsTest, AStoppedBuildGoesOnToTheSameBytes) {
+TEST_F(NormalMapsTest, SLOW_AStoppedBuildGoesOnToTheSameBytes) {
   const config::Config job = config(rough_torus(), Normals::map);
   build(job);
   const auto expected = files_of(job.output);

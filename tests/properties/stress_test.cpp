@@ -108,7 +108,7 @@ TEST_P(StressCaseTest, IsSoundWhateverTheMethod) {
   }
 }
 
-TEST_P(StressCaseTest, IsSoundInPartitionsOfFourVertices) {
+TEST_P(StressCaseTest, SLOW_IsSoundInPartitionsOfFourVertices) {
   write(mesh(300));
   use_tiles_of(4);
   for (const auto& [name, method] : tests::all_simplify_methods()) {
@@ -118,7 +118,7 @@ TEST_P(StressCaseTest, IsSoundInPartitionsOfFourVertices) {
   }
 }
 
-TEST_P(StressCaseTest, IsSoundInOnePartitionLargerThanTheMesh) {
+TEST_P(StressCaseTest, SLOW_IsSoundInOnePartitionLargerThanTheMesh) {
   write(mesh(1000));
   use_tiles_of(32768);
   config_.memory_budget = 128 * tests::kMiB;  // tiles so large would take more
@@ -138,7 +138,7 @@ TEST_P(StressCaseTest, IsSoundHoweverSmall) {
   }
 }
 
-TEST_P(StressCaseTest, IsWithinItsBounds) {
+TEST_P(StressCaseTest, SLOW_IsWithinItsBounds) {
   write(mesh(1000));
   use_tiles_of(100);
   for (const auto& [name, method] : tests::all_simplify_methods()) {

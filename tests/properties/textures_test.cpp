@@ -371,7 +371,7 @@ TEST_F(TexturesTest, ErrorsAreNoSmallerThanTexels) {
   EXPECT_GT(coarse, 0U);
 }
 
-TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
+TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothing) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
   for (const ImageFormat format : {ImageFormat::png, ImageFormat::jpeg}) {
     job.texture.format.format = format;
@@ -408,7 +408,7 @@ TEST_F(TexturesTest, Ktx2IsTheSameWhateverBuildsIt) {
 }
 
 // Their pictures are painted, reduced and encoded in several bands.
-TEST_F(TexturesTest, ThreadsAndBudgetDecideNothingOfLargePictures) {
+TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothingOfLargePictures) {
   config::Config job = config(write(tests::make_textured_torus(6, 3, 30)));
   job.partition.count = 1;
   job.texture.format.format = ImageFormat::jpeg;
@@ -424,7 +424,7 @@ TEST_F(TexturesTest, ThreadsAndBudgetDecideNothingOfLargePictures) {
   }
 }
 
-TEST_F(TexturesTest, AStoppedBuildGoesOnToTheSameBytes) {
+TEST_F(TexturesTest, SLOW_AStoppedBuildGoesOnToTheSameBytes) {
   const config::Config job = config(write(tests::make_textured_torus(6, 3)));
   build(job);
   const auto expected = files_of(job.output);

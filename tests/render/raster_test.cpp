@@ -157,7 +157,7 @@ std::vector<Facet> soup(std::size_t count, std::uint32_t size) {
   return facets;
 }
 
-TEST(RasterTest, WhatIsSkippedIsHidden) {
+TEST(RasterTest, SLOW_WhatIsSkippedIsHidden) {
   constexpr std::uint32_t kSide = 150;
   const std::vector<Facet> facets = soup(3000, kSide);
   const Camera camera = square_camera(kSide);

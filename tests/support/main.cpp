@@ -3,16 +3,21 @@
 //   NAME_test [--rotate] [--gtest_...]
 //
 // --rotate: whole tests are the cases of a share. Those that are chosen do all that they have.
+// A pattern of --gtest_filter that no test has is an error: what it was written for would be left
+// out in silence.
 #include "tests/support/share.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -74,6 +79,31 @@ void rotate(const Share& share) {
   setenv("GTEST_SHARD_INDEX", std::to_string(share.index).c_str(), 1);
 }
 
+bool names_a_test(const std::string& pattern) {
+  const testing::UnitTest& tests = *testing::UnitTest::GetInstance();
+  for (int i = 0; i < tests.total_test_suite_count(); ++i) {
+    const testing::TestSuite& suite = *tests.GetTestSuite(i);
+    for (int j = 0; j < suite.total_test_count(); ++j) {
+      const std::string name = fmt::format("{}.{}", suite.name(), suite.GetTestInfo(j)->name());
+      if (fnmatch(pattern.c_str(), name.c_str(), 0) == 0)
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Ends the program if a part of GoogleTest's filter, "A:B-C:D", names no test.
+void require_tests(std::string filter) {
+  std::replace(filter.begin(), filter.end(), '-', ':');
+  std::istringstream patterns(filter);
+  for (std::string pattern; std::getline(patterns, pattern, ':');) {
+    if (!pattern.empty() && !names_a_test(pattern)) {
+      fmt::print(stderr, "--gtest_filter: no test here is named \"{}\"\n", pattern);
+      std::exit(2);
+    }
+  }
+}
+
 /// Tells how to repeat what failed.
 class Repeating : public testing::EmptyTestEventListener {
  public:
@@ -109,6 +139,7 @@ int main(int argc, char** argv) {
     the_share = {};
   }
   testing::InitGoogleMock(&argc, argv);
+  require_tests(testing::GTEST_FLAG(filter));
   testing::UnitTest::GetInstance()->listeners().Append(new Repeating(argv[0]));
   return RUN_ALL_TESTS();
 }

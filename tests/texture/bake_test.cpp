@@ -105,13 +105,13 @@ void expect_sharp(const Mesh& fine, const Mesh& middle, const Mesh& coarse) {
   EXPECT_GE(psnr(third, paint), 41);
 }
 
-TEST(Bake, ACheckerOnATorusStaysSharpOverTwoLevels) {
+TEST(Bake, SLOW_ACheckerOnATorusStaysSharpOverTwoLevels) {
   expect_sharp(make_torus(160, 80), make_torus(113, 57), make_torus(80, 40));
 }
-TEST(Bake, ACheckerOnASphereStaysSharpOverTwoLevels) {
+TEST(Bake, SLOW_ACheckerOnASphereStaysSharpOverTwoLevels) {
   expect_sharp(make_sphere(160, 80), make_sphere(113, 57), make_sphere(80, 40));
 }
-TEST(Bake, ACheckerOnANoisySurfaceStaysSharpOverTwoLevels) {
+TEST(Bake, SLOW_ACheckerOnANoisySurfaceStaysSharpOverTwoLevels) {
   expect_sharp(make_torus(160, 80, 0.01), make_torus(113, 57, 0.01), make_torus(80, 40, 0.01));
 }
 
@@ -252,7 +252,7 @@ TEST(Bake, OfEquallyNearSurfacesTheFirstCounts) {
 }
 
 // Two tiles that have the triangles in the middle both, as border triangles are.
-TEST(Bake, NeighboursShowTheSameOnTrianglesTheyShare) {
+TEST(Bake, SLOW_NeighboursShowTheSameOnTrianglesTheyShare) {
   const Paint paint = checker(0.3, 0.12);
   const Painted fine = painted(make_torus(160, 80), 2 * kSide, paint);
   const Mesh coarse = make_torus(113, 57);
@@ -274,7 +274,7 @@ TEST(Bake, NeighboursShowTheSameOnTrianglesTheyShare) {
 }
 
 // Left and right of a chart's border a surface looks alike.
-TEST(Bake, BordersOfChartsAreNotSeen) {
+TEST(Bake, SLOW_BordersOfChartsAreNotSeen) {
   const Painted fine = painted(make_torus(160, 80), 2 * kSide, checker(0.3, 0.12));
   const Painted coarse = baked(make_torus(113, 57), {&fine}, kSide);
   double sum = 0;
@@ -324,7 +324,7 @@ Paint flat_checker(double side, double blur) {
   };
 }
 
-TEST(Bake, TellsTheSizeOfPixelsThatHardlyDiffer) {
+TEST(Bake, SLOW_TellsTheSizeOfPixelsThatHardlyDiffer) {
   for (const double side : {0.035, 0.039, 0.043}) {
     const Paint paint = flat_checker(side, side / 3);
     const Painted fine = painted(square(20), 512, paint);
@@ -513,7 +513,7 @@ TEST(Bake, FinerSurfacesMayHaveAnyCoordinates) {
 }
 
 // As boxes have it whose every side shows all of a picture.
-TEST(Bake, ReducingIsQuickHoweverOftenATexelIsShown) {
+TEST(Bake, SLOW_ReducingIsQuickHoweverOftenATexelIsShown) {
   const std::vector<CornerTexcoords> corners(20000, {Vec2f{0, 0}, {1, 0}, {0, 1}});
   const images::Image image(1024, 1024, 3);
   EXPECT_EQ(reduced(image, corners, 4).width, 256U);

@@ -237,12 +237,12 @@ TEST_F(TasksTest, AnyCutMakesTheSameBytesWithAttributes) {
   expect_any_cut_makes_the_same();
 }
 
-TEST_F(TasksTest, AnyCutMakesTheSameBytesWithTextures) {
+TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithTextures) {
   use_texture();
   expect_any_cut_makes_the_same();
 }
 
-TEST_F(TasksTest, AnyCutMakesTheSameBytesWithNormalMaps) {
+TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithNormalMaps) {
   use_normal_maps();
   expect_any_cut_makes_the_same();
 }
@@ -264,7 +264,7 @@ TEST_F(TasksTest, AnyCutOfTheInputMakesTheSameBytes) {
 }
 
 /// Each slice has vertices and triangles of each chunk.
-TEST_F(TasksTest, SlicesOfManyChunksMakeTheSameBytes) {
+TEST_F(TasksTest, SLOW_SlicesOfManyChunksMakeTheSameBytes) {
   use_long_rows(tests::shuffled(tests::torus(540'000), 1), 80, 32);
   config_.partition.vertices = 8192;
   config_.simplify.vertices = 2000;
@@ -283,7 +283,7 @@ TEST_F(TasksTest, SlicesOfAMeshWithCopiesMakeTheSameBytes) {
   expect_any_cut_makes_the_same({3});
 }
 
-TEST_F(TasksTest, SlicesOfManyChunksWithCopiesMakeTheSameBytes) {
+TEST_F(TasksTest, SLOW_SlicesOfManyChunksWithCopiesMakeTheSameBytes) {
   use_long_rows(tests::shuffled(tests::duplicates(400'000, 0.001F), 1), 80, 32);
   config_.partition.vertices = 8192;
   config_.simplify.vertices = 2000;
@@ -692,7 +692,7 @@ TEST_F(TasksTest, AnOutputThatAppearsStays) {
 }
 
 /// Any call of any task fails, once; then all tasks run again.
-TEST_F(TasksTest, AnyCallMayFail) {
+TEST_F(TasksTest, SLOW_AnyCallMayFail) {
   tests::write_ply(tests::sphere(500, 0.01F), file("mesh.ply"));
   config_.input = file("mesh.ply");
   config_.preview = false;
@@ -722,7 +722,7 @@ TEST_F(TasksTest, AnyCallMayFail) {
 }
 
 /// As a power cut, or kill -9: nothing after it happens, not even what tidies up.
-TEST_F(TasksTest, ATaskMayBeKilledAtAnyMoment) {
+TEST_F(TasksTest, SLOW_ATaskMayBeKilledAtAnyMoment) {
   tests::write_ply(tests::sphere(500, 0.01F), file("mesh.ply"));
   config_.input = file("mesh.ply");
   config_.preview = false;

@@ -322,7 +322,7 @@ TEST_F(ArchiveTest, AnIndexThatLeadsElsewhereIsFound) {
   changed([&](Bytes& places) { store_little(index->offset, &places[16]); });
 }
 
-TEST_F(ArchiveTest, MoreFilesThanOldZipCountsAreThere) {
+TEST_F(ArchiveTest, SLOW_MoreFilesThanOldZipCountsAreThere) {
   Members members;
   for (int i = 0; i < 70'000; ++i)
     members.emplace_back(fmt::format("tiles/17/{:06}.glb", i), std::to_string(i));
@@ -339,7 +339,7 @@ TEST_F(ArchiveTest, MoreFilesThanOldZipCountsAreThere) {
   }
 }
 
-TEST_F(ArchiveTest, OffsetsBeyondFourGigabytesAreFound) {
+TEST_F(ArchiveTest, SLOW_OffsetsBeyondFourGigabytesAreFound) {
   auto archive = std::make_unique<tests::HollowFile>();
   ArchiveWriter writer(*archive, [] {});
   const tests::HollowFile large((std::uint64_t{3} << 30) + 1);

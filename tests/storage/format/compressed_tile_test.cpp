@@ -342,14 +342,14 @@ void expect_same_triangles(const std::vector<std::uint32_t>& corners, std::size_
 
 // A million triangles, each looked at for each, would take hours.
 
-TEST(VertexCacheOrderTest, AMillionCopiesOfATriangleAreOrdered) {
+TEST(VertexCacheOrderTest, SLOW_AMillionCopiesOfATriangleAreOrdered) {
   std::vector<std::uint32_t> corners;
   for (int i = 0; i < 1'000'000; ++i)
     corners.insert(corners.end(), {0, 1, 2});
   expect_same_triangles(corners, 3);
 }
 
-TEST(VertexCacheOrderTest, AMillionTrianglesAroundOneVertexAreOrdered) {
+TEST(VertexCacheOrderTest, SLOW_AMillionTrianglesAroundOneVertexAreOrdered) {
   constexpr std::uint32_t kCount = 1'000'000;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < kCount; ++i)
@@ -357,7 +357,7 @@ TEST(VertexCacheOrderTest, AMillionTrianglesAroundOneVertexAreOrdered) {
   expect_same_triangles(corners, kCount + 1);
 }
 
-TEST(VertexCacheOrderTest, AMillionTrianglesBetweenTwoHundredVerticesAreOrdered) {
+TEST(VertexCacheOrderTest, SLOW_AMillionTrianglesBetweenTwoHundredVerticesAreOrdered) {
   constexpr std::uint32_t kVertices = 200;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t a = 0; a < kVertices; ++a) {

@@ -134,7 +134,7 @@ TEST(Tileset, HoldsEveryTileOnceInBoxesOfItAndAllBelow) {
   }
 }
 
-TEST(Tileset, StartsWithASmallFile) {
+TEST(Tileset, SLOW_StartsWithASmallFile) {
   const Tree tree(1U << 30, 1U << 17);
   const std::vector<TileRecord> records = records_of(tree);
   const Tileset tileset({}, tree, records);
