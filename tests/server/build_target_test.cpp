@@ -11,7 +11,7 @@ namespace meshhier::server {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = BuildTarget::Kind;
+using Target = BuildTarget::Kind;
 
 class BuildTargetTest : public testing::Test {
  protected:
@@ -28,7 +28,7 @@ class BuildTargetTest : public testing::Test {
   std::vector<std::string> asked_;  ///< about which hierarchies
 };
 
-void expect(const BuildTarget& target, Kind kind, const std::string& name) {
+void expect_target(const BuildTarget& target, Target kind, const std::string& name) {
   EXPECT_EQ(target.kind, kind) << target.name;
   EXPECT_EQ(target.name, name);
 }
@@ -46,45 +46,45 @@ TEST(NameLengthTest, ANameIsAsLongAsWhatIsMadeOfItAllows) {
 }
 
 TEST_F(BuildTargetTest, ANewFileGetsItsStem) {
-  expect(target("new.ply"), Kind::build, "new.hier");
-  expect(target("new.obj.gz"), Kind::build, "new.hier");
+  expect_target(target("new.ply"), Target::build, "new.hier");
+  expect_target(target("new.obj.gz"), Target::build, "new.hier");
 }
 
 TEST_F(BuildTargetTest, OfTwoWithOneStemTheSecondKeepsItsEnding) {
   inbox_ = {"new.obj", "new.ply"};
-  expect(target("new.obj"), Kind::build, "new.hier");
-  expect(target("new.ply"), Kind::build, "new.ply.hier");
+  expect_target(target("new.obj"), Target::build, "new.hier");
+  expect_target(target("new.ply"), Target::build, "new.ply.hier");
 }
 
 TEST_F(BuildTargetTest, WhoWasThereFirstKeepsItsName) {
   inbox_ = {"plain.obj", "plain.ply"};
-  expect(target("plain.obj"), Kind::build, "plain.obj.hier");
+  expect_target(target("plain.obj"), Target::build, "plain.obj.hier");
   EXPECT_EQ(target("plain.ply").name, "plain.hier");
 }
 
 TEST_F(BuildTargetTest, AMeshInAFolderIsCalledAsTheFolder) {
   inbox_ = {"house/scan.obj", "scan.ply"};
-  expect(target("house/scan.obj"), Kind::build, "house.hier");
+  expect_target(target("house/scan.obj"), Target::build, "house.hier");
   inbox_ = {"house.ply", "house/scan.obj"};
-  expect(target("house.ply"), Kind::build, "house.hier");
-  expect(target("house/scan.obj"), Kind::build, "house.scan.obj.hier");
+  expect_target(target("house.ply"), Target::build, "house.hier");
+  expect_target(target("house/scan.obj"), Target::build, "house.scan.obj.hier");
 }
 
 TEST_F(BuildTargetTest, AMeshInAFolderKnowsItsHierarchy) {
   inbox_ = {"plain/plain.ply"};
-  expect(target("plain/plain.ply", true), Kind::done, "plain.hier");
+  expect_target(target("plain/plain.ply", true), Target::done, "plain.hier");
 }
 
 TEST_F(BuildTargetTest, WhatIsNoHierarchyOfOursIsLeftAlone) {
   fs::create_directory(served_.models() / "new.hier");
-  expect(target("new.ply"), Kind::build, "new.ply.hier");
+  expect_target(target("new.ply"), Target::build, "new.ply.hier");
   tests::write_text(served_.models() / "new.ply.hier", "");
-  expect(target("new.ply"), Kind::nowhere, "new.ply.hier");
+  expect_target(target("new.ply"), Target::nowhere, "new.ply.hier");
 }
 
 TEST_F(BuildTargetTest, TheContentTellsWhatAHierarchyIsMadeOf) {
-  expect(target("plain.ply", true), Kind::done, "plain.hier");
-  expect(target("plain.ply", false), Kind::replace, "plain.hier");
+  expect_target(target("plain.ply", true), Target::done, "plain.hier");
+  expect_target(target("plain.ply", false), Target::replace, "plain.hier");
   EXPECT_EQ(asked_, std::vector<std::string>(2, "plain.hier"));
 }
 
