@@ -56,7 +56,7 @@ TEST(GzipTest, TheHeaderTellsNeitherTimeNorSystem) {
   EXPECT_EQ(head(9), 255);
 }
 
-TEST(GzipTest, TruncationAtEveryByteIsRefused) {
+TEST(GzipTest, SANITIZED_TruncationAtEveryByteIsRefused) {
   const Bytes packed = gzip(sample_glb(500));
   for (std::size_t size = 0; size < packed.size(); ++size) {
     const Bytes cut(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
@@ -64,7 +64,7 @@ TEST(GzipTest, TruncationAtEveryByteIsRefused) {
   }
 }
 
-TEST(GzipTest, EveryFlippedBitIsRefusedOrHarmless) {
+TEST(GzipTest, SANITIZED_EveryFlippedBitIsRefusedOrHarmless) {
   const Bytes glb = sample_glb(500);
   const Bytes packed = gzip(glb);
   for (std::size_t bit = 0; bit < 8 * packed.size(); ++bit) {
@@ -76,13 +76,13 @@ TEST(GzipTest, EveryFlippedBitIsRefusedOrHarmless) {
   }
 }
 
-TEST(GzipTest, WhatFollowsIsRefused) {
+TEST(GzipTest, SANITIZED_WhatFollowsIsRefused) {
   Bytes packed = gzip(sample_glb(500));
   packed.push_back(std::byte{0});
   EXPECT_THAT(failure(packed), HasSubstr("1 bytes after the gzip stream"));
 }
 
-TEST(GzipTest, LengthsThatAreNotTheStreamsAreRefused) {
+TEST(GzipTest, SANITIZED_LengthsThatAreNotTheStreamsAreRefused) {
   const auto with_length = [](std::uint32_t length) {
     Bytes glb = sample_glb(500);
     storage::store_little(length, glb.data() + 8);
@@ -96,7 +96,7 @@ TEST(GzipTest, LengthsThatAreNotTheStreamsAreRefused) {
   EXPECT_THAT(with_length(UINT32_MAX), HasSubstr("cannot hold"));
 }
 
-TEST(GzipTest, OtherFilesAreRefused) {
+TEST(GzipTest, SANITIZED_OtherFilesAreRefused) {
   EXPECT_THAT(failure(sample_glb(100)), HasSubstr("is no gzip stream"));
   EXPECT_THAT(failure({}), HasSubstr("ends after 0 bytes"));
 }

@@ -122,7 +122,7 @@ TEST(TileGlb, TheRootAloneHasAFirstView) {
   }
 }
 
-TEST(TileGlb, ExtrasThatAreNoFirstViewAreRefused) {
+TEST(TileGlb, SANITIZED_ExtrasThatAreNoFirstViewAreRefused) {
   const SampleHierarchy sample = full_sample();
   const auto failure_with = [&](const PublishedTile& tile, const Json& extras) {
     OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
@@ -251,7 +251,7 @@ TEST(TileGlb, RawAttributesAreStoredOnlyWhereNeeded) {
   EXPECT_EQ(scaled.extension()["rawTexcoords"], -1);
 }
 
-TEST(TileGlb, RawAttributesAboveThePartitionsAreRefused) {
+TEST(TileGlb, SANITIZED_RawAttributesAboveThePartitionsAreRefused) {
   // With the same layout the partition's file is read; nothing would write back what it says.
   SampleHierarchy sample = make_sample(torus(100), 1, {{.normals = true}, {}});
   PublishedTile& tile = sample.tiles[0];
@@ -437,7 +437,7 @@ TEST(TileGlb, TilesOfVersion3AreReadAsTheyAre) {
   }
 }
 
-TEST(TileGlb, TruncationAtEveryByteIsRefused) {
+TEST(TileGlb, SANITIZED_TruncationAtEveryByteIsRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 3);
   const PublishedTile& tile = sample.tiles.back();
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
@@ -452,7 +452,7 @@ TEST(TileGlb, TruncationAtEveryByteIsRefused) {
   }
 }
 
-TEST(TileGlb, RandomFlipsAreRefusedOrHarmless) {
+TEST(TileGlb, SANITIZED_RandomFlipsAreRefusedOrHarmless) {
   const SampleHierarchy sample = full_sample();
   std::mt19937 random(7);
   std::size_t refused = 0;
@@ -475,7 +475,7 @@ TEST(TileGlb, RandomFlipsAreRefusedOrHarmless) {
   EXPECT_GT(refused, 1000U);
 }
 
-TEST(TileGlb, RandomNumbersInTheJsonAreRefused) {
+TEST(TileGlb, SANITIZED_RandomNumbersInTheJsonAreRefused) {
   const SampleHierarchy sample = full_sample();
   std::mt19937 random(8);
   const std::array<Json, 7> values{-1, 0, 3, 4294967295U, 1e300, "x", Json::array()};
@@ -507,7 +507,7 @@ void PrintTo(const TileDamage& damage, std::ostream* out) {
 
 class DamagedTile : public testing::TestWithParam<TileDamage> {};
 
-TEST_P(DamagedTile, IsRefusedByName) {
+TEST_P(DamagedTile, SANITIZED_IsRefusedByName) {
   const SampleHierarchy sample = full_sample();
   const PublishedTile& tile = sample.tiles.back();
   OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
@@ -597,7 +597,7 @@ unsigned first_copy_of(OpenGlb& glb, unsigned vertex) {
 /// One change to a good file with copies, of a partition.
 class DamagedCopies : public testing::TestWithParam<TileDamage> {};
 
-TEST_P(DamagedCopies, AreRefusedByName) {
+TEST_P(DamagedCopies, SANITIZED_AreRefusedByName) {
   const SampleHierarchy sample = with_copies(full_sample());
   const PublishedTile& tile = sample.tiles.back();
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
@@ -687,7 +687,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "border triangle 0 has 2 own corners, 1 of them on the boundary"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(TileGlb, APlaceTwiceInATriangleIsRefusedAboveThePartitions) {
+TEST(TileGlb, SANITIZED_APlaceTwiceInATriangleIsRefusedAboveThePartitions) {
   const SampleHierarchy sample = with_copies(full_sample());
   const PublishedTile& root = sample.tiles.front();
   OpenGlb glb(encode_tile(root, sample.tree, sample.format));
@@ -696,7 +696,7 @@ TEST(TileGlb, APlaceTwiceInATriangleIsRefusedAboveThePartitions) {
               HasSubstr("interior triangle 0 (0, 1, 1) has a place twice, above the partitions"));
 }
 
-TEST(TileGlb, AQuantizedCopyElsewhereIsRefused) {
+TEST(TileGlb, SANITIZED_AQuantizedCopyElsewhereIsRefused) {
   for (const int bits : {12, 20}) {
     const SampleHierarchy sample = quantized(with_copies(make_sample(torus(200), 3)), bits);
     const PublishedTile& tile = sample.tiles.back();
@@ -709,7 +709,7 @@ TEST(TileGlb, AQuantizedCopyElsewhereIsRefused) {
   }
 }
 
-TEST(TileGlb, RandomFlipsInTilesWithCopiesAreRefusedOrHarmless) {
+TEST(TileGlb, SANITIZED_RandomFlipsInTilesWithCopiesAreRefusedOrHarmless) {
   const SampleHierarchy sample = with_copies(full_sample());
   std::mt19937 random(11);
   std::size_t refused = 0;
@@ -739,7 +739,7 @@ TEST(TileGlb, AChainThroughAnEarlyNodeKeepsTheNumber) {
   EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr("without a parent tile"));
 }
 
-TEST(TileGlb, DeepJsonIsRefused) {
+TEST(TileGlb, SANITIZED_DeepJsonIsRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   const std::string deep = std::string(30000, '[') + std::string(30000, ']');
   EXPECT_THAT(decode_failure(storage::join_glb(deep, {}), {}, sample), HasSubstr("nested deeper"));
@@ -750,7 +750,7 @@ TEST(TileGlb, DeepJsonIsRefused) {
               HasSubstr("JSON chunk has"));
 }
 
-TEST(TileGlb, JsonOfThousandsOfKeysIsRefused) {
+TEST(TileGlb, SANITIZED_JsonOfThousandsOfKeysIsRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   std::string keys = "{\"a\":0";
   for (int i = 0; i < 5000; ++i)
@@ -768,7 +768,7 @@ TEST(TileGlb, WhatIsQuotedFromBrokenJsonIsShortAndPlain) {
   }
 }
 
-TEST(TileGlb, ForeignFilesAreRefused) {
+TEST(TileGlb, SANITIZED_ForeignFilesAreRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
   Bytes ply{std::byte{'p'}, std::byte{'l'}, std::byte{'y'}};

@@ -182,7 +182,7 @@ TEST(TileNormals, ManySplitsHaveWideNumbers) {
   }
 }
 
-TEST(TileNormals, MoreSplitsThanCornersAreRefused) {
+TEST(TileNormals, SANITIZED_MoreSplitsThanCornersAreRefused) {
   SampleHierarchy sample{Tree(3, 1), {}, {}};
   sample.format.computed_normals = true;
   PublishedTile& tile = sample.tiles.emplace_back();
@@ -249,7 +249,7 @@ void PrintTo(const NormalDamage& damage, std::ostream* out) {
 
 class DamagedNormals : public testing::TestWithParam<NormalDamage> {};
 
-TEST_P(DamagedNormals, AreRefusedByName) {
+TEST_P(DamagedNormals, SANITIZED_AreRefusedByName) {
   const SampleHierarchy sample = full_shaded();
   const PublishedTile& tile = sample.tiles.back();
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
@@ -342,7 +342,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "has other splits than the equal one before it"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(TileNormals, TwinsOfOtherSplitsAreRefusedInPackedTiles) {
+TEST(TileNormals, SANITIZED_TwinsOfOtherSplitsAreRefusedInPackedTiles) {
   SampleHierarchy sample = full_shaded(Compression::meshopt);
   PublishedTile tile = sample.tiles.back();
   ASSERT_TRUE(sample.tree.is_partition(tile.node));
@@ -362,7 +362,7 @@ TEST(TileNormals, TwinsOfOtherSplitsAreRefusedInPackedTiles) {
               HasSubstr("has other splits than the equal one before it"));
 }
 
-TEST(TileNormals, LyingSizesOfPackedTilesAreRefused) {
+TEST(TileNormals, SANITIZED_LyingSizesOfPackedTilesAreRefused) {
   const SampleHierarchy sample = full_shaded(Compression::meshopt);
   const PublishedTile& tile = sample.tiles.back();
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
@@ -379,7 +379,7 @@ TEST(TileNormals, LyingSizesOfPackedTilesAreRefused) {
   EXPECT_THAT(decode_failure(both.close(), tile.node, sample), HasSubstr("cannot come from"));
 }
 
-TEST(TileNormals, RandomFlipsAreRefusedOrHarmless) {
+TEST(TileNormals, SANITIZED_RandomFlipsAreRefusedOrHarmless) {
   for (const Compression compression : {Compression::none, Compression::meshopt}) {
     const SampleHierarchy sample = full_shaded(compression);
     std::size_t refused = 0;
@@ -400,7 +400,7 @@ TEST(TileNormals, RandomFlipsAreRefusedOrHarmless) {
   }
 }
 
-TEST(TileNormals, RandomNumbersInTheJsonAreRefused) {
+TEST(TileNormals, SANITIZED_RandomNumbersInTheJsonAreRefused) {
   const SampleHierarchy sample = full_shaded();
   const std::array<nlohmann::ordered_json, 5> values{-1, 0, 3, 4294967295U, "x"};
   for (std::size_t round = share().index; round < 1000; round += share().count) {

@@ -136,7 +136,7 @@ TEST(TileNormalMaps, ComeBackHoweverTilesArePacked) {
   EXPECT_GT(maps, 50U);
 }
 
-TEST(TileNormalMaps, ATangentThatIsNoneIsRefused) {
+TEST(TileNormalMaps, SANITIZED_ATangentThatIsNoneIsRefused) {
   const SampleHierarchy sample =
       mapped(shaded(make_sample(torus(200, 0.05F), 5)), ImageFormat::jpeg);
   const PublishedTile& root = sample.tiles.front();
@@ -307,7 +307,7 @@ void PrintTo(const TextureDamage& damage, std::ostream* out) {
 
 class DamagedTextures : public testing::TestWithParam<TextureDamage> {};
 
-TEST_P(DamagedTextures, AreRefusedByName) {
+TEST_P(DamagedTextures, SANITIZED_AreRefusedByName) {
   const SampleHierarchy sample = full_textured();
   const PublishedTile& tile = sample.tiles.back();
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
@@ -390,7 +390,7 @@ TEST(TileTextures, SplitsKeepNormalsThatAreNotComputed) {
               HasSubstr("split 0 has not the NORMAL of its vertex"));
 }
 
-TEST(TileTextures, RandomFlipsAreRefusedOrHarmless) {
+TEST(TileTextures, SANITIZED_RandomFlipsAreRefusedOrHarmless) {
   for (const Compression compression : {Compression::none, Compression::meshopt}) {
     const SampleHierarchy sample = full_textured(compression);
     std::size_t refused = 0;
@@ -414,7 +414,7 @@ TEST(TileTextures, RandomFlipsAreRefusedOrHarmless) {
   }
 }
 
-TEST(TileTextures, RandomNumbersInTheJsonAreRefused) {
+TEST(TileTextures, SANITIZED_RandomNumbersInTheJsonAreRefused) {
   const SampleHierarchy sample = full_textured();
   const std::array<nlohmann::ordered_json, 5> values{-1, 0, 3, 4294967295U, "x"};
   for (std::size_t round = share().index; round < 1000; round += share().count) {
