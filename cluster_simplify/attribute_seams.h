@@ -11,6 +11,8 @@
 
 namespace meshhier::cluster_simplify {
 
+class TileWedges;
+
 /// An edge between two own places, the lower first.
 using PlaceEdge = std::array<std::uint32_t, 2>;
 
@@ -19,5 +21,10 @@ using PlaceEdge = std::array<std::uint32_t, 2>;
 /// ascending. O(t log t).
 std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
                                        const WedgeOptions& options);
+
+/// The edges between own places that run beside a border of labels: of triangles that have one
+/// label at two corners and another at the third, the edge between the two. Held on both sides,
+/// they hold the border between them. Ascending, without repeats. O(t log t).
+std::vector<PlaceEdge> label_borders(const TileWedges& wedges, const AttributeLayout& layout);
 
 }  // namespace meshhier::cluster_simplify

@@ -43,7 +43,7 @@ struct ContractionOptions {
 /// Contracts the own vertices of `joined` to `target` representatives, 1 <= target <= own_count <=
 /// 65536; never more or fewer. Attributes: `cluster` takes means over the original vertices a
 /// representative stands for, `edge_collapse` interpolates along the edges (normals made unit
-/// length by both; labels by choose_majority_labels()), `half_edge` keeps them; of places with
+/// length by both; labels by the surface they cover), `half_edge` keeps them; of places with
 /// copies those of the first wedge, see contract_wedges() for all. Pure, deterministic; O(n log n).
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options);

@@ -18,7 +18,7 @@ OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile, const 
   const auto part = [&](std::uint32_t owner, std::uint32_t own) -> std::uint32_t {
     return sectors.empty() ? 0 : sectors.at(owner).at(own);
   };
-  const auto corner = [&](std::uint32_t vertex) -> Corner {
+  const auto corner = [&](std::uint32_t vertex) -> PlacedCorner {
     const TileVertex v{vertex};
     const std::uint32_t owner = tile.is_own(v) ? index : tile.ghost(v).tile;
     const std::uint32_t own = tile.is_own(v) ? vertex : tile.ghost(v).index;
@@ -32,7 +32,7 @@ OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile, const 
       return;
     PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
     std::sort(triangle.begin(), triangle.end(),
-              [](const Corner& a, const Corner& b) { return a.key < b.key; });
+              [](const PlacedCorner& a, const PlacedCorner& b) { return a.key < b.key; });
     // Every tile it touches has it; the lowest brings it.
     if (tile_of(triangle[0].key) == index && !touches_one(triangle))
       content_->triangles.push_back(triangle);

@@ -17,18 +17,18 @@ inline std::uint32_t tile_of(VertexKey vertex) {
   return static_cast<std::uint32_t>(vertex >> 32);
 }
 
-struct Corner {
+struct PlacedCorner {
   VertexKey key;
   Vec3f position;
   std::uint32_t part;  ///< of the tile
 };
 
-inline bool in_one_sector(const Corner& a, const Corner& b) {
+inline bool in_one_sector(const PlacedCorner& a, const PlacedCorner& b) {
   return tile_of(a.key) == tile_of(b.key) && a.part == b.part;
 }
 
 /// Corners by ascending key: both sides of a line compute its points from the same order.
-using PlacedTriangle = std::array<Corner, 3>;
+using PlacedTriangle = std::array<PlacedCorner, 3>;
 
 /// The corners that a triangle's edges join.
 inline constexpr std::array<std::array<std::size_t, 2>, 3> kEdges{{{0, 1}, {0, 2}, {1, 2}}};

@@ -46,7 +46,7 @@ double through_coat(double to_viewer, double roughness) {
 }
 
 /// `viewer`: of length 1.
-Vec3d from_lamp(const Surface& surface, const Lamp& lamp, Vec3d viewer) {
+Vec3d from_lamp(const LitSurface& surface, const Lamp& lamp, Vec3d viewer) {
   const double to_light = dot(surface.normal, lamp.towards);
   if (to_light <= 0)
     return {};
@@ -62,7 +62,7 @@ Vec3d from_lamp(const Surface& surface, const Lamp& lamp, Vec3d viewer) {
 
 }  // namespace
 
-Vec3d reflected(const Surface& surface, const LightRig& rig) {
+Vec3d reflected(const LitSurface& surface, const LightRig& rig) {
   constexpr Vec3d kViewer{0, 0, 1};
   const double up = (1 + dot(surface.normal, rig.upward)) / 2;
   const double to_viewer = std::clamp(surface.normal.z, 0.0, 1.0);

@@ -10,14 +10,14 @@ namespace meshhier::render {
 /// The roughness of plain surfaces, and of those with a picture.
 inline constexpr double kRoughness = 0.75, kPictureRoughness = 1;
 
-struct Surface {
+struct LitSurface {
   Vec3d normal;  ///< of length 1, by the view's axes
   Vec3d colour;  ///< linear light, 0 to 1
   double roughness = kRoughness;
 };
 
 /// Linear light, 0 to more than 1, to a viewer far away.
-Vec3d reflected(const Surface& surface, const LightRig& rig);
+Vec3d reflected(const LitSurface& surface, const LightRig& rig);
 
 /// Returns what a screen shows of the light, 0 to 1, linear: colours stay, but those that are too
 /// bright (Khronos PBR Neutral, 2024).

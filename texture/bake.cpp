@@ -117,7 +117,7 @@ class Painter {
   void compare(const ChartPlane& plane, std::uint32_t x, std::uint32_t y,
                const images::Image& image, Difference& difference) {
     Vec3d point;
-    Light shown{};
+    TexelLight shown{};
     for (const auto& [i, j] : {std::pair(x, y), {x + 1, y}, {x, y + 1}, {x + 1, y + 1}}) {
       if (!samples_.at(i, j).is_inside())
         return;

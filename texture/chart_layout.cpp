@@ -75,7 +75,7 @@ class Fitter {
 
   ChartLayout operator()() && {
     double density = most_density_;
-    std::optional<Packing> packing = pack_tightly(sizes(density), units_);
+    std::optional<RectPacking> packing = pack_tightly(sizes(density), units_);
     if (!packing)
       std::tie(density, packing) = search();
     return placed(density, *packing);
@@ -125,16 +125,16 @@ class Fitter {
 
   /// Between a density at which all fit and one at which they do not. At the lowest one no chart
   /// has more than 2 * 2 units.
-  std::pair<double, Packing> search() const {
+  std::pair<double, RectPacking> search() const {
     constexpr double kClose = 1.01, kFull = 0.75;
     const double side = units_ * kBakeAlignment;
     double low = kBakeAlignment / longest_, high = most_density_;
-    Packing best = pack_into({units_, units_}, sizes(low)).value();
+    RectPacking best = pack_into({units_, units_}, sizes(low)).value();
     double next = area_ > 0 ? side * std::sqrt(kFull / area_) : 0;
     while (high > low * kClose) {
       if (!(next > low && next < high))
         next = std::sqrt(low * high);
-      if (std::optional<Packing> packing = pack_into({units_, units_}, sizes(next))) {
+      if (std::optional<RectPacking> packing = pack_into({units_, units_}, sizes(next))) {
         low = next;
         best = *std::move(packing);
       } else {
@@ -144,7 +144,7 @@ class Fitter {
     return {low, std::move(best)};
   }
 
-  ChartLayout placed(double density, const Packing& packing) {
+  ChartLayout placed(double density, const RectPacking& packing) {
     ChartLayout layout{
         packing.width * kBakeAlignment, packing.height * kBakeAlignment, density, {}};
     for (std::size_t c = 0; c < planes_.size(); ++c) {

@@ -118,7 +118,7 @@ class Planner {
   }
 
   /// Packs the distinct cells, in units of the alignment.
-  std::optional<Packing> try_pack(std::uint32_t most_side) const {
+  std::optional<RectPacking> try_pack(std::uint32_t most_side) const {
     std::vector<RectSize> sizes;
     for (const std::uint32_t c : distinct_cells())
       sizes.push_back({static_cast<std::uint32_t>(cells_[c].texels.width / kLeafAlignment),
@@ -127,13 +127,13 @@ class Planner {
   }
 
   /// Each time that there is no room, the cells get a bit smaller.
-  Packing pack() {
+  RectPacking pack() {
     constexpr double kLess = 0.95;
     double most_texels = double(most_side_) * most_side_;
     for (;;) {
       const double texels = texels_of(distinct_cells());
       if (texels <= most_texels) {
-        if (std::optional<Packing> packing = try_pack(most_side_))
+        if (std::optional<RectPacking> packing = try_pack(most_side_))
           return *std::move(packing);
         most_texels = std::min(most_texels, texels) * kLess;
       }
@@ -142,7 +142,7 @@ class Planner {
     }
   }
 
-  void place(LeafAtlas& atlas, const Packing& packing) {
+  void place(LeafAtlas& atlas, const RectPacking& packing) {
     atlas.width = packing.width * kLeafAlignment;
     atlas.height = packing.height * kLeafAlignment;
     atlas.charts = charts_.pieces.size();

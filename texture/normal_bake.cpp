@@ -7,8 +7,8 @@
 #include "texture/finer_normals.h"
 #include "texture/nearest_triangle.h"
 #include "texture/sample_blocks.h"
-#include "texture/tangent_frame.h"
 #include "texture/texel_samples.h"
+#include "texture/vertex_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,7 +132,7 @@ class MapMaker {
     return weights;
   }
 
-  TangentFrame frame_at(const TexelSample& sample, const Vec3d& point) const {
+  VertexFrame frame_at(const TexelSample& sample, const Vec3d& point) const {
     return interpolated(frames_[sample.triangle], weights_at(sample.triangle, point));
   }
 
@@ -237,7 +237,7 @@ class MapMaker {
       shown = shown + Vec3d{part_of(texel[0]), part_of(texel[1]), part_of(texel[2])};
     }
     const TexelSample& sample = samples_.at(x, y);
-    const TangentFrame frame = frame_at(sample, point);
+    const VertexFrame frame = frame_at(sample, point);
     const Vec3d original = direction(plane, sample, point);
     baked.own_degrees += degrees_between(frame.normal, original);
     baked.map_degrees += degrees_between(direction_of(frame.mixed(shown)), original);
@@ -248,7 +248,7 @@ class MapMaker {
   const TexelSamples& samples_;
   FinerNormals& finer_;
   double texel_;
-  std::vector<std::array<TangentFrame, 3>> frames_;  ///< of triangles
+  std::vector<std::array<VertexFrame, 3>> frames_;  ///< of triangles
   /// One per texel, in its frame, and 1; all 0 where nothing is known.
   std::vector<FourFloats> coefficients_;
 };

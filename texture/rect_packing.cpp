@@ -49,7 +49,7 @@ Rects by_area(const Rects& rects) {
   return sorted(rects, [](const stbrp_rect& r) { return std::int64_t{r.w} * r.h; });
 }
 
-std::optional<Packing> pack_sorted(RectSize box, Rects& rects, int heuristic) {
+std::optional<RectPacking> pack_sorted(RectSize box, Rects& rects, int heuristic) {
   std::vector<stbrp_node> nodes(box.width);
   stbrp_context context;
   stbrp_init_target(&context, static_cast<int>(box.width), static_cast<int>(box.height),
@@ -57,7 +57,7 @@ std::optional<Packing> pack_sorted(RectSize box, Rects& rects, int heuristic) {
   stbrp_setup_heuristic(&context, heuristic);
   if (stbrp_pack_rects(&context, rects.data(), static_cast<int>(rects.size())) == 0)
     return std::nullopt;
-  Packing packing{box.width, 0, std::vector<RectPlace>(rects.size())};
+  RectPacking packing{box.width, 0, std::vector<RectPlace>(rects.size())};
   for (const stbrp_rect& rect : rects) {
     packing.places[static_cast<std::size_t>(rect.id)] = {static_cast<std::uint32_t>(rect.x),
                                                          static_cast<std::uint32_t>(rect.y)};
@@ -68,20 +68,20 @@ std::optional<Packing> pack_sorted(RectSize box, Rects& rects, int heuristic) {
 
 }  // namespace
 
-std::optional<Packing> pack_into(RectSize box, std::span<const RectSize> sizes) {
+std::optional<RectPacking> pack_into(RectSize box, std::span<const RectSize> sizes) {
   const Rects rects = rects_of(sizes);
   for (const auto& order : {by_height, by_longer_side, by_area}) {
     Rects ordered = order(rects);
     for (const int heuristic :
          {STBRP_HEURISTIC_Skyline_BL_sortHeight, STBRP_HEURISTIC_Skyline_BF_sortHeight}) {
-      if (std::optional<Packing> packing = pack_sorted(box, ordered, heuristic))
+      if (std::optional<RectPacking> packing = pack_sorted(box, ordered, heuristic))
         return packing;
     }
   }
   return std::nullopt;
 }
 
-std::optional<Packing> pack_tightly(std::span<const RectSize> sizes, std::uint32_t most_side) {
+std::optional<RectPacking> pack_tightly(std::span<const RectSize> sizes, std::uint32_t most_side) {
   std::uint64_t area = 0;
   std::uint32_t widest = 1;
   for (const RectSize& size : sizes) {
@@ -90,13 +90,13 @@ std::optional<Packing> pack_tightly(std::span<const RectSize> sizes, std::uint32
   }
   const auto side = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(area))));
   Rects rects = by_height(rects_of(sizes));
-  std::optional<Packing> best;
-  const auto area_of = [](const Packing& p) { return std::uint64_t{p.width} * p.height; };
+  std::optional<RectPacking> best;
+  const auto area_of = [](const RectPacking& p) { return std::uint64_t{p.width} * p.height; };
   constexpr std::uint64_t kShapes = 8;
   for (std::uint64_t shape = 0; shape <= kShapes; ++shape) {
     const std::uint64_t wished = std::max<std::uint64_t>(widest, side + side * shape / kShapes);
     const auto width = static_cast<std::uint32_t>(std::min<std::uint64_t>(most_side, wished));
-    std::optional<Packing> packing =
+    std::optional<RectPacking> packing =
         pack_sorted({width, most_side}, rects, STBRP_HEURISTIC_Skyline_BL_sortHeight);
     if (packing && (!best || area_of(*packing) < area_of(*best)))
       best = std::move(packing);

@@ -16,16 +16,16 @@ struct RectPlace {
   std::uint32_t x = 0, y = 0;
 };
 
-struct Packing {
+struct RectPacking {
   std::uint32_t width = 0, height = 0;
   std::vector<RectPlace> places;  ///< one a rectangle
 };
 
 /// In a box of that width, of the least height that is found. None if it would be higher than
 /// `box.height`. Deterministic, O(n width).
-std::optional<Packing> pack_into(RectSize box, std::span<const RectSize> sizes);
+std::optional<RectPacking> pack_into(RectSize box, std::span<const RectSize> sizes);
 
 /// Into the smallest box of a few shapes, with sides of at most `most_side`; none if none has room.
-std::optional<Packing> pack_tightly(std::span<const RectSize> sizes, std::uint32_t most_side);
+std::optional<RectPacking> pack_tightly(std::span<const RectSize> sizes, std::uint32_t most_side);
 
 }  // namespace meshhier::texture

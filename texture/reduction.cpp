@@ -89,7 +89,7 @@ void Reduction::add(const images::Image& band) {
 }
 
 void Reduction::average(const images::Image& band, std::uint32_t x, std::uint32_t y) {
-  Light sum{};
+  TexelLight sum{};
   float count = 0;
   for (std::uint32_t j = y * factor_; j < (y + 1) * factor_; ++j) {
     for (std::uint32_t i = x * factor_; i < (x + 1) * factor_; ++i) {

@@ -15,8 +15,8 @@ constexpr float kOwn = 4.0f / 6, kBeside = 1.0f / 6;
 /// level to level.
 constexpr int kIterations = 2;
 
-Light weighted(const Light& before, const Light& own, const Light& behind) {
-  Light sum;
+TexelLight weighted(const TexelLight& before, const TexelLight& own, const TexelLight& behind) {
+  TexelLight sum;
   for (std::size_t k = 0; k < sum.size(); ++k)
     sum[k] = kOwn * own[k] + kBeside * (before[k] + behind[k]);
   return sum;
@@ -77,8 +77,8 @@ class Fitting {
       for (std::size_t x = 0; x < width_; ++x, ++at) {
         if (is_known_[at] == 0)
           continue;
-        const Light filtered = weighted(across_[beside(at, y > 0, at - width_)], across_[at],
-                                        across_[beside(at, y + 1 < height_, at + width_)]);
+        const TexelLight filtered = weighted(across_[beside(at, y > 0, at - width_)], across_[at],
+                                             across_[beside(at, y + 1 < height_, at + width_)]);
         for (std::size_t k = 0; k < filtered.size(); ++k)
           texels_[at][k] = std::clamp(texels_[at][k] + means_[at][k] - filtered[k], 0.0f, 1.0f);
       }
@@ -89,7 +89,7 @@ class Fitting {
   const TexelRange& range_;
   std::size_t width_, height_;
   std::vector<std::uint8_t> is_known_;
-  std::vector<Light> means_, texels_, across_;
+  std::vector<TexelLight> means_, texels_, across_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace meshhier::texture {
 /// middles of the texels beside it.
 struct TexelMeans {
   std::uint32_t width = 0;  ///< of the picture
-  std::vector<Light> lights;
+  std::vector<TexelLight> lights;
   std::vector<std::uint8_t> is_known;
 
   TexelMeans(std::uint32_t w, std::uint32_t h)

@@ -1,8 +1,7 @@
-// Texels as light, to make means of them.
+// Texels as light, in single precision, to make means of them.
 #pragma once
 
 #include "hierarchy/four_floats.h"
-#include "texture/light.h"
 #include "texture/texel_raster.h"
 
 #include <algorithm>
@@ -12,12 +11,24 @@
 
 namespace meshhier::texture {
 
+/// The light, 0 to 1, of each 8-bit value.
+extern const std::array<float, 256> kLight;
+
+/// The 8-bit value nearest to a light, which is cut to 0 to 1.
+std::uint8_t value_of_light(float light);
+
+/// 0 to 1 in 255 steps: what is stored as it is, such as alpha.
+inline std::uint8_t value_of_part(float part) {
+  return static_cast<std::uint8_t>(part * 255 + 0.5f);
+}
+
 /// Light of red, green and blue times alpha, and alpha.
-using Light = std::array<float, 4>;
+using TexelLight = std::array<float, 4>;
 
 /// Adds `weight` times a texel of 3 or 4 channels.
-inline void add_texel(Light& sum, const std::uint8_t* texel, std::uint32_t channels, float weight) {
-  static_assert(sizeof(FourFloats) == sizeof(Light));
+inline void add_texel(TexelLight& sum, const std::uint8_t* texel, std::uint32_t channels,
+                      float weight) {
+  static_assert(sizeof(FourFloats) == sizeof(TexelLight));
   if (channels == 4)
     weight *= static_cast<float>(texel[3]) / 255;
   const FourFloats light{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1};
@@ -25,7 +36,7 @@ inline void add_texel(Light& sum, const std::uint8_t* texel, std::uint32_t chann
 }
 
 /// Stores a mean; what is not there at all is black.
-inline void store_texel(const Light& mean, std::uint8_t* texel, std::uint32_t channels) {
+inline void store_texel(const TexelLight& mean, std::uint8_t* texel, std::uint32_t channels) {
   const float scale = mean[3] > 0 ? 1 / mean[3] : 0;
   for (std::size_t k = 0; k < 3; ++k)
     texel[k] = value_of_light(mean[k] * scale);

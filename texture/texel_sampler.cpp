@@ -41,8 +41,8 @@ struct Taps {
   }
 };
 
-Light mix(const images::Image& picture, const Taps& columns, const Taps& rows) {
-  Light sum{};
+TexelLight mix(const images::Image& picture, const Taps& columns, const Taps& rows) {
+  TexelLight sum{};
   for (std::uint32_t j = 0; j < rows.count; ++j) {
     const std::uint8_t* texel = picture.at(columns.first, rows.first + j);
     for (std::uint32_t i = 0; i < columns.count; ++i, texel += picture.channels)
@@ -96,7 +96,7 @@ TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double tex
 }
 
 /// `part`: of what is asked for.
-Light TexelSampler::mean(const NearestTriangle::Found& at, float part) const {
+TexelLight TexelSampler::mean(const NearestTriangle::Found& at, float part) const {
   const Spot& spot = spots_[at.triangle];
   const images::Image& picture = *pictures_[spot.picture];
   const auto b = static_cast<float>(at.on_b), c = static_cast<float>(at.on_c);

@@ -19,9 +19,9 @@ class TexelSampler {
   TexelSampler(std::span<const TexturedSurface> surfaces, double texel);
 
   /// A mean around a point, weighted by a tent that ends a texel of the larger of both sizes away.
-  Light around(const NearestTriangle::Found& at) const { return mean(at, 1); }
+  TexelLight around(const NearestTriangle::Found& at) const { return mean(at, 1); }
   /// The mean of a pixel around it that is as large as a texel: a tent of as much spread, about.
-  Light pixel(const NearestTriangle::Found& at) const { return mean(at, 0.7f); }
+  TexelLight pixel(const NearestTriangle::Found& at) const { return mean(at, 0.7f); }
 
  private:
   struct Spot {
@@ -30,7 +30,7 @@ class TexelSampler {
     std::uint32_t picture;
   };
 
-  Light mean(const NearestTriangle::Found& at, float part) const;
+  TexelLight mean(const NearestTriangle::Found& at, float part) const;
 
   std::vector<Spot> spots_;
   std::vector<images::Image> smaller_;

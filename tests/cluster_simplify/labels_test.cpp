@@ -1,7 +1,7 @@
 // Labels of vertices through contractions.
 #include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/contraction.h"
-#include "cluster_simplify/label_borders.h"
+#include "cluster_simplify/tile_wedges.h"
 #include "hierarchy/value_mixer.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"

@@ -2,9 +2,9 @@
 
 #include "tests/texture/painted.h"
 #include "tests/texture/random_numbers.h"
-#include "texture/light.h"
 #include "texture/reduction.h"
 #include "texture/shown_texels.h"
+#include "texture/texel_light.h"
 #include "texture/texel_raster.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "tests/texture/random_numbers.h"
 #include "texture/chart_layout.h"
 #include "texture/normal_texels.h"
-#include "texture/tangent_frame.h"
+#include "texture/vertex_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -121,7 +121,7 @@ TEST(NormalTexels, WhatIsNotKnownIsLeftOut) {
   EXPECT_EQ(beside.x, 0);
 }
 
-TEST(TangentFrame, ReadsWhatIsWritten) {
+TEST(VertexFrame, ReadsWhatIsWritten) {
   RandomNumbers random(3);
   const auto vector = [&] {
     const auto number = [&] { return 2 * random.part() - 1; };
@@ -132,8 +132,8 @@ TEST(TangentFrame, ReadsWhatIsWritten) {
     plane.normal = {0, 0, 1};
     plane.x = {1, 0, 0};
     plane.y = i % 2 == 0 ? Vec3d{0, 1, 0} : Vec3d{0, -1, 0};
-    std::array<TangentFrame, 3> corners;
-    for (TangentFrame& corner : corners) {
+    std::array<VertexFrame, 3> corners;
+    for (VertexFrame& corner : corners) {
       const Vec3f normal = to_float(vector() * 0.4 + Vec3d{0, 0, 1});
       const TangentCode tangent = tangent_of(plane, normal);
       EXPECT_TRUE(is_tangent_code(tangent));
@@ -141,7 +141,7 @@ TEST(TangentFrame, ReadsWhatIsWritten) {
       corner = frame_of(normal, tangent);
       EXPECT_NEAR(dot(corner.normal, corner.tangent), 0, 0.01);
     }
-    const TangentFrame frame = interpolated(corners, {0.2, 0.5, 0.3});
+    const VertexFrame frame = interpolated(corners, {0.2, 0.5, 0.3});
     const Vec3d direction = vector() + Vec3d{0, 0, 1.5};
     const Vec3d back = frame.mixed(frame.coefficients_of(direction));
     EXPECT_NEAR(dot(back, direction) / (length(back) * length(direction)), 1, 1e-12);
@@ -149,7 +149,7 @@ TEST(TangentFrame, ReadsWhatIsWritten) {
   }
 }
 
-TEST(TangentFrame, AVertexSeenFromTheSideHasOneToo) {
+TEST(VertexFrame, AVertexSeenFromTheSideHasOneToo) {
   ChartPlane plane;
   plane.normal = {0, 0, 1};
   plane.x = {1, 0, 0};

@@ -2,7 +2,7 @@
 
 #include "tests/texture/random_numbers.h"
 #include "texture/fill.h"
-#include "texture/light.h"
+#include "texture/texel_light.h"
 #include "texture/texel_raster.h"
 
 #include <algorithm>

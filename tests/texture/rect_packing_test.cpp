@@ -21,7 +21,7 @@ std::vector<RectSize> random_sizes(std::uint32_t count, std::uint32_t most, unsi
 }
 
 /// Each cell of the box is taken at most once, and none lies outside.
-void expect_apart(const Packing& packing, const std::vector<RectSize>& sizes) {
+void expect_apart(const RectPacking& packing, const std::vector<RectSize>& sizes) {
   ASSERT_EQ(packing.places.size(), sizes.size());
   std::vector<int> taken(std::size_t{packing.width} * packing.height);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -45,7 +45,7 @@ std::uint64_t area(const std::vector<RectSize>& sizes) {
 TEST(RectPacking, RectanglesLieApartAndClose) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const std::vector<RectSize> sizes = random_sizes(300, 12, seed);
-    const std::optional<Packing> packing = pack_tightly(sizes, 1024);
+    const std::optional<RectPacking> packing = pack_tightly(sizes, 1024);
     ASSERT_TRUE(packing);
     expect_apart(*packing, sizes);
     EXPECT_LT(double(packing->width) * packing->height, 1.2 * double(area(sizes)));
@@ -54,7 +54,7 @@ TEST(RectPacking, RectanglesLieApartAndClose) {
 
 TEST(RectPacking, OneRectangleTakesItsOwnSizeAlone) {
   const std::vector<RectSize> sizes = {{7, 3}};
-  const std::optional<Packing> packing = pack_tightly(sizes, 1024);
+  const std::optional<RectPacking> packing = pack_tightly(sizes, 1024);
   ASSERT_TRUE(packing);
   EXPECT_EQ(packing->width, 7U);
   EXPECT_EQ(packing->height, 3U);
@@ -71,7 +71,7 @@ TEST(RectPacking, WhatHasNoRoomIsTold) {
 // What a sort of the library makes of ties must not show.
 TEST(RectPacking, EqualRectanglesLieInTheirOrder) {
   const std::vector<RectSize> sizes(64, RectSize{2, 2});
-  const std::optional<Packing> packing = pack_into({16, 16}, sizes);
+  const std::optional<RectPacking> packing = pack_into({16, 16}, sizes);
   ASSERT_TRUE(packing);
   for (std::uint32_t i = 0; i < 64; ++i) {
     EXPECT_EQ(packing->places[i].x, 2 * (i % 8));

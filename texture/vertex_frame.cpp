@@ -1,4 +1,4 @@
-#include "texture/tangent_frame.h"
+#include "texture/vertex_frame.h"
 
 #include "texture/faces.h"
 
@@ -15,7 +15,7 @@ Vec3d shown_direction(const Vec3f& normal) {
 
 }  // namespace
 
-Vec3d TangentFrame::coefficients_of(const Vec3d& direction) const {
+Vec3d VertexFrame::coefficients_of(const Vec3d& direction) const {
   const Vec3d of_tangent = cross(bitangent, normal);
   const double turn = dot(tangent, of_tangent) < 0 ? -1 : 1;
   return Vec3d{dot(direction, of_tangent), dot(direction, cross(normal, tangent)),
@@ -35,8 +35,8 @@ TangentCode tangent_of(const ChartPlane& plane, const Vec3f& corner) {
   return tangent_code(length(tangent) > 1e-6 ? tangent : plane.y, is_mirrored);
 }
 
-TangentFrame frame_of(const Vec3f& normal, const TangentCode& tangent) {
-  TangentFrame frame;
+VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent) {
+  VertexFrame frame;
   frame.normal = shown_direction(normal);
   frame.tangent = direction_of({double(tangent[0]), double(tangent[1]), double(tangent[2])});
   frame.bitangent =
@@ -44,9 +44,9 @@ TangentFrame frame_of(const Vec3f& normal, const TangentCode& tangent) {
   return frame;
 }
 
-TangentFrame interpolated(const std::array<TangentFrame, 3>& corners,
-                          const std::array<double, 3>& weights) {
-  TangentFrame frame;
+VertexFrame interpolated(const std::array<VertexFrame, 3>& corners,
+                         const std::array<double, 3>& weights) {
+  VertexFrame frame;
   for (std::size_t k = 0; k < 3; ++k) {
     frame.normal = frame.normal + corners[k].normal * weights[k];
     frame.tangent = frame.tangent + corners[k].tangent * weights[k];

@@ -13,7 +13,7 @@
 
 namespace meshhier::texture {
 
-struct TangentFrame {
+struct VertexFrame {
   Vec3d tangent, bitangent, normal;
 
   Vec3d mixed(const Vec3d& coefficients) const {
@@ -28,10 +28,10 @@ struct TangentFrame {
 /// compute whatever a file has.
 TangentCode tangent_of(const ChartPlane& plane, const Vec3f& normal);
 
-TangentFrame frame_of(const Vec3f& normal, const TangentCode& tangent);
+VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent);
 
 /// At a point of a triangle, from its corners.
-TangentFrame interpolated(const std::array<TangentFrame, 3>& corners,
-                          const std::array<double, 3>& weights);
+VertexFrame interpolated(const std::array<VertexFrame, 3>& corners,
+                         const std::array<double, 3>& weights);
 
 }  // namespace meshhier::texture

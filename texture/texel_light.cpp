@@ -1,4 +1,4 @@
-#include "texture/light.h"
+#include "texture/texel_light.h"
 
 #include "hierarchy/srgb.h"
 
