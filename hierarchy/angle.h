@@ -12,7 +12,7 @@ struct UnitTurn {
   double sine = 0;
 };
 
-/// Of an angle from -2 pi to 2 pi, off by less than 1e-14.
+/// The turn by an angle from -2 pi to 2 pi, off by less than 1e-14.
 UnitTurn turn_by(double angle);
 
 /// The angle from 0 to pi of the direction (x, y), y >= 0, off by less than 1e-14; 0 of (0, 0).

@@ -29,7 +29,7 @@ constexpr float full_number(ColourType type) {
   return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
 }
 
-/// What the numbers of red, green and blue are in proportion to; alpha's are always a part.
+/// The numbers of red, green and blue are in proportion to this; alpha's are always a part.
 enum class ColourSpace : std::uint8_t {
   srgb,   ///< the values of a screen (IEC 61966-2-1): PLY, OBJ, OFF, colours of materials
   linear  ///< light: glTF's COLOR_0
@@ -79,7 +79,7 @@ class ColourLight {
  public:
   explicit ColourLight(const AttributeLayout& layout);
 
-  /// Of channel `k` of a vertex: whether its numbers are not in proportion to its light.
+  /// Whether the numbers in channel `k` of a vertex are not in proportion to its light.
   bool has(std::size_t k) const { return k - first_ < count_; }
   double light(double number) const { return curve_.light(number / full_); }
   /// The inverse, but for rounding.

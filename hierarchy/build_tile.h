@@ -10,7 +10,7 @@
 
 namespace meshhier {
 
-/// What a build knows of a tile's own vertices beside their positions, one entry each.
+/// The history of a tile's own vertices, one entry each.
 struct VertexHistory {
   std::vector<float> weights;  ///< how many original vertices it stands for, >= 1
 };
@@ -52,15 +52,14 @@ struct WorkTile {
 using LeafTile = WorkTile<ChunkVertex>;       ///< of a partition
 using SimplifiedTile = WorkTile<FinerGhost>;  ///< of a node above
 
-/// What a tile shows of itself to its neighbours: its boundary vertices, [0, boundary_count).
+/// The part of a tile that its neighbours see: its boundary vertices, [0, boundary_count).
 struct Boundary {
   VertexArray vertices;
   Copies copies;
 };
 
-/// What became of the wedges of a tile's own places when it was contracted: of each the wedge at
-/// the place that stands for its own, which the parent map names. Empty if all have kept their
-/// numbers.
+/// Maps the wedges of a tile's own places to those of its parent: each to a wedge at the place that
+/// stands for its own, which the parent map names. Empty if all have kept their numbers.
 struct WedgeMap {
   std::vector<std::uint32_t> firsts;  ///< of the vertex of each place
   std::vector<std::uint32_t> copies;  ///< of each copy
@@ -84,9 +83,9 @@ struct BuildTile {
   VertexHistory history;  ///< own
 };
 
-/// What a simplified tile shows of itself to those who measure beside it: its border triangles as
-/// they were when it was made, foreign corners where they had been one level finer, and the
-/// interior triangles at its boundary.
+/// The part of a simplified tile that its neighbours measure against: its border triangles as they
+/// were when it was made, foreign corners where they had been one level finer, and the interior
+/// triangles at its boundary.
 struct SeamStrip {
   std::uint32_t boundary_count = 0;
   std::uint32_t own_count = 0;      ///< own vertices in the seam strip, boundary first

@@ -1,4 +1,4 @@
-// What the files of a progressive stream hold, and what their entries are made of.
+// The files of a progressive stream, and the entries that they hold.
 //
 // A progressive stream is a mesh as a base file and a series of detail files (Lin & Luo,
 // "Progressive Display Method for Interactive Mobile 3D Graphics"). Vertices and triangles keep the

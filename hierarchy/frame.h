@@ -16,12 +16,12 @@ constexpr std::string_view name_of(UpAxis up) {
   return up == UpAxis::z ? "z" : "y";
 }
 
-/// Of length 1.
+/// The direction up, of length 1.
 constexpr Vec3d direction_of(UpAxis up) {
   return up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
 }
 
-/// What the nodes of all files of a hierarchy share.
+/// The frame that the nodes of all files of a hierarchy share.
 struct Frame {
   Vec3d origin;           ///< added to every position
   UpAxis up = UpAxis::y;  ///< z: then turned, so that (x, y, z) becomes (x, z, -y)
@@ -37,7 +37,7 @@ constexpr Vec3d to_z_up(Vec3d p, UpAxis up) {
 /// A 4 x 4 matrix, column by column.
 using Transform = std::array<double, 16>;
 
-/// Of points that are scaled before.
+/// The transform of points that are scaled before.
 constexpr Transform scaled(Transform transform, double scale) {
   for (std::size_t i = 0; i < 12; ++i)
     transform[i] *= scale;

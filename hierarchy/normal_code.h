@@ -15,7 +15,7 @@ namespace meshhier {
 using NormalCode = std::array<std::int8_t, 4>;
 static_assert(sizeof(NormalCode) == 4);
 
-/// What has no direction looks along z.
+/// A normal without a direction looks along z.
 inline constexpr NormalCode kNoDirection{0, 0, 127, 0};
 
 /// Whether it is one that normal_code() gives, or as near to unit length as those are: half a step
@@ -27,8 +27,8 @@ inline bool is_normal_code(const NormalCode& code) {
   return in_range && std::abs(length(direction) / 127 - 1) <= 0.0068;
 }
 
-/// Of a vector of any length; kNoDirection if that is 0 or not finite. A normal that came from a
-/// code, which is not quite of unit length, has that code again.
+/// The code of a vector of any length; kNoDirection if that is 0 or not finite. A normal that came
+/// from a code, which is not quite of unit length, has that code again.
 inline NormalCode normal_code(const Vec3d& normal) {
   const double size = length(normal);
   if (!(size > 0) || !std::isfinite(size))
@@ -52,7 +52,7 @@ inline NormalCode normal_code(const Vec3d& normal) {
   return rounded(normal * (127 / size));
 }
 
-/// Of a length from 0.993 to 1.007.
+/// The normal of a code; its length is from 0.993 to 1.007.
 inline Vec3f normal_of(const NormalCode& code) {
   constexpr float kStep = 1 / 127.0F;
   return {static_cast<float>(code[0]) * kStep, static_cast<float>(code[1]) * kStep,

@@ -22,8 +22,9 @@ std::string counted(std::uint64_t count, std::string_view plural);
 /// "600 vertices", "600 vertices at 578 places" if some lie where others do.
 std::string counted_vertices(std::uint64_t vertices, std::uint64_t places);
 
-/// What a JSON library says of a text that is none, for people: "line 3, column 5: syntax error
-/// ..." of "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ...".
+/// Makes a JSON library's message about a text that is none fit for people: "line 3, column 5:
+/// syntax error ..." of "[json.exception.parse_error.101] parse error at line 3, column 5: syntax
+/// error ...".
 std::string json_fault(std::string_view message);
 
 }  // namespace meshhier

@@ -1,4 +1,4 @@
-// What a finished hierarchy says of itself and of each tile, as values.
+// A finished hierarchy's words about itself and each tile, as values.
 #pragma once
 
 #include "hierarchy/bounds.h"
@@ -101,13 +101,13 @@ struct SourceFile {
   std::uint64_t checksum = 0;  ///< storage::FileChecksum
 };
 
-/// What an import counted, by name.
+/// A count of an import, by name.
 struct SourceCount {
   std::string name;  ///< "split_vertices"
   std::uint64_t count = 0;
 };
 
-/// What the input has of textures.
+/// The textures of the input.
 struct SourceTextures {
   std::uint64_t materials = 0;       ///< that triangles use
   std::uint64_t images = 0;          ///< of these
@@ -116,7 +116,7 @@ struct SourceTextures {
   friend bool operator==(const SourceTextures&, const SourceTextures&) = default;
 };
 
-/// What the input was.
+/// The input that a hierarchy was built from.
 struct SourceSummary {
   std::string file_name;         ///< of several files, with ", " between them
   std::uint64_t file_bytes = 0;  ///< of all files
@@ -139,9 +139,9 @@ struct SourceSummary {
       counts;  ///< of an import, and of what became 0: those that are not 0; by name
   std::vector<std::string> unused;  ///< what the input has besides, for people: "vertex.intensity"
 
-  /// Of the bounding box.
+  /// The length of the bounding box's diagonal.
   double diagonal() const { return length(bounds.max - bounds.min); }
-  /// Of `counts`; 0 if there is none of that name.
+  /// One of `counts`; 0 if there is none of that name.
   std::uint64_t count_of(std::string_view name) const {
     const auto found = std::ranges::find(counts, name, &SourceCount::name);
     return found == counts.end() ? 0 : found->count;

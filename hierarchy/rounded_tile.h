@@ -1,4 +1,4 @@
-// What rounding to a lattice does to a tile, and to the bound that it had.
+// Rounds a tile to a lattice, and tells what that does to the bound that it had.
 #pragma once
 
 #include "hierarchy/lattice.h"

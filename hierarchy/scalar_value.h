@@ -29,7 +29,7 @@ constexpr int channels_of(ValueType type) {
 std::string_view name_of(ValueType type);
 std::optional<ValueType> value_type_of(std::string_view name);
 
-/// What a mesh has one number a vertex of.
+/// An attribute with one number a vertex.
 struct ScalarAttribute {
   std::string name;  ///< of the input: 1 to kMostNameBytes printable ASCII characters, no space
   ValueType type{};

@@ -1,5 +1,6 @@
-// What a build adds to the vertices of tiles: normals for a mesh that has none, coordinates in
-// the tile's own picture for a mesh with textures, coordinates and tangents for a normal map.
+// Shading: what a build adds to the vertices of tiles. Normals for a mesh that has none,
+// coordinates in the tile's own picture for a mesh with textures, coordinates and tangents for a
+// normal map.
 //
 // They are kept apart from the tile's mesh: at a crease a vertex has several normals, at the border
 // of a chart several coordinates, and who asks for the mesh (verify --input, export, streams) gets
@@ -17,8 +18,8 @@
 
 namespace meshhier {
 
-/// Of a tile. Vertices have the numbers of VertexNumbers, [0, n): places, then copies. Split i has
-/// the number n + i.
+/// The shading of a tile. Vertices have the numbers of VertexNumbers, [0, n): places, then copies.
+/// Split i has the number n + i.
 struct Shading {
   std::vector<NormalCode> normals;  ///< of vertices, then of splits; empty: no computed normals
   std::vector<Vec2f> texcoords;  ///< likewise, in the tile's picture or normal map; empty: it has
@@ -38,14 +39,14 @@ constexpr std::uint64_t most_splits(std::uint64_t interior_count, std::uint64_t 
   return 3 * (interior_count + border_count);
 }
 
-/// What a tile knows of its own vertices: places, then their copies.
+/// The shading of a tile's own vertices: places, then their copies.
 struct OwnShading {
   std::vector<NormalCode> normals;      ///< of own places, of their copies, of splits
   std::vector<std::uint32_t> split_of;  ///< number of an own place, or own_count + copy; ascending
 };
 
-/// What a tile shows its neighbours of that: its boundary. Numbers are those of the boundary:
-/// place v has the number v, copy i the number boundary_count + i.
+/// The part of it that a tile shows its neighbours: its boundary. Numbers are those of the
+/// boundary: place v has the number v, copy i the number boundary_count + i.
 struct BoundaryShading {
   std::uint32_t boundary_count = 0;
   std::vector<std::uint32_t> copy_places;  ///< of the copies on the boundary, ascending

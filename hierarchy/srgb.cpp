@@ -8,7 +8,8 @@
 namespace meshhier {
 namespace {
 
-/// Of a number from 0.001 to 1, by Newton's method: 20 steps reach the last bits from above.
+/// Takes the root of a number from 0.001 to 1 by Newton's method: 20 steps reach the last bits from
+/// above.
 constexpr double fifth_root(double x) {
   double root = 1;
   for (int step = 0; step < 20; ++step) {
@@ -18,7 +19,7 @@ constexpr double fifth_root(double x) {
   return root;
 }
 
-/// Of a number from 0.0007 to 1, likewise.
+/// The same for a number from 0.0007 to 1.
 double cube_root(double x) {
   double root = 1;
   for (int step = 0; step < 14; ++step)
@@ -26,7 +27,7 @@ double cube_root(double x) {
   return root;
 }
 
-/// Of a value from 0 to 1.
+/// The light of a value from 0 to 1.
 constexpr double light(double value) {
   if (value <= 0.04045)
     return value / 12.92;

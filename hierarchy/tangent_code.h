@@ -14,7 +14,7 @@ namespace meshhier {
 /// the bitangent is (cross(normal, tangent) times 1 or -1).
 using TangentCode = std::array<std::int8_t, 4>;
 
-/// Of a vertex that no triangle uses.
+/// The tangent of a vertex that no triangle uses.
 inline constexpr TangentCode kNoTangent{127, 0, 0, 127};
 
 inline TangentCode tangent_code(const Vec3d& tangent, bool is_mirrored) {

@@ -7,8 +7,8 @@
 
 namespace meshhier {
 
-/// Of length one, with `n` a right-handed frame (u, v, n). Without roots or branches (Duff et al.,
-/// Building an Orthonormal Basis, Revisited, 2017).
+/// Two axes of length one, with `n` a right-handed frame (u, v, n). Without roots or branches (Duff
+/// et al., Building an Orthonormal Basis, Revisited, 2017).
 template <class Scalar>
 struct TangentFrame {
   Vec3<Scalar> u, v;

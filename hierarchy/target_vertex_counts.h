@@ -35,15 +35,15 @@ class TargetVertexCounts {
   std::uint32_t of(Level level) const {
     return by_level_[std::min<std::size_t>(raw(level), by_level_.size() - 1)];
   }
-  /// What a tile of `level` is contracted to if its children have `own_count` > 0 together: as many
-  /// as asked for, but every level is coarser than the one below it by a quarter, or by a sixteenth
-  /// where levels were chosen one by one. At least 1.
+  /// Returns the count that a tile of `level` is contracted to if its children have `own_count` > 0
+  /// together: the one asked for, but every level is coarser than the one below it by a quarter, or
+  /// by a sixteenth where levels were chosen one by one. At least 1.
   std::uint32_t target(Level level, std::uint32_t own_count) const {
     const std::uint64_t most = by_level_.size() == 1 ? std::uint64_t{own_count} * 3 / 4
                                                      : std::uint64_t{own_count} * 15 / 16;
     return std::max(1U, std::min(of(level), static_cast<std::uint32_t>(most)));
   }
-  /// Of the levels coarser than `end`; 0 if there are none.
+  /// The largest count of the levels coarser than `end`; 0 if there are none.
   std::uint32_t largest_above(Level end) const {
     const std::size_t levels = std::min<std::size_t>(raw(end), by_level_.size());
     return levels == 0 ? 0 : *std::max_element(by_level_.begin(), by_level_.begin() + levels);

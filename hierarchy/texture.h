@@ -22,7 +22,7 @@ static_assert(sizeof(Vec2f) == 8);
 /// How a picture goes on beyond 0 ... 1.
 enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
 
-/// What alpha means. Ordered: of several in one tile, the last one counts.
+/// The meaning of alpha. Ordered: the last one of several in a tile counts.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 inline constexpr std::array<std::string_view, 3> kAlphaModeNames{"opaque", "mask", "blend"};
 
@@ -39,7 +39,7 @@ struct TileImage {
 /// No picture of a tile is larger: WebP has no larger ones, and many GPUs neither.
 inline constexpr std::uint32_t kMaxImageSide = 8192;
 
-/// What a hierarchy says of all its tiles' pictures.
+/// The format of all pictures of a hierarchy's tiles.
 struct TextureFormat {
   ImageFormat format = ImageFormat::jpeg;  ///< see stored_format()
   int quality = 90;                        ///< 1 ... kBestQuality
@@ -47,7 +47,7 @@ struct TextureFormat {
   friend constexpr bool operator==(const TextureFormat&, const TextureFormat&) = default;
 };
 
-/// What a hierarchy says of all its tiles' normal maps.
+/// The format of all normal maps of a hierarchy's tiles.
 struct NormalMapFormat {
   ImageFormat format = ImageFormat::jpeg;  ///< jpeg: of red, green and blue as they are
   int quality = 85;                        ///< 1 ... kBestQuality, if graded_maps

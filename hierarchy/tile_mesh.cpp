@@ -100,7 +100,7 @@ void sort_by_first_corner(std::vector<Item>& items, FirstCorner first_corner,
   items = std::move(sorted);
 }
 
-/// Of canonical ones.
+/// Sorts canonical triangles.
 void sort(std::vector<TileTriangle>& triangles) {
   const auto rest = [](const TileTriangle& t) {
     return std::uint64_t{raw(t[1])} << 32 | raw(t[2]);

@@ -86,8 +86,8 @@ struct TileMesh {
   std::vector<TileTriangle> interior;  ///< all corners own; ascending, smallest corner first
   std::vector<TileTriangle> border;    ///< one or two corners own, the others ghosts; likewise
   Copies copies;                       ///< of own places, then of ghosts
-  /// Of each copy of a ghost, its wedge in the ghost's own tile, >= 1, ascending within a place:
-  /// only wedges that border triangles here use are here. Empty in tiles read from a hierarchy.
+  /// Per copy of a ghost, its wedge in the ghost's own tile, >= 1, ascending within a place: only
+  /// wedges that border triangles here use are here. Empty in tiles read from a hierarchy.
   std::vector<std::uint32_t> ghost_wedges;
   std::vector<CornerWedges> interior_wedges;  ///< one a triangle; empty if there are no copies
   std::vector<CornerWedges> border_wedges;    ///< likewise

@@ -12,7 +12,7 @@
 
 namespace meshhier {
 
-/// What names a corner: a strong id, or a plain number where no id is made for it.
+/// A corner's name: a strong id, or a plain number where no id is made for it.
 template <class Id>
 concept CornerId = std::is_enum_v<Id> || std::unsigned_integral<Id>;
 

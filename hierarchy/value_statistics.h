@@ -1,4 +1,4 @@
-// What the values of one attribute are, in numbers: range, histogram, which labels there are.
+// Statistics of one attribute's values: range, histogram, which labels there are.
 //
 // Bins have a width that is a power of two and begin at multiples of it, so that counts of narrow
 // bins add up to those of wider ones: one pass over the values is enough, in any order, and in
@@ -31,12 +31,12 @@ struct ValueStatistics {
 
   std::uint64_t missing = 0;  ///< vertices whose value is not finite
   double min = 0, max = 0;    ///< of the others; both 0 if there are none
-  /// Of the others in bins [first_bin + i, first_bin + i + 1) * 2^bin_exponent: at most kMostBins,
-  /// of which the first and the last are not empty.
+  /// The others are counted in bins [first_bin + i, first_bin + i + 1) * 2^bin_exponent: at most
+  /// kMostBins, of which the first and the last are not empty.
   int bin_exponent = 0;
   std::int64_t first_bin = 0;
   std::vector<std::uint64_t> bins{};
-  /// Of a label: all that there are, ascending; empty if there are more than kMostLabels.
+  /// All labels that there are, ascending; empty if they are more than kMostLabels, or no labels.
   std::vector<LabelCount> labels{};
 
   friend bool operator==(const ValueStatistics&, const ValueStatistics&) = default;
@@ -47,9 +47,9 @@ class ValueTally {
  public:
   explicit ValueTally(const ScalarAttribute& attribute);
 
-  /// Of vertices whose channels lie `stride` floats apart, the first ones at `channels`.
+  /// Counts vertices whose channels lie `stride` floats apart, the first ones at `channels`.
   void add(const float* channels, std::size_t stride, std::size_t vertices);
-  /// Of the same attribute.
+  /// Adds the counts of another tally of the same attribute.
   void add(const ValueTally& other);
   ValueStatistics statistics() const;
 

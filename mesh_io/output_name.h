@@ -1,4 +1,4 @@
-// What the name of an output promises to whoever opens it by its name.
+// Tells what an output's name promises to whoever opens it by its name.
 #pragma once
 
 #include <initializer_list>
