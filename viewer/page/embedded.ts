@@ -4,7 +4,8 @@ import { JsonValue } from '../src/json_value.js';
 import { unpacked } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from '../src/hierarchy/manifest_file.js';
-import { remoteFiles, type RemoteFiles, type Whereabouts } from '../src/hierarchy/remote_files.js';
+import type { RemoteFiles, Whereabouts } from '../src/hierarchy/files.js';
+import { remoteFiles } from '../src/hierarchy/remote_files.js';
 import type { Model } from './listing.js';
 
 const ID = 'meshhier-hierarchy';

@@ -2,7 +2,7 @@
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
 import { isArchiveUrl } from '../src/hierarchy/archive_format.js';
-import type { RemoteFiles } from '../src/hierarchy/remote_files.js';
+import type { RemoteFiles } from '../src/hierarchy/files.js';
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 import { words } from './words/words.js';
 

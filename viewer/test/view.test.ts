@@ -7,7 +7,8 @@ import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vites
 import type { Fetch } from '../src/hierarchy/bytes.js';
 import type { ViewOptions } from '../src/index.js';
 import { unsplitOf } from '../src/hierarchy/copies.js';
-import { readTile, type Indices } from '../src/hierarchy/tile.js';
+import type { Indices } from '../src/hierarchy/copies.js';
+import { readTile } from '../src/hierarchy/tile.js';
 import { fetchFrom, hasProgram, resealed, withoutQuery, Workshop } from './support/meshhier.js';
 import { FakeBitmap, fakeDecode, png } from './support/pictures.js';
 import { Session, type Place } from './support/session.js';

@@ -4,7 +4,8 @@ import { isArchiveUrl } from '../../src/hierarchy/archive_format.js';
 import { withoutLastSlashes, type Fetch } from '../../src/hierarchy/bytes.js';
 import { fetchManifest, type NamedFile } from '../../src/hierarchy/manifest.js';
 import { fetchOutline } from '../../src/hierarchy/outline.js';
-import { remoteFiles, whole, type RemoteFiles } from '../../src/hierarchy/remote_files.js';
+import { whole, type RemoteFiles } from '../../src/hierarchy/files.js';
+import { remoteFiles } from '../../src/hierarchy/remote_files.js';
 import { shapeOf, type Shape } from './shape.js';
 
 const MOST_TRIES = 2;

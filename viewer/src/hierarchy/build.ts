@@ -3,7 +3,7 @@
 import { fetchHostManifest } from './manifest.js';
 import { MANIFEST } from './manifest_file.js';
 import { HierarchyProblem, HierarchyReplaced } from './problem.js';
-import type { RemoteFiles } from './remote_files.js';
+import type { RemoteFiles } from './files.js';
 
 export class Build {
   private running: Promise<void> = Promise.resolve();

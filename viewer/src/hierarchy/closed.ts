@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Indices } from './tile.js';
+import type { Indices } from './copies.js';
 
 const SPAN = 65536; // above any vertex's number here
 

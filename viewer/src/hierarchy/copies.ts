@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Vertices at one place: its first has the place's number. Behind all places come further vertices of places, copies,
 // and behind those splits: vertices once more, with another normal.
-import type { Indices } from './tile.js';
+
+/// Numbers of vertices.
+export type Indices = Uint16Array | Uint32Array;
 
 /// A tile has these.
 export interface Places {

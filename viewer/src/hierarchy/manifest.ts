@@ -6,7 +6,7 @@ import { HierarchyProblem } from './problem.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
 import { PICTURE_FORMATS } from './picture_size.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
-import { whole, type RemoteFiles } from './remote_files.js';
+import { whole, type RemoteFiles } from './files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 

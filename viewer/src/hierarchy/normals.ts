@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Normals of meshes that have none, and the cone that holds nearly all of a tile's.
-import type { Indices } from './tile.js';
+import type { Indices } from './copies.js';
 
 /// Directions around an axis: those with dot(direction, axis) >= cosine.
 export interface Cone {

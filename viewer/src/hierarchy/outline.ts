@@ -5,7 +5,7 @@ import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
 import { checksum } from './checksum.js';
 import type { Manifest } from './manifest.js';
-import { whole, type RemoteFiles } from './remote_files.js';
+import { whole, type RemoteFiles } from './files.js';
 
 export interface Outline {
   /// Three numbers a vertex, relative to the hierarchy's origin.

@@ -10,7 +10,7 @@ import { readManifest, type Manifest } from './manifest.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { HierarchyProblem } from './problem.js';
 import { RangedFile } from './ranged_file.js';
-import type { RemoteFiles, Whereabouts } from './remote_files.js';
+import type { RemoteFiles, Whereabouts } from './files.js';
 import { tilePath } from './tree.js';
 
 /// Read of the end: index and directory of some 700 files.

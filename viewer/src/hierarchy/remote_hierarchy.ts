@@ -7,7 +7,7 @@ import { fetchOutlineOf, type Outline } from './outline.js';
 import { HierarchyProblem, HierarchyReplaced } from './problem.js';
 import { MOST_SIDE } from './limits.js';
 import { mostPictureBytes } from './picture.js';
-import { whole, type RemoteFiles } from './remote_files.js';
+import { whole, type RemoteFiles } from './files.js';
 import { fits, type OpenedTile, type Seal } from './stored_tile.js';
 import { letGo, type NormalSource, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';

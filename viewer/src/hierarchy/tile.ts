@@ -5,13 +5,11 @@ import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
 import { decodePicture, dropPicture, findPicture, partsOfPicture, type Picture } from './picture.js';
-import { placeOf, toPlaces, unsplitOf, type Places } from './copies.js';
+import { placeOf, toPlaces, unsplitOf, type Indices, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
 import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
 import { readScalarValues } from './scalar_values.js';
 import { detached, readColours, readMapTexcoords, readNormals, readPositions, readTangents, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
-
-export type Indices = Uint16Array | Uint32Array;
 
 /// Who made the normals. The viewer makes them from the triangles where the file has none, and those of ghosts are not right:
 /// the tile that owns the vertex knows.

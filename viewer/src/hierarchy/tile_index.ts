@@ -4,7 +4,7 @@
 import { archivedBytes } from './archive_format.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_SIDE, mostSplits } from './limits.js';
 import { HierarchyProblem } from './problem.js';
-import type { Whereabouts } from './remote_files.js';
+import type { Whereabouts } from './files.js';
 import { keyOf, tilePath, type Node, type Tree } from './tree.js';
 
 type Triple = readonly [number, number, number];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One opening of a hierarchy: what all tiles need, however often the host or the line fails.
 import type { Manifest } from '../hierarchy/manifest.js';
-import type { RemoteFiles } from '../hierarchy/remote_files.js';
+import type { RemoteFiles } from '../hierarchy/files.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';

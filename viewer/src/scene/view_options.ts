@@ -2,7 +2,7 @@
 // What a view is made with, and what it tells.
 import type { Object3DEventMap } from 'three';
 import type { Fetch } from '../hierarchy/bytes.js';
-import type { RemoteFiles } from '../hierarchy/remote_files.js';
+import type { RemoteFiles } from '../hierarchy/files.js';
 import type { Look, Settings } from './settings.js';
 import type { Standing } from './standing.js';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes over the triangles of a tile: a ray looks at few of them. Triangles are in the order of a Morton curve, and
 // each box holds two halves of a run of it (Lauterbach et al. 2009, "Fast BVH construction on GPUs").
-import type { Indices } from '../hierarchy/tile.js';
+import type { Indices } from '../hierarchy/copies.js';
 import type { RayProbe } from './ray.js';
 
 const RUN = 8; // triangles of the lowest boxes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The volume that a closed surface encloses, or that lies between an open one and a plane, as far as planes keep it. By Gauss's
 // theorem: of a field that grows along a plane's normal from 0 on, all of it is in the flux through the surface, none through the cut.
-import type { Indices } from '../hierarchy/tile.js';
+import type { Indices } from '../hierarchy/copies.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { flipped, sideOf, type CutPlane } from './planes.js';

@@ -4,7 +4,7 @@ import { gzipSync } from 'node:zlib';
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { embeddedModel, EmbeddedFiles } from '../../page/embedded.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';
-import type { RemoteFiles } from '../../src/hierarchy/remote_files.js';
+import type { RemoteFiles } from '../../src/hierarchy/files.js';
 
 const TEXT = new TextEncoder().encode('0123456789'.repeat(10));
 const { signal } = new AbortController();
