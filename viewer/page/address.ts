@@ -2,15 +2,10 @@
 // Links: `#MODEL&px,py,pz,tx,ty,tz&NAME=VALUE…`. MODEL is the path of the hierarchy relative to the listing, and
 // empty for the one model that the query names; the camera and what was chosen (appearance.ts) may be missing.
 import { areNear } from '../src/farthest.js';
+import type { Pose, Triple } from '../src/scene/camera_pose.js';
 import { readable } from './listing.js';
 
-export type Triple = readonly [number, number, number];
-
-/// Where the camera is and what it looks at, in the model's upright coordinates.
-export interface Pose {
-  position: Triple;
-  target: Triple;
-}
+export type { Pose };
 
 /// What of a view a link keeps.
 export interface Spot {

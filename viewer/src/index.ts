@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-export { HierarchyView } from './scene/hierarchy_view.js';
+export { HierarchyView, type Plugin, type Stage } from './scene/hierarchy_view.js';
+export type { Frame } from './plugins/plugin.js';
+export { replaceChunk, type Shader, type Shading } from './scene/shading.js';
+export { CameraPose, type Pose } from './scene/camera_pose.js';
 export type { ViewEvents, ViewOptions } from './scene/view_options.js';
 export type { DrawnTile, TileSource } from './scene/surface.js';
-export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';
+export { attributeIndex, wholeRange, type AttributeLook, type Colours, type Look, type Mode, type Settings, type Stats } from './scene/settings.js';
 export type { ScalarAttribute } from './hierarchy/scalar_values.js';
-export { attributeIndex, wholeRange, type AttributeLook } from './scene/attribute_paint.js';
 export { labelColour, rampColour, RAMPS, type RampName } from './scene/ramps.js';
 export { MOST_STRETCH, UPS, type Standing, type Up } from './scene/standing.js';
 export type { Terrain } from './scene/terrain.js';

@@ -7,9 +7,10 @@ import { afterAll, describe, expect, it } from 'vitest';
 import { HierarchyView, type ScalarAttribute } from '../src/index.js';
 import { readManifest } from '../src/hierarchy/manifest.js';
 import { NO_VALUE } from '../src/hierarchy/scalar_values.js';
-import { attributeIndex, AttributePaint, isolineStep, wholeRange } from '../src/scene/attribute_paint.js';
+import { Attributes, isolineStep } from '../src/plugins/attributes.js';
 import { labelColour, rampColour, RAMPS } from '../src/scene/ramps.js';
-import { DEFAULT_LOOK } from '../src/scene/settings.js';
+import { attributeIndex, DEFAULT_LOOK, wholeRange } from '../src/scene/settings.js';
+import type { Tile } from '../src/hierarchy/tile.js';
 import { Picker, rayThrough } from '../src/tools/pick.js';
 import { pickedPoint } from '../src/tools/picked_point.js';
 import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
@@ -149,12 +150,12 @@ describe('an attribute as colours', () => {
   });
 
   it('hides labels', () => {
-    const paint = new AttributePaint();
-    paint.set([QUANTITY, LABEL], { ...DEFAULT_LOOK, attribute: 'l', hidden: [5] });
-    expect(paint.isLabel).toBe(true);
+    const paint = new Attributes();
+    paint.show({ ...DEFAULT_LOOK, attribute: 'l', hidden: [5] }, [QUANTITY, LABEL]);
+    expect(paint.key({ ...DEFAULT_LOOK, colours: 'attribute' }, { values: new Float32Array(2) } as Tile)).toBe('label');
     const { data } = paint.uniforms.valueRamp.value!.image as { data: Uint8Array };
     expect([3, 7, 11, 15].map((alpha) => data[alpha])).toEqual([255, 255, 255, 0]);
-    paint.set([QUANTITY], { ...DEFAULT_LOOK, range: [2, 0] });
+    paint.show({ ...DEFAULT_LOOK, range: [2, 0] }, [QUANTITY]);
     expect(paint.uniforms.valueRange.value.toArray()).toEqual([2, 0]);
     paint.dispose();
   });

@@ -4,7 +4,7 @@ import type { Note, Notebook } from '../../src/tools/note.js';
 import type { Bench } from '../tools/bench.js';
 import { poseOfNote } from '../tools/note_pose.js';
 import { Places } from '../tools/places.js';
-import type { CameraPose } from '../view/camera_pose.js';
+import type { CameraPose } from '../../src/scene/camera_pose.js';
 import { StoryCard } from './story_card.js';
 import { StoryMarks } from './story_marks.js';
 import './story.css';

@@ -5,7 +5,7 @@ import type { HierarchyView } from '../../src/index.js';
 import type { Notebook } from '../../src/tools/note.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import type { Telling } from '../problems.js';
-import type { CameraPose } from '../view/camera_pose.js';
+import type { CameraPose } from '../../src/scene/camera_pose.js';
 import type { Painter } from '../view/stage.js';
 
 export type ToolName = 'pick' | 'measure' | 'clip' | 'notes' | 'camera';

@@ -2,7 +2,7 @@
 // The orientation cube: it turns with the model, and its faces can be clicked.
 import { cubeTransform, positionFor, SIDES, type Side } from '../../src/tools/orientation.js';
 import { element } from '../parts/element.js';
-import { CameraPose } from '../view/camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 import type { Bench } from './bench.js';
 import { words } from './words/words.js';
 

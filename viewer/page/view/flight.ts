@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A way from one pose to another, in time.
-import { between, type CameraPose } from './camera_pose.js';
+import type { CameraPose } from '../../src/scene/camera_pose.js';
+import { between } from './camera_moves.js';
 import { SmoothPath } from './smooth_path.js';
 
 const MILLISECONDS = 650;

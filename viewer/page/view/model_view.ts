@@ -13,7 +13,7 @@ import type { Telling } from '../problems.js';
 import type { Bench } from '../tools/bench.js';
 import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
-import { CameraPose } from './camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 import { ToldLook } from '../story/told_look.js';
 import { ImmersionHost } from '../xr/immersion_host.js';
 import { immersions } from '../xr/support.js';

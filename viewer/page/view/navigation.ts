@@ -2,7 +2,8 @@
 // Where the camera is, and all that moves it: gestures, keys and flights.
 import { Box3, Vector3 } from 'three';
 import { areNear } from '../../src/farthest.js';
-import { depthOf, pan, retarget, turn, wholeView, zoom, CameraPose } from './camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
+import { depthOf, pan, retarget, turn, wholeView, zoom } from './camera_moves.js';
 import { Flight } from './flight.js';
 import { Glide, type Moves } from './glide.js';
 

@@ -3,7 +3,7 @@
 // J. J. van Wijk, W. A. A. Nuij: Smooth and Efficient Zooming and Panning, 2003, for a camera that looks at a target: the part
 // of the surface that is seen is as wide as the camera is away. Meanwhile it turns, upright.
 import { Vector3 } from 'three';
-import { CameraPose } from './camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 
 /// How much of the way is drawing back: what people liked best there.
 const RHO = Math.SQRT2;

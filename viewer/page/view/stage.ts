@@ -4,7 +4,8 @@ import { Box3, Group, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, V
 import { words } from '../words/words.js';
 import { partDrawer } from '../../src/tools/draw_part.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
-import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
+import type { CameraPose } from '../../src/scene/camera_pose.js';
+import { depthRange, VIEW_ANGLE } from './camera_moves.js';
 import { Lighting } from '../../src/scene/lighting.js';
 import type { Occlusion } from './occlusion.js';
 

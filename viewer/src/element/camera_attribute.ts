@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Where a camera stands and what it looks at, as an attribute: px,py,pz,tx,ty,tz.
-
 import { areNear } from '../farthest.js';
-
-export interface CameraPlace {
-  readonly position: readonly [number, number, number];
-  readonly target: readonly [number, number, number];
-}
+import type { Pose } from '../scene/camera_pose.js';
 
 /// Null of what is none.
-export function parseCamera(text: string | null): CameraPlace | null {
+export function parseCamera(text: string | null): Pose | null {
   const parts = (text ?? '').split(',');
   const [a, b, c, d, e, f] = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));
   const distance = Math.hypot(a - d, b - e, c - f);
   return parts.length === 6 && distance > 0 && areNear([a, b, c, d, e, f]) ? { position: [a, b, c], target: [d, e, f] } : null;
 }
 
-export function formatCamera({ position, target }: CameraPlace): string {
+export function formatCamera({ position, target }: Pose): string {
   return [...position, ...target].map((value) => Number(value.toPrecision(12))).join(',');
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
-import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
+import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { axesOf, frameShape } from '../scene/framing.js';
+import { areNear } from '../farthest.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
-import { HierarchyView } from '../scene/hierarchy_view.js';
+import { CameraPose, type Pose } from '../scene/camera_pose.js';
+import { HierarchyView, type Plugin, type Stage } from '../scene/hierarchy_view.js';
 import { keyOf, Lighting } from '../scene/lighting.js';
 import { rigFor, shownLook } from '../scene/shown_look.js';
 import { isTyped } from '../typing.js';
 import type { ViewOptions } from '../scene/view_options.js';
-import type { CameraPlace } from './camera_attribute.js';
 import { moveByKey } from './keyboard.js';
 
 const ANGLE = 45; // degrees
@@ -17,6 +18,7 @@ const MOST_RATIO = 2;
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
 const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 const MARGIN = 1.08;
+const TAP = 8; // pixels: what moves farther is a drag
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 
 export interface Happenings {
@@ -30,34 +32,45 @@ export interface Happenings {
   moved(): void;
 }
 
-export class ShownModel {
+export class ShownModel implements Stage {
   readonly view: HierarchyView;
-  readonly canvas: HTMLCanvasElement;
-  private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(ANGLE);
+  readonly surface: HTMLCanvasElement;
+  readonly renderer: WebGLRenderer;
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(ANGLE);
   private readonly lighting: Lighting;
   private readonly controls: OrbitControls;
   private readonly sizes = new ResizeObserver(() => { this.wake(); });
   private readonly whole = new Box3();
-  private place: CameraPlace | null;
+  private readonly ending = new AbortController();
+  private place: Pose | null;
+  private pressed = new Vector2();
+  private isSuspended = false;
   private frame = 0;
   private timer = 0;
   private retrying = 0;
-  private ended = false;
 
   /// `place`: null: all of the model is in the picture. Throws Error where there is no WebGL 2, RangeError for settings out of range.
-  constructor(url: string, options: ViewOptions, place: CameraPlace | null, private readonly happenings: Happenings) {
+  constructor(readonly root: ParentNode, url: string, options: ViewOptions, place: Pose | null, private readonly happenings: Happenings) {
     this.place = place;
     this.view = new HierarchyView(url, options);
     this.renderer = this.makeRenderer();
     this.renderer.toneMapping = NeutralToneMapping;
-    this.canvas = this.renderer.domElement;
+    this.surface = this.renderer.domElement;
     this.lighting = new Lighting(this.scene, this.camera);
     this.scene.add(this.camera, this.view);
-    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls = new OrbitControls(this.camera, this.surface);
     this.controls.zoomToCursor = true;
     this.listen();
+    this.view.plugins.enter(this);
+  }
+
+  get signal(): AbortSignal {
+    return this.ending.signal;
+  }
+
+  use(plugin: Plugin): void {
+    this.view.registerPlugin(plugin);
   }
 
   /// Begins anew with what the host has now; the camera stays.
@@ -67,23 +80,50 @@ export class ShownModel {
   }
 
   /// Null: all of the model.
-  look(place: CameraPlace | null): void {
+  look(place: Pose | null): void {
     this.place = place;
     this.whole.makeEmpty();
     this.wake();
   }
 
-  get shownFrom(): CameraPlace {
-    return { position: this.camera.position.toArray(), target: this.controls.target.toArray() };
+  pose(): CameraPose {
+    return new CameraPose(this.camera.position.clone(), this.controls.target.clone());
+  }
+
+  jump(pose: CameraPose): void {
+    const place = pose.toPose();
+    if (areNear([...place.position, ...place.target]) && pose.distance > 0) this.look(place);
+  }
+
+  /// There is no way that is seen.
+  fly(pose: CameraPose): void {
+    this.jump(pose);
+  }
+
+  travel(pose: CameraPose): number {
+    this.jump(pose);
+    return 0;
+  }
+
+  redraw(): void {
+    this.wake();
+  }
+
+  suspend(): () => void {
+    this.isSuspended = true;
+    return () => {
+      this.isSuspended = false;
+      this.wake();
+    };
   }
 
   readonly wake = (): void => {
     clearTimeout(this.timer);
-    if (this.frame === 0 && !this.ended) this.frame = requestAnimationFrame((now) => { this.draw(now); });
+    if (this.frame === 0 && !this.signal.aborted) this.frame = requestAnimationFrame((now) => { this.draw(now); });
   };
 
   dispose(): void {
-    this.ended = true;
+    this.ending.abort();
     cancelAnimationFrame(this.frame);
     clearTimeout(this.timer);
     clearTimeout(this.retrying);
@@ -92,7 +132,7 @@ export class ShownModel {
     this.view.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
-    this.canvas.remove();
+    this.surface.remove();
   }
 
   private makeRenderer(): WebGLRenderer {
@@ -113,13 +153,15 @@ export class ShownModel {
     this.controls.addEventListener('change', this.wake);
     this.controls.addEventListener('start', () => { this.take(); });
     this.controls.addEventListener('end', () => { this.happenings.moved(); });
-    this.canvas.addEventListener('keydown', (event) => { this.press(event); });
-    this.canvas.addEventListener('webglcontextrestored', this.wake);
-    this.sizes.observe(this.canvas);
+    this.surface.addEventListener('keydown', (event) => { this.press(event); });
+    this.surface.addEventListener('pointerdown', ({ clientX, clientY }) => { this.pressed.set(clientX, clientY); });
+    this.surface.addEventListener('pointerup', (event) => { this.lift(event); });
+    this.surface.addEventListener('webglcontextrestored', this.wake);
+    this.sizes.observe(this.surface);
   }
 
   private begin(): void {
-    if (this.ended) return;
+    if (this.signal.aborted) return;
     const rig = rigFor(this.view);
     this.lighting.set(rig, keyOf(rig));
     this.view.setLook(shownLook(this.view.look, rig, 1, this.view));
@@ -138,14 +180,14 @@ export class ShownModel {
 
   /// A host that may be back is asked again.
   private refuse(error: unknown): void {
-    if (this.ended) return;
+    if (this.signal.aborted) return;
     if (error instanceof HierarchyProblem && error.mayPass) this.retrying = setTimeout(() => { this.reload(); }, AGAIN) as unknown as number;
     this.happenings.problem(error instanceof Error ? error.message : String(error));
   }
 
   /// From now on the camera is the user's.
   private take(): void {
-    this.place = this.shownFrom;
+    this.place = this.pose().toPose();
   }
 
   private press(event: KeyboardEvent): void {
@@ -157,22 +199,29 @@ export class ShownModel {
     this.wake();
   }
 
+  /// Places of the picture are from -1 to 1.
+  private lift({ button, clientX, clientY }: PointerEvent): void {
+    if (button !== 0 || this.pressed.distanceTo(new Vector2(clientX, clientY)) >= TAP) return;
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    this.view.plugins.tapped(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
+  }
+
   private draw(now: number): void {
     this.frame = 0;
-    if (!this.fit()) return;
+    if (this.isSuspended || !this.fit()) return;
     this.aim();
     const news = this.view.update(this.camera, this.renderer.domElement, now);
-    this.renderer.render(this.scene, this.camera);
+    this.view.draw(this.renderer, this.scene, this.camera);
     if (news) this.wake();
     else if (!this.view.stats().settled) this.timer = setTimeout(this.wake, POLL) as unknown as number;
   }
 
   /// As large as on the page. False: it has no size.
   private fit(): boolean {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const { clientWidth: width, clientHeight: height } = this.surface;
     if (width === 0 || height === 0) return false;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, MOST_RATIO));
-    const { width: before, height: beforeHeight } = this.canvas;
+    const { width: before, height: beforeHeight } = this.surface;
     const ratio = this.renderer.getPixelRatio();
     if (before !== Math.floor(width * ratio) || beforeHeight !== Math.floor(height * ratio)) this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;

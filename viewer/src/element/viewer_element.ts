@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // <meshhier-viewer src="URL of a hierarchy">: a model in any page.
+import type { Plugin } from '../scene/hierarchy_view.js';
 import type { ViewOptions } from '../scene/view_options.js';
 import type { Settings } from '../scene/settings.js';
 import { formatCamera, parseCamera } from './camera_attribute.js';
@@ -44,6 +45,7 @@ export class MeshhierViewerElement extends Base {
   static reloadText = 'Load it anew';
 
   private shown: ShownModel | null = null;
+  private readonly plugins: (() => Plugin)[] = [];
   private readonly poster: HTMLSlotElement;
   private readonly problem: HTMLElement;
   private readonly text: HTMLElement;
@@ -83,7 +85,7 @@ export class MeshhierViewerElement extends Base {
 
   /// As the attribute has it: where the camera is now.
   get camera(): string | null {
-    return this.shown === null ? this.getAttribute('camera') : formatCamera(this.shown.shownFrom);
+    return this.shown === null ? this.getAttribute('camera') : formatCamera(this.shown.pose().toPose());
   }
 
   set camera(place: string | null) {
@@ -110,7 +112,13 @@ export class MeshhierViewerElement extends Base {
     if (before === now) return;
     if (name === 'src' && this.wanted) this.open();
     if (name === 'camera') this.shown?.look(parseCamera(now));
-    if (name === 'label' && this.shown !== null) this.name(this.shown.canvas);
+    if (name === 'label' && this.shown !== null) this.name(this.shown.surface);
+  }
+
+  /// Makes a plug-in for the model that is shown, and for each that is shown later.
+  registerPlugin(make: () => Plugin): void {
+    this.plugins.push(make);
+    this.shown?.use(make());
   }
 
   /// Asks at once for what failed.
@@ -138,7 +146,7 @@ export class MeshhierViewerElement extends Base {
     this.close();
     if (this.src === '') return;
     try {
-      this.shown = new ShownModel(this.src, this.options(), parseCamera(this.getAttribute('camera')), {
+      this.shown = new ShownModel(this.shadowRoot!, this.src, this.options(), parseCamera(this.getAttribute('camera')), {
         opened: () => { this.opened(); },
         problem: (message) => { this.tell(message); },
         recovered: () => { this.problem.hidden = true; },
@@ -149,7 +157,8 @@ export class MeshhierViewerElement extends Base {
       this.tell(error instanceof Error ? error.message : String(error));
       return;
     }
-    const { canvas } = this.shown;
+    const { surface: canvas } = this.shown;
+    for (const make of this.plugins) this.shown.use(make());
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'application');
     this.name(canvas);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The materials of tiles: three's own, so that any scene's lights do.
 import {
-  Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type Texture,
-  type WebGLProgramParametersWithUniforms as Shader,
+  Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type MaterialParameters, type Texture,
 } from 'three';
 import type { Alpha, Picture } from '../hierarchy/picture.js';
+import type { Tile } from '../hierarchy/tile.js';
 import { makeMatcap } from './matcap.js';
-import { VALUE_VERTEX, valueDeclarations, valueFragment, AttributePaint } from './attribute_paint.js';
 import type { Look } from './settings.js';
+import { replaceChunk, type Shader, type Shading } from './shading.js';
 
 const PLAIN = 0xb9b4ab;
 const CLAY = 0xd99a76;
@@ -47,11 +47,6 @@ function takeScreenColours(shader: { vertexShader: string }): void {
   shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
 }
 
-/// Slopes as steep as they are to be shaded.
-const RELIEF = `#include <beginnormal_vertex>
-vec3 along = dot(objectNormal, upwards) * upwards;
-objectNormal = (objectNormal - along) * relief + along;`;
-
 const HEIGHT = `#include <begin_vertex>
 vHeight = (dot(position, upwards) - heights.x) / max(heights.y - heights.x, 1e-30);`;
 
@@ -68,19 +63,18 @@ diffuseColor.rgb *= ${HEIGHT_COLOURS.slice(1).reduce((below, hex, i) => `mix(${b
 
 /// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow. Along silhouettes it turns
 /// from a surface to the one behind it, which is neither.
-function cavitiesBy({ strength, least, most }: { readonly strength: number; readonly least: number; readonly most: number }): string {
+export function cavitiesBy({ strength, least, most }: { readonly strength: number; readonly least: number; readonly most: number }): string {
   return `#include <normal_fragment_maps>
 float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.4, 0.8, abs(normal.z));
 diffuseColor.rgb *= clamp(1.0 + ${strength.toFixed(1)} * bend, ${least.toFixed(2)}, ${most.toFixed(2)});`;
 }
 
 const CAVITIES = cavitiesBy({ strength: 1.8, least: 0.5, most: 1.4 });
-const RELIEF_CAVITIES = cavitiesBy({ strength: 9, least: 0.15, most: 2 });
 
-/// Looks of one key have the same surfaces.
-export function surfaceKey({ colours, texture, relight, material, cavities, shading, wires, points }: Look, { values }: SharedMaterials): string {
-  const attribute = colours === 'attribute' ? [values.index, values.key] : [];
-  return [colours, texture, relight, material, cavities, shading, wires || points, ...attribute].join();
+/// A tile's surfaces of one key are the same.
+export function surfaceKey(look: Look, tile: Tile, { shadings }: SharedMaterials): string {
+  const { colours, texture, relight, material, cavities, shading, wires, points } = look;
+  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadings.map((each) => each.key(look, tile))].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -91,24 +85,17 @@ export interface SharedMaterials {
   readonly dots: { readonly plain: Material; readonly coloured: Material };
   /// Which side of triangles is outside: 1: the front, -1: the back.
   readonly outwards: { value: number };
-  /// Which way is up in the tiles' coordinates, what lies low and high along it, and how many times steeper slopes are shaded.
+  /// Which way is up in the tiles' coordinates, and what lies low and high along it.
   readonly upwards: { value: Vector3 };
   readonly heights: { value: Vector2 };
-  readonly relief: { value: number };
-  /// The same for normal maps, along both of their axes.
-  readonly detail: Vector2;
   readonly matcap: Texture;
-  /// The attribute that is shown.
-  readonly values: AttributePaint;
+  /// Those of plug-ins.
+  shadings: readonly Shading[];
 }
 
 /// What of a tile its surface shows.
 export interface Painting {
-  readonly hasColours: boolean;
-  readonly hasValues: boolean;
-  /// The picture's light is multiplied by theirs.
-  readonly coloursTint: boolean;
-  readonly picture: Picture | null;
+  readonly tile: Tile;
   /// The picture's.
   readonly texture: Texture | null;
   /// The normal map's.
@@ -131,7 +118,7 @@ function standing({ wires, points }: Look): { polygonOffset: boolean; polygonOff
 }
 
 /// The picture's colours, and what tints them.
-function unlitMaterial(look: Look, { picture, texture, coloursTint }: Painting): MeshBasicMaterial {
+function unlitMaterial(look: Look, { tile: { picture, coloursTint }, texture }: Painting): MeshBasicMaterial {
   const material = new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, vertexColors: coloursTint, ...standing(look), ...picturing(picture, texture) });
   if (!coloursTint) return material;
   material.onBeforeCompile = takeScreenColours;
@@ -140,47 +127,44 @@ function unlitMaterial(look: Look, { picture, texture, coloursTint }: Painting):
 }
 
 /// What three's shaders are changed by, for a look.
-function edit(shader: Shader, { colours, cavities, material }: Look, vertexColors: boolean, values: AttributePaint | null): void {
-  const change = (where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void => { shader[where] = shader[where].replace(`#include <${chunk}>`, by); };
-  const height = colours === 'height' ? 'varying float vHeight;\n' : '';
-  change('vertexShader', 'beginnormal_vertex', RELIEF);
-  change('fragmentShader', 'normal_fragment_begin', BACKS);
+function edit(shader: Shader, { colours, cavities, material }: Look, vertexColors: boolean): void {
+  replaceChunk(shader, 'fragmentShader', 'normal_fragment_begin', BACKS);
   if (vertexColors) takeScreenColours(shader);
-  if (material === 'relief') change('fragmentShader', 'normal_fragment_maps', RELIEF_CAVITIES);
-  else if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
-  if (height !== '') change('vertexShader', 'begin_vertex', HEIGHT);
-  if (height !== '') change('fragmentShader', 'color_fragment', RAMP);
-  if (values !== null) {
-    change('vertexShader', 'begin_vertex', VALUE_VERTEX);
-    change('fragmentShader', 'color_fragment', valueFragment(values.isLabel));
-    shader.vertexShader = valueDeclarations(values.isLabel, true) + shader.vertexShader;
-    shader.fragmentShader = valueDeclarations(values.isLabel, false) + shader.fragmentShader;
-  }
-  shader.vertexShader = `uniform vec3 upwards;\nuniform vec2 heights;\nuniform float relief;\n${height}${shader.vertexShader}`;
+  if (cavities && material !== 'relief') replaceChunk(shader, 'fragmentShader', 'normal_fragment_maps', CAVITIES);
+  const height = colours === 'height' ? 'varying float vHeight;\n' : '';
+  if (height !== '') replaceChunk(shader, 'vertexShader', 'begin_vertex', HEIGHT);
+  if (height !== '') replaceChunk(shader, 'fragmentShader', 'color_fragment', RAMP);
+  shader.vertexShader = `uniform vec3 upwards;\nuniform vec2 heights;\n${height}${shader.vertexShader}`;
   shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
 }
 
-/// Details of the surface are as many times steeper as it is. Facets are shown as they are.
-function lighting({ shading }: Look, normals: Texture | null, detail: Vector2): { normalMap?: Texture; normalScale?: Vector2 } {
-  return normals === null || shading === 'flat' ? {} : { normalMap: normals, normalScale: detail };
+/// Facets are shown as they are.
+function normalMap({ shading }: Look, normals: Texture | null): { normalMap?: Texture } {
+  return normals === null || shading === 'flat' ? {} : { normalMap: normals };
 }
 
-function litMaterial(look: Look, { picture, texture, normals, hasColours, hasValues, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
+function parametersOf(shadings: readonly Shading[], look: Look): MaterialParameters {
+  return shadings.reduce<MaterialParameters>((all, each) => ({ ...all, ...each.parameters?.(look) }), {});
+}
+
+function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
   const { colours, cavities, shading } = look;
-  const vertexColors = colours === 'vertex' && hasColours && (texture === null || coloursTint);
+  const { outwards, upwards, heights } = shared;
+  const vertexColors = colours === 'vertex' && tile.colours !== null && (texture === null || tile.coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
   const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
-  const parameters = { ...own, ...standing(look), ...picturing(picture, texture), ...lighting(look, normals, shared.detail) };
+  const keys = shared.shadings.map((each) => each.key(look, tile));
+  const shadings = shared.shadings.filter((_, i) => keys[i] !== '');
+  const parameters = { ...own, ...standing(look), ...picturing(tile.picture, texture), ...normalMap(look, normals), ...parametersOf(shadings, look) };
   const material = look.material === 'matcap'
     ? new MeshMatcapMaterial({ ...parameters, matcap: shared.matcap })
     : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
-  const { outwards, upwards, heights, relief } = shared;
-  const values = colours === 'attribute' && hasValues && shared.values.index >= 0 ? shared.values : null;
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, { outwards, upwards, heights, relief }, values?.uniforms);
-    edit(shader, look, vertexColors, values);
+    Object.assign(shader.uniforms, { outwards, upwards, heights }, ...shadings.map(({ uniforms }) => uniforms));
+    edit(shader, look, vertexColors);
+    for (const each of shadings) each.edit(shader, look, tile);
   };
-  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, values?.key].join('-')}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keys].join('-')}`;
   return material;
 }
 
@@ -192,7 +176,7 @@ export function showsPictures({ colours, texture }: Look): boolean {
 /// One tile's: programs are shared by all of a look.
 export function surfaceMaterial(look: Look, painting: Painting, shared: SharedMaterials): SurfaceMaterial {
   const shown = showsPictures(look) ? painting : { ...painting, texture: null };
-  return shown.texture !== null && shown.picture?.unlit && !look.relight ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
+  return shown.texture !== null && shown.tile.picture?.unlit && !look.relight ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
 }
 
 export function partitionColour(level: number, index: number): Color {
@@ -220,8 +204,8 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
   return material;
 }
 
-export function sharedMaterials(): SharedMaterials {
-  const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) }, relief: { value: 1 } };
+export function sharedMaterials(shadings: readonly Shading[] = []): SharedMaterials {
+  const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) } };
   const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
-  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), detail: new Vector2(1, 1), values: new AttributePaint(), ...uniforms };
+  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), shadings, ...uniforms };
 }

@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: MIT
 // What a user of the library may set, and what it tells.
-
-import type { AttributeLook } from './attribute_paint.js';
+import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
+import type { RampName } from './ramps.js';
 
 /// Tiles' colours: one for all; those of the input; by one of its attributes; one for each tile; by the error on screen; by height.
 export type Colours = 'plain' | 'vertex' | 'attribute' | 'partition' | 'error' | 'height';
+
+/// How an attribute is shown.
+export interface AttributeLook {
+  /// Its name; one that the model does not have is its first one.
+  attribute: string;
+  ramp: RampName;
+  /// Values at the ends of the ramp; null: the least and the most, of signed values as far on both sides of 0.
+  range: readonly [number, number] | null;
+  /// Lines of equal value, about ten.
+  isolines: boolean;
+  /// Labels that are not drawn.
+  hidden: readonly number[];
+}
 
 export interface Look extends AttributeLook {
   /// `attribute`: of a mesh without any it is `plain`. `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
@@ -43,6 +56,17 @@ export const DEFAULT_LOOK: Look = {
   colours: 'vertex', texture: true, relight: false, material: 'lit', relief: 1, cavities: true, shading: 'smooth', wires: false, points: false, outline: false,
   attribute: '', ramp: 'viridis', range: null, isolines: false, hidden: [],
 };
+
+/// At the ends of the ramp if nothing is said.
+export function wholeRange({ min, max }: ScalarAttribute, ramp: RampName): readonly [number, number] {
+  const most = Math.max(-min, max);
+  return ramp === 'coolwarm' && min < 0 && max > 0 ? [-most, most] : [min, max];
+}
+
+/// The attribute of that name, else the first one; -1: there is none.
+export function attributeIndex(attributes: readonly ScalarAttribute[], name: string): number {
+  return Math.max(attributes.findIndex((each) => each.name === name), Math.min(0, attributes.length - 1));
+}
 
 const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 };
 const RANGES: Record<keyof Settings, readonly [number, number]> = {

@@ -71,10 +71,26 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-function paintingOf({ level, colours, values, coloursTint, picture, normalMap }: Tile): Painting {
+function paintingOf(tile: Tile): Painting {
+  const { level, picture, normalMap } = tile;
   const texture: Texture | null = picture && tileTexture(picture, level);
   const normals: Texture | null = normalMap && tileTexture(normalMap, level, 'directions');
-  return { hasColours: colours !== null, hasValues: values !== null, coloursTint, picture, texture, normals };
+  return { tile, texture, normals };
+}
+
+/// What seams change of a tile, but for texture coordinates and tangents, which are its own; `width`: elements of a vertex.
+function* changing({ attributes }: BufferGeometry): Iterable<{ readonly values: BufferAttribute | InterleavedBuffer; readonly width: number }> {
+  for (const [name, attribute] of Object.entries(attributes)) {
+    if (name === 'uv' || name === 'tangent') continue;
+    if (attribute instanceof InterleavedBufferAttribute) yield { values: attribute.data, width: attribute.data.stride };
+    else yield { values: attribute, width: attribute.itemSize };
+  }
+}
+
+function upload(values: BufferAttribute | InterleavedBuffer, first: number): void {
+  values.clearUpdateRanges();
+  values.addUpdateRange(first, values.array.length - first);
+  values.needsUpdate = true;
 }
 
 export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
@@ -84,8 +100,6 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
   private readonly painting: Painting;
   /// How its surface was made.
   private surface: string;
-  /// The values, once one of them is shown.
-  private scalars: InterleavedBuffer | null = null;
 
   /// To be drawn once it is resolved; wires and points come with setLook().
   constructor(
@@ -97,36 +111,25 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     const painting = paintingOf(tile);
     super(new BufferGeometry(), surfaceMaterial(look, painting, shared));
     this.painting = painting;
-    this.surface = surfaceKey(look, shared);
+    this.surface = surfaceKey(look, tile, shared);
     this.geometry.setAttribute('position', new BufferAttribute(tile.positions, 3));
     this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
     if (tile.colours) this.geometry.setAttribute('color', new BufferAttribute(tile.colours, 4, true));
     if (tile.texcoords) this.geometry.setAttribute('uv', new BufferAttribute(tile.texcoords, 2));
     if (tile.tangents) this.geometry.setAttribute('tangent', new BufferAttribute(tile.tangents, 4, true));
     this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
-    for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
-    this.showValue();
+    this.geometry.index!.setUsage(DynamicDrawUsage);
+    for (const { values } of changing(this.geometry)) values.setUsage(DynamicDrawUsage);
+    this.prepare();
     this.triangles = tile.interiorCount;
     this.matrixAutoUpdate = false;
     // Of equal depths the last one shows: the same one in whatever order tiles came.
     this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
   }
 
-  /// Puts the value that is to be shown where the shader looks for it.
-  private showValue(): void {
-    const { tile } = this.resident;
-    const { index } = this.shared.values;
-    if (this.look.colours !== 'attribute' || tile.values === null || index < 0) return;
-    this.scalars ??= new InterleavedBuffer(tile.values, valueWidth(tile));
-    this.scalars.setUsage(DynamicDrawUsage);
-    this.geometry.setAttribute('scalar', new InterleavedBufferAttribute(this.scalars, 1, index));
-  }
-
-  /// Those that seams change; texture coordinates are the tile's own.
-  private *attributes(): Iterable<BufferAttribute> {
-    const { position, normal, color } = this.geometry.attributes as Record<string, BufferAttribute>;
-    yield* [position, normal, ...(color ? [color] : [])];
-    yield this.geometry.index!;
+  /// Has what shaders look for.
+  private prepare(): void {
+    for (const each of this.shared.shadings) each.prepare?.(this.geometry, this.resident.tile, this.look);
   }
 
   /// Ghosts may lie elsewhere than in the file.
@@ -169,27 +172,17 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
 
   private uploadGhosts(): void {
     const { tile } = this.resident;
-    for (const attribute of this.attributes()) {
-      const isIndex = attribute === this.geometry.index;
-      const first = isIndex ? 3 * tile.interiorCount : tile.own * attribute.itemSize;
-      attribute.clearUpdateRanges();
-      attribute.addUpdateRange(first, attribute.array.length - first);
-      attribute.needsUpdate = true;
-    }
-    if (this.scalars === null) return;
-    const first = tile.own * this.scalars.stride;
-    this.scalars.clearUpdateRanges();
-    this.scalars.addUpdateRange(first, this.scalars.array.length - first);
-    this.scalars.needsUpdate = true;
+    for (const { values, width } of changing(this.geometry)) upload(values, tile.own * width);
+    upload(this.geometry.index!, 3 * tile.interiorCount);
   }
 
   /// Makes anew only what differs.
   setLook(look: Look): void {
     this.look = look;
-    const surface = surfaceKey(look, this.shared);
+    this.prepare();
+    const surface = surfaceKey(look, this.resident.tile, this.shared);
     if (this.surface !== surface) {
       this.surface = surface;
-      this.showValue();
       this.material.dispose();
       this.material = surfaceMaterial(look, this.painting, this.shared);
     }
@@ -230,7 +223,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
   private pointMaterial(): Material {
     const { points, dots } = this.shared;
     if (this.resident.tile.indices.length > 0) return points;
-    return this.look.colours === 'vertex' && this.painting.hasColours ? dots.coloured : dots.plain;
+    return this.look.colours === 'vertex' && this.resident.tile.colours !== null ? dots.coloured : dots.plain;
   }
 
   private place<Part extends LineSegments | Points>(part: Part): Part {

@@ -10,6 +10,7 @@ import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
+import type { Shading } from './shading.js';
 import type { DrawnTile } from './surface.js';
 import { uprightRows, type Standing } from './standing.js';
 import { heightsOf } from './terrain.js';
@@ -36,6 +37,12 @@ export class TileScene extends Group {
     this.materials.outwards.value = is ? -1 : 1;
   }
 
+  /// Those of plug-ins, from the next cut on.
+  set shadings(shadings: readonly Shading[]) {
+    this.materials.shadings = shadings;
+    this.look = null;
+  }
+
   /// `root`: whose heights count, along the direction `along`.
   stand(standing: Standing, root: Tile, along: Vector): void {
     const [[a, b, c], [d, e, f], [g, h, i]] = uprightRows(standing, root.zUp);
@@ -51,11 +58,9 @@ export class TileScene extends Group {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
     if (isSameCut && look === this.look && attributes === this.attributes) return false;
     this.attributes = attributes;
-    this.materials.values.set(attributes, look);
+    for (const each of this.materials.shadings) each.show?.(look, attributes);
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
-    this.materials.relief.value = look.relief;
-    this.materials.detail.setScalar(look.relief);
     for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
     for (const resident of residents) this.join(resident, look);
     return true;
@@ -128,6 +133,5 @@ export class TileScene extends Group {
     this.materials.dots.plain.dispose();
     this.materials.dots.coloured.dispose();
     this.materials.matcap.dispose();
-    this.materials.values.dispose();
   }
 }

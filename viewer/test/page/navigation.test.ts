@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Vector3 } from 'three';
 import { beforeAll, describe, expect, it, vi } from 'vitest';
-import { CameraPose } from '../../page/view/camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 import type { Navigation } from '../../page/view/navigation.js';
 
 /// Frames until it rests, and longer than any flight takes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { CameraPose } from '../../page/view/camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 import { SmoothPath } from '../../page/view/smooth_path.js';
 
 function pose(position: readonly [number, number, number], target: readonly [number, number, number] = [0, 0, 0]): CameraPose {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { between, CameraPose, depthOf, depthRange, pan, retarget, turn, VIEW_ANGLE, wholeView, zoom } from '../../page/view/camera_pose.js';
+import { CameraPose } from '../../src/scene/camera_pose.js';
+import { between, depthOf, depthRange, pan, retarget, turn, VIEW_ANGLE, wholeView, zoom } from '../../page/view/camera_moves.js';
 
 const POSE = new CameraPose(new Vector3(1, 2, 8), new Vector3(0, 1, 0));
 const BOX = new Box3(new Vector3(-1, -2, -3), new Vector3(4, 5, 6));

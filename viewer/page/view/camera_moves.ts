@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Moves a camera that looks at a target, upright. Nothing here keeps what it is given.
 import { Vector3, type Box3 } from 'three';
+import { CameraPose } from '../../src/scene/camera_pose.js';
 import { axesOf, frameShape } from '../../src/scene/framing.js';
-import type { Pose } from '../address.js';
 
 /// Radians, from the lower to the upper edge of the picture.
 export const VIEW_ANGLE = Math.PI / 4;
@@ -10,35 +10,6 @@ export const VIEW_ANGLE = Math.PI / 4;
 const STEEPEST = 0.01; // radians from straight up or down
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 const MARGIN = 1.08;
-
-export class CameraPose {
-  constructor(
-    readonly position: Vector3,
-    readonly target: Vector3,
-  ) {}
-
-  static from({ position, target }: Pose): CameraPose {
-    return new CameraPose(new Vector3(...position), new Vector3(...target));
-  }
-
-  toPose(): Pose {
-    const { position: p, target: t } = this;
-    return { position: [p.x, p.y, p.z], target: [t.x, t.y, t.z] };
-  }
-
-  get distance(): number {
-    return this.position.distanceTo(this.target);
-  }
-
-  /// Of length 1.
-  get forward(): Vector3 {
-    return this.target.clone().sub(this.position).normalize();
-  }
-
-  equals(other: CameraPose): boolean {
-    return this.position.equals(other.position) && this.target.equals(other.target);
-  }
-}
 
 /// Around the target; radians to the right and up.
 export function turn(pose: CameraPose, right: number, up: number): CameraPose {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Plug-ins: what a view can do besides showing tiles, in modules that are loaded where they are wanted.
+import type { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import type { CameraPose } from '../scene/camera_pose.js';
+import type { Shading } from '../scene/shading.js';
+
+/// What a frame is drawn with.
+export interface Frame {
+  readonly renderer: WebGLRenderer;
+  readonly scene: Scene;
+  readonly camera: PerspectiveCamera;
+}
+
+/// What shows a view, with a camera that can be moved: the page, or `<meshhier-viewer>`.
+export interface StageOf<View> extends Frame {
+  readonly view: View;
+  /// Holds the surface; what is added to it lies over the picture.
+  readonly root: ParentNode;
+  /// The picture is drawn on it, and it has the focus.
+  readonly surface: HTMLElement;
+  /// Aborts when the view is closed.
+  readonly signal: AbortSignal;
+  pose(): CameraPose;
+  /// At once, or on a way that is seen where the stage has one; and only to where a camera can stand.
+  jump(pose: CameraPose): void;
+  fly(pose: CameraPose): void;
+  /// As stories go from place to place. Returns the milliseconds that it takes.
+  travel(pose: CameraPose): number;
+  /// A frame is wanted.
+  redraw(): void;
+  /// Frames are drawn by somebody else, until what it returns is called.
+  suspend(): () => void;
+  /// How the model is shown from now on, as links have it: of stages that have links.
+  present?(choices: string): void;
+}
+
+/// Everything but the name may be missing. Places of the picture are from -1 to 1, to the right and up.
+export interface PluginOf<View> {
+  /// No two plug-ins of a view have the same.
+  readonly name: string;
+  /// How tiles are shaded.
+  readonly shading?: Shading;
+  /// It belongs to a view from now on.
+  init?(view: View): void;
+  /// The view is on a stage: one in a scene of your own is not.
+  enter?(stage: StageOf<View>): void;
+  /// Draws the scene in its own way, instead of `renderer.render`. False: it does not now.
+  paint?(frame: Frame): boolean;
+  /// Draws over what `renderer.render` has drawn; not over what a plug-in has painted.
+  shade?(frame: Frame): void;
+  /// A frame is complete: time for what lies over the canvas.
+  drawn?(frame: Frame): void;
+  /// Whether a point of the world is drawn.
+  keeps?(point: Vector3): boolean;
+  /// A place of the picture was tapped. True: it was meant for this plug-in.
+  tapped?(right: number, up: number): boolean;
+  /// It was taken away, or the view was disposed of.
+  dispose?(): void;
+}
+
+/// Those of a view, in the order in which they came.
+export class Plugins<View> {
+  private readonly all = new Map<string, PluginOf<View>>();
+  private stage: StageOf<View> | null = null;
+
+  /// `changed`: the picture may be another one, or its tiles.
+  constructor(private readonly view: View, private readonly changed: (shadings: readonly Shading[]) => void) {}
+
+  /// Throws Error where there is one of that name.
+  register(plugin: PluginOf<View>): void {
+    if (this.all.has(plugin.name)) throw new Error(`there is a plug-in "${plugin.name}" already`);
+    this.all.set(plugin.name, plugin);
+    plugin.init?.(this.view);
+    if (this.stage !== null) plugin.enter?.(this.stage);
+    this.tellChanged();
+  }
+
+  /// Nothing happens where it is not there.
+  unregister(plugin: PluginOf<View>): void {
+    if (this.all.get(plugin.name) !== plugin) return;
+    this.all.delete(plugin.name);
+    plugin.dispose?.();
+    this.tellChanged();
+  }
+
+  /// Undefined: there is none of that name.
+  named(name: string): PluginOf<View> | undefined {
+    return this.all.get(name);
+  }
+
+  enter(stage: StageOf<View>): void {
+    this.stage = stage;
+    for (const plugin of this.all.values()) plugin.enter?.(stage);
+  }
+
+  /// The scene as plug-ins draw it; without one, as the renderer does.
+  paint(frame: Frame): void {
+    const { renderer, scene, camera } = frame;
+    for (const plugin of this.all.values()) if (plugin.paint?.(frame) === true) return;
+    renderer.render(scene, camera);
+    for (const plugin of this.all.values()) plugin.shade?.(frame);
+  }
+
+  drawn(frame: Frame): void {
+    for (const plugin of this.all.values()) plugin.drawn?.(frame);
+  }
+
+  keeps(point: Vector3): boolean {
+    return [...this.all.values()].every((plugin) => plugin.keeps?.(point) ?? true);
+  }
+
+  tapped(right: number, up: number): boolean {
+    return [...this.all.values()].some((plugin) => plugin.tapped?.(right, up) ?? false);
+  }
+
+  dispose(): void {
+    for (const plugin of this.all.values()) plugin.dispose?.();
+    this.all.clear();
+  }
+
+  private tellChanged(): void {
+    this.changed([...this.all.values()].flatMap(({ shading }) => (shading === undefined ? [] : [shading])));
+  }
+}

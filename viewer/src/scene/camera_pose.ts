@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Where a camera is and what it looks at.
+import { Vector3 } from 'three';
+
+export type Triple = readonly [number, number, number];
+
+/// In the world, in numbers.
+export interface Pose {
+  readonly position: Triple;
+  readonly target: Triple;
+}
+
+/// Nothing changes what it holds.
+export class CameraPose {
+  constructor(
+    readonly position: Vector3,
+    readonly target: Vector3,
+  ) {}
+
+  static from({ position, target }: Pose): CameraPose {
+    return new CameraPose(new Vector3(...position), new Vector3(...target));
+  }
+
+  toPose(): Pose {
+    const { position: p, target: t } = this;
+    return { position: [p.x, p.y, p.z], target: [t.x, t.y, t.z] };
+  }
+
+  get distance(): number {
+    return this.position.distanceTo(this.target);
+  }
+
+  /// Of length 1.
+  get forward(): Vector3 {
+    return this.target.clone().sub(this.position).normalize();
+  }
+
+  equals(other: CameraPose): boolean {
+    return this.position.equals(other.position) && this.target.equals(other.target);
+  }
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// How the surfaces of tiles may be shaded otherwise than by three alone: what tiles see of plug-ins.
+import type { BufferGeometry, IUniform, MaterialParameters, WebGLProgramParametersWithUniforms } from 'three';
+import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
+import type { Tile } from '../hierarchy/tile.js';
+import type { Look } from './settings.js';
+
+export type Shader = WebGLProgramParametersWithUniforms;
+
+/// Changes the material of lit surfaces. All tiles of a view share it.
+export interface Shading {
+  /// They are declared by `edit`, and there in all programs that it edits.
+  readonly uniforms: Readonly<Record<string, IUniform>>;
+  /// Surfaces of one key have one program; empty: this one's is left alone.
+  key(look: Look, tile: Tile): string;
+  /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too.
+  edit(shader: Shader, look: Look, tile: Tile): void;
+  /// What the material is made with.
+  parameters?(look: Look): MaterialParameters & Readonly<Record<string, unknown>>;
+  /// Tiles are shown so from now on; `attributes`: what the model's vertices have, none while that is not known.
+  show?(look: Look, attributes: readonly ScalarAttribute[]): void;
+  /// Gives a tile's vertices what the shader wants of them, whenever it is shown otherwise. Arrays of the tile are kept up as its seams change.
+  prepare?(geometry: BufferGeometry, tile: Tile, look: Look): void;
+}
+
+/// Replaces `#include <chunk>` of a shader.
+export function replaceChunk(shader: Shader, where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void {
+  shader[where] = shader[where].replace(`#include <${chunk}>`, by);
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+import { PerspectiveCamera, Scene, Vector3, type Material, type Mesh, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
+import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
+import { replaceChunk, type Frame, type HierarchyView, type Plugin, type Shader, type Shading, type Stage } from '../src/index.js';
+import { hasProgram, Workshop, fetchFrom } from './support/meshhier.js';
+import { Session } from './support/session.js';
+
+/// A plug-in as somebody else would write it: it paints stripes, tells what it was asked, and keeps one half of the world.
+class Stranger implements Plugin {
+  readonly name = 'stranger';
+  readonly told: string[] = [];
+  isPainter = false;
+  readonly shading: Shading = {
+    uniforms: { stripes: { value: 4 } },
+    key: ({ colours }) => (colours === 'plain' ? 'striped' : ''),
+    edit: (shader: Shader) => { replaceChunk(shader, 'fragmentShader', 'color_fragment', '#include <color_fragment>\ndiffuseColor.rgb *= fract(stripes);'); },
+    prepare: (_, tile) => { this.told.push(`prepare ${tile.level}`); },
+  };
+
+  init(view: HierarchyView): void {
+    this.told.push(`init ${view.look.colours}`);
+  }
+
+  enter({ view }: Stage): void {
+    this.told.push(`enter ${view.look.colours}`);
+  }
+
+  paint(): boolean {
+    this.told.push('paint');
+    return this.isPainter;
+  }
+
+  shade({ renderer }: Frame): void {
+    this.told.push(`shade ${typeof renderer}`);
+  }
+
+  drawn(): void {
+    this.told.push('drawn');
+  }
+
+  keeps({ x }: Vector3): boolean {
+    return x > 0;
+  }
+
+  tapped(right: number, up: number): boolean {
+    return right > up;
+  }
+
+  dispose(): void {
+    this.told.push('dispose');
+  }
+}
+
+const render = vi.fn();
+const RENDERER = { render } as unknown as WebGLRenderer;
+
+function compiled(mesh: Mesh): WebGLProgramParametersWithUniforms {
+  const shader = { uniforms: {}, vertexShader: '', fragmentShader: '#include <color_fragment>' } as WebGLProgramParametersWithUniforms;
+  (mesh.material as Material).onBeforeCompile(shader, RENDERER);
+  return shader;
+}
+
+describe.skipIf(!hasProgram)('a plug-in of a stranger', () => {
+  let workshop: Workshop;
+  let directory: string;
+  let session: Session;
+  let plugin: Stranger;
+
+  beforeAll(() => {
+    workshop = new Workshop();
+    directory = workshop.build('plain', ['surface', '--triangles', '2000', '--shape', 'torus'], { partition: { vertices: 500 } });
+  });
+  beforeEach(async () => {
+    vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout', 'performance'] });
+    session = new Session(fetchFrom(directory), { look: { colours: 'plain' } });
+    plugin = new Stranger();
+    await session.view.opened;
+    session.look([0, 0, 3], [0, 0, 0]);
+    await session.settle();
+  });
+  afterEach(() => {
+    session.view.dispose();
+    vi.useRealTimers();
+  });
+  afterAll(() => { workshop.remove(); });
+
+  it('shades the tiles that are there, in a program of its own, until it is taken away', async () => {
+    const keyOf = (): string => (session.meshes()[0].material as Material).customProgramCacheKey();
+    const before = keyOf();
+    session.view.registerPlugin(plugin);
+    expect(await session.frame()).toBe(true);
+    expect(keyOf()).not.toBe(before);
+    const shader = compiled(session.meshes()[0]);
+    expect(shader.uniforms.stripes).toBe(plugin.shading.uniforms.stripes);
+    expect(shader.fragmentShader).toContain('fract(stripes)');
+    expect(plugin.told).toContain(`prepare ${session.view.shown[0].level}`);
+    session.view.unregisterPlugin(plugin);
+    await session.frame();
+    expect(keyOf()).toBe(before);
+    expect(plugin.told.at(-1)).toBe('dispose');
+  });
+
+  it('leaves alone what its key does not name', async () => {
+    session.view.registerPlugin(plugin).setLook({ colours: 'height' });
+    await session.frame();
+    expect(compiled(session.meshes()[0]).fragmentShader).not.toContain('stripes');
+  });
+
+  it('draws with the renderer, or instead of it', () => {
+    render.mockClear();
+    const draw = (): void => { session.view.draw(RENDERER, new Scene(), new PerspectiveCamera()); };
+    session.view.registerPlugin(plugin);
+    draw();
+    expect(render).toHaveBeenCalledTimes(1);
+    expect(plugin.told.slice(-3)).toEqual(['paint', 'shade object', 'drawn']);
+    plugin.isPainter = true;
+    draw();
+    expect(render).toHaveBeenCalledTimes(1);
+    expect(plugin.told.slice(-2)).toEqual(['paint', 'drawn']);
+  });
+
+  it('is on a stage, whichever was there first', () => {
+    session.view.registerPlugin(plugin);
+    expect(plugin.told).toEqual(['init plain']);
+    const stage = { view: session.view } as Stage;
+    session.view.plugins.enter(stage);
+    expect(plugin.told.at(-1)).toBe('enter plain');
+    session.view.unregisterPlugin(plugin);
+    session.view.registerPlugin(plugin);
+    expect(plugin.told.slice(-2)).toEqual(['init plain', 'enter plain']);
+  });
+
+  it('says what is kept and what is its own', () => {
+    const { plugins } = session.view;
+    expect([plugins.keeps(new Vector3(-1, 0, 0)), plugins.tapped(1, 0)]).toEqual([true, false]);
+    session.view.registerPlugin(plugin);
+    expect([plugins.keeps(new Vector3(1, 0, 0)), plugins.keeps(new Vector3(-1, 0, 0))]).toEqual([true, false]);
+    expect([plugins.tapped(1, 0), plugins.tapped(0, 1)]).toEqual([true, false]);
+  });
+
+  it('has a name that no other has, and leaves with the view', () => {
+    session.view.registerPlugin(plugin);
+    expect(() => session.view.registerPlugin(new Stranger())).toThrow('"stranger"');
+    expect(session.view.plugins.named('stranger')).toBe(plugin);
+    expect(session.view.plugins.named('relief')).toBeDefined();
+    session.view.unregisterPlugin(new Stranger());
+    expect(session.view.plugins.named('stranger')).toBe(plugin);
+    session.view.dispose();
+    expect(plugin.told.at(-1)).toBe('dispose');
+  });
+});
