@@ -44,7 +44,7 @@ describe('imports', () => {
 
   it('are seen in all their forms', () => {
     expect(modules.get(path.join('src', 'element', 'index.ts'))).toEqual([path.join('src', 'element', 'viewer_element.ts'), path.join('src', 'element', 'viewer_element.ts')]);
-    expect(modules.get(path.join('page', 'view', 'stage.ts'))).toContain(path.join('page', 'view', 'occlusion.ts'));
+    expect(modules.get(path.join('page', 'view', 'extensions.ts'))).toContain(path.join('src', 'plugins', 'immersion.ts'));
   });
 
   it('would be told of a circle', () => {

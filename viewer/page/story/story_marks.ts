@@ -2,7 +2,7 @@
 // The notes of a story on the model: numbered buttons at their places in each frame.
 import { Vector4, type PerspectiveCamera, type Vector3 } from 'three';
 import { element } from '../parts/element.js';
-import { placeOf } from '../view/picture_place.js';
+import { placeOf } from '../../src/tools/picture_place.js';
 import { words } from '../words/words.js';
 
 export class StoryMarks {

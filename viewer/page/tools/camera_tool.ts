@@ -12,7 +12,7 @@ import { download } from './download.js';
 import { entryList, type Entry } from './entry_list.js';
 import { textButton } from './figures.js';
 import { isKey } from './keys.js';
-import { Places } from './places.js';
+import { Places } from '../../src/tools/places.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';

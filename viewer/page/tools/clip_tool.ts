@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Cuts the model open by a plane or a box, and draws the section.
+import { Clipping } from '../../src/plugins/clipping.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
-import { boxPlanes, flipped, isKept, localNormal, type CutPlane } from '../../src/tools/planes.js';
+import { boxPlanes, flipped, localNormal, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
 import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
@@ -10,7 +11,6 @@ import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
-import { CutPainter } from './cut_painter.js';
 import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
 import type { Tool } from './tool.js';
@@ -44,7 +44,7 @@ function rangeOf([least, most]: readonly [number, number]): { least: number; mos
 export class ClipTool implements Tool {
   readonly root: HTMLElement;
   private readonly coordinates: Coordinates;
-  private readonly painter: CutPainter;
+  private readonly clipping = new Clipping();
   private readonly extent: Extent;
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
@@ -71,7 +71,7 @@ export class ClipTool implements Tool {
     const { view } = shop.bench;
     const { source: { min, max } } = view.manifest!;
     this.coordinates = new Coordinates(view.manifest!);
-    this.painter = new CutPainter(view);
+    view.registerPlugin(this.clipping);
     this.extent = { min, max };
     this.sides = { min: [...min], max: [...max] };
     const { clip } = words;
@@ -116,7 +116,6 @@ export class ClipTool implements Tool {
     this.modes.show(mode);
     this.planeForm.hidden = mode !== 'plane';
     this.boxForm.hidden = mode !== 'box';
-    this.shop.bench.view.showsInside = mode !== 'off';
     this.apply();
   }
 
@@ -154,11 +153,8 @@ export class ClipTool implements Tool {
   }
 
   private apply(): void {
-    const { bench, pointing } = this.shop;
-    const planes = this.localPlanes();
-    pointing.keeps = (point) => isKept(planes, point);
-    this.painter.set(planes, this.isCapped && bench.view.closed);
-    bench.setPainter(planes.length > 0 ? this.painter : null);
+    const { bench } = this.shop;
+    this.clipping.cut(this.localPlanes(), this.isCapped);
     this.measuring.abort();
     this.note.textContent = '';
     bench.redraw();
@@ -244,7 +240,7 @@ export class ClipTool implements Tool {
 
   close(): void {
     this.measuring.abort();
-    this.painter.dispose();
+    this.shop.bench.view.unregisterPlugin(this.clipping);
   }
 }
 

@@ -5,10 +5,10 @@ import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
 import { textButton } from './figures.js';
-import { poseOfNote } from './note_pose.js';
+import { poseOfNote } from '../../src/tools/note_pose.js';
 import { noteRow, type NoteOrders } from './note_row.js';
-import type { Mark } from './overlay.js';
-import { Places } from './places.js';
+import type { Mark } from '../../src/plugins/overlay.js';
+import { Places } from '../../src/tools/places.js';
 import type { Tool } from './tool.js';
 import { formatCount } from '../numbers.js';
 import { language, words as pageWords } from '../words/words.js';
@@ -26,7 +26,7 @@ export class NotesTool implements Tool {
   private readonly title = element('input', { type: 'text', class: 'tool-text', maxlength: String(MOST_TITLE) });
   private readonly titleRow = element('label', { class: 'tool-field tool-extra' }, words.notes.title, this.title);
   private readonly play = textButton(words.notes.play, () => { this.tell(); });
-  private readonly edit = textButton(words.notes.edit, () => { this.shop.notebook.add(this.shop.bench.story()!); });
+  private readonly edit = textButton(words.notes.edit, () => { this.shop.notebook.add(this.shop.story.told!); });
   private readonly places: Places;
   /// The note of which more than the text is shown.
   private opened: number | null = null;
@@ -118,7 +118,7 @@ export class NotesTool implements Tool {
 
   private tell(): void {
     const { title, notes, bookmarks } = this.shop.notebook;
-    this.shop.bench.play({ title, notes, bookmarks }, 0);
+    this.shop.story.play({ title, notes, bookmarks }, 0);
   }
 
   private flyTo(note: Note): void {
@@ -129,12 +129,12 @@ export class NotesTool implements Tool {
 
   /// Rows that somebody writes in stay as they are.
   private show(): void {
-    const { notebook, bench } = this.shop;
+    const { notebook, bench, story } = this.shop;
     const isWriting = document.activeElement instanceof HTMLTextAreaElement && this.list.contains(document.activeElement) && this.list.childElementCount === notebook.notes.length;
     if (!isWriting) this.list.replaceChildren(...notebook.notes.map((note, i) => this.rowOf(note, i)));
     this.title.value = notebook.title;
     for (const part of [this.titleRow, this.play]) part.hidden = notebook.notes.length === 0;
-    this.edit.hidden = notebook.notes.length > 0 || bench.story() === null;
+    this.edit.hidden = notebook.notes.length > 0 || story.told === null;
     this.note.textContent = notebook.isInLink ? '' : words.notes.tooLong;
     bench.redraw();
   }

@@ -5,7 +5,7 @@ import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
-import type { Mark } from './overlay.js';
+import type { Mark } from '../../src/plugins/overlay.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';

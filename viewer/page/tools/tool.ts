@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A tool of the bar.
-import type { Mark } from './overlay.js';
+import type { Mark } from '../../src/plugins/overlay.js';
 
 export interface Tool {
   /// What its card holds. What has the class `tool-extra` is not in the strip that the card is on phones.

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
+import { Overlay } from '../../src/plugins/overlay.js';
+import { Pointing } from '../../src/tools/pointing.js';
 import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import { isTyped } from '../../src/typing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
-import type { Bench, ToolName, Tools } from './bench.js';
+import type { Bench, Telltale, ToolName, Tools } from './bench.js';
 import { Cube } from './cube.js';
 import { TOOL_ICONS } from './icons.js';
 import { TOOL_KEYS } from './keys.js';
 import { LastingSign } from './lasting_sign.js';
 import { NotebookStore } from './notebook.js';
-import { Overlay } from './overlay.js';
-import { Pointing } from './pointing.js';
 import { ScaleLine } from './scale_line.js';
 import { loadToolSettings, saveToolSettings } from './tool_settings.js';
 import type { Tool } from './tool.js';
@@ -31,14 +31,16 @@ const LOADS: Readonly<Record<ToolName, Load>> = {
 };
 const NAMES = Object.keys(LOADS) as readonly ToolName[];
 
-function makeShop(bench: Bench): Workshop {
+/// `link`: the notes that the address has; `write`: puts others there, or takes them away.
+function makeShop(bench: Bench, story: Telltale, link: string | null, write: (link: string | null) => void): Workshop {
   const { manifest } = bench.view;
   const settings = loadToolSettings(manifest && unitOfModel(manifest));
   return {
     bench,
     pointing: new Pointing(bench),
     settings,
-    notebook: new NotebookStore(bench.notes, (notes) => { bench.setNotes(notes); }),
+    notebook: new NotebookStore(link, write),
+    story,
     scale: () => new LengthScale(settings.modelUnit, settings.shownUnit, words.units.unit),
     chosen: () => {
       saveToolSettings(settings);
@@ -48,8 +50,9 @@ function makeShop(bench: Bench): Workshop {
 }
 
 export class Toolbox implements Tools {
+  readonly name = 'tools';
   private readonly shop: Workshop;
-  private readonly overlay = new Overlay();
+  private readonly overlay = new Overlay('tool-overlay');
   private readonly scaleLine: ScaleLine;
   private readonly cube: Cube;
   private readonly lasting: LastingSign;
@@ -65,8 +68,8 @@ export class Toolbox implements Tools {
   private readonly made = new Map<ToolName, Tool>();
   private active: ToolName | null = null;
 
-  constructor(private readonly bench: Bench) {
-    this.shop = makeShop(bench);
+  constructor(private readonly bench: Bench, ...notes: [Telltale, string | null, (link: string | null) => void]) {
+    this.shop = makeShop(bench, ...notes);
     this.scaleLine = new ScaleLine(this.shop);
     this.cube = new Cube(bench);
     this.lasting = new LastingSign(bench.surface);

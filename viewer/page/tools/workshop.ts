@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What tools share.
 import type { LengthScale } from '../../src/tools/units.js';
-import type { Bench } from './bench.js';
+import type { Pointing } from '../../src/tools/pointing.js';
+import type { Bench, Telltale } from './bench.js';
 import type { NotebookStore } from './notebook.js';
-import type { Pointing } from './pointing.js';
 import type { ToolSettings } from './tool_settings.js';
 
 export interface Workshop {
@@ -11,6 +11,7 @@ export interface Workshop {
   readonly pointing: Pointing;
   readonly settings: ToolSettings;
   readonly notebook: NotebookStore;
+  readonly story: Telltale;
   /// In which lengths are told.
   readonly scale: () => LengthScale;
   /// Settings have changed.

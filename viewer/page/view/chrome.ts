@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Everything around the picture: bars, badge, sheets.
-import type { Manifest, Stats } from '../../src/index.js';
+import type { Manifest } from '../../src/index.js';
+import { immersionModes, type ImmersionMode } from '../../src/plugins/immersion_modes.js';
 import { summaryOf } from '../info/facts.js';
 import { InfoSheet } from '../info/info_sheet.js';
-import type { Model } from '../listing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { ModeBadge } from '../parts/mode_badge.js';
-import type { Appearance } from '../appearance.js';
-import type { Preferences } from '../preferences.js';
 import { ShareSheet } from '../share/share_sheet.js';
 import type { Shared } from '../share/embed_code.js';
 import { words } from '../words/words.js';
-import type { ImmersionMode } from '../xr/immersion.js';
 import { help } from './help.js';
-import type { Angles } from '../../src/scene/lighting.js';
 import { Panel } from './panel.js';
-import type { Shown } from './presentation.js';
 import { SettingsForm, type Choices } from './settings_form.js';
 import { Sheet, Sheets } from './sheets.js';
+import type { ViewChoices } from './view_choices.js';
+import type { ContextEvents, ViewContext } from './view_context.js';
 
 const ZOOM_STEP = 0.45;
 
@@ -36,7 +33,6 @@ export interface Orders extends Choices {
 }
 
 export class Chrome {
-  readonly root: HTMLElement;
   readonly sheets: Sheets;
   readonly settings: Sheet;
   readonly help: Sheet;
@@ -53,8 +49,8 @@ export class Chrome {
   private readonly sharing = new ShareSheet();
   private readonly about = new InfoSheet();
 
-  /// `surface`: what the picture is drawn on.
-  constructor(private readonly model: Model, surface: HTMLElement, orders: Orders, signal: AbortSignal) {
+  constructor(private readonly context: ViewContext, private readonly choices: ViewChoices, orders: Orders) {
+    const { root, surface, signal } = context;
     this.form = new SettingsForm(orders);
     this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [this.form.root]);
     this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [this.figures.root]);
@@ -72,51 +68,48 @@ export class Chrome {
     const all = [this.info, this.share, this.settings, this.panel, this.help];
     this.sheets = new Sheets(all, [this.info, this.share, this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
     surface.setAttribute('aria-describedby', this.summary.id);
-    this.root = element(
-      'main',
-      { class: 'view' },
-      surface,
-      this.summary,
-      this.busy,
-      this.topBar(orders, buttons),
-      this.zoomBar(orders),
-      ...all.map(({ root }) => root),
-    );
+    root.append(surface, this.summary, this.busy, this.topBar(orders, buttons), this.zoomBar(orders), ...all.map((sheet) => sheet.root));
+    this.listen();
   }
 
-  /// `key`: where the light comes from.
-  show(preferences: Preferences & Appearance, key: Angles): void {
-    this.form.show(preferences, key);
+  private listen(): void {
+    const { context } = this;
+    context.addEventListener('chosen', () => { this.showChosen(); });
+    context.addEventListener('known', ({ manifest }) => { this.tellSource(manifest); });
+    context.addEventListener('report', (report) => { this.report(report); });
+    context.addEventListener('story', ({ isTold }) => { this.tellStory(isTold); });
+    context.addEventListener('opened', () => { immersionModes().then((modes) => { this.tellImmersions(modes); }, () => undefined); });
+  }
+
+  private showChosen(): void {
+    const { context: { around: { preferences }, view }, choices: { chosen, presentation: { shown } } } = this;
+    this.form.show({ ...preferences, ...chosen }, shown.key);
+    this.figures.tellTerrain(view.terrain === null ? null : shown);
   }
 
   /// What the device can do; of all else there is no button.
-  tellImmersions(modes: readonly ImmersionMode[]): void {
+  private tellImmersions(modes: readonly ImmersionMode[]): void {
     for (const mode of modes) this.immersions[mode].hidden = false;
   }
 
   /// The model has a story.
-  tellStory(isTold: boolean): void {
+  private tellStory(isTold: boolean): void {
     this.story.hidden = false;
     this.story.setAttribute('aria-pressed', String(isTold));
   }
 
-  /// How a terrain is shown; null: it is none.
-  tellTerrain(shown: Shown | null): void {
-    this.figures.tellTerrain(shown);
-  }
-
-  /// `working`: something is on its way.
-  report(stats: Stats, wanted: number, working: boolean): void {
+  private report({ stats, working }: ContextEvents['report']): void {
     this.badge.show(stats.mode);
     this.busy.classList.toggle('working', working);
-    if (this.panel.isOpen) this.figures.show(stats, wanted);
+    if (this.panel.isOpen) this.figures.show(stats, this.context.view.settings.framesPerSecond);
   }
 
-  tellSource(manifest: Manifest): void {
+  private tellSource(manifest: Manifest): void {
+    const { model } = this.context;
     this.figures.tellSource(manifest);
     this.form.tellAttributes(manifest.source.values);
-    this.about.show(this.model, manifest);
-    const summary = summaryOf(this.model, manifest);
+    this.about.show(model, manifest);
+    const summary = summaryOf(model, manifest);
     if (this.summary.textContent !== summary) this.summary.textContent = summary;
   }
 
@@ -131,9 +124,10 @@ export class Chrome {
   /// The model's name, which tells more of it.
   private titleButton(): HTMLButtonElement {
     const { button } = this.info;
-    button.replaceChildren(this.model.name);
+    const { name } = this.context.model;
+    button.replaceChildren(name);
     button.className = 'title-button';
-    button.title = `${this.model.name}: ${words.info.title}`;
+    button.title = `${name}: ${words.info.title}`;
     button.setAttribute('aria-label', button.title);
     return button;
   }
@@ -145,7 +139,7 @@ export class Chrome {
   }
 
   private sheetChanged(sheet: Sheet, open: boolean, orders: Orders): void {
-    this.root.classList.toggle('with-sheet', this.sheets.anyOpen);
+    this.context.root.classList.toggle('with-sheet', this.sheets.anyOpen);
     if (sheet === this.panel) orders.panelShown(open);
     if (sheet === this.share && open) this.showShared(orders);
   }

@@ -2,22 +2,10 @@
 // The story of a model: found once the model is seen, told where its code is loaded, and at which note a link is.
 import { choiceOf, type Spot } from '../address.js';
 import type { Notebook } from '../../src/tools/note.js';
-import type { StoryPlayer, Teller } from '../story/story_player.js';
-
-export interface StorySurroundings {
-  /// Null: nothing is known of the model yet.
-  teller(): Omit<Teller, 'told' | 'ended'> | null;
-  /// The address of the story beside the model, or itself; null: there is none.
-  find(): Promise<string | null>;
-  /// There is one, and whether it is told.
-  shown(isTold: boolean): void;
-  /// Links are to tell of another note.
-  told(): void;
-  /// Whether the page has the model within it, and fetches nothing for what is told.
-  isWhole(): boolean;
-  /// It could not be had; why.
-  failed(why: string, retry: () => void): void;
-}
+import type { StoryPlayer } from '../story/story_player.js';
+import type { Telltale } from '../tools/bench.js';
+import { words } from '../words/words.js';
+import type { PageStage } from './page_stage.js';
 
 interface Story {
   readonly notebook: Notebook;
@@ -25,20 +13,22 @@ interface Story {
   readonly address: string | null;
 }
 
-export class StoryHost {
+export class StoryHost implements Telltale {
   private story: Story | null = null;
   private player: StoryPlayer | null = null;
   private step: number | null = null;
   private sought = false;
 
-  constructor(private readonly around: StorySurroundings) {}
+  constructor(private readonly stage: PageStage) {
+    const { context } = stage;
+    context.addEventListener('known', () => { if (context.isShown) this.seek(); });
+  }
 
   /// As links have it: from 1 on; null: no note is told.
   get linked(): number | null {
     return this.step === null ? null : this.step + 1;
   }
 
-  /// What lies beside the model.
   get told(): Notebook | null {
     return this.story?.notebook ?? null;
   }
@@ -52,35 +42,20 @@ export class StoryHost {
   follow(spot: Spot): void {
     const number = Number(choiceOf(spot, 'story') ?? NaN);
     this.step = Number.isInteger(number) && number > 0 ? number - 1 : null;
-    if (this.step !== null) this.player?.stand(this.step);
+    if (this.step !== null) this.player?.stories.stand(this.step);
   }
 
-  /// Once the model is seen: looks for its story, and shows that there is one.
-  seek(): void {
-    if (this.sought) return;
-    this.sought = true;
-    this.load().catch((error: unknown) => {
-      const retry = (): void => {
-        this.sought = false;
-        this.seek();
-      };
-      this.around.failed(error instanceof Error ? error.message : String(error), retry);
-    });
-  }
-
-  /// What was written with the tools, from its note of that number on, instead of what is told.
-  async play(notebook: Notebook, from: number): Promise<void> {
-    await this.open({ notebook, address: this.address });
-    this.player?.go(from);
+  /// What was written with the tools, instead of what is told.
+  play(notebook: Notebook, from: number): void {
+    this.open({ notebook, address: this.address }).then(
+      () => { this.player?.stories.go(from); },
+      () => { this.stage.context.missCode(() => { this.play(notebook, from); }); },
+    );
   }
 
   toggle(): void {
     if (this.player !== null) this.end();
     else if (this.story !== null) void this.open(this.story);
-  }
-
-  drawn(): void {
-    this.player?.drawn();
   }
 
   /// False: none is told.
@@ -90,36 +65,54 @@ export class StoryHost {
     return isTold;
   }
 
+  /// Looks for the model's story, and shows that there is one.
+  private seek(): void {
+    if (this.sought) return;
+    this.sought = true;
+    this.load().catch((error: unknown) => {
+      const { around, model } = this.stage.context;
+      const retry = (): void => {
+        this.sought = false;
+        this.seek();
+      };
+      around.failed(words.story.notRead(model.name), { more: error instanceof Error ? error.message : String(error), subject: 'story', retry });
+    });
+  }
+
   private async load(): Promise<void> {
-    const found = await this.around.find();
-    const teller = this.around.teller();
-    if (found === null || teller === null) return;
+    const { signal, context } = this.stage;
+    const found = await context.around.findStory(signal);
+    if (found === null) return;
     const { loadStory } = await import('../story/story_source.js');
-    const notebook = await loadStory(found, teller.signal);
-    if (teller.signal.aborted || notebook.notes.length === 0) return;
+    const notebook = await loadStory(found, signal);
+    if (signal.aborted || notebook.notes.length === 0) return;
     this.story = { notebook, address: found.startsWith('{') ? null : found };
     if (this.player === null) await this.open(this.story);
   }
 
   private async open({ notebook, address }: Story): Promise<void> {
     const { StoryPlayer } = await import('../story/story_player.js');
-    const teller = this.around.teller();
-    if (teller === null || teller.signal.aborted) return;
+    const { stage } = this;
+    if (stage.signal.aborted) return;
     this.player?.end();
-    const told = (i: number): void => {
-      this.step = i;
-      this.around.told();
-    };
-    this.player = new StoryPlayer(notebook, this.around.isWhole() ? null : (address ?? document.baseURI), { ...teller, told, ended: () => { this.end(); } });
-    if (this.step !== null) this.player.stand(this.step);
-    this.around.shown(true);
+    const base = stage.context.model.files === undefined ? (address ?? document.baseURI) : null; // a page that has the model within it fetches nothing
+    this.player = new StoryPlayer(notebook, base, stage, () => { this.end(); });
+    this.player.stories.addEventListener('told', () => { this.moved(); });
+    if (this.step !== null) this.player.stories.stand(this.step);
+    stage.context.dispatchEvent({ type: 'story', isTold: true });
+  }
+
+  /// Links tell of another note.
+  private moved(): void {
+    this.step = this.player?.stories.step ?? null;
+    this.stage.context.startRest();
+    this.stage.redraw();
   }
 
   private end(): void {
     this.player?.end();
     this.player = null;
-    this.step = null;
-    this.around.shown(false);
-    this.around.told();
+    this.stage.context.dispatchEvent({ type: 'story', isTold: false });
+    this.moved();
   }
 }

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The tools of a view, loaded when they are first used, and the notes that its links have.
 import { choiceOf, type Spot } from '../address.js';
-import type { Bench, ToolName, Tools } from '../tools/bench.js';
-
-export interface ToolSurroundings {
-  /// Null: nothing is known of the model yet.
-  bench(): Omit<Bench, 'notes' | 'setNotes'> | null;
-  /// Links are to have other notes.
-  noted(): void;
-  /// The code could not be loaded.
-  failed(retry: () => void): void;
-}
+import type { Telltale, ToolName, Tools } from '../tools/bench.js';
+import type { PageStage } from './page_stage.js';
 
 export class ToolHost {
   private tools: Tools | null = null;
   private linked: string | null = null;
   private hasNews = false;
 
-  constructor(private readonly around: ToolSurroundings) {}
+  constructor(private readonly stage: PageStage, private readonly story: Telltale) {
+    stage.context.addEventListener('known', () => { this.showNews(); });
+  }
 
   /// As links have them.
   get notes(): string | null {
@@ -31,40 +25,35 @@ export class ToolHost {
     this.tools?.follow(this.linked);
   }
 
-  /// The notes of a link are shown once something is known of the model.
-  showNews(): void {
-    if (this.hasNews) void this.use('notes');
-    this.hasNews = false;
-  }
-
-  /// Null: the bar.
+  /// Null: the bar. Nothing happens before something is known of the model.
   async use(name: ToolName | null): Promise<void> {
-    if (this.around.bench() === null) return;
+    const { view, signal, context } = this.stage;
+    if (view.manifest === null) return;
     try {
       const { Toolbox } = await import('../tools/toolbox.js');
-      const bench = this.around.bench();
-      if (bench === null || bench.signal.aborted) return;
-      this.tools ??= new Toolbox({ ...bench, notes: this.linked, setNotes: (notes) => { this.setNotes(notes); } });
+      if (signal.aborted) return;
+      if (this.tools === null) {
+        this.tools = new Toolbox(this.stage, this.story, this.linked, (notes) => { this.setNotes(notes); });
+        view.registerPlugin(this.tools);
+      }
       this.tools.toggle(name);
     } catch {
-      this.around.failed(() => void this.use(name));
+      context.missCode(() => void this.use(name));
     }
-  }
-
-  tapped(right: number, up: number): boolean {
-    return this.tools?.tapped(right, up) ?? false;
-  }
-
-  drawn(): void {
-    this.tools?.drawn();
   }
 
   back(): boolean {
     return this.tools?.back() ?? false;
   }
 
+  /// The notes of a link are shown once something is known of the model.
+  private showNews(): void {
+    if (this.hasNews) void this.use('notes');
+    this.hasNews = false;
+  }
+
   private setNotes(notes: string | null): void {
     this.linked = notes;
-    this.around.noted();
+    this.stage.context.rest();
   }
 }

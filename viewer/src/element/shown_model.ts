@@ -137,7 +137,7 @@ export class ShownModel implements Stage {
 
   private makeRenderer(): WebGLRenderer {
     try {
-      return new WebGLRenderer({ antialias: true, alpha: true });
+      return new WebGLRenderer({ antialias: true, alpha: true, stencil: true });
     } catch {
       this.view.dispose();
       throw new Error('This browser has no WebGL 2, which models are drawn with.');

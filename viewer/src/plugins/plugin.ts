@@ -63,8 +63,8 @@ export class Plugins<View> {
   private readonly all = new Map<string, PluginOf<View>>();
   private stage: StageOf<View> | null = null;
 
-  /// `changed`: the picture may be another one, or its tiles.
-  constructor(private readonly view: View, private readonly changed: (shadings: readonly Shading[]) => void) {}
+  /// `changed`: the picture is another one; `shadings`: all there are, if they are others.
+  constructor(private readonly view: View, private readonly changed: (shadings: readonly Shading[] | null) => void) {}
 
   /// Throws Error where there is one of that name.
   register(plugin: PluginOf<View>): void {
@@ -72,7 +72,7 @@ export class Plugins<View> {
     this.all.set(plugin.name, plugin);
     plugin.init?.(this.view);
     if (this.stage !== null) plugin.enter?.(this.stage);
-    this.tellChanged();
+    this.tellChanged(plugin);
   }
 
   /// Nothing happens where it is not there.
@@ -80,7 +80,7 @@ export class Plugins<View> {
     if (this.all.get(plugin.name) !== plugin) return;
     this.all.delete(plugin.name);
     plugin.dispose?.();
-    this.tellChanged();
+    this.tellChanged(plugin);
   }
 
   /// Undefined: there is none of that name.
@@ -118,7 +118,9 @@ export class Plugins<View> {
     this.all.clear();
   }
 
-  private tellChanged(): void {
-    this.changed([...this.all.values()].flatMap(({ shading }) => (shading === undefined ? [] : [shading])));
+  /// `plugin`: has come or gone.
+  private tellChanged(plugin: PluginOf<View>): void {
+    const shadings = [...this.all.values()].flatMap(({ shading }) => (shading === undefined ? [] : [shading]));
+    this.changed(plugin.shading === undefined ? null : shadings);
   }
 }

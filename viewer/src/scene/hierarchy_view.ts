@@ -39,7 +39,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.loading = new Loading(url, this.context);
     this.frames = new Frames(this.context, this.loading);
     this.plugins = new Plugins<HierarchyView>(this, (shadings) => {
-      this.tiles.shadings = shadings;
+      if (shadings !== null) this.tiles.shadings = shadings;
       this.context.changed();
     });
     for (const plugin of [new Attributes(), new Relief()]) this.plugins.register(plugin);

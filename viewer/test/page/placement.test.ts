@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { Placement, type Shown } from '../../page/xr/placement.js';
+import { Placement, type Shown } from '../../src/plugins/placement.js';
 
 const MODEL: Shown = { centre: new Vector3(100, 50, -7), size: 40, metresPerUnit: null, direction: null };
 

@@ -5,7 +5,7 @@ import path from 'node:path';
 import { BufferAttribute, PerspectiveCamera, Triangle, Vector3 } from 'three';
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Fetch } from '../../src/hierarchy/bytes.js';
-import { Places } from '../../page/tools/places.js';
+import { Places } from '../../src/tools/places.js';
 import { HierarchyView } from '../../src/index.js';
 import { UPS } from '../../src/scene/standing.js';
 import { Coordinates } from '../../src/tools/coordinates.js';

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A model in the room around a visitor, through WebXR: it refines for what the headset sees, within the device's frame rate.
 import { Group, MathUtils, PerspectiveCamera, Vector3, type Scene, type WebGLRenderer } from 'three';
-import type { HierarchyView } from '../../src/index.js';
+import type { HierarchyView } from '../scene/hierarchy_view.js';
 import { Hands } from './hands.js';
+import type { ImmersionMode } from './immersion_modes.js';
 import { Placement, type Shown } from './placement.js';
-
-export type ImmersionMode = 'immersive-vr' | 'immersive-ar';
 
 const NEAR = 0.03; // metres
 const FAR = 200;
@@ -26,7 +25,7 @@ async function floorOf(session: XRSession): Promise<'local-floor' | 'local'> {
   return session.requestReferenceSpace('local-floor').then(() => 'local-floor' as const, () => 'local' as const);
 }
 
-export class Immersion {
+export class ImmersionSession {
   private readonly rig = new Group();
   private readonly eyes = new PerspectiveCamera(50, 1, NEAR, FAR);
   /// What both eyes see, in the model's units.
@@ -47,13 +46,13 @@ export class Immersion {
   }
 
   /// Of a click. Rejects where the visitor or the browser does not allow it.
-  static async start(mode: ImmersionMode, around: Surroundings): Promise<Immersion> {
+  static async start(mode: ImmersionMode, around: Surroundings): Promise<ImmersionSession> {
     const session = await navigator.xr!.requestSession(mode, { optionalFeatures: ['local-floor'] });
     const space = await floorOf(session);
     const { renderer } = around;
     renderer.xr.enabled = true;
     renderer.xr.setReferenceSpaceType(space);
-    const immersion = new Immersion(session, around, space === 'local-floor');
+    const immersion = new ImmersionSession(session, around, space === 'local-floor');
     await renderer.xr.setSession(session);
     renderer.setAnimationLoop((now, frame?: XRFrame) => { if (frame) immersion.draw(now, frame); });
     return immersion;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Between the input's coordinates and the world of the picture, however the model stands.
 import { Vector3 } from 'three';
-import type { HierarchyView } from '../../src/index.js';
-import { Coordinates } from '../../src/tools/coordinates.js';
-import type { Vector } from '../../src/tools/vectors.js';
+import type { HierarchyView } from '../scene/hierarchy_view.js';
+import { Coordinates } from './coordinates.js';
+import type { Vector } from './vectors.js';
 
 export class Places {
   private readonly coordinates: Coordinates;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From where a note is looked at.
-import type { Note } from '../../src/tools/note.js';
-import { CameraPose } from '../../src/scene/camera_pose.js';
+import { CameraPose } from '../scene/camera_pose.js';
+import type { Note } from './note.js';
 import type { Places } from './places.js';
 
 /// As it wants to be seen, else along the way that the camera looks, from no farther than `most`.

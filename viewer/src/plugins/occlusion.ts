@@ -3,13 +3,16 @@
 // occlusion, Jimenez et al. 2016), multiplied onto a picture that is drawn already.
 import {
   CustomBlending, DepthTexture, DoubleSide, MeshBasicMaterial, OneFactor, ShaderMaterial, SrcColorFactor, UnsignedIntType, Vector2, WebGLRenderTarget, ZeroFactor,
-  type PerspectiveCamera, type Scene, type WebGLRenderer,
+  Vector3, type PerspectiveCamera, type Scene, type WebGLRenderer,
 } from 'three';
 import { GTAOPass } from 'three/addons/postprocessing/GTAOPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
+import type { Frame } from './plugin.js';
 
 /// Of the distance of what the camera looks at: hollows of that size are shaded, however near the camera is.
 const REACH = 0.1;
+const MOST_RATIO = 2; // pixels of the canvas for one of the page
 const QUALITY = { samples: 32, distanceExponent: 1.4, distanceFallOff: 0.5, scale: 1.5 };
 const SMOOTHING = { lumaPhi: 20, depthPhi: 4, normalPhi: 2, radius: 10, radiusExponent: 1, rings: 3, samples: 24 };
 
@@ -24,7 +27,8 @@ function multiplying(): ShaderMaterial {
   });
 }
 
-export class Occlusion {
+/// Of a scene and the camera that it is drawn with.
+class Hollows {
   private readonly depth = new WebGLRenderTarget(1, 1, { depthTexture: new DepthTexture(1, 1, UnsignedIntType) });
   /// Of whatever is drawn the depth alone counts.
   private readonly bare = new MeshBasicMaterial({ side: DoubleSide, colorWrite: false });
@@ -33,7 +37,7 @@ export class Occlusion {
   private readonly quad = new FullScreenQuad(this.multiply);
   private readonly size = new Vector2();
 
-  constructor(private readonly scene: Scene, private readonly camera: PerspectiveCamera) {
+  constructor(readonly scene: Scene, readonly camera: PerspectiveCamera) {
     this.pass = new GTAOPass(scene, camera, 1, 1, { depthTexture: this.depth.depthTexture! });
     this.pass.updateGtaoMaterial(QUALITY);
     this.pass.updatePdMaterial(SMOOTHING);
@@ -80,5 +84,43 @@ export class Occlusion {
     renderer.setRenderTarget(this.depth);
     renderer.render(scene, this.camera);
     scene.overrideMaterial = overrideMaterial;
+  }
+}
+
+/// Hollows get less light while it is registered; not in pictures that a plug-in has painted.
+export class Occlusion implements Plugin {
+  readonly name = 'occlusion';
+  private view: HierarchyView | null = null;
+  private stage: Stage | null = null;
+  private hollows: Hollows | null = null;
+
+  init(view: HierarchyView): void {
+    this.view = view;
+  }
+
+  enter(stage: Stage): void {
+    this.stage = stage;
+  }
+
+  /// A part of a larger picture does not know what lies beside it: there hollows are as they are.
+  shade({ renderer, scene, camera }: Frame): void {
+    if (camera.view?.enabled === true) return;
+    if (this.hollows?.scene !== scene || this.hollows.camera !== camera) {
+      this.hollows?.dispose();
+      this.hollows = new Hollows(scene, camera);
+    }
+    this.hollows.shade(renderer, this.distanceOf(camera), Math.min(devicePixelRatio, MOST_RATIO));
+  }
+
+  dispose(): void {
+    this.hollows?.dispose();
+    this.view = this.stage = this.hollows = null;
+  }
+
+  /// To what the camera looks at: without a stage, the middle of the model.
+  private distanceOf(camera: PerspectiveCamera): number {
+    if (this.stage !== null) return this.stage.pose().distance;
+    const middle = this.view!.box.getCenter(new Vector3()).applyMatrix4(this.view!.matrixWorld);
+    return middle.distanceTo(new Vector3().setFromMatrixPosition(camera.matrixWorld));
   }
 }

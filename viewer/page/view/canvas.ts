@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 // What draws: canvas, scene, camera and light.
-import { Box3, Group, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
+import { NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, WebGLRenderer, type Box3, type Vector3 } from 'three';
 import { words } from '../words/words.js';
 import { partDrawer } from '../../src/tools/draw_part.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import type { CameraPose } from '../../src/scene/camera_pose.js';
 import { depthRange, VIEW_ANGLE } from './camera_moves.js';
+import type { HierarchyView } from '../../src/index.js';
 import { Lighting } from '../../src/scene/lighting.js';
-import type { Occlusion } from './occlusion.js';
 
 const MOST_RATIO = 2;
-
-/// Draws the scene in its own way.
-export interface Painter {
-  paint(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void;
-  /// Whether a point of the world is drawn.
-  keeps(point: Vector3): boolean;
-}
 
 function makeRenderer(): WebGLRenderer {
   try {
@@ -26,51 +19,27 @@ function makeRenderer(): WebGLRenderer {
   }
 }
 
-export class Stage {
+export class Canvas {
   readonly camera = new PerspectiveCamera((VIEW_ANGLE * 180) / Math.PI, 1);
-  readonly canvas: HTMLCanvasElement;
-  private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  private readonly shown = new Group();
+  readonly element: HTMLCanvasElement;
+  readonly renderer: WebGLRenderer;
+  readonly scene = new Scene();
   readonly lighting = new Lighting(this.scene, this.camera);
   private readonly raycaster = new Raycaster();
   /// Null: as large as the canvas.
   asked: PictureSize | null = null;
-  /// Null: as it is.
-  painter: Painter | null = null;
-  private isOccluded = false;
-  private occlusion: Occlusion | null = null;
-  private distance = 1;
   private nominal = new Vector2();
   private sharpness = 1;
+  readonly view: HierarchyView;
 
-  /// Throws Error where there is no WebGL 2.
-  constructor() {
+  /// Throws Error where there is no WebGL 2: then no view is made.
+  constructor(makeView: () => HierarchyView) {
     this.renderer = makeRenderer();
+    this.view = makeView();
     this.renderer.setClearAlpha(0);
     this.renderer.toneMapping = NeutralToneMapping;
-    this.canvas = this.renderer.domElement;
-    this.scene.add(this.camera, this.shown);
-  }
-
-  /// Whether hollows get less light, from the next frame on. True: that was so once code had come, which may be rejected.
-  async setOccluded(is: boolean): Promise<boolean> {
-    this.isOccluded = is;
-    if (!is) this.dropOcclusion();
-    if (!is || this.occlusion !== null) return false;
-    const { Occlusion } = await import('./occlusion.js');
-    if (this.isOccluded) this.occlusion ??= new Occlusion(this.scene, this.camera); // it may have been switched off meanwhile
-    return true;
-  }
-
-  /// What a session in the visitor's room draws with.
-  get parts(): { readonly renderer: WebGLRenderer; readonly scene: Scene; readonly camera: PerspectiveCamera } {
-    const { renderer, scene, camera } = this;
-    return { renderer, scene, camera };
-  }
-
-  show(object: Object3D): void {
-    this.shown.add(object);
+    this.element = this.renderer.domElement;
+    this.scene.add(this.camera, this.view);
   }
 
   /// Of the canvas.
@@ -85,7 +54,7 @@ export class Stage {
 
   /// Takes over the size that the canvas has on the page, with a part of the pixels on each axis. False: nothing has changed.
   fit(sharpness: number): boolean {
-    const { clientWidth, clientHeight } = this.canvas;
+    const { clientWidth, clientHeight } = this.element;
     if (clientWidth === 0 || clientHeight === 0) return false;
     const ratio = Math.min(devicePixelRatio, MOST_RATIO);
     const nominal = new Vector2(clientWidth, clientHeight).multiplyScalar(ratio).floor();
@@ -100,7 +69,6 @@ export class Stage {
   aim(pose: CameraPose, box: Box3): void {
     this.camera.position.copy(pose.position);
     this.camera.lookAt(pose.target);
-    this.distance = pose.distance;
     this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;
     Object.assign(this.camera, depthRange(pose, box));
     this.camera.updateProjectionMatrix();
@@ -108,38 +76,24 @@ export class Stage {
   }
 
   draw(): void {
-    if (this.painter) this.painter.paint(this.renderer, this.scene, this.camera);
-    else this.drawScene();
+    this.view.draw(this.renderer, this.scene, this.camera);
   }
 
   /// Of a picture as it is aimed at.
   get drawPart(): DrawPart {
-    return partDrawer(this.renderer, this.camera, () => { this.draw(); });
+    return partDrawer(this.renderer, this.camera, () => { this.view.plugins.paint(this); });
   }
 
   /// The point of the drawn triangles at a place of the picture, from -1 to 1.
   pick(right: number, up: number): Vector3 | null {
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
-    const hits = this.raycaster.intersectObject(this.shown, true);
-    return hits.find(({ point }) => this.painter?.keeps(point) ?? true)?.point ?? null;
-  }
-
-  /// A part of a larger picture does not know what lies beside it: there hollows are as they are.
-  private drawScene(): void {
-    this.renderer.render(this.scene, this.camera);
-    if (this.camera.view?.enabled !== true) this.occlusion?.shade(this.renderer, this.distance, Math.min(devicePixelRatio, MOST_RATIO));
-  }
-
-  private dropOcclusion(): void {
-    this.occlusion?.dispose();
-    this.occlusion = null;
+    const hits = this.raycaster.intersectObject(this.view, true);
+    return hits.find(({ point }) => this.view.plugins.keeps(point))?.point ?? null;
   }
 
   dispose(): void {
-    this.isOccluded = false;
-    this.dropOcclusion();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
-    this.canvas.remove();
+    this.element.remove();
   }
 }

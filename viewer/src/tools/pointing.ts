@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // From a place of the picture to a point of the model: at once as it is shown, then as it is in the original.
-import { pickOriginal } from '../../src/tools/original.js';
-import { Picker, rayThrough, type Hit, type Keeps } from '../../src/tools/pick.js';
-import { pickedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
-import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
-import type { Bench } from './bench.js';
+import { Vector3 } from 'three';
+import type { Stage } from '../scene/hierarchy_view.js';
+import { pickOriginal } from './original.js';
+import { Picker, rayThrough, type Hit, type Keeps } from './pick.js';
+import { pickedPoint, type PickedPoint } from './picked_point.js';
+import { recordedBound, shownBound } from './shown_bound.js';
 
 export interface Pointed {
   readonly shown: PickedPoint;
@@ -14,19 +15,19 @@ export interface Pointed {
 
 export class Pointing {
   private readonly picker = new Picker();
-  keeps: Keeps = () => true;
 
-  constructor(private readonly bench: Bench) {}
+  constructor(private readonly stage: Pick<Stage, 'view' | 'camera'>) {}
 
   /// Null: nothing of the model is there. `signal`: ends the way to the original.
   at(right: number, up: number, snaps: boolean, signal: AbortSignal): Pointed | null {
-    const { view, camera } = this.bench;
+    const { view, camera } = this.stage;
     const { manifest, source } = view;
+    const keeps: Keeps = (point) => view.plugins.keeps(new Vector3(...point).applyMatrix4(view.surfaceMatrix));
     const ray = rayThrough(camera, right, up, view.surfaceMatrix);
-    const hit = this.picker.pick(view.surface, ray, this.keeps);
+    const hit = this.picker.pick(view.surface, ray, keeps);
     if (hit === null || manifest === null || source === null) return null;
     const tell = (found: Hit): PickedPoint => pickedPoint(found, manifest, snaps, shownBound(found.node, view.surface, (node) => recordedBound(source, node)));
-    const original = pickOriginal(source, ray, { signal, keeps: this.keeps }).then((found) => found && tell(found), (problem: unknown) => {
+    const original = pickOriginal(source, ray, { signal, keeps }).then((found) => found && tell(found), (problem: unknown) => {
       signal.throwIfAborted();
       console.debug(problem); // the view goes on with what is shown
       return null;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What the device can do, asked without asking the visitor.
-import type { ImmersionMode } from './immersion.js';
+
+export type ImmersionMode = 'immersive-vr' | 'immersive-ar';
 
 const MODES: readonly ImmersionMode[] = ['immersive-vr', 'immersive-ar'];
 
 /// Without WebXR, or in a page that may not use it, none.
-export async function immersions(): Promise<ImmersionMode[]> {
+export async function immersionModes(): Promise<ImmersionMode[]> {
   const { xr } = navigator as { xr?: XRSystem };
   if (xr === undefined) return [];
   const able = await Promise.all(MODES.map((mode) => xr.isSessionSupported(mode).catch(() => false)));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Marks over the picture: points, lines and texts, at their places in each frame.
 import { Vector4, type Matrix4, type PerspectiveCamera } from 'three';
-import type { Vector } from '../../src/tools/vectors.js';
-import { placeOf, type PicturePlace } from '../view/picture_place.js';
+import { placeOf, type PicturePlace } from '../tools/picture_place.js';
+import type { Vector } from '../tools/vectors.js';
 
 /// In the tiles' coordinates; a line has an end.
 export interface Mark {
@@ -14,6 +14,10 @@ export interface Mark {
 const SVG = 'http://www.w3.org/2000/svg';
 const POINT_RADIUS = 5; // pixels
 const TEXT_OFF = 9;
+const POINT = { fill: '#c8501e', stroke: '#fff', 'stroke-width': 2 };
+const LINE = { stroke: '#c8501e', 'stroke-width': 2.5 };
+const UNDER = { class: 'under', stroke: '#fff', 'stroke-width': 5, opacity: 0.8 };
+const TEXT = { fill: '#1d2125', stroke: '#fff', 'stroke-width': 4, 'paint-order': 'stroke', 'font-family': 'system-ui, sans-serif', 'font-size': 13, 'font-weight': 600 };
 const LEAST_LINE = 60; // pixels: the text of a shorter one would cover others
 
 function make(tag: string, to: Element, attributes: Readonly<Record<string, number | string>>): SVGElement {
@@ -26,8 +30,10 @@ function make(tag: string, to: Element, attributes: Readonly<Record<string, numb
 export class Overlay {
   readonly root = document.createElementNS(SVG, 'svg');
 
-  constructor() {
-    this.root.setAttribute('class', 'tool-overlay');
+  /// What a page's style says of the class goes before what is set here.
+  constructor(name = 'meshhier-overlay') {
+    this.root.setAttribute('class', name);
+    this.root.style.cssText = 'position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none';
     this.root.setAttribute('aria-hidden', 'true'); // cards tell the same in words
   }
 
@@ -45,7 +51,7 @@ export class Overlay {
   private point(clip: Vector4, text: string | undefined): void {
     const { x, y } = placeOf(clip, this.root);
     if (clip.w <= 0 || !Number.isFinite(x + y)) return; // notes may be anywhere
-    make('circle', this.root, { cx: x, cy: y, r: POINT_RADIUS });
+    make('circle', this.root, { ...POINT, cx: x, cy: y, r: POINT_RADIUS });
     this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
   }
 
@@ -55,12 +61,12 @@ export class Overlay {
     if (near <= 0) return;
     const cut = (from: Vector4, to: Vector4): Vector4 => (from.w >= near ? from : from.clone().lerp(to, (near - from.w) / (to.w - from.w)));
     const [one, other] = [placeOf(cut(a, b), this.root), placeOf(cut(b, a), this.root)];
-    make('line', this.root, { class: 'under', x1: one.x, y1: one.y, x2: other.x, y2: other.y });
-    make('line', this.root, { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+    make('line', this.root, { ...UNDER, x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+    make('line', this.root, { ...LINE, x1: one.x, y1: one.y, x2: other.x, y2: other.y });
     if (Math.hypot(one.x - other.x, one.y - other.y) >= LEAST_LINE) this.text({ x: (one.x + other.x) / 2 + TEXT_OFF, y: (one.y + other.y) / 2 - TEXT_OFF }, text);
   }
 
   private text({ x, y }: PicturePlace, text: string | undefined): void {
-    if (text !== undefined) make('text', this.root, { x, y }).textContent = text;
+    if (text !== undefined) make('text', this.root, { ...TEXT, x, y }).textContent = text;
   }
 }

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// A model's view for plug-ins and tools.
+import type { HierarchyView } from '../../src/index.js';
+import type { CameraPose } from '../../src/scene/camera_pose.js';
+import { fileOf } from '../listing.js';
+import type { Bench } from '../tools/bench.js';
+import type { Canvas } from './canvas.js';
+import type { Frames } from './frames.js';
+import { isStanding, type ViewCamera } from './view_camera.js';
+import type { ViewChoices } from './view_choices.js';
+import type { ViewContext } from './view_context.js';
+
+export class PageStage implements Bench {
+  readonly view: HierarchyView;
+  readonly renderer: Canvas['renderer'];
+  readonly scene: Canvas['scene'];
+  readonly camera: Canvas['camera'];
+  readonly root: HTMLElement;
+  readonly surface: HTMLElement;
+  readonly signal: AbortSignal;
+  readonly name: string;
+  readonly fileName: string;
+
+  constructor(readonly context: ViewContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: Frames) {
+    const { view, canvas, root, surface, signal, model } = context;
+    [this.view, this.root, this.surface, this.signal] = [view, root, surface, signal];
+    [this.renderer, this.scene, this.camera] = [canvas.renderer, canvas.scene, canvas.camera];
+    [this.name, this.fileName] = [model.name, fileOf(model)];
+    view.plugins.enter(this);
+  }
+
+  pose(): CameraPose {
+    return this.moves.navigation.pose;
+  }
+
+  jump(pose: CameraPose): void {
+    this.moves.navigation.jump(pose);
+  }
+
+  /// Places may be from a file.
+  fly(pose: CameraPose): void {
+    if (isStanding(pose)) this.moves.navigation.fly(pose);
+  }
+
+  travel(pose: CameraPose): number {
+    return isStanding(pose) ? this.moves.navigation.travel(pose) : 0;
+  }
+
+  redraw(): void {
+    this.context.redraw();
+  }
+
+  suspend(): () => void {
+    return this.frames.pause();
+  }
+
+  present(choices: string): void {
+    this.looks.tell(choices);
+  }
+
+  choices(): string {
+    return this.looks.text;
+  }
+
+  freeze(size: Parameters<Bench['freeze']>[0]): ReturnType<Bench['freeze']> {
+    return this.moves.freeze(size);
+  }
+
+  tell(message: string, telling?: Parameters<Bench['tell']>[1]): () => void {
+    return this.context.around.failed(message, { ...telling, subject: 'tools' });
+  }
+}

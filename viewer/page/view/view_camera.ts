@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The camera of a model's view: where it stands, what of the model is in the picture, and when it rests.
+import { Box3, Vector3 } from 'three';
+import { CameraPose, type Pose } from '../../src/scene/camera_pose.js';
+import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
+import { problemOfPose, roundedPose } from '../address.js';
+import { towardsViewer } from '../gallery/layout.js';
+import type { Moves } from './glide.js';
+import { Navigation } from './navigation.js';
+import type { ViewContext } from './view_context.js';
+
+const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+
+/// Whether a camera can stand so.
+export function isStanding(pose: CameraPose): boolean {
+  const { position, target } = pose.toPose();
+  return problemOfPose(position, target) === null;
+}
+
+export class ViewCamera {
+  readonly navigation: Navigation;
+  /// While a picture is taken.
+  private frozen: CameraPose | null = null;
+  private readonly framed = new Box3();
+  /// From where the whole is seen until it is there and the camera flies to its first view.
+  private approach: ReturnType<typeof towardsViewer> | null = null;
+
+  constructor(private readonly context: ViewContext) {
+    const { canvas, around } = context;
+    this.navigation = new Navigation((right, up) => canvas.pick(right, up), () => { context.redraw(); });
+    if (around.turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(around.turn);
+    context.addEventListener('opened', () => { this.reframe(); });
+  }
+
+  /// As links have it.
+  pose(): Pose {
+    return roundedPose(this.navigation.pose.toPose());
+  }
+
+  /// Null: all of the model.
+  setPose(pose: Pose | null): void {
+    if (pose === null) this.navigation.goHome();
+    else this.navigation.jump(CameraPose.from(pose));
+  }
+
+  /// A picture is being taken: the page's waits.
+  get isFrozen(): boolean {
+    return this.frozen !== null;
+  }
+
+  /// Takes the steps that are due. True: it stands elsewhere than in the frame before.
+  step(now: number): boolean {
+    const { isShown, view } = this.context;
+    if (this.approach !== null && isShown && view.manifest !== null) this.arrive();
+    const moved = this.frozen === null && this.navigation.step(now);
+    if (moved) this.context.startRest();
+    return moved;
+  }
+
+  /// The manifest knows the box better than the root.
+  aim(isResized: boolean): void {
+    const { isOpened, view: { box }, canvas } = this.context;
+    if (isOpened && (isResized || !this.framed.equals(box))) this.reframe();
+    canvas.aim(this.frozen ?? CameraPose.from(this.pose()), isOpened ? box : UNKNOWN);
+  }
+
+  freeze(size: PictureSize): { readonly draw: DrawPart; release(): void } {
+    const { canvas } = this.context;
+    const hold = (asked: PictureSize | null): void => {
+      this.frozen = asked && CameraPose.from(this.pose());
+      canvas.asked = asked;
+      this.context.redraw();
+    };
+    hold(size);
+    return { draw: canvas.drawPart, release: () => { hold(null); } };
+  }
+
+  /// `logarithm`: of a factor.
+  zoomMiddle(logarithm: number): void {
+    this.navigation.grab(0, 0);
+    this.navigation.move({ zoom: logarithm });
+  }
+
+  moveByKey(moves: Partial<Moves>): void {
+    if (moves.turnRight !== undefined) this.navigation.grabMiddle();
+    else this.navigation.grab(0, 0);
+    this.navigation.move(moves);
+  }
+
+  private reframe(): void {
+    const { view, canvas } = this.context;
+    this.framed.copy(view.box);
+    this.navigation.frame(this.framed, canvas.aspect, this.approach ?? view.firstDirection, view.shape());
+  }
+
+  private arrive(): void {
+    const { pose, atHome } = this.navigation;
+    this.approach = null;
+    this.reframe();
+    if (!atHome) return; // it has been moved meanwhile
+    this.navigation.jump(pose);
+    this.navigation.goHome();
+  }
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// What was chosen for a model's view: how it is shown, what the browser keeps of that, and what links say instead.
+import type { Look, Settings, Standing } from '../../src/index.js';
+import type { Angles } from '../../src/scene/lighting.js';
+import type { Spot } from '../address.js';
+import { formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
+import { ToldLook } from '../story/told_look.js';
+import { nextLight, Presentation } from './presentation.js';
+import type { ViewContext } from './view_context.js';
+
+export interface Choice {
+  readonly look?: Partial<Look>;
+  readonly light?: Partial<Light>;
+  readonly standing?: Partial<Standing>;
+}
+
+/// What is on or off.
+export type Switch = 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'occlusion' | 'flat';
+
+export class ViewChoices {
+  readonly presentation: Presentation;
+  private readonly toldLook = new ToldLook();
+
+  constructor(private readonly context: ViewContext) {
+    const { view, canvas, around } = context;
+    this.presentation = new Presentation(view, canvas.lighting, this.wished(around.spot));
+    this.presentation.apply();
+    context.addEventListener('opened', () => { this.present(); }); // what the model is may choose for it
+    context.addEventListener('story', ({ isTold }) => { if (!isTold) this.presentAs(this.toldLook.end(this.chosen)); });
+  }
+
+  get chosen(): Appearance {
+    return this.presentation.chosen;
+  }
+
+  /// As links have it.
+  get text(): string {
+    return formatChoices(this.chosen);
+  }
+
+  /// As a link says.
+  follow(spot: Spot): void {
+    this.presentAs(this.wished(spot));
+  }
+
+  /// As a note of a story wants it, on top of what was chosen before the story.
+  tell(choices: string): void {
+    this.presentAs(this.toldLook.tell(choices, this.chosen));
+  }
+
+  /// Kept for other models too; but not how this one stands.
+  choose({ look, light, standing }: Choice): void {
+    const { context: { around, model }, chosen } = this;
+    const { preferences } = around;
+    this.presentation.chosen = {
+      look: { ...chosen.look, ...look },
+      light: { ...chosen.light, ...light },
+      standing: { ...chosen.standing, ...standing },
+    };
+    Object.assign(preferences.look, lastingLook(look ?? {}));
+    Object.assign(preferences.light, light);
+    if (standing !== undefined) preferences.standings = keepStanding(preferences.standings, model.url, this.chosen.standing);
+    around.chosen();
+    this.present();
+    this.context.startRest();
+  }
+
+  toggle(what: Switch): void {
+    const { look, light } = this.chosen;
+    if (what === 'occlusion') this.choose({ light: { occlusion: !light.occlusion } });
+    else if (what === 'flat') this.choose({ look: { shading: look.shading === 'flat' ? 'smooth' : 'flat' } });
+    else this.choose({ look: { [what]: !look[what] } });
+  }
+
+  nextLight(): void {
+    this.choose({ light: nextLight(this.chosen.light) });
+  }
+
+  turnLight(by: Angles): void {
+    this.choose({ light: this.presentation.turnedLight(by) });
+  }
+
+  setSettings(change: Partial<Settings>): void {
+    const { view, around } = this.context;
+    view.setSettings(change);
+    Object.assign(around.preferences.settings, change);
+    around.chosen();
+    this.show();
+  }
+
+  /// Tells of what is chosen, and draws it.
+  show(): void {
+    this.context.dispatchEvent({ type: 'chosen' });
+    this.context.redraw();
+  }
+
+  private present(): void {
+    this.presentation.apply();
+    this.show();
+  }
+
+  private presentAs(chosen: Appearance): void {
+    this.presentation.chosen = chosen;
+    this.present();
+  }
+
+  /// What is kept of this browser's wishes, and what a link says instead.
+  private wished({ choices }: Spot): Appearance {
+    const { around: { preferences: { look, light, standings } }, model } = this.context;
+    return withChoices(choices, { look, light, standing: readStanding(standings[model.url]) });
+  }
+}
