@@ -12,13 +12,21 @@ import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 /// Kilobytes in gzip that each subpath may have: as viewer/README.md tells, and a fifth more.
-const MOST_KILOBYTES = { '.': 60, './element': 66, './progressive': 7, './tile_worker': 21 };
+const MOST_KILOBYTES = { '.': 60, './element': 66, './progressive': 7, './tile_worker': 21, './plugins/measuring': 11, './plugins/occlusion': 4 };
 
 const TYPES = `
 import { PerspectiveCamera } from 'three';
-import { HierarchyView, type Settings, type Stats } from 'meshhier-viewer';
+import { HierarchyView, type Plugin, type Settings, type Shading, type Stage, type Stats } from 'meshhier-viewer';
 import { defineViewer, MeshhierViewerElement } from 'meshhier-viewer/element';
+import { Clipping } from 'meshhier-viewer/plugins/clipping';
+import { Measuring } from 'meshhier-viewer/plugins/measuring';
 import { ProgressiveMesh } from 'meshhier-viewer/progressive';
+
+class Own implements Plugin {
+  readonly name = 'own';
+  readonly shading: Shading = { uniforms: {}, key: () => '', edit: () => undefined };
+  enter({ surface }: Stage): void { surface.focus(); }
+}
 
 const view = new HierarchyView('https://example.org/david.hier', { settings: { threshold: 2 } });
 const news: boolean = view.update(new PerspectiveCamera(), { width: 1, height: 1 }, 0);
@@ -27,6 +35,8 @@ const settings: Partial<Settings> = view.settings;
 const element: MeshhierViewerElement | null = document.querySelector('meshhier-viewer');
 // @ts-expect-error: a threshold is a number
 view.setSettings({ threshold: 'fine' });
+view.registerPlugin(new Own()).registerPlugin(new Clipping());
+element?.registerPlugin(() => new Measuring());
 defineViewer();
 export { news, stats, settings, element, ProgressiveMesh };
 `;
@@ -38,6 +48,10 @@ import { HierarchyView } from 'meshhier-viewer';
 MeshhierViewerElement.createWorker = () => new TileWorker();
 new HierarchyView('a.hier', { createWorker: () => new TileWorker() });
 `;
+
+/// The library's plug-ins, and what is in their scripts alone.
+const PLUGINS = ['attributes', 'clipping', 'immersion', 'measuring', 'occlusion', 'relief', 'stories'];
+const OF_PLUGINS_ALONE = ['requestSession', 'GTAO', 'stencilWrite', 'meshhier-overlay'];
 
 let problems = 0;
 
@@ -85,7 +99,7 @@ function checkTypes(project, viewer, resolution) {
 }
 
 function checkImports(project) {
-  const subpaths = ['meshhier-viewer', 'meshhier-viewer/element', 'meshhier-viewer/progressive'];
+  const subpaths = ['meshhier-viewer', 'meshhier-viewer/element', 'meshhier-viewer/progressive', ...PLUGINS.map((name) => `meshhier-viewer/plugins/${name}`)];
   const code = `for (const one of ${JSON.stringify(subpaths)}) if (Object.keys(await import(one)).length === 0) throw new Error(one + ' exports nothing')`;
   run('imports in Node', project, process.execPath, '--input-type=module', '-e', code);
 }
@@ -109,12 +123,20 @@ function checkBuild(project, viewer) {
   line('worker', scripts.some((file) => file.startsWith('tile_worker')), scripts.join(' '));
 }
 
+function scriptsIn(folder) {
+  return readdirSync(folder, { recursive: true }).filter((file) => file.endsWith('.js')).map((file) => readFileSync(path.join(folder, file), 'utf8'));
+}
+
 function checkSize(project, viewer, subpath, most) {
   const name = path.posix.join('meshhier-viewer', subpath);
   writeFileSync(path.join(project, 'size.js'), subpath === './tile_worker' ? `import '${name}';` : `export * from '${name}';`);
   const out = path.join(project, `sized-${subpath.replace(/\W/g, '')}`);
   build(project, viewer, `build of ${name}`, `{ build: { target: "es2022", minify: "esbuild", outDir: ${JSON.stringify(out)}, emptyOutDir: true, rollupOptions: { input: "size.js", preserveEntrySignatures: "strict", external: (id) => id.split("/")[0] === "three" } } }`);
   const kilobytes = packedBytes(out) / 1000;
+  if (!subpath.startsWith('./plugins')) {
+    const loaded = OF_PLUGINS_ALONE.filter((word) => scriptsIn(out).some((script) => script.includes(word)));
+    line(`plug-ins in ${name}`, loaded.length === 0, loaded.join(', ') || 'only those that are registered');
+  }
   line(`size of ${name}`, kilobytes > 0.5 && kilobytes <= most, `${kilobytes.toFixed(1)} kB in gzip, of ${most}`);
 }
 

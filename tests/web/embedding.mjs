@@ -123,6 +123,36 @@ async function checkLight(browser, report, origin, { name }) {
   await Promise.all([own.close(), page.close()]);
 }
 
+/// Registers a plug-in in a page's view: it colours the model green, says where it was tapped, and adds a sign.
+const STRANGER = `(register) => register(() => ({
+  name: 'stranger',
+  shading: { uniforms: {}, key: () => 'green', edit: (shader) => { shader.fragmentShader = shader.fragmentShader.replace('#include <opaque_fragment>', 'outgoingLight = vec3(0.0, 1.0, 0.0);\\n#include <opaque_fragment>'); } },
+  enter: ({ root }) => root.append(Object.assign(document.createElement('em'), { id: 'stranger', textContent: 'none' })),
+  drawn: ({ renderer }) => { window.strangerDrew = renderer.domElement.width; },
+  tapped: (right, up) => { window.strangerTapped = [right, up].map((value) => value.toFixed(1)).join(); return true; },
+}))`;
+
+/// The same plug-in in the page and in the element.
+async function checkPlugin(browser, report, origin, { name }) {
+  const hosts = [
+    ['page', await open(browser, `${origin}/index.html?model=models/${name}.hier`), 'window.meshhier.view.registerPlugin(make())', 'window.meshhier?.settled()', '.surface canvas'],
+    ['element', await host(browser, origin, `<script type="module" src="${origin}/meshhier-viewer.js"></script><meshhier-viewer src="${origin}/models/${name}.hier"></meshhier-viewer>`, []),
+      "document.querySelector('meshhier-viewer').registerPlugin(make)", "document.querySelector('meshhier-viewer').view?.stats().settled", 'meshhier-viewer canvas'],
+  ];
+  for (const [what, page, register, settled, canvas] of hosts) {
+    await page.waitForFunction(settled, null, { timeout: PATIENCE });
+    const before = await page.locator(canvas).screenshot();
+    await page.evaluate(`(${STRANGER})((make) => ${register})`);
+    await page.waitForFunction(() => window.strangerDrew > 0);
+    await page.locator(canvas).click();
+    await page.waitForFunction(() => window.strangerTapped !== undefined);
+    const [tapped, sign] = [await page.evaluate(() => window.strangerTapped), await page.locator('#stranger').count()];
+    const { mean } = await comparePictures(page, before, await page.locator(canvas).screenshot());
+    report.line(`plug-in in the ${what}`, tapped === '0.0,0.0' && sign === 1 && mean > 10, `tapped at ${tapped}, ${sign} sign, ${mean.toFixed(0)} of 255 greener`);
+    await page.close();
+  }
+}
+
 /// The gallery in a frame: models come and go, and Back leads from the page around it to where its reader was before.
 async function checkBack(browser, report, origin, { name }) {
   const complaints = [];
@@ -151,6 +181,7 @@ async function check(browser, report, [pictures, pageDirectory, directory]) {
     await checkFrame(browser, report, origin, shared);
     await checkElement(browser, report, origin, shared, pictures);
     await checkLight(browser, report, origin, hierarchy);
+    await checkPlugin(browser, report, origin, hierarchy);
     await checkBack(browser, report, origin, hierarchy);
   });
 }

@@ -488,6 +488,29 @@ async function checkPictureExample(visitor, server) {
   await page.close();
 }
 
+/// A plug-in of somebody else, and some of the library's, in the element.
+async function checkPluginExample(visitor, server) {
+  const page = await openExample(visitor.browser, server, 'plugin');
+  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+  const shot = () => page.locator('meshhier-viewer canvas').screenshot();
+  const lined = await shot();
+  await page.getByRole('button', { name: 'Contours' }).click();
+  await page.waitForTimeout(500);
+  const bare = await shot();
+  await visitor.picture(page, 'example-plugin');
+  visitor.check('example plugin', !lined.equals(bare), 'its button takes its lines away');
+  const texts = page.locator('.meshhier-overlay text');
+  for (let count = 1; count <= 2; ++count) {
+    await clickUntil(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, async () => (await page.locator('.meshhier-overlay circle').count()) === count);
+  }
+  visitor.check('example measuring', /^[\d.]+.* units$/.test(await texts.first().innerHTML()), await texts.first().innerHTML());
+  const names = await page.evaluate(() => ['contours', 'measuring', 'occlusion', 'relief', 'attributes'].filter((name) => document.querySelector('meshhier-viewer').view.plugins.named(name)));
+  visitor.check('example plugins', names.length === 5 && page.complaints.length === 0, [...names, ...page.complaints].join(', '));
+  await page.evaluate(() => { document.querySelector('meshhier-viewer').remove(); });
+  visitor.check('example plugin is gone', (await page.getByRole('button', { name: 'Contours' }).count()) === 0, 'with its element');
+  await page.close();
+}
+
 /// Clicks at a place, and nearer and nearer to the middle, until it is enough.
 async function clickUntil(page, { x, y }, isEnough) {
   for (let part = 1; part > 0; part -= 0.1) {
@@ -511,6 +534,7 @@ async function checkExamples(visitor, directory) {
   await checkPickExample(visitor, server);
   await checkSectionExample(visitor, server);
   await checkPictureExample(visitor, server);
+  await checkPluginExample(visitor, server);
   server.close();
 }
 
