@@ -22,7 +22,7 @@ export interface Bench extends Stage {
 }
 
 /// What is told of the model.
-export interface Telltale {
+export interface Teller {
   /// Beside the model; null: nothing, or it has not come yet.
   readonly told: Notebook | null;
   /// Shows notes as visitors see them, from the note of that number on, the first of which is 0.

@@ -6,7 +6,7 @@ import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import { isTyped } from '../../src/typing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
-import type { Bench, Telltale, ToolName, Tools } from './bench.js';
+import type { Bench, Teller, ToolName, Tools } from './bench.js';
 import { Cube } from './cube.js';
 import { TOOL_ICONS } from './icons.js';
 import { TOOL_KEYS } from './keys.js';
@@ -32,7 +32,7 @@ const LOADS: Readonly<Record<ToolName, Load>> = {
 const NAMES = Object.keys(LOADS) as readonly ToolName[];
 
 /// `link`: the notes that the address has; `write`: puts others there, or takes them away.
-function makeShop(bench: Bench, story: Telltale, link: string | null, write: (link: string | null) => void): Workshop {
+function makeShop(bench: Bench, story: Teller, link: string | null, write: (link: string | null) => void): Workshop {
   const { manifest } = bench.view;
   const settings = loadToolSettings(manifest && unitOfModel(manifest));
   return {
@@ -68,7 +68,7 @@ export class Toolbox implements Tools {
   private readonly made = new Map<ToolName, Tool>();
   private active: ToolName | null = null;
 
-  constructor(private readonly bench: Bench, ...notes: [Telltale, string | null, (link: string | null) => void]) {
+  constructor(private readonly bench: Bench, ...notes: [Teller, string | null, (link: string | null) => void]) {
     this.shop = makeShop(bench, ...notes);
     this.scaleLine = new ScaleLine(this.shop);
     this.cube = new Cube(bench);

@@ -2,7 +2,7 @@
 // What tools share.
 import type { LengthScale } from '../../src/tools/units.js';
 import type { Pointing } from '../../src/tools/pointing.js';
-import type { Bench, Telltale } from './bench.js';
+import type { Bench, Teller } from './bench.js';
 import type { NotebookStore } from './notebook.js';
 import type { ToolSettings } from './tool_settings.js';
 
@@ -11,7 +11,7 @@ export interface Workshop {
   readonly pointing: Pointing;
   readonly settings: ToolSettings;
   readonly notebook: NotebookStore;
-  readonly story: Telltale;
+  readonly story: Teller;
   /// In which lengths are told.
   readonly scale: () => LengthScale;
   /// Settings have changed.

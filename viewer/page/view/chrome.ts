@@ -15,7 +15,7 @@ import { Panel } from './panel.js';
 import { SettingsForm, type Choices } from './settings_form.js';
 import { Sheet, Sheets } from './sheets.js';
 import type { ViewChoices } from './view_choices.js';
-import type { ContextEvents, ViewContext } from './view_context.js';
+import type { ContextEvents, PageContext } from './page_context.js';
 
 const ZOOM_STEP = 0.45;
 
@@ -49,7 +49,7 @@ export class Chrome {
   private readonly sharing = new ShareSheet();
   private readonly about = new InfoSheet();
 
-  constructor(private readonly context: ViewContext, private readonly choices: ViewChoices, orders: Orders) {
+  constructor(private readonly context: PageContext, private readonly choices: ViewChoices, orders: Orders) {
     const { root, surface, signal } = context;
     this.form = new SettingsForm(orders);
     this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [this.form.root]);

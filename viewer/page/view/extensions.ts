@@ -5,13 +5,13 @@ import type { ImmersionMode } from '../../src/plugins/immersion_modes.js';
 import type { Occlusion } from '../../src/plugins/occlusion.js';
 import { words } from '../words/words.js';
 import type { ViewChoices } from './view_choices.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 export class Extensions {
   private occlusion: Occlusion | null = null;
   private immersion: Immersion | null = null;
 
-  constructor(private readonly context: ViewContext, private readonly choices: ViewChoices) {
+  constructor(private readonly context: PageContext, private readonly choices: ViewChoices) {
     context.addEventListener('chosen', () => { this.occlude(); });
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames while there is something new to draw, and none otherwise.
+// PageFrames while there is something new to draw, and none otherwise.
 
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
 

@@ -7,7 +7,7 @@ import type { Model } from '../listing.js';
 import type { Shared } from '../share/embed_code.js';
 import { Chrome, type Orders } from './chrome.js';
 import { Extensions } from './extensions.js';
-import { Frames } from './frames.js';
+import { PageFrames } from './page_frames.js';
 import { Gestures } from './gestures.js';
 import { LightDrag } from './light_drag.js';
 import { listenToKeys, type Commands } from './keys.js';
@@ -18,18 +18,18 @@ import { StoryHost } from './story_host.js';
 import { ToolHost } from './tool_host.js';
 import { ViewCamera } from './view_camera.js';
 import { ViewChoices } from './view_choices.js';
-import { ViewContext, type Surroundings } from './view_context.js';
+import { PageContext, type Surroundings } from './page_context.js';
 import '../style/view.css';
 
 export { RootPicture } from './root_picture.js'; // for the gallery, which has loaded this by then
-export type { Surroundings } from './view_context.js';
+export type { Surroundings } from './page_context.js';
 
 export class ModelView {
-  private readonly context: ViewContext;
+  private readonly context: PageContext;
   private readonly choices: ViewChoices;
   private readonly camera: ViewCamera;
   private readonly renewal: Renewal;
-  private readonly frames: Frames;
+  private readonly frames: PageFrames;
   private readonly extensions: Extensions;
   private readonly story: StoryHost;
   private readonly tools: ToolHost;
@@ -38,12 +38,12 @@ export class ModelView {
 
   /// Throws Error where there is no WebGL 2.
   constructor(model: Model, private readonly around: Surroundings) {
-    const context = new ViewContext(model, around);
+    const context = new PageContext(model, around);
     this.context = context;
     this.choices = new ViewChoices(context);
     this.camera = new ViewCamera(context);
     this.renewal = new Renewal(context);
-    this.frames = new Frames(context, this.camera, this.renewal);
+    this.frames = new PageFrames(context, this.camera, this.renewal);
     const stage = new PageStage(context, this.camera, this.choices, this.frames);
     new Notices(context, this.frames);
     this.extensions = new Extensions(context, this.choices);

@@ -3,8 +3,8 @@
 import { HierarchyProblem } from '../../src/index.js';
 import { formatCount } from '../numbers.js';
 import { words } from '../words/words.js';
-import type { Frames } from './frames.js';
-import type { ViewContext } from './view_context.js';
+import type { PageFrames } from './page_frames.js';
+import type { PageContext } from './page_context.js';
 
 type Done = (() => void) | undefined;
 
@@ -13,7 +13,7 @@ export class Notices {
   private refusal: Done;
   private lost: Done;
 
-  constructor(private readonly context: ViewContext, private readonly frames: Frames) {
+  constructor(private readonly context: PageContext, private readonly frames: PageFrames) {
     const { view, canvas, signal } = context;
     view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     view.addEventListener('recovered', () => { this.missing?.(); });

@@ -5,10 +5,10 @@ import type { CameraPose } from '../../src/scene/camera_pose.js';
 import { fileOf } from '../listing.js';
 import type { Bench } from '../tools/bench.js';
 import type { Canvas } from './canvas.js';
-import type { Frames } from './frames.js';
+import type { PageFrames } from './page_frames.js';
 import { isStanding, type ViewCamera } from './view_camera.js';
 import type { ViewChoices } from './view_choices.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 export class PageStage implements Bench {
   readonly view: HierarchyView;
@@ -21,7 +21,7 @@ export class PageStage implements Bench {
   readonly name: string;
   readonly fileName: string;
 
-  constructor(readonly context: ViewContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: Frames) {
+  constructor(readonly context: PageContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: PageFrames) {
     const { view, canvas, root, surface, signal, model } = context;
     [this.view, this.root, this.surface, this.signal] = [view, root, surface, signal];
     [this.renderer, this.scene, this.camera] = [canvas.renderer, canvas.scene, canvas.camera];

@@ -2,7 +2,7 @@
 // How a model opens, and begins anew in a view that stays: when the host has another one by now, or may be back.
 import { HierarchyProblem, type Manifest } from '../../src/index.js';
 import { words } from '../words/words.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 
@@ -16,7 +16,7 @@ export class Renewal {
   private timer = 0;
   private known: Manifest | null = null;
 
-  constructor(private readonly context: ViewContext) {
+  constructor(private readonly context: PageContext) {
     context.view.addEventListener('replaced', ({ isLasting }) => { this.tell(isLasting); });
   }
 

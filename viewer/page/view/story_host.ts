@@ -3,7 +3,7 @@
 import { choiceOf, type Spot } from '../address.js';
 import type { Notebook } from '../../src/tools/note.js';
 import type { StoryPlayer } from '../story/story_player.js';
-import type { Telltale } from '../tools/bench.js';
+import type { Teller } from '../tools/bench.js';
 import { words } from '../words/words.js';
 import type { PageStage } from './page_stage.js';
 
@@ -13,7 +13,7 @@ interface Story {
   readonly address: string | null;
 }
 
-export class StoryHost implements Telltale {
+export class StoryHost implements Teller {
   private story: Story | null = null;
   private player: StoryPlayer | null = null;
   private step: number | null = null;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tools of a view, loaded when they are first used, and the notes that its links have.
 import { choiceOf, type Spot } from '../address.js';
-import type { Telltale, ToolName, Tools } from '../tools/bench.js';
+import type { Teller, ToolName, Tools } from '../tools/bench.js';
 import type { PageStage } from './page_stage.js';
 
 export class ToolHost {
@@ -9,7 +9,7 @@ export class ToolHost {
   private linked: string | null = null;
   private hasNews = false;
 
-  constructor(private readonly stage: PageStage, private readonly story: Telltale) {
+  constructor(private readonly stage: PageStage, private readonly story: Teller) {
     stage.context.addEventListener('known', () => { this.showNews(); });
   }
 

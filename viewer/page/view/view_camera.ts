@@ -7,7 +7,7 @@ import { problemOfPose, roundedPose } from '../address.js';
 import { towardsViewer } from '../gallery/layout.js';
 import type { Moves } from './glide.js';
 import { Navigation } from './navigation.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
@@ -25,7 +25,7 @@ export class ViewCamera {
   /// From where the whole is seen until it is there and the camera flies to its first view.
   private approach: ReturnType<typeof towardsViewer> | null = null;
 
-  constructor(private readonly context: ViewContext) {
+  constructor(private readonly context: PageContext) {
     const { canvas, around } = context;
     this.navigation = new Navigation((right, up) => canvas.pick(right, up), () => { context.redraw(); });
     if (around.turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(around.turn);

@@ -6,7 +6,7 @@ import type { Spot } from '../address.js';
 import { formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import { ToldLook } from '../story/told_look.js';
 import { nextLight, Presentation } from './presentation.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 export interface Choice {
   readonly look?: Partial<Look>;
@@ -21,7 +21,7 @@ export class ViewChoices {
   readonly presentation: Presentation;
   private readonly toldLook = new ToldLook();
 
-  constructor(private readonly context: ViewContext) {
+  constructor(private readonly context: PageContext) {
     const { view, canvas, around } = context;
     this.presentation = new Presentation(view, canvas.lighting, this.wished(around.spot));
     this.presentation.apply();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model in the room around a visitor, through WebXR: it refines for what the headset sees, within the device's frame rate.
-import { Group, MathUtils, PerspectiveCamera, Vector3, type Scene, type WebGLRenderer } from 'three';
+import { Group, MathUtils, PerspectiveCamera, Vector3, type Quaternion, type Scene, type WebGLRenderer } from 'three';
 import type { HierarchyView } from '../scene/hierarchy_view.js';
 import { Hands } from './hands.js';
 import type { ImmersionMode } from './immersion_modes.js';
@@ -33,11 +33,14 @@ export class ImmersionSession {
   private readonly placement: Placement;
   private readonly hands: Hands;
   private readonly rate: number;
+  /// The stage's camera as it stood before.
+  private readonly before: { readonly position: Vector3; readonly quaternion: Quaternion };
 
   private constructor(private readonly session: XRSession, private readonly around: Surroundings, onFloor: boolean) {
     this.placement = new Placement(around.shown, onFloor);
     this.hands = new Hands(this.placement);
     this.rate = around.view.settings.framesPerSecond;
+    this.before = { position: around.camera.position.clone(), quaternion: around.camera.quaternion.clone() };
     this.rig.matrixAutoUpdate = false;
     this.rig.add(this.eyes);
     around.scene.add(this.rig);
@@ -96,10 +99,12 @@ export class ImmersionSession {
   }
 
   private end(): void {
-    const { renderer, scene, view } = this.around;
+    const { renderer, scene, view, camera } = this.around;
     renderer.setAnimationLoop(null);
     renderer.xr.enabled = false;
     scene.remove(this.rig);
+    camera.position.copy(this.before.position);
+    camera.quaternion.copy(this.before.quaternion);
     view.setSettings({ framesPerSecond: this.rate });
     this.around.ended();
   }

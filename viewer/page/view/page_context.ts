@@ -53,7 +53,7 @@ export interface ContextEvents {
 
 const REST = 300; // milliseconds without movement
 
-export class ViewContext extends EventDispatcher<ContextEvents> {
+export class PageContext extends EventDispatcher<ContextEvents> {
   readonly canvas: Canvas;
   /// Holds everything of the view.
   readonly root = element('main', { class: 'view' });

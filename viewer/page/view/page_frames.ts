@@ -4,13 +4,13 @@ import { FrameLoop, type Pace } from './frame_loop.js';
 import type { Renewal } from './renewal.js';
 import { Sharpness } from './sharpness.js';
 import type { ViewCamera } from './view_camera.js';
-import type { ViewContext } from './view_context.js';
+import type { PageContext } from './page_context.js';
 
 /// In the browser's own account of the page's times.
 const FIRST_PICTURE = 'meshhier: first picture';
 const REPORT = 250; // milliseconds between two reports
 
-export class Frames {
+export class PageFrames {
   private readonly loop = new FrameLoop((now) => this.frame(now));
   private readonly sharpness = new Sharpness();
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
@@ -19,7 +19,7 @@ export class Frames {
   private isRefused = false;
   private reportedAt = -Infinity;
 
-  constructor(private readonly context: ViewContext, private readonly camera: ViewCamera, private readonly renewal: Renewal) {
+  constructor(private readonly context: PageContext, private readonly camera: ViewCamera, private readonly renewal: Renewal) {
     context.addEventListener('wake', this.loop.wake);
     context.addEventListener('opened', () => { this.isRefused = false; });
     context.addEventListener('refused', () => {
