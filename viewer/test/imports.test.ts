@@ -3,7 +3,7 @@ import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
 import { describe, expect, it } from 'vitest';
 
-/// What each module names in `import` and `export … from`, types too, and in `import()`.
+/// Each module with those that it names in `import` and `export … from`, types too, and in `import()`.
 type Imports = ReadonlyMap<string, readonly string[]>;
 
 const NAMED = /(?:^|\n)(?:import|export)\b[^;'"]*?from '(\.[^']*)'|(?:^|\n)import '(\.[^']*)'|\bimport\('(\.[^']*)'\)/g;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tools need of the view, and the view of the tools.
+// The tools need this of the view, and the view this of the tools.
 import type { Plugin, Stage } from '../../src/index.js';
 import type { Notebook } from '../../src/tools/note.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
@@ -13,7 +13,7 @@ export interface Bench extends Stage {
   readonly fileName: string;
   /// Holds everything around the picture.
   readonly root: HTMLElement;
-  /// How the model is shown, as links have it.
+  /// The look of the model, as links have it.
   choices(): string;
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.
   freeze(size: PictureSize): { readonly draw: DrawPart; release(): void };
@@ -21,9 +21,9 @@ export interface Bench extends Stage {
   tell(message: string, telling?: Pick<Telling, 'more' | 'retry'>): () => void;
 }
 
-/// What is told of the model.
+/// The story of the model.
 export interface Teller {
-  /// Beside the model; null: nothing, or it has not come yet.
+  /// The one that lies beside the model; null: there is none, or it has not come yet.
   readonly told: Notebook | null;
   /// Shows notes as visitors see them, from the note of that number on, the first of which is 0.
   play(story: Notebook, from: number): void;

@@ -31,7 +31,7 @@ export class Extensions {
     }
   }
 
-  /// Whether hollows get less light, as it is chosen.
+  /// Gives hollows less light, or as much as all else, as it is chosen.
   private occlude(): void {
     const { context: { isOpened, view }, choices: { chosen: { light: { occlusion: isWanted } } } } = this;
     if (!isOpened || isWanted === (this.occlusion !== null)) return;

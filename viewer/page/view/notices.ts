@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a visitor is told of what failed in a model's view, as long as it holds.
+// Tells a visitor what failed in a model's view, as long as it holds.
 import { HierarchyProblem } from '../../src/index.js';
 import { formatCount } from '../numbers.js';
 import { words } from '../words/words.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the parts of a model's view have in common, and what they tell each other.
+// The parts of a model's view share this, and tell each other by its events.
 import { EventDispatcher } from 'three';
 import { HierarchyView, type Manifest, type Stats, type ViewOptions } from '../../src/index.js';
 import type { Spot } from '../address.js';
@@ -12,7 +12,7 @@ import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import { Canvas } from './canvas.js';
 
-/// What the page gives a view.
+/// The page gives these to a view.
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   spot: Spot;
   /// As the gallery showed the model, to go on from there; null: it was not turned.
@@ -57,7 +57,7 @@ export class PageContext extends EventDispatcher<ContextEvents> {
   readonly canvas: Canvas;
   /// Holds everything of the view.
   readonly root = element('main', { class: 'view' });
-  /// What the picture is drawn on, and has the focus.
+  /// The picture is drawn on it, and it has the focus.
   readonly surface: HTMLElement;
   readonly ending = new AbortController();
   isOpened = false;

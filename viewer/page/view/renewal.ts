@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a model opens, and begins anew in a view that stays: when the host has another one by now, or may be back.
+// Opens a model, and begins anew in a view that stays: when the host has another one by now, or may be back.
 import { HierarchyProblem, type Manifest } from '../../src/index.js';
 import { words } from '../words/words.js';
 import type { PageContext } from './page_context.js';

@@ -11,7 +11,7 @@ import type { PageContext } from './page_context.js';
 
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
-/// Whether a camera can stand so.
+/// True where a camera can stand so.
 export function isStanding(pose: CameraPose): boolean {
   const { position, target } = pose.toPose();
   return problemOfPose(position, target) === null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was chosen for a model's view: how it is shown, what the browser keeps of that, and what links say instead.
+// The choices of a model's view: how it is shown, what the browser keeps of that, and what links say instead.
 import type { Look, Settings, Standing } from '../../src/index.js';
 import type { Angles } from '../../src/scene/lighting.js';
 import type { Spot } from '../address.js';
@@ -14,7 +14,7 @@ export interface Choice {
   readonly standing?: Partial<Standing>;
 }
 
-/// What is on or off.
+/// These are on or off.
 export type Switch = 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'occlusion' | 'flat';
 
 export class ViewChoices {
@@ -104,7 +104,7 @@ export class ViewChoices {
     this.present();
   }
 
-  /// What is kept of this browser's wishes, and what a link says instead.
+  /// The wishes that this browser keeps, and what a link says instead.
   private wished({ choices }: Spot): Appearance {
     const { around: { preferences: { look, light, standings } }, model } = this.context;
     return withChoices(choices, { look, light, standing: readStanding(standings[model.url]) });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What has the files of a hierarchy.
+// The files of a hierarchy, wherever they lie.
 import { unpacked } from './bytes.js';
 
 /// Where a file in an archive begins: so many bytes behind the start of another one.

@@ -10,11 +10,11 @@ import { Overlay, type Mark } from './overlay.js';
 
 const MOST_POINTS = 500;
 
-/// How a length is told that may be so far off.
+/// Tells a length that may be off by `bound`.
 export type TellLength = (length: number, bound: number) => string;
 
 export interface MeasuringOptions {
-  /// Whether points are taken by tapping and marked over the picture; otherwise `choose` and `marks` are yours to call.
+  /// False: points are not taken by tapping, nor marked over the picture; `choose` and `marks` are yours to call.
   isAlone?: boolean;
   /// Without it lengths are told in the model's unit.
   tell?: TellLength;
@@ -77,7 +77,7 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
     return measuresOf(this.picked.map(({ point }) => point), this.stage?.view.upwards ?? [0, 1, 0]);
   }
 
-  /// How far off they may be: less, as points of the original come.
+  /// They may be off by so much: less, as points of the original come.
   bounds(): Measures {
     return boundsOf(this.picked.map(({ point }) => point), this.picked.map(({ bound }) => bound));
   }

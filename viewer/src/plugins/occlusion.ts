@@ -27,7 +27,7 @@ function multiplying(): ShaderMaterial {
   });
 }
 
-/// Of a scene and the camera that it is drawn with.
+/// Shades the hollows of one scene, for one camera.
 class Hollows {
   private readonly depth = new WebGLRenderTarget(1, 1, { depthTexture: new DepthTexture(1, 1, UnsignedIntType) });
   /// Of whatever is drawn the depth alone counts.

@@ -4,14 +4,14 @@ import type { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import type { CameraPose } from '../scene/camera_pose.js';
 import type { Shading } from '../scene/shading.js';
 
-/// What a frame is drawn with.
+/// A frame is drawn by the renderer, of the scene, as the camera sees it.
 export interface Frame {
   readonly renderer: WebGLRenderer;
   readonly scene: Scene;
   readonly camera: PerspectiveCamera;
 }
 
-/// What shows a view, with a camera that can be moved: the page, or `<meshhier-viewer>`.
+/// A stage shows a view, with a camera that can be moved: the page is one, and so is `<meshhier-viewer>`.
 export interface StageOf<View> extends Frame {
   readonly view: View;
   /// Holds the surface; what is added to it lies over the picture.
@@ -30,15 +30,15 @@ export interface StageOf<View> extends Frame {
   redraw(): void;
   /// Frames are drawn by somebody else, until what it returns is called.
   suspend(): () => void;
-  /// How the model is shown from now on, as links have it: of stages that have links.
+  /// Shows the model so from now on, as links say it. A stage without links lacks it.
   present?(choices: string): void;
 }
 
-/// Everything but the name may be missing. Places of the picture are from -1 to 1, to the right and up.
+/// A plug-in may lack everything but the name. Places of the picture are from -1 to 1, to the right and up.
 export interface PluginOf<View> {
   /// No two plug-ins of a view have the same.
   readonly name: string;
-  /// How tiles are shaded.
+  /// Changes how tiles are shaded.
   readonly shading?: Shading;
   /// It belongs to a view from now on.
   init?(view: View): void;
@@ -50,7 +50,7 @@ export interface PluginOf<View> {
   shade?(frame: Frame): void;
   /// A frame is complete: time for what lies over the canvas.
   drawn?(frame: Frame): void;
-  /// Whether a point of the world is drawn.
+  /// Tells whether a point of the world is drawn.
   keeps?(point: Vector3): boolean;
   /// A place of the picture was tapped. True: it was meant for this plug-in.
   tapped?(right: number, up: number): boolean;
@@ -58,7 +58,7 @@ export interface PluginOf<View> {
   dispose?(): void;
 }
 
-/// Those of a view, in the order in which they came.
+/// Holds the plug-ins of a view, in the order in which they came.
 export class Plugins<View> {
   private readonly all = new Map<string, PluginOf<View>>();
   private stage: StageOf<View> | null = null;

@@ -35,7 +35,7 @@ export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
     super();
   }
 
-  /// Of the note that is shown; null: none yet.
+  /// The number of the note that is shown; null: none yet.
   get step(): number | null {
     return this.current;
   }
@@ -84,7 +84,7 @@ export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
     this.dispatchEvent({ type: 'playing' });
   };
 
-  /// Where the notes are in the world.
+  /// The places of the notes in the world.
   marks(): Vector3[] {
     const { stage } = this;
     return stage?.view.manifest == null ? [] : this.story.notes.map(({ at }) => this.placesOf(stage).toWorld(at));

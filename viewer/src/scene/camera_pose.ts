@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a camera is and what it looks at.
+// A camera's place and the point that it looks at.
 import { Vector3 } from 'three';
 
 export type Triple = readonly [number, number, number];
@@ -30,7 +30,7 @@ export class CameraPose {
     return this.position.distanceTo(this.target);
   }
 
-  /// Of length 1.
+  /// The direction of the view, of length 1.
   get forward(): Vector3 {
     return this.target.clone().sub(this.position).normalize();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view has of its hierarchy: one opening after the other, with the tiles that came, and what failed.
+// Loads a view's hierarchy: one opening after the other, with the tiles that came, and the files that failed.
 import type { Refined } from '../cut/refinement.js';
 import { Refinement } from '../cut/refinement.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
@@ -23,7 +23,7 @@ const WORKERS = 2;
 const REQUESTS = 6; // what browsers open to a host at once
 const ROOT: Node = { level: 0, index: 0 };
 
-/// What is shown of an opening.
+/// The cut that is shown of one opening.
 export class ShownCut {
   /// Null: there is the root and no more.
   refinement: Refinement | null = null;

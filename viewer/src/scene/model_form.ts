@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a mesh is like: its box, its outline, and what it stands on; from the root tile, then from the manifest.
+// Facts about a mesh, from the root tile and then from the manifest: its box, its outline, how it stands.
 import { Box3, Vector3 } from 'three';
 import type { Vector } from '../cut/viewpoint.js';
 import { directionOf } from '../hierarchy/first_view.js';
@@ -14,12 +14,12 @@ function saysColour({ colours }: Tile): boolean {
   return colours?.some((value) => value < 255) ?? false;
 }
 
-/// What is null is not known yet.
+/// A fact that is null is not known yet.
 export class ModelForm {
   /// Upright.
   readonly box = new Box3();
   root: Tile | null = null;
-  /// What the mesh is like as a terrain, as it stands; null: it is none, too.
+  /// The mesh as a terrain, as it stands; null also if it is none.
   terrain: Terrain | null = null;
   /// x, y, z of points of its outline, in the tiles' coordinates.
   silhouette: Float32Array = new Float32Array(0);

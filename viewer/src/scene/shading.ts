@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the surfaces of tiles may be shaded otherwise than by three alone: what tiles see of plug-ins.
+// Tiles see this of a plug-in: it shades their surfaces otherwise than three alone would.
 import type { BufferGeometry, IUniform, MaterialParameters, WebGLProgramParametersWithUniforms } from 'three';
 import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
@@ -15,7 +15,7 @@ export interface Shading {
   key(look: Look, tile: Tile): string;
   /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too.
   edit(shader: Shader, look: Look, tile: Tile): void;
-  /// What the material is made with.
+  /// Returns what the material is made with besides.
   parameters?(look: Look): MaterialParameters & Readonly<Record<string, unknown>>;
   /// Tiles are shown so from now on; `attributes`: what the model's vertices have, none while that is not known.
   show?(look: Look, attributes: readonly ScalarAttribute[]): void;

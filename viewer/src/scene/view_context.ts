@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the parts of a view have in common: what was chosen, where tiles are drawn, and what is told.
+// The parts of a view share this: the choices, the tiles' scene, and the events.
 import type { EventDispatcher } from 'three';
 import { Account } from './account.js';
 import { ModelForm } from './model_form.js';
@@ -44,7 +44,7 @@ export class ViewContext {
     if (!this.ending.signal.aborted) this.events.dispatchEvent({ type: 'change' });
   }
 
-  /// Whether a frame was asked for since the last one was.
+  /// A frame was asked for since the last one.
   get wantsFrame(): boolean {
     return this.isAwake;
   }
