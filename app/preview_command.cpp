@@ -106,7 +106,7 @@ bool is_shown(const ImageFormatRow& row) {
 std::optional<ImageFormat> format_named(std::string_view name) {
   const auto* const found = std::ranges::find_if(
       kImageFormats, [&](const ImageFormatRow& row) { return is_shown(row) && row.name == name; });
-  return found == kImageFormats.end() ? std::nullopt : std::optional(found->format);
+  return found == kImageFormats.end() ? std::nullopt : std::optional(found->value);
 }
 
 /// Their names with something before each and between two: ".png or .webp".

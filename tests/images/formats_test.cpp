@@ -22,7 +22,7 @@ template <class Test>
 void for_each_format(const Test& test) {
   for (const ImageFormatRow& row : kImageFormats) {
     SCOPED_TRACE(row.name);
-    if (missing_coder(row.format).empty())
+    if (missing_coder(row.value).empty())
       test(row);
   }
   end_coders();
@@ -30,9 +30,9 @@ void for_each_format(const Test& test) {
 
 TEST(FormatsTest, AFileIsKnownByItsOwnMarksAlone) {
   for_each_format([](const ImageFormatRow& written) {
-    const Bytes file = encode_image(waves(16, 12), written.format, 90);
+    const Bytes file = encode_image(waves(16, 12), written.value, 90);
     for (const ImageFormatRow& row : kImageFormats)
-      EXPECT_EQ(row.file.is_start(text_of(file)), row.format == written.format) << row.name;
+      EXPECT_EQ(row.file.is_start(text_of(file)), row.value == written.value) << row.name;
     EXPECT_FALSE(written.file.is_start(text_of(file).substr(0, 2)));
   });
 }
@@ -44,13 +44,13 @@ TEST(FormatsTest, WhatIsWrittenIsReadAgain) {
         continue;
       const Image image = waves(16, 12, channels);
       for (const int quality : {1, 50, kBestQuality}) {
-        const Bytes file = encode_image(image, row.format, quality);
+        const Bytes file = encode_image(image, row.value, quality);
         const ImageInfo info = open_image(source_of(file), "sample")->info();
-        EXPECT_EQ(info.format, row.format);
+        EXPECT_EQ(info.format, row.value);
         EXPECT_EQ(info.width, 16U);
         EXPECT_EQ(info.height, 12U);
         EXPECT_EQ(info.channels, channels);
-        EXPECT_TRUE(!is_exact(row.format, quality) || decoded(file) == image) << quality;
+        EXPECT_TRUE(!is_exact(row.value, quality) || decoded(file) == image) << quality;
       }
     }
   });
@@ -59,8 +59,8 @@ TEST(FormatsTest, WhatIsWrittenIsReadAgain) {
 TEST(FormatsTest, QualityDecidesAboutMapsWhereItIsSaid) {
   for_each_format([](const ImageFormatRow& row) {
     const Image map = waves(32, 32);
-    const Bytes low = encode_normal_map(map, {row.format, 10}),
-                high = encode_normal_map(map, {row.format, kBestQuality});
+    const Bytes low = encode_normal_map(map, {row.value, 10}),
+                high = encode_normal_map(map, {row.value, kBestQuality});
     EXPECT_EQ(low != high, row.graded_maps);
   });
 }
@@ -70,7 +70,7 @@ TEST(FormatsTest, NamesAndEndingsAreThoseOfOneFormat) {
     EXPECT_EQ(one.file.media_type, "image/" + std::string(one.name));
     for (const ImageFormatRow& other : kImageFormats) {
       const std::string name = "a" + std::string(one.file.endings[0]);
-      EXPECT_EQ(other.file.is_name(name), one.format == other.format) << name;
+      EXPECT_EQ(other.file.is_name(name), one.value == other.value) << name;
     }
     EXPECT_FALSE(one.file.is_name(one.file.endings[0]));
     EXPECT_EQ(one.in_browsers,
@@ -81,10 +81,10 @@ TEST(FormatsTest, NamesAndEndingsAreThoseOfOneFormat) {
 
 TEST(FormatsTest, LibrariesMissNothing) {
   for (const ImageFormatRow& row : kImageFormats) {
-    if (coders_of(row.format).processes != nullptr)
+    if (coders_of(row.value).processes != nullptr)
       continue;
-    EXPECT_EQ(missing_coder(row.format), "");
-    EXPECT_EQ(coder_bytes(row.format, 1 << 20), 0U);
+    EXPECT_EQ(missing_coder(row.value), "");
+    EXPECT_EQ(coder_bytes(row.value, 1 << 20), 0U);
   }
 }
 

@@ -375,13 +375,13 @@ TEST_F(BuildTest, CompressionChangesNothingButTheFiles) {
     for (const TileRecord& record : reader.records())
       plain.push_back(reader.read_tile(record.node));
   }
-  for (const auto& [name, compression] : config::kCompressions) {
+  for (const storage::CompressionRow& row : config::kCompressions) {
     config::Config packed = config();
-    packed.storage.compression = compression;
+    packed.storage.compression = row.value;
     build(packed, true);
-    EXPECT_THAT(problems(), IsEmpty()) << name;
+    EXPECT_THAT(problems(), IsEmpty()) << row.name;
     const storage::HierarchyReader reader(files_, output_path());
-    EXPECT_EQ(reader.manifest().compression, compression);
+    EXPECT_EQ(reader.manifest().compression, row.value);
     ASSERT_EQ(reader.records().size(), plain.size());
     for (const PublishedTile& tile : plain) {
       const PublishedTile back = reader.read_tile(tile.node);

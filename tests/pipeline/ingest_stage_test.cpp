@@ -130,12 +130,12 @@ std::string text_header(
 }
 
 TEST_F(SourceMeshTest, WhichAttributesAreLabelsIsGuessedFromTheirValues) {
-  constexpr int kVertices = 6000;
-  std::string text = text_header(kVertices, 0,
+  constexpr int kRows = 6000;
+  std::string text = text_header(kRows, 0,
                                  "property float x\nproperty float y\nproperty float z\n"
                                  "property ushort intensity\nproperty int object\n"
                                  "property float scalar_Classification\nproperty float quality\n");
-  for (int i = 0; i < kVertices; ++i)
+  for (int i = 0; i < kRows; ++i)
     text +=
         fmt::format("{} 0 0 {} {} {} {}\n", i, i * 7 % 4096, i / 10, i % 3 == 0 ? 6 : 2, 0.5 * i);
   SourceMesh mesh = open_text(text);
