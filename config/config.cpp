@@ -559,7 +559,7 @@ std::string complete_text(const Config& config, const std::filesystem::path& dir
   if (config.partition.count)
     result["partition"].erase("vertices");
   try {
-    return storage::json_text(result);
+    return storage::json_text(result, {.throws = true});
   } catch (const Json::exception&) {
     throw Error(ErrorCode::usage,
                 "a path or text of the config is not UTF-8: it cannot be written "

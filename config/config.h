@@ -90,7 +90,7 @@ struct FirstViewConfig {
 };
 
 using Compression = storage::Compression;
-using storage::kCompressions;
+inline constexpr auto kCompressions = storage::kCompressions;
 
 using Container = storage::Container;
 inline constexpr std::array kContainers{NamedValue{"files", Container::files},
@@ -120,7 +120,7 @@ struct StorageConfig {
 };
 
 using ImageFormat = meshhier::ImageFormat;
-using meshhier::kImageFormats;
+inline constexpr auto kImageFormats = meshhier::kImageFormats;
 
 /// Options of storage.normals map and auto.
 struct NormalMapConfig {

@@ -38,7 +38,9 @@ class Characters {
 
 template <class Json>
 std::string text_of(const Json& value, JsonLayout layout) {
-  return value.dump(layout.indent, ' ', layout.only_ascii, Json::error_handler_t::replace);
+  using Handler = typename Json::error_handler_t;
+  return value.dump(layout.indent, ' ', layout.only_ascii,
+                    layout.throws ? Handler::strict : Handler::replace);
 }
 
 template <class Json>

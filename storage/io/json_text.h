@@ -17,9 +17,10 @@ namespace meshhier::storage {
 struct JsonLayout {
   int indent = -1;          ///< spaces a level; -1: all in one line
   bool only_ascii = false;  ///< other letters as \uXXXX
+  bool throws = false;      ///< nlohmann::json::type_error where it is no UTF-8; else U+FFFD
 };
 
-/// Returns the text of a value, without a line's end. What is no UTF-8 in it becomes U+FFFD.
+/// Returns the text of a value, without a line's end.
 std::string json_text(const nlohmann::json& value, JsonLayout layout = {});
 std::string json_text(const nlohmann::ordered_json& value, JsonLayout layout = {});
 
