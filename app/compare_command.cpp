@@ -3,10 +3,10 @@
 #include "app/hierarchy_place.h"
 #include "app/number_text.h"
 #include "app/options.h"
+#include "compare/compare.h"
+#include "export/piece_mesh.h"
 #include "hierarchy/error.h"
 #include "hierarchy/unit.h"
-#include "inspection/compare.h"
-#include "inspection/piece_mesh.h"
 #include "pipeline/build.h"
 #include "storage/io/output_file.h"
 
@@ -34,11 +34,11 @@ struct CompareArguments {
   WebOptions web;
   std::string output, transform;
   bool has_no_sign = false, json = false;
-  inspection::CompareOptions options;
+  comparing::CompareOptions options;
 };
 
 /// "0.5" or "0.5mm".
-void store_tolerance(const std::string& text, inspection::CompareOptions& options) {
+void store_tolerance(const std::string& text, comparing::CompareOptions& options) {
   const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
   const auto number = parse_number<double>(std::string_view(text).substr(0, end));
   const std::string_view unit = std::string_view(text).substr(end);
@@ -53,22 +53,22 @@ void store_tolerance(const std::string& text, inspection::CompareOptions& option
   options.tolerance_unit = known;
 }
 
-inspection::PlaceTransform read_transform(storage::FileSystem& files, const std::string& path) {
+comparing::PlaceTransform read_transform(storage::FileSystem& files, const std::string& path) {
   if (const std::uint64_t size = files.open(path)->size(); size > kMostTransformBytes)
     throw Error(ErrorCode::usage,
                 fmt::format("{}: expected 16 numbers, found {} bytes", path, size));
   const auto bytes = storage::read_file(files, path, kMostTransformBytes);
-  return inspection::parse_transform({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                                     path);
+  return comparing::parse_transform({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                    path);
 }
 
 /// A hierarchy of the compared vertices, that their distances become an attribute of.
 class DifferenceHierarchy {
  public:
-  DifferenceHierarchy(const inspection::ComparedPlace& from, const std::string& output,
-                      inspection::CompareOptions& options, Environment& environment)
-      : config_(inspection::config_like(from.files, from.path, output, options.replace,
-                                        options.memory_budget, environment.files)),
+  DifferenceHierarchy(const comparing::ComparedPlace& from, const std::string& output,
+                      comparing::CompareOptions& options, Environment& environment)
+      : config_(exporting::config_like(from.files, from.path, output, options.replace,
+                                       options.memory_budget, environment.files)),
         replaces_(options.replace),
         folder_(environment.files, output) {
     options.output = folder_.path() / "difference.ply";
@@ -88,13 +88,13 @@ class DifferenceHierarchy {
  private:
   config::Config config_;
   bool replaces_;
-  inspection::WorkFolder folder_;
+  exporting::WorkFolder folder_;
 };
 
 int run_compare(CompareArguments arguments, execution::ProgressMode mode,
                 Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  inspection::CompareOptions& options = arguments.options;
+  comparing::CompareOptions& options = arguments.options;
   options.output = arguments.output;
   options.is_signed = !arguments.has_no_sign;
   if (!arguments.transform.empty())
@@ -113,9 +113,9 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
   if (!arguments.output.empty())
     storage::require_apart(environment.files, arguments.output, options.inputs);
   std::optional<DifferenceHierarchy> difference;
-  if (inspection::is_hierarchy_name(arguments.output))
+  if (exporting::is_hierarchy_name(arguments.output))
     difference.emplace(from->place(), arguments.output, options, environment);
-  const inspection::SurfaceComparison comparison = inspection::compare_surfaces(
+  const comparing::SurfaceComparison comparison = comparing::compare_surfaces(
       from->place(), to->place(), environment.files, options, *progress, environment.cancel);
   const std::string made = difference ? difference->build(*progress, environment) : "";
   progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
@@ -164,7 +164,7 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
                        arguments->options.selection = static_cast<Level>(level);
                      });
   add_error_option(*what, [arguments](double error) {
-    arguments->options.selection = inspection::LargestError{error};
+    arguments->options.selection = exporting::LargestError{error};
   });
   what->require_option(0, 1);
   command

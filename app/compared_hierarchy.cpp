@@ -28,7 +28,7 @@ ComparedHierarchy::ComparedHierarchy(Environment& environment, const std::string
                                      const WebOptions& web, std::uint64_t memory_budget,
                                      execution::Progress& progress)
     : environment_(environment), given_(environment, name, web), read_{given_.path()} {
-  if (given_.is_remote() || inspection::is_hierarchy_there(given_.files(), given_.path()))
+  if (given_.is_remote() || comparing::is_hierarchy_there(given_.files(), given_.path()))
     return;
   folder_.emplace();
   build(name, memory_budget, progress);
@@ -49,7 +49,7 @@ void ComparedHierarchy::build(const std::string& mesh, std::uint64_t memory_budg
     read_.push_back(config.input.front().parent_path() / file.path);
 }
 
-inspection::ComparedPlace ComparedHierarchy::place() const {
+comparing::ComparedPlace ComparedHierarchy::place() const {
   if (folder_)
     return {environment_.files, folder_->hierarchy(), given_.path().string()};
   return {given_.files(), given_.path()};

@@ -3,8 +3,8 @@
 
 #include "app/command.h"
 #include "app/hierarchy_place.h"
+#include "compare/compare.h"
 #include "execution/progress.h"
-#include "inspection/compare.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +21,7 @@ class ComparedHierarchy {
   ComparedHierarchy(Environment& environment, const std::string& name, const WebOptions& web,
                     std::uint64_t memory_budget, execution::Progress& progress);
 
-  inspection::ComparedPlace place() const;
+  comparing::ComparedPlace place() const;
   /// All files that were read: the hierarchy, or the mesh and what belongs to it.
   const std::vector<std::filesystem::path>& read() const { return read_; }
   /// As HierarchyPlace.

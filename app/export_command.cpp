@@ -1,8 +1,8 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
 #include "app/options.h"
-#include "inspection/export.h"
-#include "inspection/piece_mesh.h"
+#include "export/export.h"
+#include "export/piece_mesh.h"
 #include "pipeline/build.h"
 
 #include <memory>
@@ -24,15 +24,15 @@ struct ExportArguments {
   std::string cut;
   std::optional<double> error;
   bool outline = false;
-  inspection::RegionRequest region;
+  exporting::RegionRequest region;
   bool clip = false;
   std::string output;
   bool force = false;
-  std::uint64_t memory_budget = inspection::ExportOptions{}.memory_budget;
+  std::uint64_t memory_budget = exporting::ExportOptions{}.memory_budget;
 };
 
 /// Requires that exactly one of them was given.
-inspection::ExportSelection selection(const ExportArguments& arguments) {
+exporting::ExportSelection selection(const ExportArguments& arguments) {
   if (arguments.level)
     return *arguments.level;
   if (arguments.node)
@@ -40,15 +40,15 @@ inspection::ExportSelection selection(const ExportArguments& arguments) {
   if (!arguments.cut.empty())
     return std::filesystem::path(arguments.cut);
   if (arguments.error)
-    return inspection::LargestError{*arguments.error};
-  return inspection::OutlineSelection{};
+    return exporting::LargestError{*arguments.error};
+  return exporting::OutlineSelection{};
 }
 
 /// Of the piece; what was made, for people.
-std::string make_hierarchy(const HierarchyPlace& place, const inspection::ExportOptions& options,
+std::string make_hierarchy(const HierarchyPlace& place, const exporting::ExportOptions& options,
                            execution::Progress& progress, Environment& environment) {
-  const inspection::PieceMesh piece(place.files(), place.path(), options, environment.files,
-                                    progress, environment.cancel);
+  const exporting::PieceMesh piece(place.files(), place.path(), options, environment.files,
+                                   progress, environment.cancel);
   pipeline::BuildOptions build{.force = options.replace, .restart = true};
   build.leaves_work = false;  // nobody could go on with it
   const pipeline::BuildReport report = pipeline::build_hierarchy(
@@ -59,9 +59,9 @@ std::string make_hierarchy(const HierarchyPlace& place, const inspection::Export
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  const inspection::ExportOptions options{selection(arguments),    arguments.output,
-                                          arguments.memory_budget, arguments.force,
-                                          arguments.region,        arguments.clip};
+  const exporting::ExportOptions options{selection(arguments),    arguments.output,
+                                         arguments.memory_budget, arguments.force,
+                                         arguments.region,        arguments.clip};
   if (arguments.clip)
     require_region(arguments.region, "--clip");
   if (!arguments.region.crs.empty())
@@ -69,10 +69,10 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line = inspection::is_hierarchy_name(arguments.output)
+  const std::string line = exporting::is_hierarchy_name(arguments.output)
                                ? make_hierarchy(place, options, *progress, environment)
-                               : inspection::export_mesh(place.files(), place.path(), options,
-                                                         *progress, environment.cancel);
+                               : exporting::export_mesh(place.files(), place.path(), options,
+                                                        *progress, environment.cancel);
   progress->finish(arguments.output);
   account << line << '\n' << place.account();
   return 0;

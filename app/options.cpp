@@ -67,7 +67,7 @@ CLI::App* add_group(CLI::App& command, const char* name, const char* help) {
   return group;
 }
 
-CLI::App* add_region_options(CLI::App& command, inspection::RegionRequest& region) {
+CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region) {
   const auto take = [&region](const std::vector<std::string>& corners) {
     region.box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
   };
@@ -87,7 +87,7 @@ CLI::App* add_region_options(CLI::App& command, inspection::RegionRequest& regio
   return group;
 }
 
-void require_region(const inspection::RegionRequest& region, const char* option) {
+void require_region(const exporting::RegionRequest& region, const char* option) {
   if (!region.is_any())
     throw Error(ErrorCode::usage, std::string(option) + " needs --box or --polygon");
 }

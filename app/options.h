@@ -3,8 +3,8 @@
 
 #include "app/command.h"
 #include "execution/progress.h"
+#include "export/asked_region.h"
 #include "hierarchy/ids.h"
-#include "inspection/asked_region.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -79,9 +79,9 @@ CLI::App* add_group(CLI::App& command, const char* name, const char* help);
 /// --error LENGTH: the coarsest tiles that are no farther from the original
 CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
 /// --box X,Y,Z X,Y,Z, --polygon FILE and --crs CRS, as a group.
-CLI::App* add_region_options(CLI::App& command, inspection::RegionRequest& region);
+CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region);
 /// Throws Error(usage) if there is none, which `option` needs.
-void require_region(const inspection::RegionRequest& region, const char* option);
+void require_region(const exporting::RegionRequest& region, const char* option);
 
 /// A result as text, for programs. What is no UTF-8 becomes U+FFFD: a file name on disk may hold
 /// any bytes, JSON may not.

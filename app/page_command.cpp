@@ -3,8 +3,8 @@
 #include "app/options.h"
 #include "app/story_pictures.h"
 #include "app/viewer_place.h"
+#include "export/page_file.h"
 #include "hierarchy/error.h"
-#include "inspection/page_file.h"
 #include "server/static_site.h"
 #include "storage/io/http_client.h"
 #include "storage/io/paths.h"
@@ -30,7 +30,7 @@ struct PageArguments {
   WebOptions web;
   std::string output;
   bool force = false;
-  std::uint64_t size = inspection::PageOptions().size;
+  std::uint64_t size = exporting::PageOptions().size;
   CLI::Option* size_option = nullptr;
   std::string link;
   bool fetches_pictures = false;
@@ -101,7 +101,7 @@ std::string make_page(const PageArguments& arguments, const HierarchyPlace& plac
                       execution::Progress& progress, Environment& environment) {
   require_link(arguments.link);
   const ViewerPlace viewer = viewer_of(environment, arguments);
-  return inspection::write_page(
+  return exporting::write_page(
       place.files(), place.path(), single_page(viewer),
       {.output = arguments.output,
        .replace = arguments.force,

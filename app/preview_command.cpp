@@ -187,7 +187,7 @@ void add_what(CLI::App& command, PreviewArguments& arguments) {
                       return !text.empty();
                     });
   add_error_option(
-      *what, [&options](double error) { options.selection = inspection::LargestError{error}; });
+      *what, [&options](double error) { options.selection = exporting::LargestError{error}; });
   what->require_option(0, 1);
 }
 

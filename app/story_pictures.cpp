@@ -32,10 +32,10 @@ constexpr std::chrono::seconds kForOne{20}, kForAll{120};
 }
 
 void require_room(std::uint64_t bytes, std::uint64_t most) {
-  if (bytes > inspection::kMostStoryPictureBytes) {
+  if (bytes > exporting::kMostStoryPictureBytes) {
     leave_out(fmt::format("it has {}, more than a story can hold ({})",
                           execution::rounded_size_text(bytes),
-                          execution::rounded_size_text(inspection::kMostStoryPictureBytes)));
+                          execution::rounded_size_text(exporting::kMostStoryPictureBytes)));
   }
   if (bytes > most) {
     leave_out(
@@ -109,8 +109,8 @@ class PictureHosts {
 
 }  // namespace
 
-inspection::OpenPicture open_story_pictures(const StoryPictures& pictures,
-                                            const execution::CancelToken& cancel) {
+exporting::OpenPicture open_story_pictures(const StoryPictures& pictures,
+                                           const execution::CancelToken& cancel) {
   const auto hosts = pictures.fetches ? std::make_shared<PictureHosts>(cancel) : nullptr;
   return [folder = PictureFolder(pictures.beside), hosts](const std::string& named,
                                                           std::uint64_t most) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "execution/cancel.h"
-#include "inspection/page_story.h"
+#include "export/page_story.h"
 
 #include <filesystem>
 
@@ -16,7 +16,7 @@ struct StoryPictures {
 /// Opens what lies in the folder or below it, by relative addresses; no link is followed, no hidden
 /// name is opened. A host gets 20 seconds for a picture, all hosts two minutes. `cancel` must
 /// outlive the result.
-inspection::OpenPicture open_story_pictures(const StoryPictures& pictures,
-                                            const execution::CancelToken& cancel);
+exporting::OpenPicture open_story_pictures(const StoryPictures& pictures,
+                                           const execution::CancelToken& cancel);
 
 }  // namespace meshhier::app

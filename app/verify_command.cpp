@@ -4,9 +4,9 @@
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "inspection/verify.h"
-#include "inspection/verify_error.h"
 #include "storage/io/process.h"
+#include "verify/verify.h"
+#include "verify/verify_error.h"
 
 #include <limits>
 #include <memory>
@@ -27,13 +27,13 @@ struct VerifyArguments {
   std::string hierarchy;
   WebOptions web;
   std::vector<std::string> input;
-  inspection::VerifyOptions options;
+  verifying::VerifyOptions options;
   bool measures_error = false;
-  inspection::ErrorOptions error;
+  verifying::ErrorOptions error;
   bool json = false;
 };
 
-std::string json_text(const inspection::VerifyReport& report) {
+std::string json_text(const verifying::VerifyReport& report) {
   const nlohmann::ordered_json object{
       {"ok", report.problems.empty()}, {"checks", report.checks}, {"problems", report.problems}};
   return pretty_json(object);
@@ -48,7 +48,7 @@ std::string verdict(std::size_t count) {
 /// A manifest may say anything.
 constexpr std::size_t kLongestProblem = 4096;
 
-std::string plain_text(const inspection::VerifyReport& report) {
+std::string plain_text(const verifying::VerifyReport& report) {
   std::string text;
   for (const std::string& check : report.checks)
     text += fmt::format("checked: {}\n", check);
@@ -57,21 +57,21 @@ std::string plain_text(const inspection::VerifyReport& report) {
   return text + verdict(report.problems.size()) + ".\n";
 }
 
-using Measurements = std::vector<inspection::ErrorMeasurement>;
+using Measurements = std::vector<verifying::ErrorMeasurement>;
 
 /// One object, or with all levels an object with a list of them.
 std::string json_text(const Measurements& measurements, bool all_levels) {
   if (!all_levels)
-    return pretty_json(inspection::to_json(measurements.front()));
+    return pretty_json(verifying::to_json(measurements.front()));
   auto levels = nlohmann::ordered_json::array();
-  for (const inspection::ErrorMeasurement& measurement : measurements)
-    levels.push_back(inspection::to_json(measurement));
+  for (const verifying::ErrorMeasurement& measurement : measurements)
+    levels.push_back(verifying::to_json(measurement));
   return pretty_json({{"levels", levels}});
 }
 
 std::string plain_text(const Measurements& measurements, std::size_t problems) {
   std::string text;
-  for (const inspection::ErrorMeasurement& measurement : measurements)
+  for (const verifying::ErrorMeasurement& measurement : measurements)
     text += to_text(measurement) + '\n';
   return text + verdict(problems) + ".\n";
 }
@@ -83,13 +83,13 @@ int exit_code(std::size_t problems) {
 int run_error(VerifyArguments arguments, const HierarchyPlace& place, execution::Progress& progress,
               Environment& environment) {
   arguments.error.memory_budget = arguments.options.memory_budget;
-  const Measurements measurements = inspection::measure_errors(
+  const Measurements measurements = verifying::measure_errors(
       place.files(), place.path(), arguments.error, progress, environment.cancel);
   std::size_t problems = 0;
-  for (const inspection::ErrorMeasurement& measurement : measurements)
+  for (const verifying::ErrorMeasurement& measurement : measurements)
     problems += measurement.problems.size();
   progress.finish(verdict(problems));
-  const bool all_levels = std::holds_alternative<inspection::AllLevels>(arguments.error.selection);
+  const bool all_levels = std::holds_alternative<verifying::AllLevels>(arguments.error.selection);
   environment.out << (arguments.json ? json_text(measurements, all_levels)
                                      : plain_text(measurements, problems));
   return exit_code(problems);
@@ -105,7 +105,7 @@ int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environm
     require_region(arguments.options.region, "--crs");
   if (place.is_remote())
     arguments.options.scratch_folder = storage::temporary_folder();
-  const inspection::VerifyReport report = inspection::verify_hierarchy(
+  const verifying::VerifyReport report = verifying::verify_hierarchy(
       place.files(), place.path(), arguments.options, *progress, environment.cancel);
   progress->finish(verdict(report.problems.size()));
   environment.out << (arguments.json ? json_text(report) : plain_text(report));
@@ -132,9 +132,9 @@ Examples:
 )";
 
 /// --level L | all
-void store_level(const std::string& text, inspection::ErrorOptions& error) {
+void store_level(const std::string& text, verifying::ErrorOptions& error) {
   if (text == "all") {
-    error.selection = inspection::AllLevels{};
+    error.selection = verifying::AllLevels{};
     return;
   }
   const auto level = parse_number<std::uint8_t>(text);
@@ -151,7 +151,7 @@ constexpr std::uint64_t kMostSamples = 400'000'000;
 
 void add_error_options(CLI::App& command, VerifyArguments& arguments,
                        const std::vector<CLI::Option*>& others) {
-  inspection::ErrorOptions& error = arguments.error;
+  verifying::ErrorOptions& error = arguments.error;
   CLI::Option* mode =
       command.add_flag("--error", arguments.measures_error,
                        "Measure the distance to the original partitions, and do nothing else");
@@ -177,7 +177,7 @@ void add_error_options(CLI::App& command, VerifyArguments& arguments,
 
 void add_verify_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  inspection::VerifyOptions& options = arguments->options;
+  verifying::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   CLI::Option* input_option = command->add_option(

@@ -1,5 +1,6 @@
 #include "bench/shading_comparison.h"
 
+#include "compare/cut_surface.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
 #include "hierarchy/angle.h"
@@ -7,7 +8,6 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/frame.h"
 #include "images/image_codec.h"
-#include "inspection/cut_surface.h"
 #include "inspection/shown_tiles.h"
 #include "render/directions.h"
 #include "render/raster.h"
@@ -200,7 +200,7 @@ ShadingComparison compare_shading(const storage::HierarchyReader& reader,
                 static_cast<bool>(sink)};
   std::vector<LevelSums> sums(job.levels.size());
   execution::ordered_for(
-      job.views.size(), inspection::tiles_in_flight(), execution::CancelToken{},
+      job.views.size(), comparing::tiles_in_flight(), execution::CancelToken{},
       [&](std::size_t view) { return measure_view(job, view); },
       [&](std::size_t, const ViewResult& result) {
         for (const NamedPicture& picture : result.pictures)

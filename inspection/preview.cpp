@@ -1,14 +1,14 @@
 #include "inspection/preview.h"
 
 #include "execution/size_text.h"
+#include "export/cut_file.h"
+#include "export/piece.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "images/image_codec.h"
 #include "inspection/clip_scene.h"
-#include "inspection/cut_file.h"
-#include "inspection/piece.h"
 #include "inspection/shown_tiles.h"
 #include "render/painting.h"
 #include "render/points.h"
@@ -76,7 +76,7 @@ render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout
 }
 
 /// Of the piece, without pictures.
-void add_piece(ShownTile shown, const AttributeLayout& layout, const Region& region,
+void add_piece(ShownTile shown, const AttributeLayout& layout, const exporting::Region& region,
                std::vector<render::Facet>& facets) {
   drop_pictures(shown.tile);
   const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
@@ -86,15 +86,15 @@ void add_piece(ShownTile shown, const AttributeLayout& layout, const Region& reg
 
 /// Of the piece, from the coarsest level that shows its form: some tiles, of which it has some
 /// facets.
-std::vector<render::Facet> piece_facets(const HierarchyReader& reader, const Region& region,
-                                        std::uint64_t cache_bytes,
+std::vector<render::Facet> piece_facets(const HierarchyReader& reader,
+                                        const exporting::Region& region, std::uint64_t cache_bytes,
                                         const execution::CancelToken& cancel) {
   constexpr std::size_t kSomeTiles = 4, kSomeFacets = 100;
   const Tree& tree = reader.tree();
   std::vector<render::Facet> facets;
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     Cut cut = Cut::of_level(tree, static_cast<Level>(level));
-    const std::vector<std::size_t> positions = tiles_in(reader, cut, region);
+    const std::vector<std::size_t> positions = exporting::tiles_in(reader, cut, region);
     const bool is_finest = level == raw(tree.depth());
     if (positions.size() < kSomeTiles && !is_finest)
       continue;
@@ -127,14 +127,14 @@ Seen seen_by(const HierarchyReader& reader, std::span<const render::Facet> root,
 
 Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
             const PreviewOptions& options, double pixel) {
-  const PreviewSelection selection = options.selection.value_or(LargestError{pixel / 4});
+  const PreviewSelection selection = options.selection.value_or(exporting::LargestError{pixel / 4});
   if (const auto* level = std::get_if<Level>(&selection)) {
     require_level(reader.tree(), *level);
     return Cut::of_level(reader.tree(), *level);
   }
   if (const auto* path = std::get_if<std::filesystem::path>(&selection))
-    return read_cut(files, reader.tree(), *path);
-  return cut_by_error(reader, std::get<LargestError>(selection));
+    return exporting::read_cut(files, reader.tree(), *path);
+  return cut_by_error(reader, std::get<exporting::LargestError>(selection));
 }
 
 /// The tiles that a picture is of.
@@ -145,12 +145,12 @@ struct Pictured {
   NodeId node(std::size_t i) const { return tiles.cut()[positions[i]]; }
 };
 
-Pictured pictured(const HierarchyReader& reader, Cut cut, const std::optional<Region>& region,
-                  std::uint64_t cache_bytes) {
+Pictured pictured(const HierarchyReader& reader, Cut cut,
+                  const std::optional<exporting::Region>& region, std::uint64_t cache_bytes) {
   std::vector<std::size_t> positions(cut.size());
   std::iota(positions.begin(), positions.end(), std::size_t{0});
   if (region)
-    positions = tiles_in(reader, cut, *region);
+    positions = exporting::tiles_in(reader, cut, *region);
   Pictured shown{ShownTiles(reader, std::move(cut), cache_bytes), std::move(positions)};
   shown.tiles.will_load(shown.positions);
   return shown;
@@ -243,7 +243,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
-  std::optional<Region> region;
+  std::optional<exporting::Region> region;
   if (options.region.is_any())
     region = region_of(files, reader, options.region, cancel);
   const std::uint64_t cache_bytes = options.memory_budget / 8;

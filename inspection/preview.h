@@ -3,13 +3,13 @@
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "export/asked_region.h"
+#include "export/cut_by_error.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
-#include "inspection/asked_region.h"
 #include "inspection/attribute_painter.h"
-#include "inspection/cut_by_error.h"
 #include "storage/io/file.h"
 
 #include <array>
@@ -22,7 +22,7 @@
 namespace meshhier::inspection {
 
 /// A level, the cut in a text file, or tiles by their error.
-using PreviewSelection = std::variant<Level, std::filesystem::path, LargestError>;
+using PreviewSelection = std::variant<Level, std::filesystem::path, exporting::LargestError>;
 
 inline constexpr std::uint32_t kMostPreviewPixels = 8192;  ///< of a side
 
@@ -37,7 +37,7 @@ struct PreviewOptions {
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
   std::optional<AttributeColours> attribute{};  ///< none: colours and pictures of the input
-  RegionRequest region{};  ///< all else is left out, and the picture shows this piece
+  exporting::RegionRequest region{};  ///< all else is left out, and the picture shows this piece
   std::uint64_t memory_budget = std::uint64_t{1} << 30;
 };
 

@@ -16,7 +16,7 @@ void move_place(TileMesh& mesh, std::uint32_t place, Vec3f position) {
 
 ShownTiles::ShownTiles(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes)
     : reader_(reader),
-      numbered_(number_vertices(reader, std::move(cut))),
+      numbered_(exporting::number_vertices(reader, std::move(cut))),
       positions_(
           cache_bytes,
           [&reader](NodeId node) { return reader.read_tile(node).mesh.vertices.positions; },
@@ -31,7 +31,7 @@ void ShownTiles::will_load(std::span<const std::size_t> positions) const {
 
 ShownTile ShownTiles::load(std::size_t position) {
   PublishedTile tile = reader_.read_tile(numbered_.cut[position]);
-  DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
+  exporting::DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
   move_ghosts(tile);
   return {std::move(tile), std::move(drawn.border)};
 }

@@ -1,10 +1,10 @@
 // The surface of a cut, tile by tile, as viewers draw it.
 #pragma once
 
+#include "export/cut_mesh.h"
+#include "export/node_cache.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/published.h"
-#include "inspection/cut_mesh.h"
-#include "inspection/node_cache.h"
 #include "storage/format/hierarchy_reader.h"
 
 #include <cstddef>
@@ -41,8 +41,8 @@ class ShownTiles {
   void move_ghosts(PublishedTile& tile);
 
   const storage::HierarchyReader& reader_;
-  NumberedCut numbered_;
-  NodeCache<std::vector<Vec3f>> positions_;  ///< of places, of coarser neighbours
+  exporting::NumberedCut numbered_;
+  exporting::NodeCache<std::vector<Vec3f>> positions_;  ///< of places, of coarser neighbours
 };
 
 }  // namespace meshhier::inspection

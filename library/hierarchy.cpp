@@ -1,7 +1,7 @@
+#include "export/cut_by_error.h"
+#include "export/cut_part.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/value_channels.h"
-#include "inspection/cut_by_error.h"
-#include "inspection/cut_part.h"
 #include "library/errors.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/hierarchy_reader.h"
@@ -66,7 +66,7 @@ struct Hierarchy::Parts {
 
 struct Cut::Parts {
   std::shared_ptr<const Hierarchy::Parts> hierarchy;
-  inspection::CutParts parts;
+  exporting::CutParts parts;
 };
 
 Hierarchy::Hierarchy(const std::string& path)
@@ -150,7 +150,7 @@ std::vector<Node> Hierarchy::level(std::uint32_t level) const {
 }
 
 std::vector<Node> Hierarchy::within(double error) const {
-  return translated([&] { return nodes_of(inspection::cut_by_error(parts_->reader, {error})); });
+  return translated([&] { return nodes_of(exporting::cut_by_error(parts_->reader, {error})); });
 }
 
 Cut Hierarchy::cut(const std::vector<Node>& nodes, std::uint64_t cache_bytes) const {
@@ -160,7 +160,7 @@ Cut Hierarchy::cut(const std::vector<Node>& nodes, std::uint64_t cache_bytes) co
       inners.push_back(inner(tile(node).node));
     meshhier::Cut cut(parts_->reader.tree(), std::move(inners));
     return Cut(std::make_shared<Cut::Parts>(
-        Cut::Parts{parts_, inspection::CutParts(parts_->reader, std::move(cut), cache_bytes)}));
+        Cut::Parts{parts_, exporting::CutParts(parts_->reader, std::move(cut), cache_bytes)}));
   });
 }
 
@@ -202,7 +202,7 @@ Part Cut::load(std::size_t position) {
     if (position >= size())
       throw Error(Failure::usage, "the cut has " + std::to_string(size()) + " parts");
     const storage::HierarchyReader& reader = parts_->hierarchy->reader;
-    inspection::CutPart loaded = parts_->parts.load(position);
+    exporting::CutPart loaded = parts_->parts.load(position);
     Part part;
     part.node = node(position);
     for (const Vec3f& p : loaded.vertices.positions)

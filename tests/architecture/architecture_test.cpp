@@ -61,17 +61,24 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
        with_storage({"cluster_simplify", "config", "execution", "hierarchy", "images", "import",
                      "mesh_io", "outline", "partition", "pipeline/journal", "pipeline/plan",
                      "pipeline/tiles", "render", "shading", "texture"})},
-      {"inspection", with_storage({"config", "execution", "hierarchy", "images", "import",
-                                   "mesh_io", "partition", "render", "texture"})},
+      {"export", with_storage({"config", "execution", "hierarchy", "images", "import", "mesh_io",
+                               "partition"})},
+      {"compare", with_storage({"execution", "export", "hierarchy", "mesh_io"})},
+      {"verify", with_storage({"compare", "config", "execution", "export", "hierarchy", "images",
+                               "import", "mesh_io", "partition"})},
+      {"inspection",
+       with_storage({"execution", "export", "hierarchy", "images", "import", "render"})},
       {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
       {"server", with_storage({"execution", "hierarchy", "mesh_io", "progressive"})},
       {"app",
-       {"config", "execution", "hierarchy", "inspection", "mesh_io", "pipeline", "pipeline/journal",
-        "pipeline/plan", "progressive", "server", "storage/io"}},
-      {"library", with_storage({"config", "execution", "hierarchy", "inspection", "pipeline"})},
+       {"compare", "config", "execution", "export", "hierarchy", "inspection", "mesh_io",
+        "pipeline", "pipeline/journal", "pipeline/plan", "progressive", "server", "storage/io",
+        "verify"}},
+      {"library", with_storage({"config", "execution", "export", "hierarchy", "inspection",
+                                "pipeline", "verify"})},
       {"bench",
-       {"cluster_simplify", "execution", "hierarchy", "images", "import", "inspection", "mesh_io",
-        "partition", "render", "storage/format", "storage/io"}},
+       {"cluster_simplify", "compare", "execution", "export", "hierarchy", "images", "import",
+        "inspection", "mesh_io", "partition", "render", "storage/format", "storage/io"}},
       {"packaging", {}}};
   return rules;
 }
@@ -218,19 +225,19 @@ const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> rules = {
       {"tbb/",
        [](const Source& s) {
-         return s.is_in({"execution", "inspection", "pipeline", "pipeline/plan", "progressive"}) ||
+         return s.is_in({"compare", "execution", "pipeline", "pipeline/plan", "progressive"}) ||
                 s.path == "partition/parallel_parts.cpp" ||
                 s.path == "partition/parallel_sort.cpp" || s.path == "partition/top_tree.cpp";
        }},
       {"oneapi/", in({})},
       {"httplib.h", in({"server"})},
-      {"nlohmann/", in({"app", "bench", "config", "execution", "inspection", "mesh_io", "pipeline",
-                        "pipeline/journal", "pipeline/plan", "pipeline/tiles", "server",
-                        "storage/format", "storage/io"})},
+      {"nlohmann/", in({"app", "bench", "compare", "config", "execution", "export", "inspection",
+                        "mesh_io", "pipeline", "pipeline/journal", "pipeline/plan",
+                        "pipeline/tiles", "server", "storage/format", "storage/io", "verify"})},
       {"CLI/", in({"app", "bench"})},
-      {"CGAL/", of({"inspection/plan_region.cpp", "inspection/triangle_search.cpp",
+      {"CGAL/", of({"export/plan_region.cpp", "compare/triangle_search.cpp",
                     "mesh_io/polygon_cover.cpp", "mesh_io/polygon_turns.cpp"})},
-      {"boost/", of({"inspection/plan_region.cpp"})},
+      {"boost/", of({"export/plan_region.cpp"})},
       {"benchmark/", in({"bench"})},
       {"proj.h", of({"geodesy/proj_library.h"})},
       {"curl/", of({"storage/io/http_client.cpp"})},

@@ -16,12 +16,12 @@
 #include "config/config.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "inspection/verify.h"
-#include "inspection/verify_error.h"
 #include "storage/format/archive_files.h"
 #include "support/memory_files.h"
 #include "support/random_config.h"
 #include "support/simplify_methods.h"
+#include "verify/verify.h"
+#include "verify/verify_error.h"
 
 #include <algorithm>
 #include <array>
@@ -97,10 +97,10 @@ std::size_t count_places(const bench::LoadedMesh& mesh) {
 /// A mesh of which nothing can be measured has no errors.
 void check_bounds(MemoryFiles& files, const config::Config& config) {
   execution::NoProgress progress;
-  const inspection::ErrorOptions options{Level{}, 300, pipeline::memory_budget(config)};
+  const verifying::ErrorOptions options{Level{}, 300, pipeline::memory_budget(config)};
   const storage::HierarchyFiles inside(files, config.output);
   for (const auto& level :
-       inspection::measure_errors(inside.files(), config.output, options, progress, {})) {
+       verifying::measure_errors(inside.files(), config.output, options, progress, {})) {
     if (level.triangles > 0 && !level.problems.empty())
       throw Violation(level.name + ": " + level.problems.front());
   }
@@ -108,12 +108,12 @@ void check_bounds(MemoryFiles& files, const config::Config& config) {
 
 void check_sound(MemoryFiles& files, const config::Config& config) {
   execution::NoProgress progress;
-  inspection::VerifyOptions options;
+  verifying::VerifyOptions options;
   options.input = config.input;
   options.cuts = 4;
   const storage::HierarchyFiles inside(files, config.output);
   const auto report =
-      inspection::verify_hierarchy(inside.files(), config.output, options, progress, {});
+      verifying::verify_hierarchy(inside.files(), config.output, options, progress, {});
   if (!report.problems.empty())
     throw Violation(report.problems.front());
 }

@@ -1,8 +1,8 @@
 #include "hierarchy/cut.h"
 
+#include "export/cut_file.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "inspection/cut_file.h"
 #include "support/memory_files.h"
 
 #include <string>
@@ -25,7 +25,7 @@ void check_nodes(const std::vector<NodeId>& nodes) {
   std::string lines;
   for (const NodeId node : nodes)
     lines += to_text(node) + '\n';
-  require(inspection::parse_nodes(lines, "again") == nodes, "what is written is read again");
+  require(exporting::parse_nodes(lines, "again") == nodes, "what is written is read again");
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ void cut(Bytes input) {
   const Tree tree = take_tree(take);
   const std::string text(text_of(take.rest()));
   std::vector<NodeId> nodes;
-  const auto parse = [&] { nodes = inspection::parse_nodes(text, "nodes.txt"); };
+  const auto parse = [&] { nodes = exporting::parse_nodes(text, "nodes.txt"); };
   if (refusal({ErrorCode::usage}, "nodes.txt: ", parse).empty())
     check_nodes(nodes);
   MemoryFiles files;
   files.put("nodes.txt", text);
   refusal({ErrorCode::usage},
-          "nodes.txt: ", [&] { check_cut(tree, inspection::read_cut(files, tree, "nodes.txt")); });
+          "nodes.txt: ", [&] { check_cut(tree, exporting::read_cut(files, tree, "nodes.txt")); });
 }
 
 }  // namespace meshhier::tests::fuzz

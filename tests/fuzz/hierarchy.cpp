@@ -10,12 +10,11 @@
 // what the hierarchy promises: if verify has nothing against it, all of it can be exported. A
 // progressive stream that is made of it is sound, whatever it shows.
 #include "bench/generator.h"
+#include "export/export.h"
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "inspection/export.h"
 #include "inspection/inspect.h"
-#include "inspection/verify.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/build.h"
 #include "progressive/reconstruct.h"
@@ -26,6 +25,7 @@
 #include "storage/format/manifest.h"
 #include "storage/io/hash.h"
 #include "support/memory_files.h"
+#include "verify/verify.h"
 
 #include <array>
 #include <cstdint>
@@ -111,25 +111,25 @@ void seal(const Contents& sound, MemoryFiles& files) {
 
 bool is_sound(MemoryFiles& files) {
   execution::NoProgress progress;
-  inspection::VerifyOptions options;
+  verifying::VerifyOptions options;
   options.cuts = 3;
   options.memory_budget = std::uint64_t{1} << 24;
-  const auto report = inspection::verify_hierarchy(files, kHierarchy, options, progress, {});
+  const auto report = verifying::verify_hierarchy(files, kHierarchy, options, progress, {});
   for (const std::string& problem : report.problems)
     require_message(problem, "");
   return report.problems.empty();
 }
 
 /// Returns whether it was exported; a tree that has not what is asked for is a usage error.
-bool is_exported(MemoryFiles& files, const inspection::ExportSelection& selection) {
+bool is_exported(MemoryFiles& files, const exporting::ExportSelection& selection) {
   execution::NoProgress progress;
   files.remove_all(kExported);
   const std::string refused = refusal({ErrorCode::corrupt, ErrorCode::usage}, "", [&] {
-    inspection::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24, true},
-                            progress, {});
+    exporting::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24, true},
+                           progress, {});
   });
   require(files.exists(kExported) == refused.empty(), "an export is whole, or not there");
-  if (refused.empty() && !std::holds_alternative<inspection::OutlineSelection>(selection)) {
+  if (refused.empty() && !std::holds_alternative<exporting::OutlineSelection>(selection)) {
     const auto mesh = mesh_io::open_mesh(files, kExported);
     mesh->read_vertices([](const mesh_io::VertexBlock&) {});
     mesh->read_triangles([](std::span<const Triangle<VertexId>>) {});
@@ -191,8 +191,8 @@ void hierarchy(Bytes input) {
   const bool sound = is_sound(files);
   require(is_inspected(files) || !sound, "what is sound can be inspected");
   files.put(kCut, "1/0\n3/3\n3/4\n");
-  const std::array<inspection::ExportSelection, 3> selections = {
-      fs::path(kCut), NodeId{Level{2}, 1}, inspection::OutlineSelection{}};
+  const std::array<exporting::ExportSelection, 3> selections = {fs::path(kCut), NodeId{Level{2}, 1},
+                                                                exporting::OutlineSelection{}};
   for (const auto& selection : selections)
     require(is_exported(files, selection) || !sound, "what is sound can be exported");
 }

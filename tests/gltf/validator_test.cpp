@@ -1,8 +1,8 @@
 // The Khronos glTF validator on every kind of file the published form knows, and meshoptimizer's
 // decoder on compressed ones. MESHHIER_GLTF_DIR is the directory of their scripts; skipped where
 // node or the package is not installed.
+#include "export/export.h"
 #include "gltf/sample_hierarchy.h"
-#include "inspection/export.h"
 #include "storage/format/outline_glb.h"
 #include "storage/format/tile_glb.h"
 #include "support/sample_copies.h"
@@ -248,9 +248,9 @@ TEST_F(GltfValidator, AcceptsExportedCuts) {
     const fs::path hierarchy = path(fmt::format("{}.hier", number));
     write_sample(*files, hierarchy, sample);
     for (const int level : {0, 1, 2}) {
-      inspection::export_mesh(*files, hierarchy,
-                              {static_cast<Level>(level), path(fmt::format("cut{}.glb", number++))},
-                              progress, {});
+      exporting::export_mesh(*files, hierarchy,
+                             {static_cast<Level>(level), path(fmt::format("cut{}.glb", number++))},
+                             progress, {});
     }
     fs::remove_all(hierarchy);
   };

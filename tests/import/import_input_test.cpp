@@ -2,7 +2,6 @@
 #include "import/import_input.h"
 
 #include "hierarchy/error.h"
-#include "inspection/verify.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
@@ -12,6 +11,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/meshes.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <cstring>
@@ -186,8 +186,8 @@ class ImportTest : public testing::Test {
 
   std::vector<std::string> problems(const config::Config& config, const mesh_io::InputPaths& with) {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(files_, config.output, {.input = with, .cuts = 3}, progress,
-                                        execution::CancelToken())
+    return verifying::verify_hierarchy(files_, config.output, {.input = with, .cuts = 3}, progress,
+                                       execution::CancelToken())
         .problems;
   }
 

@@ -173,7 +173,8 @@ TEST_F(PictureTest, AnyCutOfASheetCoversIt) {
   std::ofstream(directory_.path() / "cut.txt") << "1/0\n2/2\n2/3\n";
   for (const PreviewSelection& selection :
        {PreviewSelection{Level{0}}, PreviewSelection{directory_.path() / "cut.txt"},
-        PreviewSelection{LargestError{0}}, PreviewSelection{LargestError{100}}}) {
+        PreviewSelection{exporting::LargestError{0}},
+        PreviewSelection{exporting::LargestError{100}}}) {
     some.selection = selection;
     const images::Image other = picture(some);
     std::size_t differing = 0;
@@ -192,8 +193,8 @@ TEST_F(PictureTest, TheErrorAskedForDecidesTheTiles) {
     execution::NoProgress progress;
     return make_picture(*files_, hierarchy(), some, progress, {});
   };
-  EXPECT_THAT(line(LargestError{10}), HasSubstr("120 x 90 pixels, 1 tile, "));
-  EXPECT_THAT(line(LargestError{0}),
+  EXPECT_THAT(line(exporting::LargestError{10}), HasSubstr("120 x 90 pixels, 1 tile, "));
+  EXPECT_THAT(line(exporting::LargestError{0}),
               HasSubstr(std::to_string(mesh.triangles.size()) + " triangles"));
   EXPECT_THAT(line(Level{1}), HasSubstr(" 2 tiles, "));
 }

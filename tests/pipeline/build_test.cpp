@@ -6,7 +6,6 @@
 #include "execution/size_text.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
-#include "inspection/verify.h"
 #include "pipeline/estimate.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
@@ -17,6 +16,7 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <atomic>
@@ -98,8 +98,8 @@ class BuildTest : public testing::Test {
 
   std::vector<std::string> problems() {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(files_, output_path(), {.input = mesh_path(), .cuts = 30},
-                                        progress, execution::CancelToken())
+    return verifying::verify_hierarchy(files_, output_path(), {.input = mesh_path(), .cuts = 30},
+                                       progress, execution::CancelToken())
         .problems;
   }
 

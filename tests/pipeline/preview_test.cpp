@@ -1,7 +1,6 @@
 // The picture that a build makes of its hierarchy.
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/index.h"
@@ -14,6 +13,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,10 +60,10 @@ class PreviewTest : public testing::Test {
 
   std::vector<std::string> problems() {
     execution::NoProgress progress;
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.cuts = 1;
-    return inspection::verify_hierarchy(*files_, hierarchy(), options, progress,
-                                        execution::CancelToken())
+    return verifying::verify_hierarchy(*files_, hierarchy(), options, progress,
+                                       execution::CancelToken())
         .problems;
   }
 

@@ -2,9 +2,9 @@
 // the last one the original mesh, bit for bit.
 #include "progressive/stream.h"
 
+#include "export/export.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
-#include "inspection/export.h"
 #include "mesh_io/mesh_source.h"
 #include "progressive/reconstruct.h"
 #include "progressive/stream_index.h"
@@ -104,11 +104,10 @@ class ProgressiveTest : public testing::Test {
     return load("/models/out.ply");
   }
 
-  Shown exported(const inspection::ExportSelection& selection) {
-    inspection::export_mesh(
-        files_, hierarchy_,
-        {.selection = selection, .output = "/models/level.ply", .replace = true}, progress_,
-        cancel_);
+  Shown exported(const exporting::ExportSelection& selection) {
+    exporting::export_mesh(files_, hierarchy_,
+                           {.selection = selection, .output = "/models/level.ply", .replace = true},
+                           progress_, cancel_);
     return load("/models/level.ply");
   }
 
@@ -155,7 +154,7 @@ class ProgressiveTest : public testing::Test {
 
   void expect_original() {
     reconstruct(std::nullopt);
-    inspection::export_mesh(
+    exporting::export_mesh(
         files_, hierarchy_,
         {.selection = reader().tree().depth(), .output = "/models/level.ply", .replace = true},
         progress_, cancel_);

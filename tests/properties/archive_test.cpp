@@ -1,15 +1,15 @@
 // A hierarchy in one file: the same files, to the byte, and the same promises.
 #include "bench/generator.h"
+#include "export/export.h"
 #include "hierarchy/error.h"
-#include "inspection/export.h"
 #include "inspection/inspect.h"
-#include "inspection/verify.h"
-#include "inspection/verify_error.h"
 #include "pipeline/build.h"
 #include "storage/format/archive_files.h"
 #include "storage/io/hash.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/share.h"
+#include "verify/verify.h"
+#include "verify/verify_error.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -52,11 +52,11 @@ class PackedTest : public testing::Test {
   }
 
   /// What verify has against the archive; empty if nothing.
-  std::string complaint(inspection::VerifyOptions options = {}) {
+  std::string complaint(verifying::VerifyOptions options = {}) {
     std::string all;
     try {
       for (const auto& problem :
-           inspection::verify_hierarchy(files_, kArchive, options, progress_, cancel_).problems)
+           verifying::verify_hierarchy(files_, kArchive, options, progress_, cancel_).problems)
         all += problem + '\n';
     } catch (const Error& error) {
       all += error.what();
@@ -99,7 +99,7 @@ TEST_F(PackedTest, HasTheFilesOfTheDirectory) {
       EXPECT_EQ(found[i].lexically_relative(kArchive), expected[i].lexically_relative(kDirectory));
       EXPECT_EQ(storage::read_file(inside, found[i], 1U << 20), files_.bytes(expected[i]));
     }
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.input = config_.input;
     EXPECT_EQ(complaint(options), "");
   }
@@ -128,17 +128,17 @@ TEST_F(PackedTest, LeavesNothingBesideIt) {
 TEST_F(PackedTest, IsReadByEveryCommandAsADirectoryIs) {
   build(kDirectory, storage::Container::files);
   build(kArchive, storage::Container::archive);
-  const auto exported = [&](const fs::path& from, const inspection::ExportSelection& selection) {
-    inspection::export_mesh(files_, from,
-                            {.selection = selection, .output = "/models/out.ply", .replace = true},
-                            progress_, cancel_);
+  const auto exported = [&](const fs::path& from, const exporting::ExportSelection& selection) {
+    exporting::export_mesh(files_, from,
+                           {.selection = selection, .output = "/models/out.ply", .replace = true},
+                           progress_, cancel_);
     return files_.content("/models/out.ply");
   };
   files_.put("/models/cut.txt", "1/0\n3/3\n3/4\n");
-  for (const inspection::ExportSelection& selection :
-       {inspection::ExportSelection(Level{1}), inspection::ExportSelection(NodeId{Level{2}, 1}),
-        inspection::ExportSelection(fs::path("/models/cut.txt")),
-        inspection::ExportSelection(inspection::OutlineSelection{})})
+  for (const exporting::ExportSelection& selection :
+       {exporting::ExportSelection(Level{1}), exporting::ExportSelection(NodeId{Level{2}, 1}),
+        exporting::ExportSelection(fs::path("/models/cut.txt")),
+        exporting::ExportSelection(exporting::OutlineSelection{})})
     EXPECT_EQ(exported(kArchive, selection), exported(kDirectory, selection));
 
   auto inside = inspection::inspect_json(files_, kArchive, {});
@@ -148,10 +148,10 @@ TEST_F(PackedTest, IsReadByEveryCommandAsADirectoryIs) {
   EXPECT_EQ(inside, outside);
   EXPECT_THAT(inspection::inspect_text(files_, kArchive, {}), HasSubstr("mesh.3tz"));
 
-  inspection::ErrorOptions options;
+  verifying::ErrorOptions options;
   options.samples = 1000;
-  const auto a = inspection::measure_errors(files_, kArchive, options, progress_, cancel_);
-  const auto b = inspection::measure_errors(files_, kDirectory, options, progress_, cancel_);
+  const auto a = verifying::measure_errors(files_, kArchive, options, progress_, cancel_);
+  const auto b = verifying::measure_errors(files_, kDirectory, options, progress_, cancel_);
   EXPECT_EQ(to_json(a.front()), to_json(b.front()));
 }
 
@@ -160,7 +160,7 @@ TEST_F(PackedTest, AFlippedBitAtAnyByteIsFoundByVerify) {
   config_.preview = false;  // to look at it takes longer than all else together
   build(kArchive, storage::Container::archive);
   Bytes& bytes = files_.bytes(kArchive);
-  inspection::VerifyOptions options;
+  verifying::VerifyOptions options;
   options.cuts = 0;
   ASSERT_EQ(complaint(options), "");
   for (std::size_t at = tests::share().index; at < bytes.size(); at += tests::share().count) {
@@ -179,9 +179,9 @@ TEST_F(PackedTest, SANITIZED_ATruncatedOneIsOneErrorForEveryCommand) {
     EXPECT_THAT(complaint(), HasSubstr("the file is cut or damaged")) << size;
     refusal(ErrorCode::corrupt, [&] { inspection::inspect_text(files_, kArchive, {}); });
     refusal(ErrorCode::corrupt, [&] {
-      inspection::export_mesh(files_, kArchive,
-                              {.selection = Level{0}, .output = "/models/out.ply", .replace = true},
-                              progress_, cancel_);
+      exporting::export_mesh(files_, kArchive,
+                             {.selection = Level{0}, .output = "/models/out.ply", .replace = true},
+                             progress_, cancel_);
     });
     EXPECT_FALSE(files_.exists("/models/out.ply"));
     files_.bytes(kArchive) = whole;
@@ -193,12 +193,11 @@ TEST_F(PackedTest, AFileThatIsNoArchiveIsNoHierarchy) {
   EXPECT_THAT(
       refusal(ErrorCode::io, [&] { inspection::inspect_text(files_, "/models/mesh.ply", {}); }),
       HasSubstr(said));
-  EXPECT_THAT(refusal(ErrorCode::io,
-                      [&] {
-                        inspection::verify_hierarchy(files_, "/models/mesh.ply", {}, progress_,
-                                                     cancel_);
-                      }),
-              HasSubstr(said));
+  EXPECT_THAT(
+      refusal(
+          ErrorCode::io,
+          [&] { verifying::verify_hierarchy(files_, "/models/mesh.ply", {}, progress_, cancel_); }),
+      HasSubstr(said));
 }
 
 TEST_F(PackedTest, ReplacesAnArchiveOfAHierarchyAndNothingElse) {

@@ -5,7 +5,6 @@
 #include "bench/stress.h"
 #include "config/config.h"
 #include "hierarchy/vertex_numbers.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/cluster_simplify/test_tiles.h"
@@ -15,6 +14,7 @@
 #include "tests/support/same_tile.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -64,8 +64,8 @@ ShadedHierarchy build_shaded(const LoadedMesh& mesh, const config::SimplifyConfi
   for (const TileRecord& record : reader.records())
     built.tiles.push_back(reader.read_tile(record.node));
   built.problems =
-      inspection::verify_hierarchy(*files, config.output, {.input = config.input, .cuts = 3},
-                                   progress, execution::CancelToken())
+      verifying::verify_hierarchy(*files, config.output, {.input = config.input, .cuts = 3},
+                                  progress, execution::CancelToken())
           .problems;
   return built;
 }
@@ -237,8 +237,8 @@ TEST(ComputedNormals, AgreeAtBordersOfPartitionsThatStandForTheirParents) {
         BuildOptions options;
         options.force = true;
         build_hierarchy(config, options, {*files, progress, execution::CancelToken()});
-        EXPECT_THAT(inspection::verify_hierarchy(*files, config.output, {.input = config.input},
-                                                 progress, execution::CancelToken())
+        EXPECT_THAT(verifying::verify_hierarchy(*files, config.output, {.input = config.input},
+                                                progress, execution::CancelToken())
                         .problems,
                     IsEmpty())
             << seed << ", " << count << " partitions, method " << static_cast<int>(method);

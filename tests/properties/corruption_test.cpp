@@ -3,15 +3,15 @@
 // always tell.
 #include "bench/generator.h"
 #include "config/config.h"
+#include "export/export.h"
 #include "hierarchy/error.h"
-#include "inspection/export.h"
 #include "inspection/inspect.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -121,20 +121,20 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
 
   /// What verify has against the hierarchy; empty if nothing.
   std::string complaint() {
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.cuts = 0;
     std::string all;
     const Outcome outcome = outcome_of([&] {
       for (const std::string& problem :
-           inspection::verify_hierarchy(files_, kDirectory, options, progress_, cancel_).problems)
+           verifying::verify_hierarchy(files_, kDirectory, options, progress_, cancel_).problems)
         all += problem + "\n";
       return all;
     });
     return outcome.text;
   }
 
-  std::string export_of(const inspection::ExportSelection& selection) {
-    const std::string summary = inspection::export_mesh(
+  std::string export_of(const exporting::ExportSelection& selection) {
+    const std::string summary = exporting::export_mesh(
         files_, kDirectory, {.selection = selection, .output = kExported, .replace = true},
         progress_, cancel_);
     const Bytes& bytes = files_.bytes(kExported);
@@ -225,7 +225,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
       {"export --level 2", [this] { return export_of(static_cast<Level>(2)); }},
       {"export --level 3", [this] { return export_of(static_cast<Level>(3)); }},
       {"export --node 2/1", [this] { return export_of(tests::node(2, 1)); }},
-      {"export --outline", [this] { return export_of(inspection::OutlineSelection{}); }}};
+      {"export --outline", [this] { return export_of(exporting::OutlineSelection{}); }}};
   std::map<std::string, std::string> expected_;
   std::uint64_t damages_ = 0;
 };

@@ -1,8 +1,8 @@
 // Promise 3 on built hierarchies: every cut shows the image of the input under one map of vertices.
 #include "config/config.h"
+#include "export/cut_mesh.h"
+#include "export/random_cut.h"
 #include "hierarchy/cut.h"
-#include "inspection/cut_mesh.h"
-#include "inspection/random_cut.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
@@ -34,12 +34,12 @@ struct Case {
   config::SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
 };
 
-inspection::CutTriangle smallest_first(inspection::CutTriangle t) {
+exporting::CutTriangle smallest_first(exporting::CutTriangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 
-bool is_flat(const inspection::CutTriangle& t) {
+bool is_flat(const exporting::CutTriangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
@@ -61,8 +61,8 @@ class Built {
     for (const TileRecord& record : reader_->records()) {
       tiles_.emplace(record.node, reader_->read_tile(record.node));
     }
-    const inspection::NumberedCut last =
-        inspection::number_vertices(*reader_, Cut::of_level(tree(), tree().depth()));
+    const exporting::NumberedCut last =
+        exporting::number_vertices(*reader_, Cut::of_level(tree(), tree().depth()));
     for (NodeId node : last.cut.nodes()) {
       for (std::uint32_t v = 0; v < tiles_.at(node).mesh.own_count; ++v)
         owners_.push_back({node, v});
@@ -71,19 +71,19 @@ class Built {
   }
 
   const Tree& tree() const { return reader_->tree(); }
-  inspection::NumberedCut numbered(Cut cut) const {
-    return inspection::number_vertices(*reader_, std::move(cut));
+  exporting::NumberedCut numbered(Cut cut) const {
+    return exporting::number_vertices(*reader_, std::move(cut));
   }
 
   /// The input's triangles, corners as numbers of the cut of all partitions.
-  const std::vector<inspection::CutTriangle>& originals() const { return originals_; }
+  const std::vector<exporting::CutTriangle>& originals() const { return originals_; }
 
   /// What the tiles of a cut draw.
-  std::vector<inspection::CutTriangle> drawn(const inspection::NumberedCut& shown) const {
-    std::vector<inspection::CutTriangle> all;
+  std::vector<exporting::CutTriangle> drawn(const exporting::NumberedCut& shown) const {
+    std::vector<exporting::CutTriangle> all;
     for (std::size_t i = 0; i < shown.cut.size(); ++i) {
-      for (const inspection::CutTriangle& t :
-           inspection::draw_tile(tree(), shown, i, tiles_.at(shown.cut[i])).triangles) {
+      for (const exporting::CutTriangle& t :
+           exporting::draw_tile(tree(), shown, i, tiles_.at(shown.cut[i])).triangles) {
         all.push_back(smallest_first(t));
       }
     }
@@ -92,7 +92,7 @@ class Built {
   }
 
   /// Where a cut shows each original vertex: up through the parent maps, without any ghost.
-  std::vector<std::uint32_t> vertex_images(const inspection::NumberedCut& shown) const {
+  std::vector<std::uint32_t> vertex_images(const exporting::NumberedCut& shown) const {
     std::vector<std::uint32_t> images;
     for (auto [node, vertex] : owners_) {
       const auto position = shown.cut.position_of(static_cast<PartitionId>(node.index));
@@ -111,14 +111,14 @@ class Built {
   std::unique_ptr<storage::HierarchyReader> reader_;
   std::map<NodeId, PublishedTile> tiles_;
   std::vector<std::pair<NodeId, std::uint32_t>> owners_;  ///< of the original vertices
-  std::vector<inspection::CutTriangle> originals_;
+  std::vector<exporting::CutTriangle> originals_;
 };
 
-std::vector<inspection::CutTriangle> image(const std::vector<inspection::CutTriangle>& triangles,
-                                           const std::vector<std::uint32_t>& map) {
-  std::vector<inspection::CutTriangle> images;
-  for (const inspection::CutTriangle& t : triangles) {
-    const inspection::CutTriangle corners = {map[t[0]], map[t[1]], map[t[2]]};
+std::vector<exporting::CutTriangle> image(const std::vector<exporting::CutTriangle>& triangles,
+                                          const std::vector<std::uint32_t>& map) {
+  std::vector<exporting::CutTriangle> images;
+  for (const exporting::CutTriangle& t : triangles) {
+    const exporting::CutTriangle corners = {map[t[0]], map[t[1]], map[t[2]]};
     if (!is_flat(corners))
       images.push_back(smallest_first(corners));
   }
@@ -127,7 +127,7 @@ std::vector<inspection::CutTriangle> image(const std::vector<inspection::CutTria
 }
 
 /// Triangles along an edge from its lower vertex, less those that run back, where that is not zero.
-std::map<tests::Edge, std::int64_t> border(const std::vector<inspection::CutTriangle>& triangles) {
+std::map<tests::Edge, std::int64_t> border(const std::vector<exporting::CutTriangle>& triangles) {
   std::map<tests::Edge, std::int64_t> net;
   for (const tests::Edge& edge : tests::unmatched_edges(triangles))
     net[edge] = 0;
@@ -170,8 +170,7 @@ void expect_seamless(const Case& c) {
             tests::is_closed(c.mesh.triangles) || c.mesh.triangles.empty());
   for (std::uint64_t seed = 0; seed < c.cuts; ++seed) {
     SCOPED_TRACE("cut " + std::to_string(seed));
-    const inspection::NumberedCut shown =
-        built.numbered(inspection::random_cut(built.tree(), seed));
+    const exporting::NumberedCut shown = built.numbered(exporting::random_cut(built.tree(), seed));
     const auto map = built.vertex_images(shown);
     auto images = image(built.originals(), map);
 

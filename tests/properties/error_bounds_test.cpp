@@ -1,12 +1,12 @@
 // Promise: no point of what a tile shows, and none of the original surface under it, is farther off
 // than the tile's bound; and bounds say something.
 #include "config/config.h"
-#include "inspection/verify_error.h"
 #include "pipeline/build.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
+#include "verify/verify_error.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -27,8 +27,8 @@ using testing::IsEmpty;
 class ErrorBoundsTest : public testing::Test {
  protected:
   /// All levels of simplified tiles, measured.
-  std::vector<inspection::ErrorMeasurement> measure(const tests::TestMesh& mesh,
-                                                    const config::SimplifyConfig& simplify) {
+  std::vector<verifying::ErrorMeasurement> measure(const tests::TestMesh& mesh,
+                                                   const config::SimplifyConfig& simplify) {
     const fs::path input = directory_.path() / "mesh.ply";
     tests::write_ply(mesh, input);
     config::Config config = tests::quick_config();
@@ -40,13 +40,13 @@ class ErrorBoundsTest : public testing::Test {
     execution::NoProgress progress;
     const execution::CancelToken cancel;
     pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
-    return inspection::measure_errors(
-        *files_, config.output, {inspection::AllLevels{}, 20'000, 1U << 30}, progress, cancel);
+    return verifying::measure_errors(*files_, config.output,
+                                     {verifying::AllLevels{}, 20'000, 1U << 30}, progress, cancel);
   }
 
-  static void expect_bounds_hold(const std::vector<inspection::ErrorMeasurement>& levels) {
+  static void expect_bounds_hold(const std::vector<verifying::ErrorMeasurement>& levels) {
     EXPECT_FALSE(levels.empty());
-    for (const inspection::ErrorMeasurement& level : levels) {
+    for (const verifying::ErrorMeasurement& level : levels) {
       EXPECT_THAT(level.problems, IsEmpty()) << level.name;
       EXPECT_LE(level.bound, level.diagonal * 1.001) << level.name;
     }
@@ -158,7 +158,7 @@ TEST_F(ErrorBoundsTest, BoundsOfASmoothTorusSaySomething) {
     SCOPED_TRACE(method);
     const auto levels = measure(tests::torus(6000), simplify);
     expect_bounds_hold(levels);
-    for (const inspection::ErrorMeasurement& level : levels) {
+    for (const verifying::ErrorMeasurement& level : levels) {
       EXPECT_LE(level.bound, 20 * std::max(level.forward.max, level.backward.max)) << level.name;
     }
   }

@@ -1,12 +1,12 @@
 // Promises 1 and 2 on built hierarchies: equal sizes, and the partitions are exactly the input.
 #include "config/config.h"
-#include "inspection/export.h"
+#include "export/export.h"
 #include "inspection/inspect.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
+#include "verify/verify.h"
 
 #include <filesystem>
 #include <memory>
@@ -36,11 +36,11 @@ class LosslessTest : public testing::Test {
     const execution::CancelToken cancel;
     pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
 
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.input = input;
     options.cuts = 5;
     EXPECT_THAT(
-        inspection::verify_hierarchy(*files_, config.output, options, progress, cancel).problems,
+        verifying::verify_hierarchy(*files_, config.output, options, progress, cancel).problems,
         IsEmpty());
     const auto told = inspection::inspect_json(*files_, config.output, {});
     const auto& partitions = told["partitions"];
@@ -66,8 +66,8 @@ class LosslessTest : public testing::Test {
   fs::path export_last_level(Level level) {
     execution::NoProgress progress;
     const fs::path output = directory_.path() / "last.ply";
-    inspection::export_mesh(*files_, directory_.path() / "mesh.hier", {level, output}, progress,
-                            execution::CancelToken());
+    exporting::export_mesh(*files_, directory_.path() / "mesh.hier", {level, output}, progress,
+                           execution::CancelToken());
     return output;
   }
 

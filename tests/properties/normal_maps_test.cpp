@@ -6,7 +6,6 @@
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/files_of.h"
@@ -15,6 +14,7 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 #include "tests/support/stopped_stage.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -70,8 +70,8 @@ class NormalMapsTest : public testing::Test {
 
   std::vector<std::string> problems(const config::Config& job) {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(*files_, job.output, {.input = job.input, .cuts = 3},
-                                        progress, execution::CancelToken())
+    return verifying::verify_hierarchy(*files_, job.output, {.input = job.input, .cuts = 3},
+                                       progress, execution::CancelToken())
         .problems;
   }
 

@@ -4,10 +4,9 @@
 #include "bench/split.h"
 #include "bench/stress.h"
 #include "config/config.h"
+#include "export/cut_mesh.h"
+#include "export/random_cut.h"
 #include "hierarchy/cut.h"
-#include "inspection/cut_mesh.h"
-#include "inspection/random_cut.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/loaded_mesh.h"
@@ -15,6 +14,7 @@
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -94,16 +94,15 @@ class BuiltMesh {
 
   std::vector<std::string> problems() {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(*files_, config_.output,
-                                        {.input = config_.input, .cuts = 5}, progress,
-                                        execution::CancelToken())
+    return verifying::verify_hierarchy(*files_, config_.output, {.input = config_.input, .cuts = 5},
+                                       progress, execution::CancelToken())
         .problems;
   }
 
   /// Of what a random cut draws.
   std::int64_t open_edges(std::uint64_t seed) const {
-    const inspection::NumberedCut shown =
-        inspection::number_vertices(*reader_, inspection::random_cut(reader_->tree(), seed));
+    const exporting::NumberedCut shown =
+        exporting::number_vertices(*reader_, exporting::random_cut(reader_->tree(), seed));
     const auto at = [&](std::uint32_t number) {
       const std::size_t position = shown.position_of_vertex(number);
       const TileMesh& mesh = tiles_.at(shown.cut[position]).mesh;
@@ -111,8 +110,8 @@ class BuiltMesh {
     };
     OpenEdges edges;
     for (std::size_t i = 0; i < shown.cut.size(); ++i) {
-      for (const inspection::CutTriangle& t :
-           inspection::draw_tile(reader_->tree(), shown, i, tiles_.at(shown.cut[i])).triangles)
+      for (const exporting::CutTriangle& t :
+           exporting::draw_tile(reader_->tree(), shown, i, tiles_.at(shown.cut[i])).triangles)
         edges.add(at(t[0]), at(t[1]), at(t[2]));
     }
     return edges.count();

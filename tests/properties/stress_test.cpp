@@ -5,8 +5,6 @@
 #include "config/config.h"
 #include "hierarchy/error.h"
 #include "inspection/inspect.h"
-#include "inspection/verify.h"
-#include "inspection/verify_error.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/memory_files.h"
@@ -14,6 +12,8 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
+#include "verify/verify.h"
+#include "verify/verify_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,10 +61,10 @@ class StressTest : public testing::Test {
   }
 
   std::vector<std::string> problems() {
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.input = config_.input;
     options.cuts = 5;
-    return inspection::verify_hierarchy(files_, config_.output, options, progress_, cancel_)
+    return verifying::verify_hierarchy(files_, config_.output, options, progress_, cancel_)
         .problems;
   }
 
@@ -145,9 +145,9 @@ TEST_P(StressCaseTest, SLOW_IsWithinItsBounds) {
     SCOPED_TRACE(name);
     use_method(method);
     ASSERT_NO_THROW(build());
-    const inspection::ErrorOptions options{inspection::AllLevels{}, 2000, memory_budget(config_)};
-    for (const inspection::ErrorMeasurement& level :
-         inspection::measure_errors(files_, config_.output, options, progress_, cancel_)) {
+    const verifying::ErrorOptions options{verifying::AllLevels{}, 2000, memory_budget(config_)};
+    for (const verifying::ErrorMeasurement& level :
+         verifying::measure_errors(files_, config_.output, options, progress_, cancel_)) {
       if (level.triangles == 0)
         continue;  // cells that hold the edge of the book close it
       EXPECT_THAT(level.problems, IsEmpty()) << level.name;

@@ -4,7 +4,6 @@
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/files_of.h"
@@ -14,6 +13,7 @@
 #include "tests/support/stopped_stage.h"
 #include "tests/support/textured_torus.h"
 #include "tests/support/warnings.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -144,8 +144,8 @@ class TexturesTest : public testing::Test {
 
   std::vector<std::string> problems(const config::Config& config) const {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(*files_, config.output, {.input = config.input, .cuts = 3},
-                                        progress, execution::CancelToken())
+    return verifying::verify_hierarchy(*files_, config.output, {.input = config.input, .cuts = 3},
+                                       progress, execution::CancelToken())
         .problems;
   }
 
@@ -278,8 +278,8 @@ TEST_F(TexturesTest, PicturesOfAnyShapeAreExactOrTheirLossIsTold) {
     BuildOptions options;
     options.force = true;
     build_hierarchy(job, options, {*files_, progress, execution::CancelToken()});
-    const auto report = inspection::verify_hierarchy(*files_, job.output, {.input = job.input},
-                                                     progress, execution::CancelToken());
+    const auto report = verifying::verify_hierarchy(*files_, job.output, {.input = job.input},
+                                                    progress, execution::CancelToken());
     EXPECT_THAT(report.problems, IsEmpty());
     const std::string name = fmt::format("{} x {}, {} times", width, height, repeats);
     if (is_exact) {

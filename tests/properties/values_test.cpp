@@ -1,16 +1,16 @@
 // Values of vertices through whole builds: bit for bit in partitions, of the input's values where
 // they are labels.
 #include "config/config.h"
+#include "export/cut_part.h"
 #include "hierarchy/error.h"
 #include "hierarchy/value_channels.h"
-#include "inspection/cut_part.h"
-#include "inspection/verify.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <bit>
@@ -176,10 +176,10 @@ class ValuesTest : public testing::Test {
   }
 
   void expect_verified(std::string_view hierarchy, std::string_view input) {
-    inspection::VerifyOptions options;
+    verifying::VerifyOptions options;
     options.input = path(input);
     execution::NoProgress progress;
-    const inspection::VerifyReport report = inspection::verify_hierarchy(
+    const verifying::VerifyReport report = verifying::verify_hierarchy(
         *files_, path(hierarchy), options, progress, execution::CancelToken());
     EXPECT_THAT(report.problems, testing::IsEmpty());
   }
@@ -333,10 +333,10 @@ TEST_F(ValuesTest, SANITIZED_OfFacesStayOnTheirTriangles) {
                                               {node(1, 1), node(2, 0), node(2, 1)},
                                               {node(2, 0), node(2, 1), node(2, 2), node(2, 3)}};
   for (const std::vector<NodeId>& nodes : cuts) {
-    inspection::CutParts parts(reader, Cut(reader.tree(), nodes), 1 << 20);
+    exporting::CutParts parts(reader, Cut(reader.tree(), nodes), 1 << 20);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const inspection::CutPart part = parts.load(i);
+      const exporting::CutPart part = parts.load(i);
       const auto label = [&](std::uint32_t vertex) {
         return value_in(values[0].type,
                         part.vertices.attributes_of(vertex).data() + values[0].channel);

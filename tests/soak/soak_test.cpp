@@ -6,7 +6,6 @@
 //                          tells it when it fails
 #include "bench/stress.h"
 #include "hierarchy/error.h"
-#include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "pipeline/tasks/task_plan.h"
 #include "pipeline/tasks/task_status.h"
@@ -19,6 +18,7 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
 #include "tests/support/try_build.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <chrono>
@@ -152,13 +152,13 @@ Files content(storage::FileSystem& files, const config::Config& config) {
 }
 
 std::vector<std::string> problems(storage::FileSystem& files, const config::Config& config) {
-  inspection::VerifyOptions options;
+  verifying::VerifyOptions options;
   options.input = config.input;
   options.cuts = 3;
   execution::NoProgress progress;
   const storage::HierarchyFiles inside(files, config.output);
-  return inspection::verify_hierarchy(inside.files(), config.output, options, progress,
-                                      execution::CancelToken())
+  return verifying::verify_hierarchy(inside.files(), config.output, options, progress,
+                                     execution::CancelToken())
       .problems;
 }
 

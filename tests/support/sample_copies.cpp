@@ -2,11 +2,11 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/drawing_rule.h"
-#include "inspection/corner_triangle.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/compactness.h"
 #include "storage/io/file.h"
 #include "storage/io/file_checksum.h"
+#include "verify/corner_triangle.h"
 
 #include <algorithm>
 #include <array>
@@ -20,9 +20,9 @@
 namespace meshhier::tests {
 namespace {
 
-using inspection::Corner;
-using inspection::CornerTriangle;
-using inspection::make_corner;
+using verifying::Corner;
+using verifying::CornerTriangle;
+using verifying::make_corner;
 
 std::uint64_t scrambled(std::uint64_t x) {
   x *= 0x9E3779B97F4A7C15U;

@@ -1,0 +1,525 @@
+#include "compare/compare.h"
+
+#include "compare/cut_surface.h"
+#include "compare/farthest_bound.h"
+#include "compare/surface_distance.h"
+#include "compare/surface_samples.h"
+#include "compare/surface_sides.h"
+#include "execution/parallel.h"
+#include "hierarchy/error.h"
+#include "hierarchy/flat_axes.h"
+#include "hierarchy/plain_text.h"
+#include "hierarchy/text_mark.h"
+#include "mesh_io/coordinate_range.h"
+#include "mesh_io/output_name.h"
+#include "mesh_io/ply_writer.h"
+#include "storage/format/archive.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/output_file.h"
+#include "storage/io/spool.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::comparing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Vertices looked up together: enough to make the trees of their surroundings worth building.
+constexpr std::size_t kBatchPoints = 65536;
+/// Triangles that are bounded together.
+constexpr std::size_t kBatchTriangles = 16384;
+/// What a comparison holds beside its caches, about: the program, a batch and the trees it is
+/// looked up in, tiles on their way, sums.
+constexpr std::uint64_t kFixedBytes = std::uint64_t{56} << 20;
+/// Grain of the scratch: large writes, small beside any budget.
+constexpr std::size_t kDifferenceBlockBytes = std::size_t{1} << 18;
+constexpr std::size_t kCopiedAtOnce = 65536;
+/// Scans of one object are nearer to each other, as a rule.
+constexpr double kFarPart = 0.05;
+
+Vec3d moved(const std::optional<PlaceTransform>& transform, Vec3d p) {
+  if (!transform)
+    return p;
+  const PlaceTransform& m = *transform;
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+
+BoundsD moved_box(const std::optional<PlaceTransform>& transform, const BoundsD& box) {
+  BoundsD all;
+  for (int corner = 0; !box.empty() && corner < 8; ++corner) {
+    all.add(moved(transform, {(corner & 1) != 0 ? box.max.x : box.min.x,
+                              (corner & 2) != 0 ? box.max.y : box.min.y,
+                              (corner & 4) != 0 ? box.max.z : box.min.z}));
+  }
+  return all;
+}
+
+/// A hierarchy that is open.
+struct Opened {
+  explicit Opened(const ComparedPlace& place)
+      : name(place.name.empty() ? place.path.string() : place.name),
+        files(place.files, place.path),
+        reader(files.files(), place.path) {}
+
+  const BoundsD& box() const { return reader.manifest().source.bounds; }
+  /// Positions of tiles are so far from what their error is told of.
+  double rounding() const {
+    const auto& quantization = reader.manifest().quantization;
+    return quantization ? quantization->worst_rounding : 0;
+  }
+
+  std::string name;
+  storage::HierarchyFiles files;
+  storage::HierarchyReader reader;
+};
+
+Cut cut_of(const storage::HierarchyReader& reader, const CompareOptions& options) {
+  const Tree& tree = reader.tree();
+  if (const auto* error = std::get_if<exporting::LargestError>(&options.selection))
+    return cut_by_error(reader, *error);
+  const auto* level = std::get_if<Level>(&options.selection);
+  return Cut::of_level(tree, level != nullptr ? std::min(*level, tree.depth()) : tree.depth());
+}
+
+ComparedSurface facts_of(const Opened& opened, const CutSurface& surface) {
+  ComparedSurface facts;
+  facts.name = opened.name;
+  facts.tiles = surface.size();
+  facts.vertices = surface.place_count();
+  facts.triangles = surface.total().triangles;
+  for (const NodeId node : surface.cut().nodes())
+    facts.error_bound = std::max(facts.error_bound, double{opened.reader.record(node).bound});
+  facts.error_bound += opened.rounding();
+  return facts;
+}
+
+/// Vertices with their distances and triangles, until their counts are known.
+class DifferencePly {
+ public:
+  DifferencePly(storage::FileSystem& files, const storage::OutputRequest& request,
+                std::uint64_t memory_bytes, const std::function<void()>& check)
+      : output_(files, request, check),
+        pool_(memory_bytes),
+        scratch_(files, output_.scratch(), pool_),
+        positions_(scratch_, kDifferenceBlockBytes),
+        distances_(scratch_, kDifferenceBlockBytes),
+        triangles_(scratch_, kDifferenceBlockBytes) {}
+
+  void add(const PlacedTile& tile, std::span<const double> distances) {
+    positions_.append(std::span(tile.places).first(tile.own_count));
+    for (const double distance : distances.first(tile.own_count))
+      distances_.append(static_cast<float>(distance));
+    for (const Triangle<std::uint32_t>& t : tile.triangles)
+      triangles_.append(
+          Triangle<std::uint32_t>{tile.number(t[0]), tile.number(t[1]), tile.number(t[2])});
+  }
+
+  void write(Vec3d origin, const std::string& comment, const std::function<void()>& check) {
+    mesh_io::PlyContent content;
+    content.vertex_count = positions_.size();
+    content.triangle_count = triangles_.size();
+    content.attributes.values = {{"distance", ValueType::f32}};
+    content.double_coordinates = origin != Vec3d{};
+    content.comments = {comment};
+    mesh_io::PlyWriter writer(output_.file(), content);
+    std::vector<Vec3f> places;
+    std::vector<Vec3d> exact;
+    std::vector<float> values;
+    for (std::uint64_t first = 0; first < positions_.size(); first += places.size()) {
+      check();
+      places.resize(std::min<std::uint64_t>(kCopiedAtOnce, positions_.size() - first));
+      values.resize(places.size());
+      positions_.read(first, places);
+      distances_.read(first, values);
+      exact.clear();
+      for (const Vec3f place : places)
+        exact.push_back(to_double(place) + origin);
+      writer.write_vertices(exact, values);
+    }
+    std::vector<Triangle<std::uint32_t>> block;
+    for (std::uint64_t first = 0; first < triangles_.size(); first += block.size()) {
+      check();
+      block.resize(std::min<std::uint64_t>(kCopiedAtOnce, triangles_.size() - first));
+      triangles_.read(first, block);
+      writer.write_triangles(block);
+    }
+    writer.finish();
+    output_.publish();
+  }
+
+ private:
+  storage::OutputFile output_;
+  storage::MemoryPool pool_;
+  storage::ScratchFile scratch_;
+  storage::RecordSpool<Vec3f> positions_;
+  storage::RecordSpool<float> distances_;
+  storage::RecordSpool<Triangle<std::uint32_t>> triangles_;
+};
+
+/// For caches.
+std::uint64_t spare_bytes(const CompareOptions& options) {
+  return options.memory_budget - std::min(options.memory_budget, kFixedBytes);
+}
+
+std::vector<Vec3d> in_order(const std::vector<Vec3d>& points,
+                            std::span<const std::uint32_t> order) {
+  std::vector<Vec3d> sorted;
+  sorted.reserve(points.size());
+  for (const std::uint32_t i : order)
+    sorted.push_back(points[i]);
+  return sorted;
+}
+
+struct MeasuredTriangle {
+  std::array<Vec3d, 3> corners;
+  std::array<double, 3> distances{};
+};
+
+class Comparer {
+ public:
+  Comparer(const Opened& from, const Opened& to, const CompareOptions& options,
+           execution::Progress& progress, const execution::CancelToken& cancel)
+      : from_(from),
+        to_(to),
+        options_(options),
+        progress_(progress),
+        cancel_(cancel),
+        surface_(from.reader, cut_of(from.reader, options), spare_bytes(options) / 8),
+        target_(open_target()),
+        search_(target_, spare_bytes(options) / 2),
+        result_(options.tolerance) {
+    result_.from = facts_of(from_, surface_);
+    result_.to = facts_of(to_, target_);
+    result_.is_signed = options.is_signed;
+    if (target_.total().triangles == 0)
+      throw Error(ErrorCode::input, result_.to.name + " has no triangle to measure from");
+  }
+
+  SurfaceComparison run(DifferencePly* output) {
+    warn_of_places();
+    progress_.stage("compare", surface_.size(), "tiles");
+    from_.reader.will_read(surface_.cut().nodes());
+    execution::ordered_for(
+        surface_.size(), tiles_in_flight(), cancel_,
+        [&](std::size_t position) { return surface_.load_placed(position); },
+        [&](std::size_t, PlacedTile tile) {
+          waiting_points_ += tile.places.size();
+          waiting_.push_back(std::move(tile));
+          if (waiting_points_ >= kBatchPoints)
+            look_up(output);
+        });
+    look_up(output);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  /// Tiles that are chosen by their error are of several levels, so that only they tell their
+  /// boxes.
+  CutSurface open_target() const {
+    Cut cut = cut_of(to_.reader, options_);
+    const std::uint64_t cache = spare_bytes(options_) / 8;
+    if (!std::holds_alternative<exporting::LargestError>(options_.selection))
+      return {to_.reader, std::move(cut), cache};
+    progress_.stage("read", cut.size(), "tiles");
+    return {to_.reader, std::move(cut), cache, progress_, cancel_};
+  }
+
+  void warn(std::string text) {
+    progress_.warn(text);
+    result_.warnings.push_back(std::move(text));
+  }
+
+  void warn_of_places() {
+    const auto &mine = from_.reader.manifest().units, &theirs = to_.reader.manifest().units;
+    if (mine && theirs && *mine != *theirs && !options_.transform) {
+      warn(
+          fmt::format("{} is in {}, {} in {}: numbers are compared as they are (--transform can "
+                      "scale)",
+                      result_.from.name, name_of(*mine), result_.to.name, name_of(*theirs)));
+    }
+    const BoundsD box = moved_box(options_.transform, from_.box());
+    const bool are_there = !box.empty() && !to_.box().empty();
+    if (const double gap = are_there ? std::sqrt(squared_gap(box, to_.box())) : 0; gap > 0) {
+      warn(fmt::format("the boxes of the two are {:.6g} apart: nothing aligns them but --transform",
+                       gap));
+    }
+  }
+
+  std::vector<Vec3d> waiting_points() const {
+    std::vector<Vec3d> points;
+    points.reserve(waiting_points_);
+    const Vec3d origin = from_.reader.manifest().origin, there = to_.reader.manifest().origin;
+    for (const PlacedTile& tile : waiting_) {
+      for (const Vec3f place : tile.places)
+        points.push_back(moved(options_.transform, to_double(place) + origin) - there);
+    }
+    return points;
+  }
+
+  /// In the order of the points.
+  std::vector<double> distances_of(const std::vector<Vec3d>& points, std::vector<Side>& sides,
+                                   bool with_sides) {
+    const std::vector<std::uint32_t> order = curve_order(points);
+    const std::vector<Vec3d> sorted = in_order(points, order);
+    const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
+    std::vector<Side> sorted_sides(points.size(), Side::outside);
+    if (with_sides)
+      sorted_sides = surface_sides(target_, search_.trees(), sorted, nearest, cancel_);
+    std::vector<double> distances(points.size());
+    sides.resize(points.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const double distance = std::sqrt(nearest[i].squared);
+      distances[order[i]] = sorted_sides[i] == Side::inside ? -distance : distance;
+      sides[order[i]] = sorted_sides[i];
+    }
+    return distances;
+  }
+
+  void look_up(DifferencePly* output) {
+    const std::vector<Vec3d> points = waiting_points();
+    std::vector<Side> sides;
+    const std::vector<double> distances = distances_of(points, sides, options_.is_signed);
+    std::size_t first = 0;
+    for (const PlacedTile& tile : waiting_) {
+      const std::size_t count = tile.places.size();
+      account(tile, std::span(points).subspan(first, count),
+              std::span(distances).subspan(first, count), std::span(sides).subspan(first, count));
+      if (output != nullptr)
+        output->add(tile, std::span(distances).subspan(first, count));
+      first += count;
+      progress_.advance(1);
+    }
+    bound_triangles(points, distances);
+    waiting_.clear();
+    waiting_points_ = 0;
+  }
+
+  /// Those of the waiting tiles.
+  void bound_triangles(std::span<const Vec3d> points, std::span<const double> distances) {
+    std::vector<MeasuredTriangle> loose;
+    std::size_t first = 0;
+    for (const PlacedTile& tile : waiting_) {
+      for (const Triangle<std::uint32_t>& t : tile.triangles) {
+        MeasuredTriangle measured;
+        for (std::size_t i = 0; i < 3; ++i) {
+          measured.corners[i] = points[first + t[i]];
+          measured.distances[i] = std::abs(distances[first + t[i]]);
+        }
+        if (options_.bounds_triangles && !bound_.is_settled(measured.corners, measured.distances))
+          loose.push_back(measured);
+        else
+          bound_.add(measured.corners, measured.distances);
+        if (loose.size() == kBatchTriangles)
+          bound_loose(loose);
+      }
+      first += tile.places.size();
+    }
+    bound_loose(loose);
+  }
+
+  /// By the triangle that is nearest to their middle: the farthest point from that is a corner.
+  void bound_loose(std::vector<MeasuredTriangle>& loose) {
+    std::vector<Vec3d> middles;
+    for (const MeasuredTriangle& t : loose)
+      middles.push_back((t.corners[0] + t.corners[1] + t.corners[2]) * (1.0 / 3));
+    const std::vector<std::uint32_t> order = curve_order(middles);
+    const std::vector<Vec3d> sorted = in_order(middles, order);
+    const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
+    const std::vector<SurfaceTriangle> targets = search_.triangles(nearest, cancel_);
+    std::vector<double> most(loose.size());
+    execution::parallel_for(
+        (loose.size() + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
+          const std::size_t first = block * kSearchedPoints;
+          for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
+            for (const Vec3d corner : loose[order[i]].corners)
+              most[i] = std::max(most[i], squared_distance(corner, targets[i]));
+          }
+        });
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+      bound_.add(std::sqrt(nearest[i].squared));
+      bound_.add(loose[order[i]].corners, loose[order[i]].distances, std::sqrt(most[i]));
+    }
+    loose.clear();
+  }
+
+  void account(const PlacedTile& tile, std::span<const Vec3d> points,
+               std::span<const double> distances, std::span<const Side> sides) {
+    std::vector<double> weights(points.size());
+    for (const Triangle<std::uint32_t>& t : tile.triangles) {
+      const Vec3d a = points[t[0]], b = points[t[1]], c = points[t[2]];
+      const double third = length(cross(b - a, c - a)) / 6;
+      for (const std::uint32_t corner : t)
+        weights[corner] += third;
+    }
+    const bool is_cloud = result_.from.triangles == 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool is_own = i < tile.own_count;
+      if (is_own && !is_cloud && !tile.is_used[i]) {
+        ++result_.lone_vertices;
+      } else if (is_own) {
+        result_.farthest = std::max(result_.farthest, std::abs(distances[i]));
+        bound_.add(std::abs(distances[i]));
+        result_.unknown_sides += sides[i] == Side::unknown ? 1 : 0;
+      }
+      // Vertices of triangles without area weigh nothing; they can be the farthest ones.
+      const double weight = is_cloud && is_own ? 1 : weights[i];
+      if (weight > 0 || (is_own && tile.is_used[i]))
+        result_.distances.add(distances[i], weight);
+    }
+  }
+
+  void finish() {
+    const auto measure = [&](const std::vector<Vec3d>& points) {
+      std::vector<Side> sides;
+      std::vector<double> distances = distances_of(points, sides, false);
+      progress_.advance(distances.size());
+      return distances;
+    };
+    progress_.stage("bound", 0, "points");
+    result_.no_farther_than =
+        bound_.refine(measure) + result_.from.error_bound + result_.to.error_bound;
+    result_.tiles_read = search_.trees().tiles_read();
+    if (result_.distances.empty() || to_.box().empty())
+      return;
+    const double diagonal = length(to_.box().max - to_.box().min);
+    const double middle = result_.distances.size_quantile(0.5);
+    if (middle > kFarPart * diagonal) {
+      warn(
+          fmt::format("half of the surface is farther than {:.6g}, {:.0f} % of the size of {}: "
+                      "nothing aligns the two but --transform",
+                      middle, 100 * middle / diagonal, result_.to.name));
+    }
+  }
+
+  const Opened& from_;
+  const Opened& to_;
+  const CompareOptions& options_;
+  execution::Progress& progress_;
+  const execution::CancelToken& cancel_;
+  CutSurface surface_;
+  CutSurface target_;
+  SurfaceDistance search_;
+  SurfaceComparison result_;
+  std::vector<PlacedTile> waiting_;
+  std::size_t waiting_points_ = 0;
+  FarthestBound bound_;
+};
+
+/// In units of the coordinates of `to`.
+std::optional<double> tolerance_in(const Opened& to, const CompareOptions& options) {
+  const std::optional<Unit>& units = to.reader.manifest().units;
+  if (!options.tolerance || !options.tolerance_unit)
+    return options.tolerance;
+  if (!units) {
+    throw Error(ErrorCode::usage, fmt::format("the unit of {} is not known: give the tolerance "
+                                              "without one, or build with \"units\"",
+                                              to.name));
+  }
+  return *options.tolerance * metres_of(*options.tolerance_unit) / metres_of(*units);
+}
+
+void check_options(const Opened& from, const Opened& to, const CompareOptions& options) {
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    throw Error(ErrorCode::usage, "the tolerance must be a number of at least 0");
+  const auto* level = std::get_if<Level>(&options.selection);
+  const BoundsD box = moved_box(options.transform, from.box());
+  for (const Vec3d corner : {box.min, box.max}) {
+    if (!box.empty() && !(mesh_io::is_coordinate(corner.x) && mesh_io::is_coordinate(corner.y) &&
+                          mesh_io::is_coordinate(corner.z)))
+      throw Error(ErrorCode::usage, "the transform leads out of the range of coordinates");
+  }
+  const Level deepest = std::max(from.reader.tree().depth(), to.reader.tree().depth());
+  if (level != nullptr && *level > deepest) {
+    throw Error(ErrorCode::usage,
+                fmt::format("there is no level {}: the deepest is {}", raw(*level), raw(deepest)));
+  }
+}
+
+/// Whether what is moved by it has no volume left, but for rounding.
+bool is_flat(const PlaceTransform& m) {
+  return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
+}
+
+}  // namespace
+
+PlaceTransform parse_transform(std::string_view text, const std::string& name) {
+  text = without_mark(text);
+  std::vector<double> numbers;
+  const auto fail = [&](const std::string& found) {
+    throw Error(ErrorCode::usage, fmt::format("{}: expected 16 numbers, a 4 x 4 matrix with rows "
+                                              "first whose last row is 0 0 0 1; found {}",
+                                              name, found));
+  };
+  constexpr std::string_view kBetween = " \t\r\n,;[]";
+  for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;
+       at = text.find_first_not_of(kBetween, at)) {
+    const std::string_view word =
+        text.substr(at, std::min(text.find_first_of(kBetween, at), text.size()) - at);
+    at += word.size();
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
+      fail("\"" + plain_text(std::string(word.substr(0, 40)), 40) + "\"");
+    numbers.push_back(number);
+    if (numbers.size() > 16)
+      fail("more");
+  }
+  if (numbers.size() != 16)
+    fail(fmt::format("{}", numbers.size()));
+  PlaceTransform transform{};
+  std::ranges::copy(numbers, transform.begin());
+  if (transform[12] != 0 || transform[13] != 0 || transform[14] != 0 || transform[15] != 1)
+    fail("another last row");
+  if (is_flat(transform))
+    fail("one that makes all flat: its first three rows lie in a plane");
+  return transform;
+}
+
+bool is_hierarchy_there(storage::FileSystem& files, const fs::path& path) {
+  if (files.kind(path) != storage::FileKind::regular)
+    return true;  // who reads it says what is wrong
+  return storage::is_archive(*files.open(path));
+}
+
+SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlace& to,
+                                   storage::FileSystem& files, const CompareOptions& given,
+                                   execution::Progress& progress,
+                                   const execution::CancelToken& cancel) {
+  const Opened opened_from(from), opened_to(to);
+  check_options(opened_from, opened_to, given);
+  CompareOptions options = given;
+  options.tolerance = tolerance_in(opened_to, given);
+  const auto check = [&] { cancel.check(); };
+  std::unique_ptr<DifferencePly> output;
+  if (!options.output.empty()) {
+    if (!storage::is_standard_output(files, options.output))
+      storage::require_outside(files, options.output);
+    mesh_io::require_true_ending(options.output.string(), {".ply"},
+                                 "compare writes .ply, .hier and .3tz; choose one of these");
+    storage::OutputRequest request{options.output, options.replace, options.inputs};
+    request.inputs.insert(request.inputs.end(), {from.path, to.path});
+    output = std::make_unique<DifferencePly>(files, request, spare_bytes(options) / 8, check);
+  }
+  SurfaceComparison comparison =
+      Comparer(opened_from, opened_to, options, progress, cancel).run(output.get());
+  if (output) {
+    output->write(opened_from.reader.manifest().origin,
+                  fmt::format("meshhier compare: distance to {}", comparison.to.name), check);
+  }
+  return comparison;
+}
+
+}  // namespace meshhier::comparing

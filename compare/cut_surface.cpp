@@ -1,0 +1,165 @@
+#include "compare/cut_surface.h"
+
+#include "execution/parallel.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tbb/task_arena.h>
+
+namespace meshhier::comparing {
+namespace {
+
+TileSurfaceFacts facts_of(const TileSurface& tile) {
+  TileSurfaceFacts facts;
+  facts.triangles = tile.triangles.size();
+  for (const SurfaceTriangle& triangle : tile.triangles) {
+    const double doubled = doubled_area(triangle);
+    facts.area += doubled / 2;
+    facts.flat += doubled > 0 ? 0 : 1;
+    for (Vec3f corner : triangle)
+      facts.bounds.add(corner);
+  }
+  return facts;
+}
+
+TileSurfaceFacts facts_of(const TileRecord& record) {
+  TileSurfaceFacts facts;
+  facts.triangles = std::uint64_t{record.interior_count} + record.drawn_border_count;
+  if (std::uint64_t{record.interior_count} + record.border_count > 0)
+    facts.bounds = record.bounds;
+  return facts;
+}
+
+void add(TileSurfaceFacts& total, const TileSurfaceFacts& facts) {
+  total.triangles += facts.triangles;
+  total.flat += facts.flat;
+  total.area += facts.area;
+  total.bounds.add(facts.bounds);
+}
+
+}  // namespace
+
+std::size_t tiles_in_flight() {
+  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+}
+
+CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes)
+    : reader_(reader),
+      numbered_(exporting::number_vertices(reader, std::move(cut))),
+      neighbours_(
+          cache_bytes,
+          [&reader](NodeId node) {
+            Positions positions = reader.read_tile(node).mesh.vertices.positions;
+            positions.resize(reader.record(node).own_count);
+            return positions;
+          },
+          [](const Positions& positions) { return positions.size() * sizeof(Vec3f); }) {
+  facts_.reserve(numbered_.cut.size());
+  for (const NodeId node : numbered_.cut.nodes()) {
+    facts_.push_back(facts_of(reader_.record(node)));
+    add(total_, facts_.back());
+  }
+}
+
+CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
+                       execution::Progress& progress, const execution::CancelToken& cancel)
+    : CutSurface(reader, std::move(cut), cache_bytes) {
+  reader_.will_read(numbered_.cut.nodes());
+  total_ = {};
+  execution::ordered_for(
+      numbered_.cut.size(), tiles_in_flight(), cancel,
+      [this](std::size_t position) { return facts_of(load(position)); },
+      [&](std::size_t position, const TileSurfaceFacts& facts) {
+        facts_[position] = facts;
+        add(total_, facts);
+        progress.advance(1);
+      });
+}
+
+Vec3f CutSurface::shown_position(const exporting::ShownGhost& ghost) const {
+  const std::scoped_lock lock(mutex_);
+  const auto positions = neighbours_.get(numbered_.cut[ghost.position]);
+  return (*positions)[ghost.number - numbered_.base(ghost.position)];
+}
+
+PlacedTile CutSurface::load_placed(std::size_t position) const {
+  const PublishedTile tile = reader_.read_tile(numbered_.cut[position]);
+  const TileMesh& mesh = tile.mesh;
+  exporting::DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
+  PlacedTile placed;
+  placed.base = numbered_.base(position);
+  placed.own_count = mesh.own_count;
+  placed.interior_count = mesh.interior.size();
+
+  placed.is_used.resize(mesh.own_count);
+  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+    for (const TileTriangle& triangle : *triangles) {
+      for (const TileVertex corner : triangle) {
+        if (raw(corner) < mesh.own_count)
+          placed.is_used[raw(corner)] = true;
+      }
+    }
+  }
+
+  struct Ghost {
+    PlacedTile::Foreign foreign;
+    Vec3f place;
+  };
+  std::vector<Ghost> ghosts;
+  for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
+    const auto ghost = find_ghost(reader_.tree(), numbered_, tile, i);
+    if (!ghost)
+      continue;
+    const Vec3f place = ghost->level == tile.node.level
+                            ? mesh.vertices.positions[mesh.own_count + i]
+                            : shown_position(*ghost);
+    ghosts.push_back({{ghost->number, static_cast<std::uint32_t>(ghost->position)}, place});
+  }
+  const auto number_of = [](const Ghost& ghost) { return ghost.foreign.number; };
+  std::ranges::sort(ghosts, {}, number_of);
+  // Several ghosts may be shown at one place.
+  const auto is_repeat = [&](const Ghost& a, const Ghost& b) {
+    return number_of(a) == number_of(b);
+  };
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end(), is_repeat), ghosts.end());
+
+  placed.places.assign(mesh.vertices.positions.begin(),
+                       mesh.vertices.positions.begin() + mesh.own_count);
+  for (const Ghost& ghost : ghosts) {
+    placed.places.push_back(ghost.place);
+    placed.foreign.push_back(ghost.foreign);
+  }
+  const auto place_of = [&](std::uint32_t number) {
+    if (number >= placed.base && number - placed.base < placed.own_count)
+      return number - placed.base;
+    const auto found = std::ranges::lower_bound(ghosts, number, {}, number_of);
+    return placed.own_count + static_cast<std::uint32_t>(found - ghosts.begin());
+  };
+  placed.triangles = std::move(drawn.triangles);
+  for (exporting::CutTriangle& triangle : placed.triangles) {
+    for (std::uint32_t& corner : triangle)
+      corner = place_of(corner);
+  }
+  return placed;
+}
+
+TileSurface CutSurface::load(std::size_t position) const {
+  const PlacedTile placed = load_placed(position);
+  const auto tile_of = [&](std::uint32_t place) {
+    return place < placed.own_count ? static_cast<std::uint32_t>(position)
+                                    : placed.foreign[place - placed.own_count].tile;
+  };
+  TileSurface surface;
+  surface.interior_count = placed.interior_count;
+  surface.triangles.reserve(placed.triangles.size());
+  surface.touched.reserve(placed.triangles.size() - placed.interior_count);
+  for (const Triangle<std::uint32_t>& t : placed.triangles) {
+    surface.triangles.push_back({placed.places[t[0]], placed.places[t[1]], placed.places[t[2]]});
+    if (surface.triangles.size() > surface.interior_count)
+      surface.touched.push_back({tile_of(t[0]), tile_of(t[1]), tile_of(t[2])});
+  }
+  return surface;
+}
+
+}  // namespace meshhier::comparing

@@ -1,0 +1,98 @@
+// The surface that a cut shows, as triangles in space, tile by tile.
+#pragma once
+
+#include "compare/triangle_search.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "export/cut_mesh.h"
+#include "export/node_cache.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/triangle.h"
+#include "storage/format/hierarchy_reader.h"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace meshhier::comparing {
+
+/// What one tile draws in its cut. Corners are where the cut shows them.
+struct TileSurface {
+  std::vector<SurfaceTriangle> triangles;  ///< interior ones, then border ones
+  std::size_t interior_count = 0;
+  /// Of each border triangle: the positions in the cut of the tiles that have its corners.
+  std::vector<Triangle<std::uint32_t>> touched;
+};
+
+/// The same by places: the tile's own ones in their order, then those of other tiles.
+struct PlacedTile {
+  /// A place of another tile.
+  struct Foreign {
+    std::uint32_t number = 0;  ///< in the cut
+    std::uint32_t tile = 0;    ///< position in the cut
+  };
+
+  std::uint32_t base = 0;  ///< number in the cut of the first place
+  std::uint32_t own_count = 0;
+  std::vector<Vec3f> places;
+  std::vector<bool> is_used;     ///< of the own places: a triangle of the tile has it
+  std::vector<Foreign> foreign;  ///< of places from own_count on, ascending
+  std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
+  std::size_t interior_count = 0;
+
+  std::uint32_t number(std::uint32_t place) const {
+    return place < own_count ? base + place : foreign[place - own_count].number;
+  }
+};
+
+/// What is kept of every tile.
+struct TileSurfaceFacts {
+  std::uint64_t triangles = 0;
+  std::uint64_t flat = 0;  ///< of them without area
+  double area = 0;         ///< input units squared
+  Bounds bounds;           ///< of the triangles drawn, relative to the origin; empty() if none
+};
+
+/// Thread-safe once constructed.
+class CutSurface {
+ public:
+  /// Reads every tile once, to gather its facts. `cache_bytes`: for what neighbours show. `reader`
+  /// must outlive it. Advances `progress` by one for each tile. Throws Error(io | corrupt |
+  /// interrupted).
+  CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
+             execution::Progress& progress, const execution::CancelToken& cancel);
+
+  /// Reads no tile: facts are what the index says. Of a cut of several levels boxes may be too
+  /// small where a ghost is shown coarser; areas and flat triangles are not known.
+  CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes);
+
+  const Cut& cut() const { return numbered_.cut; }
+  std::uint64_t place_count() const { return numbered_.vertex_count(); }
+  std::size_t size() const { return facts_.size(); }
+  const TileSurfaceFacts& facts(std::size_t position) const { return facts_[position]; }
+  /// All tiles together.
+  const TileSurfaceFacts& total() const { return total_; }
+
+  /// Reads a tile, and of its neighbours those that are shown coarser.
+  TileSurface load(std::size_t position) const;
+  PlacedTile load_placed(std::size_t position) const;
+
+ private:
+  using Positions = std::vector<Vec3f>;
+
+  Vec3f shown_position(const exporting::ShownGhost& ghost) const;
+
+  const storage::HierarchyReader& reader_;
+  exporting::NumberedCut numbered_;
+  mutable std::mutex mutex_;  ///< guards neighbours_
+  mutable exporting::NodeCache<Positions> neighbours_;
+  std::vector<TileSurfaceFacts> facts_;
+  TileSurfaceFacts total_;
+};
+
+/// How many tiles are worked on at a time where each takes a thread.
+std::size_t tiles_in_flight();
+
+}  // namespace meshhier::comparing

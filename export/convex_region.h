@@ -1,0 +1,29 @@
+// A convex part of space that a piece of a mesh is cut out with.
+#pragma once
+
+#include "hierarchy/bounds.h"
+#include "hierarchy/half_space.h"
+#include "hierarchy/vec.h"
+
+#include <vector>
+
+namespace meshhier::exporting {
+
+/// The points that lie in all of its half-spaces.
+class ConvexRegion {
+ public:
+  explicit ConvexRegion(std::vector<HalfSpace> half_spaces)
+      : half_spaces_(std::move(half_spaces)) {}
+  /// A box, its faces included.
+  static ConvexRegion of_box(const BoundsD& box);
+
+  const std::vector<HalfSpace>& half_spaces() const { return half_spaces_; }
+  /// False: no point of the box lies in it. True says nothing.
+  bool may_meet(const BoundsD& box) const;
+  bool contains(Vec3d p) const { return may_meet({p, p}); }
+
+ private:
+  std::vector<HalfSpace> half_spaces_;
+};
+
+}  // namespace meshhier::exporting

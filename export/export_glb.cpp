@@ -1,0 +1,417 @@
+// A cut as one GLB. Its JSON comes first and names the size of everything, so parts are read twice:
+// for their sizes, then for their bytes. The JSON is made twice too, and never held as a whole.
+#include "export/byte_stream.h"
+#include "export/export_parts.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+#include "storage/format/glb.h"
+#include "storage/format/glb_material.h"
+#include "storage/format/showable.h"
+#include "storage/format/tile_colours.h"
+#include "storage/io/json_text.h"
+#include "storage/io/little_endian.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::exporting {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What is kept of each part.
+struct PartFacts {
+  std::uint32_t vertices = 0, triangles = 0, image_bytes = 0;
+  ImageFormat format{};
+  AlphaMode alpha{};
+  Bounds bounds;
+};
+
+PartFacts facts_of(const CutPart& part) {
+  return {static_cast<std::uint32_t>(part.vertices.size()),
+          static_cast<std::uint32_t>(part.triangles.size()),
+          static_cast<std::uint32_t>(part.image.bytes.size()),
+          part.image.format,
+          part.image.alpha,
+          bounds_of(part.vertices.positions)};
+}
+
+/// A run of bytes, a buffer view of its own; an accessor unless it is the picture.
+struct GlbSection {
+  std::string_view attribute;  ///< empty: indices or picture
+  std::string_view type;       ///< empty: the picture
+  unsigned component = 0;
+  std::uint64_t count = 0, stride = 0;
+  bool normalized = false;
+
+  std::uint64_t bytes() const { return count * stride; }
+};
+
+std::uint64_t component_bytes(unsigned component) {
+  return component == storage::kU8 ? 1 : component == storage::kU16 ? 2 : 4;
+}
+
+/// What the parts' sections are.
+class GlbLayout {
+ public:
+  explicit GlbLayout(const storage::TileFormat& format) : format_(format) {}
+
+  /// Positions, normals, colours, texture coordinates, indices, picture; those that are not there
+  /// have no bytes.
+  std::array<GlbSection, 6> sections(const PartFacts& part) const {
+    const AttributeLayout& layout = format_.attributes;
+    const std::uint64_t n = part.vertices;
+    const bool has_normals = layout.normals || format_.computed_normals;
+    const bool has_colours = layout.colour != ColourType::none;
+    const bool has_texcoords = layout.texcoords || part.image_bytes > 0;
+    const unsigned colour = storage::TileColours(layout, false).component();
+    const std::uint64_t colour_bytes =
+        static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
+    return {{{"POSITION", "VEC3", storage::kF32, n, 12},
+             {"NORMAL", "VEC3", storage::kF32, has_normals ? n : 0, 12},
+             {storage::colour_attribute(layout, format_.textures.has_value()),
+              layout.alpha ? "VEC4" : "VEC3", colour, has_colours ? n : 0,
+              storage::aligned4(colour_bytes), colour != storage::kF32},
+             {"TEXCOORD_0", "VEC2", storage::kF32, has_texcoords ? n : 0, 8},
+             {"", "SCALAR", index_component(n), 3 * std::uint64_t{part.triangles},
+              component_bytes(index_component(n))},
+             {"", "", 0, part.image_bytes, 1}}};
+  }
+
+  std::uint64_t bytes(const PartFacts& part) const {
+    std::uint64_t sum = 0;
+    for (const GlbSection& section : sections(part))
+      sum += storage::aligned4(section.bytes());
+    return sum;
+  }
+
+ private:
+  static unsigned index_component(std::uint64_t vertices) {
+    return vertices <= storage::kMaxShortVertices ? storage::kU16 : storage::kU32;
+  }
+
+  const storage::TileFormat& format_;
+};
+
+/// The JSON, piece by piece.
+class GlbText {
+ public:
+  GlbText(const storage::TileFormat& format, std::span<const PartFacts> parts)
+      : format_(format), layout_(format), parts_(parts) {}
+
+  using Sink = std::function<void(std::string_view)>;
+
+  void write(const Sink& sink) const {
+    Json head;
+    head["asset"] = {{"version", "2.0"}, {"generator", "meshhier"}};
+    add_extensions(head);
+    head["scene"] = 0;
+    head["scenes"] = Json::array({Json::object({{"nodes", Json::array({0})}})});
+    head["nodes"] = Json::array({storage::mesh_node(format_.frame)});
+    std::string text = storage::json_text(head);
+    text.pop_back();
+    sink(text);
+    sink(",\"meshes\":[{");
+    write_array(sink, "primitives", &GlbText::primitives);
+    sink("}],");
+    write_array(sink, "materials", &GlbText::materials);
+    if (has_pictures()) {
+      sink(",\"samplers\":" + storage::json_text(Json::array({storage::sampler_json()})) + ",");
+      write_array(sink, "textures", &GlbText::textures);
+      sink(",");
+      write_array(sink, "images", &GlbText::images);
+    }
+    sink(",");
+    write_array(sink, "accessors", &GlbText::accessors);
+    sink(",");
+    write_array(sink, "bufferViews", &GlbText::views);
+    sink(fmt::format(",\"buffers\":[{{\"byteLength\":{}}}]}}", bin_bytes()));
+  }
+
+  std::uint64_t bin_bytes() const {
+    std::uint64_t sum = 0;
+    for (const PartFacts& part : parts_)
+      sum += layout_.bytes(part);
+    return sum;
+  }
+
+ private:
+  using Item = std::function<void(const Json&)>;
+
+  bool has_pictures() const { return format_.textures.has_value(); }
+
+  void add_extensions(Json& document) const {
+    const char* const required =
+        has_pictures() ? row_of(format_.textures->format).gltf_extension : nullptr;
+    Json used = Json::array();
+    if (has_pictures() && format_.textures->unlit)
+      used.push_back(storage::kUnlitExtension);
+    if (required != nullptr) {
+      used.push_back(required);
+      document["extensionsRequired"] = Json::array({required});
+    }
+    if (!used.empty())
+      document["extensionsUsed"] = used;
+  }
+
+  void write_array(const Sink& sink, const char* name,
+                   void (GlbText::*items)(const Item&) const) const {
+    sink(fmt::format("\"{}\":[", name));
+    const char* separator = "";
+    (this->*items)(
+        [&](const Json& item) { sink(std::exchange(separator, ",") + storage::json_text(item)); });
+    sink("]");
+  }
+
+  void primitives(const Item& item) const {
+    std::size_t accessor = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      Json primitive;
+      for (const GlbSection& section : layout_.sections(parts_[i])) {
+        if (section.count == 0 || section.type.empty())
+          continue;
+        if (!section.attribute.empty())
+          primitive["attributes"][std::string(section.attribute)] = accessor++;
+        else
+          primitive["indices"] = accessor++;
+      }
+      primitive["material"] = has_pictures() ? i : 0;
+      item(primitive);
+    }
+  }
+
+  void materials(const Item& item) const {
+    if (!has_pictures())
+      return item(storage::material_json());
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      item(storage::material_json(i, parts_[i].alpha, format_.textures->unlit));
+  }
+
+  void textures(const Item& item) const {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      item(storage::texture_json(i, parts_[i].format));
+  }
+
+  void images(const Item& item) const {
+    each_section(
+        [&](std::size_t view, std::uint64_t, const PartFacts& part, const GlbSection& section) {
+          if (section.type.empty())
+            item(storage::image_json(view, part.format));
+        });
+  }
+
+  void accessors(const Item& item) const {
+    each_section(
+        [&](std::size_t view, std::uint64_t, const PartFacts& part, const GlbSection& section) {
+          if (section.type.empty())
+            return;
+          Json accessor = {{"bufferView", view},
+                           {"componentType", section.component},
+                           {"count", section.count},
+                           {"type", section.type}};
+          if (section.normalized)
+            accessor["normalized"] = true;
+          if (section.attribute == "POSITION") {
+            const Vec3d min = to_double(part.bounds.min), max = to_double(part.bounds.max);
+            accessor["min"] = {min.x, min.y, min.z};
+            accessor["max"] = {max.x, max.y, max.z};
+          }
+          item(accessor);
+        });
+  }
+
+  void views(const Item& item) const {
+    each_section(
+        [&](std::size_t, std::uint64_t offset, const PartFacts&, const GlbSection& section) {
+          Json view = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", section.bytes()}};
+          if (!section.attribute.empty()) {
+            view["byteStride"] = section.stride;
+            view["target"] = storage::kVertexTarget;
+          } else if (!section.type.empty()) {
+            view["target"] = storage::kIndexTarget;
+          }
+          item(view);
+        });
+  }
+
+  /// Of those that have bytes: visit(number, offset, part, section).
+  template <class Visit>
+  void each_section(const Visit& visit) const {
+    std::size_t view = 0;
+    std::uint64_t offset = 0;
+    for (const PartFacts& part : parts_) {
+      for (const GlbSection& section : layout_.sections(part)) {
+        if (section.count == 0)
+          continue;
+        visit(view++, offset, part, section);
+        offset += storage::aligned4(section.bytes());
+      }
+    }
+  }
+
+  const storage::TileFormat& format_;
+  GlbLayout layout_;
+  std::span<const PartFacts> parts_;
+};
+
+/// The sections of one part.
+class PartBytes {
+ public:
+  PartBytes(const storage::TileFormat& format, const CutPart& part)
+      : layout_(format.attributes),
+        part_(part),
+        colours_(layout_, false),
+        shown_(colours_.all_stored(storage::showable_attributes(layout_, part.vertices))),
+        sections_(GlbLayout(format).sections(facts_of(part))) {}
+
+  void write(ByteStream& to) {
+    put(to, 0, [&](std::size_t v) { append(part_.vertices.positions[v]); });
+    put(to, 1, [&](std::size_t v) { append_normal(v); });
+    put(to, 2, [&](std::size_t v) { append_colour(v); });
+    put(to, 3, [&](std::size_t v) { append_texcoord(v); });
+    put(to, 4, [&](std::size_t i) { append_index(part_.triangles[i / 3][i % 3]); });
+    bytes_ = part_.image.bytes;
+    pad_and_put(to);
+  }
+
+ private:
+  template <class Append>
+  void put(ByteStream& to, std::size_t section, const Append& append) {
+    for (std::size_t i = 0; i < sections_[section].count; ++i)
+      append(i);
+    pad_and_put(to);
+  }
+
+  void pad_and_put(ByteStream& to) {
+    bytes_.resize(storage::aligned4(bytes_.size()));
+    to.put(bytes_);
+    bytes_.clear();
+  }
+
+  void append(const Vec3f& p) {
+    for (const float value : {p.x, p.y, p.z})
+      storage::append_little(bytes_, value);
+  }
+
+  std::span<const float> channels(std::size_t vertex, int first, int count) const {
+    const auto all = static_cast<std::size_t>(layout_.channels());
+    return std::span(shown_).subspan(vertex * all + static_cast<std::size_t>(first),
+                                     static_cast<std::size_t>(count));
+  }
+
+  void append_normal(std::size_t vertex) {
+    if (!part_.normals.empty())
+      return append(part_.normals[vertex]);
+    const auto normal = channels(vertex, layout_.normal_offset(), 3);
+    append({normal[0], normal[1], normal[2]});
+  }
+
+  void append_colour(std::size_t vertex) {
+    for (const float value : channels(vertex, layout_.colour_offset(), layout_.colour_channels())) {
+      if (colours_.stored_type() == ColourType::u8)
+        storage::append_little(bytes_, static_cast<std::uint8_t>(value));
+      else if (colours_.stored_type() == ColourType::u16)
+        storage::append_little(bytes_, static_cast<std::uint16_t>(value));
+      else
+        storage::append_little(bytes_, value);
+    }
+    bytes_.resize(storage::aligned4(bytes_.size()));
+  }
+
+  void append_texcoord(std::size_t vertex) {
+    if (!part_.texcoords.empty()) {
+      storage::append_little(bytes_, part_.texcoords[vertex].u);
+      return storage::append_little(bytes_, part_.texcoords[vertex].v);
+    }
+    for (const float value : channels(vertex, layout_.texcoord_offset(), 2))
+      storage::append_little(bytes_, value);
+  }
+
+  void append_index(std::uint32_t vertex) {
+    if (sections_[4].component == storage::kU16)
+      storage::append_little(bytes_, static_cast<std::uint16_t>(vertex));
+    else
+      storage::append_little(bytes_, vertex);
+  }
+
+  const AttributeLayout& layout_;
+  const CutPart& part_;
+  storage::TileColours colours_;
+  std::vector<float> shown_;  ///< as the sections hold them
+  std::array<GlbSection, 6> sections_;
+  std::vector<std::byte> bytes_;
+};
+
+void put_chunk_head(ByteStream& to, std::uint64_t bytes, std::string_view type) {
+  std::vector<std::byte> length;
+  storage::append_little(length, static_cast<std::uint32_t>(bytes));
+  to.put(length);
+  to.put(type);
+}
+
+}  // namespace
+
+std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
+  job.progress.stage("export", 2 * parts.count, "tiles");
+  storage::TileFormat format = job.reader.tile_format();
+  format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
+  std::vector<PartFacts> facts;
+  std::vector<std::size_t> shown;  // that draw something
+  std::uint64_t vertices = 0, triangles = 0;
+  for (std::size_t i = 0; i < parts.count; ++i) {
+    job.cancel.check();
+    const PartFacts part = facts_of(parts.load(i));
+    if (part.triangles > 0) {
+      facts.push_back(part);
+      shown.push_back(i);
+    }
+    vertices += part.vertices;
+    triangles += part.triangles;
+    job.progress.advance(1);
+  }
+  if (shown.empty())
+    throw Error(ErrorCode::usage, "there are no triangles to export: a GLB shows nothing else");
+
+  const GlbText text(format, facts);
+  std::uint64_t json_bytes = 0;
+  text.write([&](std::string_view piece) { json_bytes += piece.size(); });
+  const std::uint64_t bin_bytes = text.bin_bytes();
+  const std::uint64_t all = storage::glb_bytes(json_bytes, bin_bytes);
+  if (all > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("this would be a GLB of {} bytes, but none has 4 GiB: export an OBJ, or "
+                    "a coarser level",
+                    all));
+  }
+  ByteStream out(*job.output.file());
+  out.put("glTF");
+  put_chunk_head(out, 2, std::string_view());
+  put_chunk_head(out, all, std::string_view());
+  put_chunk_head(out, storage::aligned4(json_bytes), "JSON");
+  text.write([&](std::string_view piece) { out.put(piece); });
+  out.put(std::string(storage::aligned4(json_bytes) - json_bytes, ' '));
+  put_chunk_head(out, bin_bytes, std::string_view("BIN\0", 4));
+  for (const std::size_t i : shown) {
+    job.cancel.check();
+    PartBytes(format, parts.load(i)).write(out);
+    job.progress.advance(1);
+  }
+  job.progress.advance(parts.count - shown.size());
+  out.flush();
+  job.output.publish();
+  return fmt::format("{}, {}{}", counted(vertices, "vertices"), counted(triangles, "triangles"),
+                     format.textures ? ", " + counted(shown.size(), "pictures") : "");
+}
+
+}  // namespace meshhier::exporting

@@ -1,0 +1,48 @@
+// What export writes of a hierarchy besides a PLY. For export*.cpp only.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "export/cut_part.h"
+#include "hierarchy/ids.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/io/file.h"
+#include "storage/io/output_file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace meshhier::exporting {
+
+/// Tile by tile. What `load` and `places` return depends on the number alone.
+struct ExportedParts {
+  std::size_t count = 0;
+  std::function<NodeId(std::size_t)> node;
+  std::function<CutPart(std::size_t)> load;
+  /// One vertex for each of the part's own places; those of all parts have the numbers that
+  /// CutPart::places names, from 0 on.
+  std::function<VertexArray(std::size_t)> places;
+};
+
+struct PartsJob {
+  storage::FileSystem& files;
+  const storage::HierarchyReader& reader;
+  const storage::OutputRequest& request;
+  storage::OutputFile& output;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
+};
+
+/// glTF binary: a primitive and a picture a tile. Reads each part twice; holds one, and some 80
+/// bytes of each. Throws Error(usage) if there are no triangles, or more than a GLB can hold.
+/// Returns what was written, for people.
+std::string write_glb(const PartsJob& job, const ExportedParts& parts);
+
+/// Wavefront OBJ; of a textured hierarchy also NAME.mtl, a material a tile, and the pictures in
+/// NAME_textures, WebP as PNG. These are there when the OBJ is, and Error(exists) is thrown if they
+/// are there before and not to be replaced. Holds one part. Publishes the output.
+std::string write_obj(const PartsJob& job, const ExportedParts& parts);
+
+}  // namespace meshhier::exporting

@@ -1,0 +1,25 @@
+// Which vertex of a place is most like another one.
+#pragma once
+
+#include "export/tile_vertices.h"
+#include "hierarchy/attributes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::exporting {
+
+/// All vertices at a place: its first one, then the copies there. `vertices`, `copies`: of a tile,
+/// which must outlive them.
+std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& copies,
+                                  std::uint32_t place);
+
+/// The one of `all` that differs from `vertex` in the fewest values, so that labels stay on their
+/// side; among equals the nearest normal decides, then the colour, the texture coordinate, the
+/// order. Requires at least one.
+std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
+                           std::span<const VertexAt> all);
+
+}  // namespace meshhier::exporting

@@ -1,0 +1,26 @@
+// A folder beside an output, for what it is made of; `meshhier clean` knows its name.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <filesystem>
+
+namespace meshhier::exporting {
+
+class WorkFolder {
+ public:
+  /// Makes it. Throws Error(io).
+  WorkFolder(storage::FileSystem& files, const std::filesystem::path& output);
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  /// Removes it with all that is in it.
+  ~WorkFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  storage::FileSystem& files_;
+  std::filesystem::path path_;
+};
+
+}  // namespace meshhier::exporting

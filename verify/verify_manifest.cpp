@@ -1,0 +1,263 @@
+// What the manifest says, against what follows from tiles, index and itself.
+#include "config/config.h"
+#include "config/partition_size.h"
+#include "config/placement.h"
+#include "export/manifest_config.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
+#include "storage/format/sealed_json.h"
+#include "storage/io/json_text.h"
+#include "verify/verify_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::verifying {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Adds problems that start with the manifest's file.
+class ManifestProblems {
+ public:
+  explicit ManifestProblems(const VerifyJob& job)
+      : job_(job), path_(storage::manifest_path(job.reader.directory())) {}
+
+  void require(bool holds, const std::string& problem) const {
+    if (!holds)
+      job_.problems.add(path_.string() + ": " + problem);
+  }
+  template <class Value>
+  void compare(std::string_view what, const Value& told, const Value& found) const {
+    require(told == found, fmt::format("{} is {}, expected {}", what, told, found));
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const VerifyJob& job_;
+  std::filesystem::path path_;
+};
+
+/// Written again it is the same text: nothing has been added, renamed, or is of another type.
+void check_form(const VerifyJob& job, const ManifestProblems& problems) {
+  const auto file = job.files.open(problems.path());
+  problems.require(storage::read_sealed_text(*file) == storage::to_json_text(job.reader.manifest()),
+                   "has a key that is not known, or a value in another form than it is written in");
+}
+
+void check_levels(const VerifyJob& job, const ManifestProblems& problems) {
+  Json expected = Json::array();
+  for (const storage::LevelSummary& level :
+       storage::summarize_levels(job.tree(), job.reader.records()))
+    expected.push_back(storage::to_json(level));
+  problems.require(storage::json_text(job.reader.manifest().levels) == storage::json_text(expected),
+                   "\"levels\" is not what the index adds up to");
+}
+
+/// The first key, dotted, whose value is not that of `whole`; "" if there is none.
+std::string first_difference(const Json& part, const Json& whole, const std::string& path) {
+  if (!part.is_object() || !whole.is_object())
+    return storage::json_text(part) == storage::json_text(whole) ? "" : path;
+  for (const auto& [key, value] : part.items()) {
+    const std::string here = path.empty() ? key : path + '.' + key;
+    const auto found = whole.find(key);
+    const std::string difference =
+        found == whole.end() ? here : first_difference(value, *found, here);
+    if (!difference.empty())
+      return difference;
+  }
+  return "";
+}
+
+/// What the rest of the manifest says of what the config asked for. Older programs wrote fewer
+/// keys.
+void check_config_against_rest(const storage::Manifest& manifest, const config::Config& config,
+                               const ManifestProblems& problems) {
+  const Json& told = manifest.config;
+  const auto says = [&](const char* pointer) { return told.contains(Json::json_pointer(pointer)); };
+  const SourceSummary& source = manifest.source;
+  const std::uint64_t most = config::partition_vertices(
+      config, source.places, source.textures ? source.textures->texels : 0);
+  const std::uint64_t partitions = config.partition.count.value_or((source.places - 1) / most + 1);
+  if (says("/partition/count") || says("/partition/vertices"))
+    problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
+  if (says("/storage/compression")) {
+    problems.compare("storage.compression", storage::row_of(manifest.compression).name,
+                     storage::row_of(config.storage.compression).name);
+  }
+  problems.require(!manifest.computed_normals || config.storage.normals != config::Normals::none,
+                   "\"storage.normals\" are computed, but \"config\" asks for none");
+  if (says("/storage/normals")) {
+    const bool is_unlit = manifest.textures && manifest.textures->unlit;
+    const bool needs_normals = config.storage.normals != config::Normals::none &&
+                               !source.attributes.normals && source.triangles > 0 && !is_unlit;
+    problems.require(manifest.computed_normals || !needs_normals,
+                     "\"config\" asks for normals, but \"storage.normals\" are not computed");
+  }
+  problems.require(!manifest.normal_maps || config::makes_maps(config.storage.normals),
+                   "there are normal maps, but \"config\" asks for none");
+  if (says("/normal_map/format")) {
+    problems.require(!manifest.normal_maps || *manifest.normal_maps == config.normal_map.format,
+                     "\"storage.normal_map\" is not that of \"config.normal_map\"");
+  }
+  if (says("/texture/format")) {
+    problems.require(!manifest.textures || *manifest.textures == config.texture.format,
+                     "\"storage.texture\" is not that of \"config.texture\"");
+    problems.require(!manifest.textures || config.texture.use,
+                     "there are textures, but \"config\" asks for none");
+  }
+  if (says("/preview"))
+    problems.compare("the existence of \"preview\"", manifest.preview.has_value(), config.preview);
+  problems.require(
+      !config.first_view.standpoint() || manifest.first_view == config.first_view.standpoint(),
+      "\"first_view\" is not that of \"config\"");
+  if (says("/up"))
+    problems.compare("up", name_of(manifest.up), name_of(config.up_axis()));
+  problems.require(manifest.units == (config.units ? config.units : manifest.source.units),
+                   "\"units\" are not those of \"config\" or the source");
+  if (config.placement.crs) {
+    problems.require(
+        manifest.transform && config::fits_map(config, manifest.source.bounds, *manifest.transform),
+        "\"transform\" is not near that of \"config.placement\"");
+  } else if (says("/placement")) {
+    problems.require(
+        manifest.transform == config::tileset_transform(config, manifest.source.bounds),
+        "\"transform\" is not that of \"config.placement\"");
+  }
+  if (says("/tileset/pixels")) {
+    problems.require(manifest.tileset_pixels == config.tileset.pixels,
+                     "\"tileset.pixels\" are not those of \"config\"");
+  }
+  problems.compare("licence", manifest.licence, config.licence);
+}
+
+/// The config is one that builds, and its values are written as a build writes them.
+void check_config(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  try {
+    const config::Config config = exporting::config_of(manifest);
+    const std::string wrong = first_difference(manifest.config, config::resolved_json(config), "");
+    problems.require(wrong.empty(), fmt::format("\"config.{}\" is not what a build writes", wrong));
+    check_config_against_rest(manifest, config, problems);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage)
+      throw;
+    problems.require(false, error.what());
+  }
+}
+
+/// How far the partitions' box may be from the input's: by rounding, which has an end near 0.
+double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
+  const double rounding = manifest.quantization ? manifest.quantization->worst_rounding : 0;
+  if (manifest.origin == Vec3d{} && !manifest.source.double_precision)
+    return rounding;
+  const Vec3d from_origin = box.max - manifest.origin;
+  const Vec3d to_origin = box.min - manifest.origin;
+  return rounding + 0x1p-23 * std::max(length(from_origin), length(to_origin)) +
+         0x1p-50 * length(manifest.origin) + std::numeric_limits<float>::denorm_min();
+}
+
+void check_bounds(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  BoundsD found;
+  for (const TileRecord& record : job.reader.records()) {
+    if (!job.tree().is_partition(record.node))
+      continue;
+    found.add(to_double(record.bounds.min) + manifest.origin);
+    found.add(to_double(record.bounds.max) + manifest.origin);
+  }
+  const double slack = bounds_slack(manifest, found);
+  const auto is_near = [&](Vec3d a, Vec3d b) {
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) <= slack;
+  };
+  const BoundsD& told = manifest.source.bounds;
+  problems.require(is_near(told.min, found.min) && is_near(told.max, found.max),
+                   "\"source.bounds\" are not those of the partitions");
+}
+
+void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes +
+                        (manifest.preview ? manifest.preview->bytes : 0);
+  std::uint64_t triangles = 0;
+  for (const TileRecord& record : job.reader.records()) {
+    bytes += record.file_bytes;
+    if (job.tree().is_partition(record.node))
+      triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
+  }
+  problems.compare("total_bytes", manifest.total_bytes, bytes);
+  problems.compare("the number of triangles of the source", manifest.source.triangles, triangles);
+}
+
+/// Of the files that were imported, together.
+void check_import(const VerifyJob& job, const ManifestProblems& problems) {
+  const SourceSummary& source = job.reader.manifest().source;
+  if (source.files.empty())
+    return;
+  std::uint64_t bytes = 0;
+  for (const SourceFile& file : source.files)
+    bytes += file.bytes;
+  problems.compare("source.file_bytes", source.file_bytes, bytes);
+}
+
+/// As a config may say it; else the default.
+std::uint32_t wanted_sectors(const Json& config) {
+  constexpr std::uint64_t kMost = 65536;
+  const Json::json_pointer place("/outline/sectors");
+  const bool is_told = config.contains(place) && config.at(place).is_number_unsigned();
+  const std::uint64_t told = is_told ? config.at(place).get<std::uint64_t>() : 0;
+  return told > 0 && told <= kMost ? static_cast<std::uint32_t>(told)
+                                   : config::OutlineConfig{}.sectors;
+}
+
+}  // namespace
+
+void verify_manifest(const VerifyJob& job) {
+  const ManifestProblems problems(job);
+  check_form(job, problems);
+  check_levels(job, problems);
+  check_config(job, problems);
+  check_bounds(job, problems);
+  check_totals(job, problems);
+  check_import(job, problems);
+}
+
+void verify_outline(const VerifyJob& job, const Outline& outline) {
+  const ManifestProblems problems(job);
+  const storage::Manifest& manifest = job.reader.manifest();
+  const OutlineReport& told = manifest.outline;
+  if (told.sector_level > raw(job.tree().depth())) {
+    problems.require(false, "the outline's sectors are of a level that is not there");
+  } else {
+    const std::uint32_t nodes = job.tree().node_count(static_cast<Level>(told.sector_level));
+    const std::uint32_t wanted = wanted_sectors(manifest.config);
+    problems.require(
+        told.sector_count == nodes || told.sector_count == outline_sectors(nodes, wanted),
+        "the outline's sectors are not the nodes of their level, nor equal parts of these");
+  }
+  problems.require(
+      told.polylines_dropped <= told.polylines_found &&
+          told.polylines_found - told.polylines_dropped == outline.polyline_count(),
+      fmt::format("{} lines found and {} dropped, but the outline has {}", told.polylines_found,
+                  told.polylines_dropped, outline.polyline_count()));
+  problems.require(told.tolerance >= 0, "the outline's tolerance is negative");
+}
+
+void verify_vertex_counts(const VerifyJob& job, const PartitionTotals& found) {
+  const ManifestProblems problems(job);
+  const SourceSummary& told = job.reader.manifest().source;
+  problems.compare("source.vertices", told.vertices, job.tree().vertex_count() + found.copies);
+  problems.compare("source.unreferenced_vertices", told.unreferenced_vertices, found.unreferenced);
+}
+
+}  // namespace meshhier::verifying

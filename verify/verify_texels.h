@@ -1,0 +1,39 @@
+// Proves that the partitions of a textured hierarchy show the input's texels.
+#pragma once
+
+#include "verify/verify_parts.h"
+
+#include <memory>
+#include <span>
+
+namespace meshhier::importing {
+class MeshInput;
+}
+
+namespace meshhier::verifying {
+
+/// A corner of a triangle of the input, as the hierarchy stores its position.
+struct InputCorner {
+  Vec3f position;
+  Vec2f texcoord;
+  std::uint32_t material = 0;
+  friend bool operator==(const InputCorner&, const InputCorner&) = default;
+};
+
+/// Takes the input's triangles, then compares.
+class TexelCheck {
+ public:
+  /// `input` has been imported, and outlives it.
+  TexelCheck(const VerifyJob& job, const importing::MeshInput& input);
+  ~TexelCheck();
+
+  void add(const Triangle<InputCorner>& triangle);
+  /// Adds problems, and what was checked.
+  void compare();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meshhier::verifying
