@@ -159,4 +159,14 @@ describe('an attribute as colours', () => {
     expect(paint.uniforms.valueRange.value.toArray()).toEqual([2, 0]);
     paint.dispose();
   });
+
+  it('goes along the range of another build', () => {
+    const paint = new Attributes();
+    for (const max of [4, 9]) {
+      paint.show(DEFAULT_LOOK, [{ ...QUANTITY, min: 0, max }]);
+      expect(paint.uniforms.valueRange.value.y).toBe(wholeRange({ ...QUANTITY, min: 0, max }, DEFAULT_LOOK.ramp)[1]);
+    }
+    expect(paint.uniforms.valueRange.value.y).toBeGreaterThan(4);
+    paint.dispose();
+  });
 });

@@ -57,6 +57,7 @@ export class Attributes implements PluginOf<unknown>, Shading {
   /// A label is that of a whole triangle.
   private isLabel = false;
   private made = '';
+  private shown: ScalarAttribute | null = null;
 
   key({ colours }: Look, tile: Tile): string {
     if (colours !== 'attribute' || tile.values === null || this.index < 0) return '';
@@ -76,8 +77,8 @@ export class Attributes implements PluginOf<unknown>, Shading {
     if (this.index < 0) return;
     const attribute = attributes[this.index];
     const key = JSON.stringify([this.index, look]);
-    if (key === this.made) return;
-    this.made = key;
+    if (key === this.made && attribute === this.shown) return;
+    [this.made, this.shown] = [key, attribute];
     this.isLabel = attribute.kind === 'label';
     this.uniforms.valueRamp.value?.dispose();
     if (this.isLabel) this.setLabels(attribute, look.hidden);

@@ -7,7 +7,7 @@ import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { makeMatcap } from './matcap.js';
 import type { Look } from './settings.js';
-import { replaceChunk, type Shader, type Shading } from './shading.js';
+import { numberOf, replaceChunk, type Shader, type Shading } from './shading.js';
 
 const PLAIN = 0xb9b4ab;
 const CLAY = 0xd99a76;
@@ -71,10 +71,18 @@ diffuseColor.rgb *= clamp(1.0 + ${strength.toFixed(1)} * bend, ${least.toFixed(2
 
 const CAVITIES = cavitiesBy({ strength: 1.8, least: 0.5, most: 1.4 });
 
+/// What shadings make of a tile, of one that leaves it alone nothing. `of`: what of a shading tells it from others.
+function shadingKeys(shadings: readonly Shading[], look: Look, tile: Tile, of: (shading: Shading) => object): string[] {
+  return shadings.map((each) => {
+    const key = each.key(look, tile);
+    return key === '' ? '' : `${numberOf(of(each))}:${key}`;
+  });
+}
+
 /// A tile's surfaces of one key are the same.
 export function surfaceKey(look: Look, tile: Tile, { shadings }: SharedMaterials): string {
   const { colours, texture, relight, material, cavities, shading, wires, points } = look;
-  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadings.map((each) => each.key(look, tile))].join();
+  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadingKeys(shadings, look, tile, (each) => each)].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -153,7 +161,7 @@ function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: S
   const vertexColors = colours === 'vertex' && tile.colours !== null && (texture === null || tile.coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
   const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
-  const keys = shared.shadings.map((each) => each.key(look, tile));
+  const keys = shadingKeys(shared.shadings, look, tile, (each) => each.edit);
   const shadings = shared.shadings.filter((_, i) => keys[i] !== '');
   const parameters = { ...own, ...standing(look), ...picturing(tile.picture, texture), ...normalMap(look, normals), ...parametersOf(shadings, look) };
   const material = look.material === 'matcap'
@@ -161,8 +169,8 @@ function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: S
     : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, { outwards, upwards, heights }, ...shadings.map(({ uniforms }) => uniforms));
+    for (const each of [...shadings].reverse()) each.edit(shader, look, tile); // the last one that replaces a chunk comes first in it
     edit(shader, look, vertexColors);
-    for (const each of shadings) each.edit(shader, look, tile);
   };
   material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keys].join('-')}`;
   return material;

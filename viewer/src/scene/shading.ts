@@ -11,16 +11,27 @@ export type Shader = WebGLProgramParametersWithUniforms;
 export interface Shading {
   /// They are declared by `edit`, and there in all programs that it edits.
   readonly uniforms: Readonly<Record<string, IUniform>>;
-  /// Surfaces of one key have one program; empty: this one's is left alone.
+  /// Surfaces of one key have one program, as far as they share `edit`; empty: this one's is left alone.
   key(look: Look, tile: Tile): string;
-  /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too.
-  edit(shader: Shader, look: Look, tile: Tile): void;
+  /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too: what they add runs in the order
+  /// in which the plug-ins came, after what every view adds.
+  readonly edit: (shader: Shader, look: Look, tile: Tile) => void;
   /// Returns what the material is made with besides.
   parameters?(look: Look): MaterialParameters & Readonly<Record<string, unknown>>;
   /// Tiles are shown so from now on; `attributes`: what the model's vertices have, none while that is not known.
   show?(look: Look, attributes: readonly ScalarAttribute[]): void;
   /// Gives a tile's vertices what the shader wants of them, whenever it is shown otherwise. Arrays of the tile are kept up as its seams change.
   prepare?(geometry: BufferGeometry, tile: Tile, look: Look): void;
+}
+
+const numbers = new WeakMap<object, number>();
+let numbered = 0;
+
+/// No other object has the same.
+export function numberOf(object: object): number {
+  const number = numbers.get(object) ?? ++numbered;
+  numbers.set(object, number);
+  return number;
 }
 
 /// Replaces `#include <chunk>` of a shader.
