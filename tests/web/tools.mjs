@@ -506,9 +506,25 @@ async function checkPluginExample(visitor, server) {
   visitor.check('example measuring', /^[\d.]+.* units$/.test(await texts.first().innerHTML()), await texts.first().innerHTML());
   const names = await page.evaluate(() => ['contours', 'measuring', 'relief', 'attributes'].filter((name) => document.querySelector('meshhier-viewer').view.plugins.named(name)));
   visitor.check('example plugins', names.length === 4 && page.complaints.length === 0, [...names, ...page.complaints].join(', '));
+  await checkFailingPlugin(visitor, page);
   await page.evaluate(() => { document.querySelector('meshhier-viewer').remove(); });
   visitor.check('example plugin is gone', (await page.getByRole('button', { name: 'Contours' }).count()) === 0, 'with its element');
   await page.close();
+}
+
+/// One that cannot be made is told, now and when the model is opened anew; the others come, on a canvas that is on the page.
+async function checkFailingPlugin(visitor, page) {
+  await page.evaluate(() => {
+    const viewer = document.querySelector('meshhier-viewer');
+    window.toldOfPlugins = [];
+    viewer.addEventListener('problem', ({ detail }) => window.toldOfPlugins.push(detail.message));
+    viewer.registerPlugin(() => { throw new Error('no plug-in'); });
+    viewer.registerPlugin(() => ({ name: 'late', enter: ({ surface }) => window.toldOfPlugins.push(`${surface.role} ${surface.isConnected}`) }));
+    viewer.replaceWith(viewer);
+  });
+  await page.waitForFunction(() => window.toldOfPlugins.length >= 4, null, { timeout: PATIENCE });
+  const told = await page.evaluate(() => [...window.toldOfPlugins, document.querySelector('meshhier-viewer').view.plugins.named('contours')?.name].join(', '));
+  visitor.check('element without a plug-in', told === 'no plug-in, application true, no plug-in, application true, contours', told);
 }
 
 /// Clicks at a place, and nearer and nearer to the middle, until it is enough.

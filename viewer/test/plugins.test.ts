@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { PerspectiveCamera, Scene, Vector3, type Material, type Mesh, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Plugins, type StageOf } from '../src/plugins/plugin.js';
 import { replaceChunk, type Frame, type HierarchyView, type Plugin, type Shader, type Shading, type Stage } from '../src/index.js';
 import { hasProgram, Workshop, fetchFrom } from './support/meshhier.js';
 import { Session } from './support/session.js';
@@ -147,5 +148,111 @@ describe.skipIf(!hasProgram)('a plug-in of a stranger', () => {
     expect(session.view.plugins.named('stranger')).toBe(plugin);
     session.view.dispose();
     expect(plugin.told.at(-1)).toBe('dispose');
+  });
+
+  it('shades after those that came before it, and after the view itself', async () => {
+    session.view.setLook({ colours: 'height' });
+    const adding = (name: string): Plugin => ({
+      name, shading: { uniforms: {}, key: () => name, edit: (shader) => { replaceChunk(shader, 'fragmentShader', 'color_fragment', `#include <color_fragment>\n// ${name}`); } },
+    });
+    for (const name of ['first', 'second']) session.view.registerPlugin(adding(name));
+    await session.frame();
+    const { fragmentShader } = compiled(session.meshes()[0]);
+    const places = ['#include <color_fragment>', 'float step_', '// first', '// second'].map((text) => fragmentShader.indexOf(text));
+    expect(places).toEqual([...places].sort((a, b) => a - b));
+    expect(places[0]).toBeGreaterThanOrEqual(0);
+  });
+
+  it('is not taken for another one of the same name and key', async () => {
+    const striped = (width: number): Plugin => ({
+      name: 'stripes', shading: { uniforms: { width: { value: width } }, key: () => 'striped', edit: (shader) => { shader.fragmentShader += String(width); } },
+    });
+    const [thin, wide] = [striped(1), striped(2)];
+    session.view.registerPlugin(thin);
+    await session.frame();
+    const before = session.meshes()[0].material as Material;
+    session.view.unregisterPlugin(thin);
+    session.view.registerPlugin(wide);
+    await session.frame();
+    const after = session.meshes()[0].material as Material;
+    expect(after.customProgramCacheKey()).not.toBe(before.customProgramCacheKey());
+    expect(compiled(session.meshes()[0]).uniforms.width).toBe(wide.shading!.uniforms.width);
+  });
+});
+
+function refuse(): never {
+  throw new Error('no');
+}
+
+describe('a plug-in that throws', () => {
+  const told = vi.fn();
+  const changed = vi.fn();
+  const frame = { renderer: RENDERER, scene: new Scene(), camera: new PerspectiveCamera() };
+  const stage = {} as StageOf<object>;
+  let plugins: Plugins<object>;
+  beforeEach(() => {
+    for (const mock of [told, changed, render]) mock.mockReset();
+    vi.stubGlobal('reportError', told);
+    plugins = new Plugins<object>({}, changed);
+  });
+  afterEach(() => { vi.unstubAllGlobals(); });
+
+  it('keeps no other from leaving', () => {
+    const dispose = vi.fn();
+    for (const each of [{ name: 'bad', dispose: refuse }, { name: 'worse', dispose: refuse }, { name: 'good', dispose }]) plugins.register(each);
+    plugins.unregister(plugins.named('bad')!);
+    expect([plugins.named('bad'), told.mock.calls.length, changed.mock.calls.length]).toEqual([undefined, 1, 4]);
+    plugins.dispose();
+    expect([told.mock.calls.length, dispose.mock.calls.length]).toEqual([2, 1]);
+  });
+
+  it('is told on the console where errors are reported nowhere else', () => {
+    vi.stubGlobal('reportError', undefined);
+    const error = vi.spyOn(console, 'error').mockImplementation(() => undefined);
+    plugins.register({ name: 'bad', dispose: refuse });
+    plugins.dispose();
+    expect(error).toHaveBeenCalledOnce();
+    error.mockRestore();
+  });
+
+  it('is not there when it cannot begin', () => {
+    const dispose = vi.fn();
+    expect(() => { plugins.register({ name: 'bad', init: refuse, dispose }); }).toThrow('no');
+    plugins.register({ name: 'bad', enter: refuse, dispose });
+    plugins.enter(stage);
+    expect([plugins.named('bad'), told.mock.calls.length]).toEqual([undefined, 1]);
+    expect(() => { plugins.register({ name: 'bad', enter: refuse, dispose }); }).toThrow('no');
+    expect([plugins.named('bad'), dispose.mock.calls.length]).toEqual([undefined, 3]);
+  });
+
+  it('is told once, and no longer asked to draw', () => {
+    const shade = vi.fn();
+    const drawn = vi.fn();
+    const bad = { name: 'bad', paint: vi.fn(refuse), shade: vi.fn(refuse), drawn };
+    for (const each of [bad, { name: 'good', shade, drawn }]) plugins.register(each);
+    for (let i = 0; i < 2; ++i) {
+      plugins.paint(frame);
+      plugins.drawn(frame);
+    }
+    expect([bad.paint, bad.shade, told, render, shade, drawn].map(({ mock }) => mock.calls.length)).toEqual([1, 1, 2, 2, 2, 4]);
+    plugins.unregister(bad);
+    plugins.register(bad);
+    plugins.paint(frame);
+    expect(bad.paint).toHaveBeenCalledTimes(2); // it has another try
+  });
+
+  it('enters once, whoever brings it or takes it away', () => {
+    const [enter, gone] = [vi.fn(), vi.fn()];
+    const leaving = { name: 'leaving', enter: gone };
+    plugins.register({ name: 'bringer', enter: () => {
+      plugins.register({ name: 'brought', enter });
+      plugins.unregister(leaving);
+    } });
+    plugins.register(leaving);
+    plugins.enter(stage);
+    expect([enter.mock.calls.length, gone.mock.calls.length]).toEqual([1, 0]);
+    plugins.dispose();
+    plugins.register({ name: 'late', enter });
+    expect(enter).toHaveBeenCalledTimes(1); // there is no stage any more
   });
 });

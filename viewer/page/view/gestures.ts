@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Mouse, pen, touch and wheel, as movements of the camera.
+import { TAP_REACH, Taps } from '../../src/taps.js';
 import type { Navigation } from './navigation.js';
 
 const TURN = Math.PI; // radians for a drag along the picture's height
@@ -7,7 +8,7 @@ const WHEEL = 0.0016; // of a factor's logarithm, a pixel of the wheel
 const MOST_WHEEL = 200;
 const LINE = 32; // pixels, where wheels count lines
 const NEW_GRAB = 250; // milliseconds without a turn of the wheel
-const TAP = { reach: 24, pause: 400, moved: 8 };
+const AGAIN = { reach: 24, pause: 400 }; // pixels and milliseconds between two taps
 
 interface Finger {
   x: number;
@@ -24,7 +25,7 @@ export class Gestures {
   private panning = false;
   private wheeled = { at: -Infinity, x: 0, y: 0 };
   private tap = { at: -Infinity, x: 0, y: 0 };
-  private travelled = 0;
+  private readonly taps = new Taps();
 
   constructor(
     private readonly surface: HTMLElement,
@@ -69,7 +70,7 @@ export class Gestures {
     this.surface.focus({ preventScroll: true });
     this.surface.setPointerCapture(event.pointerId);
     this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    this.travelled = this.fingers.size === 1 ? 0 : Infinity;
+    this.taps.down(event);
     this.panning = this.fingers.size > 1 || event.button !== 0 || event.shiftKey;
     if (this.panning) this.grab(this.middle());
     else this.navigation.grabMiddle();
@@ -79,7 +80,7 @@ export class Gestures {
     const finger = this.fingers.get(event.pointerId);
     if (finger === undefined) return;
     const [middle, spread] = [this.middle(), this.spread()];
-    this.travelled += Math.hypot(event.clientX - finger.x, event.clientY - finger.y);
+    this.taps.move(event);
     this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     const now = this.middle();
     const height = this.surface.clientHeight;
@@ -89,25 +90,24 @@ export class Gestures {
     else this.navigation.move({ panRight: -right, panUp: -up, zoom: zoomOfSpread(spread, this.spread()) });
   }
 
-  /// A finger that stays turns. False: it was none.
-  private release({ pointerId }: PointerEvent): boolean {
-    if (!this.fingers.delete(pointerId)) return false;
-    if (this.fingers.size > 0) {
-      this.panning = false;
-      this.navigation.grabMiddle();
-    }
-    return true;
+  /// A finger that stays turns.
+  private release(event: PointerEvent): void {
+    this.taps.cancel(event);
+    if (!this.fingers.delete(event.pointerId) || this.fingers.size === 0) return;
+    this.panning = false;
+    this.navigation.grabMiddle();
   }
 
   private lift(event: PointerEvent): void {
-    const wasLast = this.release(event) && this.fingers.size === 0;
-    if (wasLast && this.travelled < TAP.moved && event.button === 0) this.tapped(event);
+    const isTap = this.taps.lift(event);
+    this.release(event);
+    if (isTap) this.tapped(event);
   }
 
   /// The second one at a place flies there.
   private tapped({ timeStamp, clientX: x, clientY: y }: PointerEvent): void {
     if (this.takes(...this.placeOf({ x, y }))) return;
-    const again = timeStamp - this.tap.at < TAP.pause && Math.hypot(x - this.tap.x, y - this.tap.y) < TAP.reach;
+    const again = timeStamp - this.tap.at < AGAIN.pause && Math.hypot(x - this.tap.x, y - this.tap.y) < AGAIN.reach;
     this.tap = { at: again ? -Infinity : timeStamp, x, y };
     if (again) this.navigation.approach(...this.placeOf({ x, y }));
   }
@@ -115,7 +115,7 @@ export class Gestures {
   private wheel(event: WheelEvent): void {
     event.preventDefault();
     const { clientX: x, clientY: y, timeStamp: at } = event;
-    const elsewhere = Math.hypot(x - this.wheeled.x, y - this.wheeled.y) > TAP.moved;
+    const elsewhere = Math.hypot(x - this.wheeled.x, y - this.wheeled.y) > TAP_REACH;
     if (elsewhere || at - this.wheeled.at > NEW_GRAB) this.grab({ x, y });
     this.wheeled = { at, x, y };
     const pixels = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE : 1) * (event.ctrlKey ? 5 : 1);

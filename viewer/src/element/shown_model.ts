@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
-import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector2, Vector3, WebGLRenderer } from 'three';
+import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { axesOf, frameShape } from '../scene/framing.js';
 import { areNear } from '../farthest.js';
@@ -9,6 +9,7 @@ import { CameraPose, type Pose } from '../scene/camera_pose.js';
 import { HierarchyView, type Plugin, type Stage } from '../scene/hierarchy_view.js';
 import { keyOf, Lighting } from '../scene/lighting.js';
 import { rigFor, shownLook } from '../scene/shown_look.js';
+import { Taps } from '../taps.js';
 import { isTyped } from '../typing.js';
 import type { ViewOptions } from '../scene/view_options.js';
 import { moveByKey } from './keyboard.js';
@@ -18,7 +19,6 @@ const MOST_RATIO = 2;
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
 const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 const MARGIN = 1.08;
-const TAP = 8; // pixels: what moves farther is a drag
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 
 export interface Happenings {
@@ -44,7 +44,7 @@ export class ShownModel implements Stage {
   private readonly whole = new Box3();
   private readonly ending = new AbortController();
   private place: Pose | null;
-  private pressed = new Vector2();
+  private readonly taps = new Taps();
   private isSuspended = false;
   private frame = 0;
   private timer = 0;
@@ -62,6 +62,10 @@ export class ShownModel implements Stage {
     this.controls = new OrbitControls(this.camera, this.surface);
     this.controls.zoomToCursor = true;
     this.listen();
+  }
+
+  /// It is on the page: plug-ins may come.
+  enter(): void {
     this.view.plugins.enter(this);
   }
 
@@ -154,7 +158,9 @@ export class ShownModel implements Stage {
     this.controls.addEventListener('start', () => { this.take(); });
     this.controls.addEventListener('end', () => { this.happenings.moved(); });
     this.surface.addEventListener('keydown', (event) => { this.press(event); });
-    this.surface.addEventListener('pointerdown', ({ clientX, clientY }) => { this.pressed.set(clientX, clientY); });
+    this.surface.addEventListener('pointerdown', (event) => { this.taps.down(event); });
+    this.surface.addEventListener('pointermove', (event) => { this.taps.move(event); });
+    this.surface.addEventListener('pointercancel', (event) => { this.taps.cancel(event); });
     this.surface.addEventListener('pointerup', (event) => { this.lift(event); });
     this.surface.addEventListener('webglcontextrestored', this.wake);
     this.sizes.observe(this.surface);
@@ -200,8 +206,9 @@ export class ShownModel implements Stage {
   }
 
   /// Places of the picture are from -1 to 1.
-  private lift({ button, clientX, clientY }: PointerEvent): void {
-    if (button !== 0 || this.pressed.distanceTo(new Vector2(clientX, clientY)) >= TAP) return;
+  private lift(event: PointerEvent): void {
+    if (!this.taps.lift(event)) return;
+    const { clientX, clientY } = event;
     const { left, top, width, height } = this.surface.getBoundingClientRect();
     this.view.plugins.tapped(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
   }

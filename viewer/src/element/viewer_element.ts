@@ -118,7 +118,7 @@ export class MeshhierViewerElement extends Base {
   /// Makes a plug-in for the model that is shown, and for each that is shown later.
   registerPlugin(make: () => Plugin): void {
     this.plugins.push(make);
-    this.shown?.use(make());
+    this.use(make);
   }
 
   /// Asks at once for what failed.
@@ -158,11 +158,21 @@ export class MeshhierViewerElement extends Base {
       return;
     }
     const { surface: canvas } = this.shown;
-    for (const make of this.plugins) this.shown.use(make());
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'application');
     this.name(canvas);
     this.poster.before(canvas);
+    this.shown.enter();
+    for (const make of this.plugins) this.use(make);
+  }
+
+  /// The model is shown without a plug-in that fails.
+  private use(make: () => Plugin): void {
+    try {
+      this.shown?.use(make());
+    } catch (error) {
+      this.tell(error instanceof Error ? error.message : String(error));
+    }
   }
 
   private close(): void {

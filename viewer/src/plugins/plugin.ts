@@ -58,28 +58,56 @@ export interface PluginOf<View> {
   dispose?(): void;
 }
 
+type Drawing = 'paint' | 'shade' | 'drawn';
+
+/// Errors of plug-ins are told as those that nobody has caught: the view goes on without what has thrown.
+function tellError(error: unknown): void {
+  const report = globalThis.reportError as typeof globalThis.reportError | undefined; // not outside browsers
+  if (report === undefined) console.error(error);
+  else report(error);
+}
+
+/// False: it has thrown.
+function isDone(work: () => void): boolean {
+  try {
+    work();
+    return true;
+  } catch (error) {
+    tellError(error);
+    return false;
+  }
+}
+
 /// Holds the plug-ins of a view, in the order in which they came.
 export class Plugins<View> {
   private readonly all = new Map<string, PluginOf<View>>();
+  /// They have thrown, and are left alone.
+  private readonly failed = new Map<PluginOf<View>, Set<Drawing>>();
   private stage: StageOf<View> | null = null;
 
   /// `changed`: the picture is another one; `shadings`: all there are, if they are others.
   constructor(private readonly view: View, private readonly changed: (shadings: readonly Shading[] | null) => void) {}
 
-  /// Throws Error where there is one of that name.
+  /// Throws Error where there is one of that name, and what the plug-in throws: then it is not there.
   register(plugin: PluginOf<View>): void {
     if (this.all.has(plugin.name)) throw new Error(`there is a plug-in "${plugin.name}" already`);
     this.all.set(plugin.name, plugin);
-    plugin.init?.(this.view);
-    if (this.stage !== null) plugin.enter?.(this.stage);
+    try {
+      plugin.init?.(this.view);
+      if (this.stage !== null) plugin.enter?.(this.stage);
+    } catch (error) {
+      this.unregister(plugin);
+      throw error;
+    }
     this.tellChanged(plugin);
   }
 
   /// Nothing happens where it is not there.
   unregister(plugin: PluginOf<View>): void {
-    if (this.all.get(plugin.name) !== plugin) return;
+    if (!this.has(plugin)) return;
     this.all.delete(plugin.name);
-    plugin.dispose?.();
+    this.failed.delete(plugin);
+    isDone(() => plugin.dispose?.());
     this.tellChanged(plugin);
   }
 
@@ -88,21 +116,22 @@ export class Plugins<View> {
     return this.all.get(name);
   }
 
+  /// A plug-in that throws is taken away. One may add others, or take them away.
   enter(stage: StageOf<View>): void {
     this.stage = stage;
-    for (const plugin of this.all.values()) plugin.enter?.(stage);
+    for (const plugin of [...this.all.values()]) if (this.has(plugin) && !isDone(() => plugin.enter?.(stage))) this.unregister(plugin);
   }
 
   /// The scene as plug-ins draw it; without one, as the renderer does.
   paint(frame: Frame): void {
     const { renderer, scene, camera } = frame;
-    for (const plugin of this.all.values()) if (plugin.paint?.(frame) === true) return;
+    for (const plugin of this.all.values()) if (this.draws(plugin, 'paint', frame)) return;
     renderer.render(scene, camera);
-    for (const plugin of this.all.values()) plugin.shade?.(frame);
+    for (const plugin of this.all.values()) this.draws(plugin, 'shade', frame);
   }
 
   drawn(frame: Frame): void {
-    for (const plugin of this.all.values()) plugin.drawn?.(frame);
+    for (const plugin of this.all.values()) this.draws(plugin, 'drawn', frame);
   }
 
   keeps(point: Vector3): boolean {
@@ -114,8 +143,23 @@ export class Plugins<View> {
   }
 
   dispose(): void {
-    for (const plugin of this.all.values()) plugin.dispose?.();
+    const all = [...this.all.values()];
     this.all.clear();
+    this.stage = null;
+    for (const plugin of all) isDone(() => plugin.dispose?.());
+  }
+
+  private has(plugin: PluginOf<View>): boolean {
+    return this.all.get(plugin.name) === plugin;
+  }
+
+  /// What has thrown once is not asked again. True: it has painted.
+  private draws(plugin: PluginOf<View>, what: Drawing, frame: Frame): boolean {
+    const failed = this.failed.get(plugin) ?? new Set();
+    if (failed.has(what)) return false;
+    let isPainted: unknown = false;
+    if (!isDone(() => { isPainted = plugin[what]?.(frame); })) this.failed.set(plugin, failed.add(what));
+    return isPainted === true;
   }
 
   /// `plugin`: has come or gone.
