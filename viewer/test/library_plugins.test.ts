@@ -4,6 +4,7 @@ import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } 
 import { CameraPose, type Stage } from '../src/index.js';
 import { Clipping } from '../src/plugins/clipping.js';
 import { Immersion } from '../src/plugins/immersion.js';
+import { ImmersionSession } from '../src/plugins/immersion_session.js';
 import { Measuring } from '../src/plugins/measuring.js';
 import { Stories } from '../src/plugins/stories.js';
 import type { Notebook } from '../src/tools/note.js';
@@ -90,6 +91,53 @@ describe.skipIf(!hasProgram)('a plug-in of the library', () => {
     expect([view.showsInside, view.plugins.keeps(new Vector3(-1, 0, 0)), clipping.paint(stage)]).toEqual([false, true, false]);
   });
 
+  it('cuts as it was told before it came, and draws each other cut', async () => {
+    await session.settle();
+    const clipping = new Clipping('mine');
+    clipping.cut([{ normal: [1, 0, 0], constant: 0 }]);
+    const view = session.view.registerPlugin(clipping);
+    expect([view.plugins.named('mine'), view.showsInside, clipping.paint(stage)]).toEqual([clipping, true, true]);
+    await session.settle();
+    const changed = vi.fn();
+    view.addEventListener('change', changed);
+    clipping.cut([{ normal: [1, 0, 0], constant: 0.5 }]);
+    expect(changed).toHaveBeenCalled();
+    expect(await session.frame()).toBe(true);
+  });
+
+  it('forgets places when the model lies elsewhere', async () => {
+    session.camera.updateProjectionMatrix();
+    await session.settle();
+    const { view } = session;
+    const [clipping, measuring, stories] = [new Clipping(), new Measuring({ isAlone: false }), new Stories(STORY)];
+    for (const each of [clipping, measuring, stories]) view.registerPlugin(each);
+    const middles = [-0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6];
+    expect(middles.some((right) => measuring.choose(right, 0))).toBe(true);
+    clipping.cut([{ normal: [1, 0, 0], constant: 0 }]);
+    const draw = (): void => { view.draw(renderer, stage.scene, session.camera); };
+    draw();
+    const [first, place] = [view.manifest!, stories.marks()[0]];
+    const manifest = vi.spyOn(view, 'manifest', 'get');
+    manifest.mockReturnValue({ ...first });
+    draw();
+    expect([measuring.points.length, view.showsInside]).toEqual([1, true]); // another build of the same places
+    manifest.mockReturnValue({ ...first, origin: [first.origin[0] + 1, first.origin[1], first.origin[2]] });
+    draw();
+    expect([measuring.points.length, view.showsInside]).toEqual([0, false]);
+    expect(stories.marks()[0].distanceTo(place)).toBeCloseTo(1);
+    clipping.cut([{ normal: [1, 0, 0], constant: 0 }]);
+    draw();
+    expect(view.showsInside).toBe(true);
+    manifest.mockRestore();
+  });
+
+  it('does not play before something is known of the model', () => {
+    const stories = new Stories(STORY);
+    session.view.registerPlugin(stories);
+    stories.togglePlaying();
+    expect([stories.isPlaying, session.view.manifest]).toEqual([false, null]);
+  });
+
   it('measures between points of the surface', async () => {
     session.camera.updateProjectionMatrix();
     await session.settle();
@@ -113,5 +161,21 @@ describe.skipIf(!hasProgram)('a plug-in of the library', () => {
     const immersion = new Immersion();
     session.view.registerPlugin(immersion);
     await expect(immersion.start('immersive-vr')).resolves.toBeUndefined(); // nobody is asked
+  });
+
+  it('leaves the room that it has not reached when it is taken away', async () => {
+    await session.settle();
+    const room = { stop: vi.fn() };
+    let enterRoom!: (session: ImmersionSession) => void;
+    const start = vi.spyOn(ImmersionSession, 'start').mockReturnValue(new Promise((resolve) => { enterRoom = resolve; }));
+    const immersion = new Immersion();
+    session.view.registerPlugin(immersion);
+    const suspend = vi.spyOn(stage, 'suspend');
+    const started = immersion.start('immersive-vr');
+    session.view.unregisterPlugin(immersion);
+    enterRoom(room as unknown as ImmersionSession);
+    await started;
+    expect([room.stop.mock.calls.length, suspend.mock.calls.length]).toEqual([1, 0]);
+    start.mockRestore();
   });
 });

@@ -9,26 +9,26 @@ import { StoryMarks } from './story_marks.js';
 import './story.css';
 
 export class StoryPlayer implements Plugin {
-  readonly name = 'story player';
+  readonly name = 'page story';
   readonly stories: Stories;
   private readonly card: StoryCard;
   private readonly marks: StoryMarks;
 
   /// `base`: where the story lies; null: in the page. Requires that the manifest is there. `ended`: the visitor has closed it.
   constructor(story: Notebook, base: string | null, private readonly stage: Bench, ended: () => void) {
-    this.stories = new Stories(story);
+    this.stories = new Stories(story, 'page stories');
     this.card = new StoryCard(story, base, {
       go: (i) => { this.goByHand(i); },
       play: () => { this.stories.togglePlaying(); },
       close: ended,
     });
     this.marks = new StoryMarks(story.notes.map(({ text }) => text), (i) => { this.goByHand(i); });
+    for (const plugin of [this.stories, this]) stage.view.registerPlugin(plugin);
     stage.surface.after(this.marks.root); // behind all bars
     stage.root.append(this.card.root);
     stage.root.classList.add('with-story');
     this.stories.addEventListener('shown', () => { this.showStep(); });
     this.stories.addEventListener('playing', () => { this.card.showPlaying(this.stories.isPlaying); });
-    for (const plugin of [this.stories, this]) stage.view.registerPlugin(plugin);
     this.showStep();
   }
 

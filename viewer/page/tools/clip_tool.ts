@@ -44,7 +44,7 @@ function rangeOf([least, most]: readonly [number, number]): { least: number; mos
 export class ClipTool implements Tool {
   readonly root: HTMLElement;
   private readonly coordinates: Coordinates;
-  private readonly clipping = new Clipping();
+  private readonly clipping = new Clipping('page clipping');
   private readonly extent: Extent;
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;

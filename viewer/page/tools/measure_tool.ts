@@ -34,7 +34,7 @@ export class MeasureTool implements Tool {
   private readonly measuring: Measuring;
 
   constructor(private readonly shop: Workshop) {
-    this.measuring = new Measuring({ isAlone: false, tell: (length, bound) => shop.scale().formatWithin(length, bound) });
+    this.measuring = new Measuring({ name: 'page measuring', isAlone: false, tell: (length, bound) => shop.scale().formatWithin(length, bound) });
     this.measuring.addEventListener('change', () => { this.show(); });
     shop.bench.view.registerPlugin(this.measuring);
     const units = unitsForm(shop, () => { this.show(); });

@@ -50,7 +50,7 @@ function makeShop(bench: Bench, story: Teller, link: string | null, write: (link
 }
 
 export class Toolbox implements Tools {
-  readonly name = 'tools';
+  readonly name = 'page tools';
   private readonly shop: Workshop;
   private readonly overlay = new Overlay('tool-overlay');
   private readonly scaleLine: ScaleLine;

@@ -17,12 +17,15 @@ export class Extensions {
 
   async immerse(mode: ImmersionMode): Promise<void> {
     const { context } = this;
-    if (context.view.manifest === null) return;
+    const { view, signal } = context;
+    if (view.manifest === null) return;
     try {
       const { Immersion } = await import('../../src/plugins/immersion.js');
+      if (signal.aborted) return;
       if (this.immersion === null) {
-        this.immersion = new Immersion();
-        context.view.registerPlugin(this.immersion);
+        const immersion = new Immersion('page immersion');
+        view.registerPlugin(immersion);
+        this.immersion = immersion;
       }
       await this.immersion.start(mode);
     } catch (error) {
@@ -47,7 +50,8 @@ export class Extensions {
     const { Occlusion } = await import('../../src/plugins/occlusion.js');
     const { context: { signal, view }, choices: { chosen } } = this;
     if (signal.aborted || this.occlusion !== null || !chosen.light.occlusion) return; // it may have been switched off meanwhile
-    this.occlusion = new Occlusion();
-    view.registerPlugin(this.occlusion);
+    const occlusion = new Occlusion('page occlusion');
+    view.registerPlugin(occlusion);
+    this.occlusion = occlusion;
   }
 }

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Opens a model, and begins anew in a view that stays: when the host has another one by now, or may be back.
 import { HierarchyProblem, type Manifest } from '../../src/index.js';
+import { Whereabouts } from '../../src/plugins/whereabouts.js';
 import { words } from '../words/words.js';
 import type { PageContext } from './page_context.js';
 
 const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 
-/// Whether places in the tiles of one are the same places in those of the other.
-function isSamePlace(one: Manifest, other: Manifest): boolean {
-  const placeOf = ({ origin, place, up, transform, units }: Manifest): string => JSON.stringify([origin, place, up, transform, units]);
-  return placeOf(one) === placeOf(other);
-}
-
 export class Renewal {
   private timer = 0;
-  private known: Manifest | null = null;
+  private readonly places = new Whereabouts();
 
   constructor(private readonly context: PageContext) {
     context.view.addEventListener('replaced', ({ isLasting }) => { this.tell(isLasting); });
@@ -26,8 +21,7 @@ export class Renewal {
 
   /// True: it is another one whose places are others. Then all begins anew, and nothing that was measured holds.
   know(manifest: Manifest): boolean {
-    const isElsewhere = this.known !== null && this.known !== manifest && !isSamePlace(this.known, manifest);
-    this.known = manifest;
+    const isElsewhere = this.places.haveChanged(manifest);
     if (isElsewhere) queueMicrotask(() => { this.context.around.again(); });
     return isElsewhere;
   }

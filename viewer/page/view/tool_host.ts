@@ -33,8 +33,9 @@ export class ToolHost {
       const { Toolbox } = await import('../tools/toolbox.js');
       if (signal.aborted) return;
       if (this.tools === null) {
-        this.tools = new Toolbox(this.stage, this.story, this.linked, (notes) => { this.setNotes(notes); });
-        view.registerPlugin(this.tools);
+        const tools = new Toolbox(this.stage, this.story, this.linked, (notes) => { this.setNotes(notes); });
+        view.registerPlugin(tools);
+        this.tools = tools;
       }
       this.tools.toggle(name);
     } catch {

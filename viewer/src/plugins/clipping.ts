@@ -5,35 +5,44 @@ import type { HierarchyView, Plugin } from '../scene/hierarchy_view.js';
 import { ClippedPainter } from '../tools/caps.js';
 import { worldPlane, type CutPlane } from '../tools/planes.js';
 import type { Frame } from './plugin.js';
+import { Whereabouts } from './whereabouts.js';
 
 export class Clipping implements Plugin {
-  readonly name = 'clipping';
   private view: HierarchyView | null = null;
   private painter: ClippedPainter | null = null;
   private planes: readonly CutPlane[] = [];
+  private hasCaps = true;
+  private places = new Whereabouts();
+
+  constructor(readonly name = 'clipping') {}
 
   init(view: HierarchyView): void {
     this.view = view;
+    this.places = new Whereabouts();
     this.painter = new ClippedPainter(view, () => {
       const { center, radius } = view.box.clone().applyMatrix4(view.matrixWorld).getBoundingSphere(new Sphere());
       return { middle: center, reach: 1.1 * radius };
     });
+    if (this.planes.length > 0) this.cut(this.planes, this.hasCaps);
   }
 
-  /// `planes`: in the tiles' coordinates; none: the model is whole. `hasCaps`: where it is full.
+  /// `planes`: in the tiles' coordinates; none: the model is whole, as it is again once it is another one that lies elsewhere. `hasCaps`: where
+  /// it is full.
   cut(planes: readonly CutPlane[], hasCaps = true): void {
-    const { view, painter } = this;
-    if (view === null || painter === null) return;
-    this.planes = planes;
-    painter.isCapped = hasCaps && view.closed;
-    if (view.showsInside !== planes.length > 0) view.showsInside = planes.length > 0;
+    [this.planes, this.hasCaps] = [planes, hasCaps];
+    if (this.view === null) return;
+    this.places.haveChanged(this.view.manifest); // the planes are of this one
+    this.view.showsInside = planes.length > 0; // a frame comes
   }
 
   /// However the model stands now.
   paint({ renderer, scene, camera }: Frame): boolean {
-    const { view, painter, planes } = this;
-    if (view === null || painter === null || planes.length === 0) return false;
-    painter.planes = planes.map((plane) => worldPlane(plane, view.surfaceMatrix));
+    const { view, painter } = this;
+    if (view === null || painter === null) return false;
+    if (this.places.haveChanged(view.manifest) && this.planes.length > 0) this.cut([]);
+    if (this.planes.length === 0) return false;
+    painter.isCapped = this.hasCaps && view.closed;
+    painter.planes = this.planes.map((plane) => worldPlane(plane, view.surfaceMatrix));
     painter.paint(renderer, scene, camera);
     return true;
   }
@@ -44,7 +53,7 @@ export class Clipping implements Plugin {
   }
 
   dispose(): void {
-    this.cut([]);
+    if (this.planes.length > 0) this.cut([]);
     this.painter?.dispose();
     this.view = this.painter = null;
   }

@@ -15,10 +15,11 @@ function shownOf({ box, firstDirection }: HierarchyView, manifest: Manifest): Sh
 }
 
 export class Immersion implements Plugin {
-  readonly name = 'immersion';
   private stage: Stage | null = null;
   private session: ImmersionSession | null = null;
   private isStarting = false;
+
+  constructor(readonly name = 'immersion') {}
 
   enter(stage: Stage): void {
     this.stage = stage;
@@ -41,6 +42,10 @@ export class Immersion implements Plugin {
       const { renderer, scene, camera, view } = stage;
       const session = await ImmersionSession.start(mode, { renderer, scene, camera, view, shown: shownOf(view, manifest), ended });
       if (isOver) return;
+      if (this.stage !== stage) { // it was taken away meanwhile
+        session.stop();
+        return;
+      }
       this.session = session;
       resume = stage.suspend();
     } finally {

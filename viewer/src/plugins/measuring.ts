@@ -7,6 +7,7 @@ import type { PickedPoint } from '../tools/picked_point.js';
 import { Pointing } from '../tools/pointing.js';
 import { LengthScale, unitOfModel } from '../tools/units.js';
 import { Overlay, type Mark } from './overlay.js';
+import { Whereabouts } from './whereabouts.js';
 
 const MOST_POINTS = 500;
 
@@ -18,11 +19,13 @@ export interface MeasuringOptions {
   isAlone?: boolean;
   /// Without it lengths are told in the model's unit.
   tell?: TellLength;
+  /// Another one than `measuring`, where several measure.
+  name?: string;
 }
 
-/// Event `change`: there are other points, or more is known of them.
+/// Event `change`: there are other points, or more is known of them. None are left once the model is another one that lies elsewhere.
 export class Measuring extends EventDispatcher<{ change: object }> implements Plugin {
-  readonly name = 'measuring';
+  readonly name: string;
   /// Points are those of vertices.
   snaps = false;
   private stage: Stage | null = null;
@@ -30,9 +33,11 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
   private overlay: Overlay | null = null;
   private picked: readonly PickedPoint[] = [];
   private asking = new AbortController();
+  private places = new Whereabouts();
 
   constructor(private readonly options: MeasuringOptions = {}) {
     super();
+    this.name = options.name ?? 'measuring';
   }
 
   get points(): readonly PickedPoint[] {
@@ -43,6 +48,7 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
     this.stage = stage;
     this.pointing = new Pointing(stage);
     this.asking = new AbortController();
+    this.places = new Whereabouts();
     if (this.options.isAlone === false) return;
     this.overlay = new Overlay();
     stage.root.append(this.overlay.root);
@@ -53,11 +59,14 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
   }
 
   drawn(): void {
-    if (this.stage !== null) this.overlay?.show(this.marks(), this.stage.camera, this.stage.view.surfaceMatrix);
+    if (this.stage === null) return;
+    this.forgetOthers(this.stage);
+    this.overlay?.show(this.marks(), this.stage.camera, this.stage.view.surfaceMatrix);
   }
 
   /// Takes the point at a place of the picture. False: nothing of the model is there, or there are too many.
   choose(right: number, up: number): boolean {
+    if (this.stage !== null) this.forgetOthers(this.stage);
     const pointed = this.picked.length < MOST_POINTS ? (this.pointing?.at(right, up, this.snaps, this.asking.signal) ?? null) : null;
     if (pointed === null) return false;
     const { shown } = pointed;
@@ -93,6 +102,11 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
     this.overlay?.root.remove();
     this.stage = this.pointing = this.overlay = null;
     this.picked = [];
+  }
+
+  /// Points of a model that lay elsewhere.
+  private forgetOthers({ view }: Stage): void {
+    if (this.places.haveChanged(view.manifest) && this.picked.length > 0) this.keep(0);
   }
 
   private inUnits(): TellLength {

@@ -89,10 +89,11 @@ class Hollows {
 
 /// Hollows get less light while it is registered; not in pictures that a plug-in has painted.
 export class Occlusion implements Plugin {
-  readonly name = 'occlusion';
   private view: HierarchyView | null = null;
   private stage: Stage | null = null;
   private hollows: Hollows | null = null;
+
+  constructor(readonly name = 'occlusion') {}
 
   init(view: HierarchyView): void {
     this.view = view;

@@ -30,7 +30,7 @@ function make(tag: string, to: Element, attributes: Readonly<Record<string, numb
 export class Overlay {
   readonly root = document.createElementNS(SVG, 'svg');
 
-  /// What a page's style says of the class goes before what is set here.
+  /// What a page's style says of marks in the class goes before their attributes here: colours, widths. Where it lies is set here alone.
   constructor(name = 'meshhier-overlay') {
     this.root.setAttribute('class', name);
     this.root.style.cssText = 'position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none';

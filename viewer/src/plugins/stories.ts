@@ -24,14 +24,13 @@ export interface StoryEvents {
 
 /// Nothing is told before the view's `manifest` is there.
 export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
-  readonly name = 'stories';
   private stage: Stage | null = null;
   private places: Places | null = null;
   private current: number | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private isOn = false;
 
-  constructor(readonly story: Notebook) {
+  constructor(readonly story: Notebook, readonly name = 'stories') {
     super();
   }
 
@@ -72,6 +71,7 @@ export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
       this.pause();
       return;
     }
+    if (this.stage?.view.manifest == null) return;
     this.isOn = true;
     this.dispatchEvent({ type: 'playing' });
     const isAtEnd = this.current === null || this.current === this.story.notes.length - 1;
@@ -99,6 +99,7 @@ export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
   }
 
   private placesOf({ view }: Stage): Places {
+    if (this.places?.manifest !== view.manifest) this.places = null;
     return (this.places ??= new Places(view));
   }
 
