@@ -42,20 +42,32 @@ function watchModes(page) {
 /// Parts of the picture's width and height where the model may be hit: first the middle.
 const PLACES = [[0.5, 0.5], [0.5, 0.6], [0.56, 0.5], [0.44, 0.5], [0.5, 0.42], [0.6, 0.58], [0.4, 0.58], [0.5, 0.66]];
 
+function cameraOf(page) {
+  return page.evaluate(() => JSON.stringify(window.meshhier.camera()));
+}
+
 /// A double click where the model is.
 async function closer(page) {
   const { width, height } = page.viewportSize();
-  const camera = () => page.evaluate(() => JSON.stringify(window.meshhier.camera()));
-  const before = await camera();
+  const before = await cameraOf(page);
   for (const [x, y] of PLACES) {
     await page.mouse.dblclick(x * width, y * height);
-    await page.waitForTimeout(200);
-    if ((await camera()) !== before) return;
+    await page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); }));
+    if ((await cameraOf(page)) !== before) return;
   }
 }
 
-/// Down to the surface in the middle of the picture, as a double click does; each mode's first settled picture is kept. The modes
-/// in which a view rested.
+/// A notch of the wheel.
+async function bitCloser(page) {
+  const { width, height } = page.viewportSize();
+  const before = await cameraOf(page);
+  await page.mouse.move(0.5 * width, 0.5 * height);
+  await page.mouse.wheel(0, -200);
+  await page.waitForFunction((camera) => JSON.stringify(window.meshhier.camera()) !== camera, before, { timeout: PATIENCE });
+}
+
+/// Down to the surface in the middle of the picture; each mode's first settled picture is kept. As long as all of the model is in view,
+/// in small steps: a double click from there may end where all that is seen is original. The modes in which a view rested.
 async function goDown(page, keep) {
   const seen = new Set();
   for (let step = 0; step < MOST_STEPS && !seen.has('DZM'); ++step) {
@@ -63,7 +75,7 @@ async function goDown(page, keep) {
     const mode = await modeOf(page);
     await keep(mode, step, !seen.has(mode));
     seen.add(mode);
-    await closer(page);
+    await (mode === 'CWV' ? bitCloser : closer)(page);
   }
   return seen;
 }
