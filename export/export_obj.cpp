@@ -6,6 +6,8 @@
 #include "images/image_codec.h"
 #include "storage/format/showable.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>

@@ -116,8 +116,7 @@ void refuse_lines(std::string_view text, const std::filesystem::path& path) {
   const std::string_view first = text.substr(0, text.find('\n'));
   text.remove_prefix(first.size());
   const std::size_t next = text.find_first_not_of(" \t\r\n\x1e");
-  if (next == std::string_view::npos || text[next] != '{' ||
-      storage::parse_json_text(first, nullptr, {.throws = false}).is_discarded())
+  if (next == std::string_view::npos || text[next] != '{' || !storage::is_json(first))
     return;
   mesh_io::fail_file(path,
                      "has one GeoJSON text a line, expected one for all; join them: ogr2ogr -f "

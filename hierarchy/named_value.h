@@ -1,7 +1,10 @@
-// Tables of values with names: a row each, which may say more of its value.
+// Tables of values with names: a row each, which may say more of its value. A table
+// with a row for each enumerator is in their order.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +45,16 @@ std::string names_in(const Table& table) {
   for (const auto& row : table)
     names.append(names.empty() ? "" : ", ").append(row.name);
   return names;
+}
+
+/// Whether each row is that of the enumerator whose number is its place: row_of() looks there.
+template <class Row, std::size_t N, class Enum>
+constexpr bool are_in_order(const std::array<Row, N>& rows, Enum Row::*key) {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (rows[i].*key != static_cast<Enum>(i))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace meshhier

@@ -1,6 +1,7 @@
 #include "import/input_files.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/image_format.h"
 #include "hierarchy/plain_text.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"

@@ -1,5 +1,6 @@
 #include "import/ply_pictures.h"
 
+#include "hierarchy/image_format.h"
 #include "import/input_files.h"
 
 #include <utility>

@@ -21,6 +21,12 @@ constexpr Certainty sure_if(bool is_so) {
   return is_so ? Certainty::sure : Certainty::none;
 }
 
+/// Whether a file has the length that its count of facets asks for: then it is a binary STL,
+/// whatever stands in the 80 bytes that makers may fill.
+bool has_length_of_stl(const MeshContent& c) {
+  return !c.is_gzip() && c.stl_bytes() == c.file().size();
+}
+
 std::vector<FormatRow> make_rows() {
   return {
       {.kind = MeshKind::ply,
@@ -47,7 +53,10 @@ std::vector<FormatRow> make_rows() {
        .name = "glTF",
        .format = "glTF",
        .ending = ".gltf",
-       .look = [](MeshContent& c) { return sure_if(c.kind_of_json() == MeshKind::gltf); },
+       .look =
+           [](MeshContent& c) {
+             return sure_if(!has_length_of_stl(c) && c.kind_of_json() == MeshKind::gltf);
+           },
        .buffers = gltf_buffer_files,
        .in_metres = true,
        .names_features = true,
@@ -60,7 +69,10 @@ std::vector<FormatRow> make_rows() {
        .name = "GLB",
        .format = "glTF",
        .ending = ".glb",
-       .look = [](MeshContent& c) { return sure_if(c.start().starts_with("glTF")); },
+       .look =
+           [](MeshContent& c) {
+             return sure_if(!has_length_of_stl(c) && c.start().starts_with("glTF"));
+           },
        .buffers = gltf_buffer_files,
        .in_metres = true,
        .names_features = true},

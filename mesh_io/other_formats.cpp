@@ -104,6 +104,7 @@ std::vector<OtherFormat> make_others() {
       {"a file of a progressive stream", kHierarchy, {}, {{"MHDETAIL"sv}}},
       {"the manifest of a hierarchy", kHierarchy, {}, {{"\"format\": \"meshhier"sv, 0, "{"}}},
       {"a hierarchy", {}, {".hier", ".3tz"}},
+      {"a PNG picture, damaged as by a transfer as text", kOfMesh, {}, {{"\x89PNG"sv}}, true},
       {"a TIFF picture",
        kHeights,
        {".tif", ".tiff"},

@@ -1,6 +1,7 @@
 // The text header of a PLY file (Turk, "The PLY Polygon File Format", 1994), as a value.
 #pragma once
 
+#include "hierarchy/named_value.h"
 #include "hierarchy/scalar_value.h"
 
 #include <algorithm>
@@ -46,7 +47,8 @@ inline constexpr std::array kPlyTypes{PlyTypeRow{"char", "int8", PlyType::i8, 1}
                                       PlyTypeRow{"double", "float64", PlyType::f64, 8},
                                       PlyTypeRow{"int64", "int64", PlyType::i64, 8},
                                       PlyTypeRow{"uint64", "uint64", PlyType::u64, 8}};
-static_assert(std::ranges::is_sorted(kPlyTypes, {}, &PlyTypeRow::value));
+static_assert(are_in_order(kPlyTypes, &PlyTypeRow::value) &&
+              kPlyTypes.size() == static_cast<std::size_t>(PlyType::u64) + 1);
 
 constexpr const PlyTypeRow& row_of(PlyType type) {
   return kPlyTypes[static_cast<std::size_t>(type)];

@@ -1,7 +1,6 @@
 #include "pipeline/build.h"
 
 #include "execution/allocator.h"
-#include "execution/threads.h"
 #include "hierarchy/error.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"

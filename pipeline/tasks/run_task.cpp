@@ -275,7 +275,8 @@ void Task::make(const StageContext& context) {
   if (kind.cut == TaskCut::levels && !has_levels)
     return;
   if (kind.takes == Takes::pictures && has_levels && context.plan.textures.is_textured() &&
-      !workshop_->journal.restore_pictures())
+      (!workshop_->journal.restore_pictures() ||
+       workshop_->pictures.size() != context.plan.textures.heads.size()))
     throw damaged_segment(work_, name(kImagesTask, 0));
   Making making{*workshop_, {storage::built_path(work_), attempt_.shared_directory()}};
   make_stages(kind, making, part, context);

@@ -1,7 +1,7 @@
 // How tiles are packed. No way loses anything.
 #pragma once
 
-#include "hierarchy/rows.h"
+#include "hierarchy/named_value.h"
 #include "storage/format/gzip.h"
 
 #include <array>

@@ -5,7 +5,6 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
-#include "hierarchy/named_value.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"

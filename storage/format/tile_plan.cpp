@@ -46,14 +46,7 @@ constexpr std::array<PartRow, kPartCount> kParts{{
     {Part::image, "image", ViewMode::raw},
     {Part::normal_map, "normalMap", ViewMode::raw},
 }};
-constexpr bool are_in_order() {
-  for (std::size_t i = 0; i < kPartCount; ++i) {
-    if (kParts[i].part != static_cast<Part>(i))
-      return false;
-  }
-  return true;
-}
-static_assert(are_in_order());
+static_assert(are_in_order(kParts, &PartRow::part));
 
 constexpr const PartRow& row_of(Part part) {
   return kParts[static_cast<std::size_t>(part)];

@@ -72,6 +72,10 @@ nlohmann::ordered_json parse_ordered_json_text(
   return parse<nlohmann::ordered_json>(text, watch, reading);
 }
 
+bool is_json(std::string_view text) {
+  return nlohmann::json::accept(text.data(), text.data() + text.size());
+}
+
 bool visit_json(const std::function<int()>& next, JsonVisitor& visitor) {
   return nlohmann::json::sax_parse(Characters(next), Characters(), &visitor);
 }

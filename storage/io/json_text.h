@@ -37,6 +37,9 @@ nlohmann::ordered_json parse_ordered_json_text(
     std::string_view text, const nlohmann::ordered_json::parser_callback_t& watch = nullptr,
     JsonReading reading = {});
 
+/// Whether a text is one value, without keeping any of it.
+bool is_json(std::string_view text);
+
 /// Passes over all that a parser tells. A mistake ends it, and so do values nested too deeply.
 class JsonVisitor : public nlohmann::json_sax<nlohmann::json> {
  public:

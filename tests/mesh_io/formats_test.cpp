@@ -71,6 +71,12 @@ TEST(MeshFormat, ATilesetBeginsAsAGltf) {
             "glTF");
 }
 
+TEST(MeshFormat, AFileOfAnStlsLengthIsOneWhateverItsHeaderSays) {
+  for (const char* header : {"glTF to STL", R"({"asset": solid of a maker)", R"({"meshes": 1, )",
+                             "OFF exporter", "o part", "normal"})
+    EXPECT_EQ(format_of(binary_stl(header, 4, 200)), "binary STL") << header;
+}
+
 TEST(MeshFormat, ABinaryStlMayBeginAsATextDoes) {
   EXPECT_EQ(format_of(binary_stl("solid part", 2, 100)), "binary STL");
   EXPECT_EQ(format_of(gzip(binary_stl("solid part", 2, 100))), "binary STL (gzip)");
