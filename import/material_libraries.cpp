@@ -189,8 +189,9 @@ class LibraryReader {
   /// Least for the definition that a use means.
   std::uint64_t rank_of(const MaterialNames::Use& use) const {
     const std::uint64_t libraries = names_.libraries().size();
-    const bool is_before = use.library != MaterialNames::kNoLibrary && statement_ <= use.library;
-    return is_before ? use.library - statement_ : libraries + statement_;
+    const bool is_before =
+        use.last_library != MaterialNames::kNoLibrary && statement_ <= use.last_library;
+    return is_before ? use.last_library - statement_ : libraries + statement_;
   }
 
   void define(const mesh_io::MtlMaterial& read, const mesh_io::MtlColours& colours,

@@ -45,8 +45,8 @@ class MaterialNames {
 
   struct Use {
     std::optional<std::string> name;
-    std::uint32_t library = kNoLibrary;  ///< the last one that was named before the name
-    bool has_texcoords = false;          ///< of a triangle at least
+    std::uint32_t last_library = kNoLibrary;  ///< that was named before the name
+    bool has_texcoords = false;               ///< of a triangle at least
   };
   const std::vector<Use>& all() const { return uses_; }
   /// A triangle has a name, or a statement one of a library.

@@ -205,13 +205,11 @@ std::string other_format(std::string_view start) {
 }
 
 bool is_known_ending(std::string_view ending) {
-  const auto has_it = [&](const OtherFormat& other) {
-    return std::ranges::find(other.endings, ending) != other.endings.end();
-  };
   const auto has = [&](const std::vector<std::string_view>& endings) {
     return std::ranges::find(endings, ending) != endings.end();
   };
-  return has(mesh_endings()) || has(all_picture_endings()) || std::ranges::any_of(others(), has_it);
+  return has(mesh_endings()) || has(all_picture_endings()) ||
+         std::ranges::any_of(others(), has, &OtherFormat::endings);
 }
 
 std::vector<std::string_view> all_picture_endings() {
