@@ -300,7 +300,7 @@ async function checkNotes(visitor) {
   await page.locator('.tool-card', { hasText: 'Notes' }).waitFor();
   await page.mouse.click(x, y);
   await page.locator('.tool-list textarea').fill('a <b>crack</b>');
-  await page.locator('.tool-list textarea').press('Enter');
+  await page.locator('.tool-list textarea').press('Control+Enter');
   await page.waitForFunction(() => location.hash.includes('notes='));
   await settle(page);
   visitor.check('note', (await page.locator('.tool-overlay text').innerHTML()) === 'a &lt;b&gt;crack&lt;/b&gt;', 'its text at its point');
