@@ -42,10 +42,11 @@ BlockRunner eager_runner() {
           }};
 }
 
-std::string with_line_ends(std::string text, std::string_view end) {
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size())
-    text.replace(at, 1, end);
-  return text;
+std::string with_line_ends(std::string_view text, std::string_view end) {
+  std::string changed;
+  for (const char c : text)
+    changed += c == '\n' ? end : std::string_view(&c, 1);
+  return changed;
 }
 
 std::string vertex_lines() {
