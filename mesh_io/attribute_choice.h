@@ -1,4 +1,4 @@
-// Which numbers of vertices are read besides normals, colours and texture coordinates.
+// The choice of attributes that are read besides normals, colours and texture coordinates.
 #pragma once
 
 #include "hierarchy/scalar_value.h"
@@ -16,8 +16,9 @@ struct AttributeChoice {
   enum class Which : std::uint8_t { all, none, named };
 
   Which which = Which::all;
-  std::vector<std::string> names{};                  ///< if `named`
-  std::optional<std::vector<std::string>> labels{};  ///< none: those of integer types
+  std::vector<std::string> names{};  ///< names that are read, if `which` is `named`
+  /// Names of labels; none: all values of integer types are labels.
+  std::optional<std::vector<std::string>> labels{};
 
   bool takes(std::string_view name) const {
     return which == Which::all || (which == Which::named && has(names, name));

@@ -1,4 +1,4 @@
-// Who has threads runs the blocks of a text on them; a reader has none of its own.
+// Readers of texts have no threads of their own: a caller that has some runs their blocks on them.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,16 @@
 
 namespace meshhier::mesh_io {
 
-/// What is done with the blocks 0, 1, 2, ...
+/// Steps that each of the blocks 0, 1, 2, ... goes through.
 struct BlockSteps {
-  std::function<bool(std::size_t)> read;  ///< whether there is such a block; in order
-  std::function<void(std::size_t)> work;  ///< in parallel; does not throw
-  std::function<bool(std::size_t)> take;  ///< whether to go on; in order
+  std::function<bool(std::size_t)> read;  ///< reads it; false: there is no such block; in order
+  std::function<void(std::size_t)> work;  ///< in parallel with others; does not throw
+  std::function<bool(std::size_t)> take;  ///< hands it on; false: the rest is not wanted; in order
 };
 
-/// Runs the steps of all blocks, one after the other for each. Those in order run one at a time.
-/// All is done with a block before the one `in_flight` behind it is read. The first exception in
-/// the order of the blocks ends it.
+/// Runs the steps of all blocks, one after the other for each. Those in order run one at a time. A
+/// block has been taken before the one `in_flight` behind it is read, so that many are in memory at
+/// most. The first exception in the order of the blocks ends it.
 struct BlockRunner {
   std::size_t in_flight = 1;
   std::function<void(const BlockSteps&)> run = run_serially;

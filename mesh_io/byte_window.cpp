@@ -26,7 +26,8 @@ bool ByteWindow::refill(std::size_t bytes) {
   begin_ = 0;
   end_ = kept;
   std::size_t wanted = std::min<std::uint64_t>(kCapacity - kept, behind);
-  // Up to the end of a checksum's block, if that is enough: the next read then begins with one.
+  // The read ends where a checksum's block does, if that is enough: the next read then begins with
+  // one.
   const std::size_t beyond = (base_ + kept + wanted) % storage::FileChecksum::kBlockBytes;
   if (wanted < behind && beyond < wanted && kept + wanted - beyond >= bytes)
     wanted -= beyond;

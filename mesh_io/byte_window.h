@@ -12,7 +12,7 @@
 
 namespace meshhier::mesh_io {
 
-/// A file that is read for what it holds, and for its checksum on the way.
+/// A file that is read for its content, and for its checksum on the way.
 struct InputFile {
   const storage::File& file;
   std::uint64_t bytes = 0;  ///< the file's size; nothing beyond is read

@@ -1,4 +1,4 @@
-// Which coordinates are read.
+// The range of coordinates that are read.
 #pragma once
 
 #include <cmath>
@@ -9,10 +9,10 @@ namespace meshhier::mesh_io {
 /// on the mesh are floats, too.
 inline constexpr double kMostCoordinate = 0x1p126;
 
-/// What a message says was expected.
+/// The words for an expected coordinate in messages.
 inline constexpr const char* kCoordinateRange = "a coordinate from -8.5e37 to 8.5e37 (2^126)";
 
-/// Neither too far away, nor infinite, nor no number.
+/// Returns whether a value is a number, finite and within the range.
 inline bool is_coordinate(double value) {
   return std::abs(value) <= kMostCoordinate;
 }

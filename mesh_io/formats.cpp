@@ -21,8 +21,8 @@ constexpr Certainty sure_if(bool is_so) {
   return is_so ? Certainty::sure : Certainty::none;
 }
 
-/// Whether a file has the length that its count of facets asks for: then it is a binary STL,
-/// whatever stands in the 80 bytes that makers may fill.
+/// Returns whether a file has the length that its count of facets asks for: then it is a binary
+/// STL, whatever stands in the 80 bytes that makers may fill.
 bool has_length_of_stl(const MeshContent& c) {
   return !c.is_gzip() && c.stl_bytes() == c.file().size();
 }
@@ -130,7 +130,7 @@ std::optional<MeshFormat> format_of(MeshContent& content) {
   return kind ? std::optional(MeshFormat{*kind, content.is_gzip()}) : std::nullopt;
 }
 
-/// What a file would have to be as a binary STL, if it may be meant for one.
+/// Returns what a file would have to be as a binary STL, if it may be meant for one.
 std::string stl_hint(const MeshContent& content) {
   const auto expected = content.stl_bytes();
   if (!expected || content.is_gzip() || content.is_text())
@@ -151,7 +151,7 @@ std::string alternatives(const std::vector<std::string_view>& words) {
   return text;
 }
 
-/// What a column says of the rows with an ending, each once.
+/// Returns a column's texts of the rows with an ending, each once.
 std::vector<std::string_view> column(std::string_view FormatRow::*member) {
   std::vector<std::string_view> all;
   for (const FormatRow& row : format_rows()) {

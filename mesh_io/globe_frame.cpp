@@ -29,7 +29,7 @@ bool is_rigid(const GltfTransform& t) {
   return !is_mirrored(t);
 }
 
-/// Where the line from the middle of the globe meets the ellipsoid.
+/// Returns the point where the line from the middle of the globe through `p` meets the ellipsoid.
 Vec3d on_ellipsoid(Vec3d p) {
   const double scale =
       std::sqrt((p.x * p.x + p.y * p.y) / (kEquator * kEquator) + p.z * p.z / (kPole * kPole));

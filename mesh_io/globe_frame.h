@@ -18,20 +18,23 @@ struct GlobeFrame {
   friend bool operator==(const GlobeFrame&, const GlobeFrame&) = default;
 };
 
-/// Whether a geocentric place is near the ellipsoid: where things stand.
+/// Returns whether a geocentric place is near the ellipsoid, where things stand.
 bool is_on_globe(Vec3d place);
 
-/// Whether it is rigid, on the globe, and its z axis points up there, within some degrees.
+/// Returns whether a transform is rigid, on the globe, and its z axis points up there, within some
+/// degrees.
 bool is_local_frame(const GltfTransform& t);
 
-/// East, north, up at a place, rounded to metres.
+/// Returns the frame east, north, up at a place that is rounded to metres.
 GlobeFrame frame_at(Vec3d place);
 
-/// That of the middle of places on the globe, on the ellipsoid if they are so far apart that it
-/// lies deep below; nothing if they are all around the globe. Requires one.
+/// Returns the frame at the middle of places on the globe; on the ellipsoid, if they are so far
+/// apart that their middle lies deep below; nothing if they are all around the globe. Requires one
+/// place.
 std::optional<GlobeFrame> frame_amid(const std::vector<Vec3d>& places);
 
-/// From geocentric coordinates to those of the frame; without one they stay.
+/// Returns the transform from geocentric coordinates to those of the frame; without a frame they
+/// stay.
 GltfTransform to_frame(const std::optional<GlobeFrame>& frame);
 
 }  // namespace meshhier::mesh_io

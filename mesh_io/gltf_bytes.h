@@ -12,6 +12,7 @@
 
 namespace meshhier::mesh_io {
 
+/// Bytes of a known number that can be read at any place.
 class GltfBytes {
  public:
   virtual ~GltfBytes() = default;
@@ -37,7 +38,7 @@ class GltfFileBytes final : public GltfBytes {
   std::uint64_t bytes_;
 };
 
-/// What was decoded, and does not stay in memory.
+/// Decoded bytes, which go to a scratch file and do not stay in memory.
 class GltfSpoolBytes final : public GltfBytes {
  public:
   explicit GltfSpoolBytes(storage::ScratchFile& scratch) : spool_(scratch, kBlockBytes) {}
@@ -52,7 +53,7 @@ class GltfSpoolBytes final : public GltfBytes {
   storage::Spool spool_;
 };
 
-/// A part of others; they must outlive it.
+/// A part of other bytes, which must outlive it.
 struct GltfRange {
   const GltfBytes* bytes = nullptr;
   std::uint64_t offset = 0, size = 0;

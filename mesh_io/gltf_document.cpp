@@ -52,7 +52,7 @@ Vec3d as_vector(const std::array<double, 3>& v) {
 }
 
 struct Component {
-  std::uint64_t number;  ///< in files
+  std::uint64_t number;  ///< the number that files have for it
   GltfComponent value;
   std::size_t bytes;
 };

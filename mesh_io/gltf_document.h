@@ -1,6 +1,5 @@
-// What a glTF 2.0 document says (Khronos, glTF 2.0 specification), as far as meshes and their base
-// colours go: values that are checked one by one. Whether ranges fit into buffers is looked at by
-// who reads them (gltf_elements.h).
+// A glTF 2.0 document as values (Khronos, glTF 2.0 specification), as far as meshes and their base
+// colours go. Each value is checked by itself. gltf_elements.h checks that ranges fit into buffers.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -22,7 +21,7 @@ struct GltfBuffer {
   std::optional<std::string> uri;
 };
 
-/// EXT_meshopt_compression: where a view's bytes come from.
+/// The stream that a view's bytes are decoded from (EXT_meshopt_compression).
 struct GltfMeshopt {
   enum class Mode : std::uint8_t { attributes, triangles, indices };
   enum class Filter : std::uint8_t { none, octahedral, quaternion, exponential };
@@ -58,14 +57,15 @@ struct GltfAccessor {
   std::uint64_t offset = 0;
   std::uint64_t count = 0;  ///< < 2^32
   GltfComponent component = GltfComponent::f32;
-  std::uint32_t components = 1;  ///< of an element: 1 to 4; 9 and 16 are matrices
+  std::uint32_t components = 1;  ///< numbers an element has: 1 to 4; 9 and 16 are matrices
   bool normalized = false;
   std::optional<GltfSparse> sparse{};
 
   std::uint64_t element_bytes() const { return components * bytes_of(component); }
 };
 
-/// Names of attributes, and the numbers of what holds them.
+/// Names of attributes, each with the number of the accessor or of the Draco attribute that holds
+/// it.
 using GltfAttributes = std::map<std::string, std::uint32_t>;
 
 /// KHR_draco_mesh_compression.
@@ -77,7 +77,7 @@ struct GltfDraco {
 struct GltfPrimitive {
   enum class Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, strip, fan };
   Mode mode = Mode::triangles;
-  GltfAttributes attributes;  ///< accessors
+  GltfAttributes attributes;  ///< numbers are those of accessors
   std::optional<std::uint32_t> indices;
   std::optional<std::uint32_t> material;
   std::optional<GltfDraco> draco{};
@@ -91,8 +91,8 @@ struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
 };
 
-/// EXT_mesh_gpu_instancing: accessors of as many elements as there are copies of the node's mesh,
-/// placed within the node. None: nothing, no turn, size 1.
+/// Copies of a node's mesh within the node (EXT_mesh_gpu_instancing): accessors with an element for
+/// each copy. An accessor that is missing means no move, no turn, size 1.
 struct GltfInstancing {
   std::optional<std::uint32_t> translation, rotation, scale;
 };
@@ -106,7 +106,7 @@ struct GltfNode {
   std::optional<std::uint32_t> mesh;
   std::vector<std::uint32_t> children;
   GltfTransform transform;
-  std::optional<std::uint32_t> skin{};  ///< of its mesh
+  std::optional<std::uint32_t> skin{};  ///< skin of its mesh
   bool is_camera = false;
   bool is_visible = true;  ///< KHR_node_visibility; else neither it nor what is below it is shown
   std::optional<GltfInstancing> instancing{};
@@ -123,24 +123,26 @@ struct GltfTextureTransform {
 /// A texture as a material shows it.
 struct GltfTextureUse {
   std::uint32_t texture = 0;
-  std::uint32_t texcoord = 0;  ///< that it takes
+  std::uint32_t texcoord = 0;  ///< number of the texture coordinates that it takes
   GltfTextureTransform transform{};
 };
 
 struct GltfMaterial {
   std::string name;
-  std::array<double, 4> factor{1, 1, 1, 1};  ///< of the base colour: linear, and alpha
-  std::optional<GltfTextureUse> base{};      ///< of the base colour
-  /// Linear, from 0 on: emissiveFactor by KHR_materials_emissive_strength.
+  /// The factor of the base colour: linear, and alpha.
+  std::array<double, 4> factor{1, 1, 1, 1};
+  std::optional<GltfTextureUse> base{};  ///< the base colour's picture
+  /// The light of its own, linear, from 0 on: emissiveFactor times KHR_materials_emissive_strength.
   std::array<double, 3> emission{};
-  std::optional<GltfTextureUse> glow{};  ///< what `emission` multiplies; none where that is 0
-  bool is_unknown =
-      false;  ///< KHR_techniques_webgl has pictures of which none is known to be `base`
+  /// The picture that `emission` multiplies; none where that is 0.
+  std::optional<GltfTextureUse> glow{};
+  /// KHR_techniques_webgl has pictures of which none is known to be `base`.
+  bool is_unknown = false;
   AlphaMode alpha = AlphaMode::opaque;
   double alpha_cutoff = 0.5;
 
   bool emits() const { return emission != std::array<double, 3>{}; }
-  /// Whatever its picture and colours of vertices are.
+  /// Returns true if nothing of it shows, whatever its picture and the colours of vertices are.
   bool is_invisible() const {
     return (alpha == AlphaMode::blend && factor[3] <= 0) ||
            (alpha == AlphaMode::mask && factor[3] < alpha_cutoff);
@@ -158,7 +160,7 @@ struct GltfPictureFormat {
 };
 
 struct GltfTexture {
-  std::optional<std::uint32_t> image;  ///< none: of a format that is not read
+  std::optional<std::uint32_t> image;  ///< none: its picture is of a format that is not read
   std::optional<std::uint32_t> sampler;
   const GltfPictureFormat* unread = nullptr;  ///< an extension has a picture for it
 };
@@ -180,17 +182,17 @@ struct GltfDocument {
   std::vector<GltfTexture> textures;
   std::vector<GltfSampler> samplers;
   std::vector<GltfImage> images;
-  std::vector<std::uint32_t> roots;  ///< of the scene that is shown
+  std::vector<std::uint32_t> roots;  ///< roots of the scene that is shown
   std::uint64_t animations = 0;
-  /// CESIUM_RTC: what is added to all positions, in the document's own axes.
+  /// The vector that is added to all positions, in the document's own axes (CESIUM_RTC).
   Vec3d centre{};
   std::vector<std::string> required;  ///< extensions
 };
 
-/// The document of a JSON text. The scene is the one that it names, else the first; if there is
-/// none, all nodes that are no children are roots. Throws Error(input) naming file and place if it
-/// is no glTF 2.x, if a value is not what the specification says, or if it requires an extension
-/// that is not known; and as parse_gltf_json().
+/// Reads a document. The scene is the one that it names, else the first; if there is none, all
+/// nodes that are no children are roots. Throws Error(input) naming file and place if it is no glTF
+/// 2.x, if a value is not what the specification says, or if it requires an extension that is not
+/// known; and as parse_gltf_json().
 GltfDocument read_gltf_document(std::string json, const std::filesystem::path& path,
                                 std::uint64_t most_bytes);
 

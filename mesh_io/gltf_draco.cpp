@@ -19,8 +19,9 @@
 namespace meshhier::mesh_io {
 namespace {
 
-// What the decoder holds of each triangle (its corners, their neighbours, two visits, the stream's
-// symbols), and of a point beside its attributes (corner, place in each attribute's values).
+// The memory that the decoder takes for each triangle (its corners, their neighbours, two visits,
+// the stream's symbols), and for a point beside its attributes (corner, place in each attribute's
+// values).
 constexpr std::uint64_t kTriangleBytes = 128;
 constexpr std::uint64_t kPointBytes = 48;
 constexpr std::uint64_t kDecodedBytes = std::uint64_t{1} << 16;
@@ -36,7 +37,8 @@ struct DracoCounts {
   std::uint64_t triangles = 0, points = 0;
 };
 
-/// What the stream's head says, before the library believes it; nothing if it is no mesh.
+/// Reads the counts in the stream's head, before the library believes them; nothing if it is no
+/// mesh.
 std::optional<DracoCounts> read_counts(std::span<const std::byte> stream) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size(), kDracoVersion);

@@ -11,12 +11,13 @@
 
 namespace meshhier::mesh_io {
 
-/// A primitive's decoded data, on its way to disk: only one primitive is in memory at a time, and
-/// that while it is decoded.
+/// A primitive's decoded data in a scratch file. A primitive is in memory only while it is decoded,
+/// one at a time.
 struct GltfDracoMesh {
   GltfElementSource indices;                            ///< u32
-  std::map<std::string, GltfElementSource> attributes;  ///< those that the stream has
-  std::vector<std::unique_ptr<GltfSpoolBytes>> bytes;   ///< what the sources are parts of
+  std::map<std::string, GltfElementSource> attributes;  ///< names that the stream has
+  /// Owners of the bytes that the sources read.
+  std::vector<std::unique_ptr<GltfSpoolBytes>> bytes;
 };
 
 /// Decodes a primitive that has `draco`. Attributes get the component types of their accessors.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::uint64_t kWindowBytes = std::uint64_t{1} << 16;
 
-/// Where elements have no bytes, one of so many must be replaced: else a line of JSON would make
-/// billions.
+/// Elements without bytes are zeros: one of so many must be replaced, else a line of JSON would
+/// make billions.
 constexpr std::uint64_t kMostZeros = 64;
 
 template <class Stored>
@@ -32,7 +32,7 @@ void decode_stored(const std::byte* from, std::span<double> to) {
     to[i] = load_number<Stored>(from + i * sizeof(Stored));
 }
 
-/// As the specification says (3.6.2.2), in floats.
+/// Decodes fractions as the specification says (3.6.2.2), in floats.
 template <class Stored>
 void decode_fractions(const std::byte* from, std::span<double> to) {
   constexpr auto kMost = static_cast<float>(std::numeric_limits<Stored>::max());
@@ -108,7 +108,7 @@ GltfElementSource gltf_elements_of(GltfFile& file, std::uint32_t number) {
 /// The elements that stand for others.
 struct GltfElements::Replaced {
   GltfElements indices, values;
-  std::uint64_t next = 0;  ///< of them
+  std::uint64_t next = 0;  ///< the next of them
   double last = -1;        ///< element that was replaced
 
   Replaced(GltfFile& file, const GltfElementSource& source, const GltfSparse& sparse,

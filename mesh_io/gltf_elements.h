@@ -16,7 +16,7 @@
 
 namespace meshhier::mesh_io {
 
-/// Where elements lie. All of them are within `range`, or there is none and they are zeros.
+/// The place of elements. All of them are within `range`; without one they are zeros.
 struct GltfElementSource {
   std::string name;  ///< "accessors[3]", for messages
   std::optional<GltfRange> range{};
@@ -28,26 +28,26 @@ struct GltfElementSource {
   std::optional<GltfSparse> sparse{};
 };
 
-/// An accessor, its ranges checked. Throws Error(input) naming it if it reaches beyond its view, if
-/// its elements overlap each other, or if it has very many zeros that no byte stands for; and as
-/// GltfFile::view().
+/// Returns the place of an accessor's elements, its ranges checked. Throws Error(input) naming it
+/// if it reaches beyond its view, if its elements overlap each other, or if it has very many zeros
+/// that no byte stands for; and as GltfFile::view().
 GltfElementSource gltf_elements_of(GltfFile& file, std::uint32_t accessor);
 
-/// Reads elements forwards through a window of 64 KiB.
+/// Reads elements forwards through a window of 64 KiB. For one thread.
 class GltfElements {
  public:
-  /// What integers of a normalized accessor become: fractions, or what is stored.
+  /// Integers of a normalized accessor become fractions, or stay as they are stored.
   enum class Integers : std::uint8_t { fractions, stored };
   static constexpr std::size_t kMostComponents = 16;
 
-  /// `file` must outlive it. Throws as gltf_elements_of() for what replaces some elements.
+  /// `file` must outlive it. Throws as gltf_elements_of() for the sparse values.
   GltfElements(GltfFile& file, GltfElementSource source, Integers integers = Integers::fractions);
 
   const GltfElementSource& source() const { return source_; }
   std::uint64_t size() const { return source_.count; }
 
-  /// Element `index` < size(); no call may ask for one before that of the call before. Valid until
-  /// the next call. Throws Error(input) naming the accessor if sparse indices are not ascending or
+  /// Returns element `index` < size(), valid until the next call. `index` never falls from one call
+  /// to the next. Throws Error(input) naming the accessor if sparse indices are not ascending or
   /// beyond its elements, Error(io).
   std::span<const double> at(std::uint64_t index);
 

@@ -11,14 +11,14 @@ struct GltfExtension {
   std::string_view reason;
 };
 
-/// Those that are read, with what they are.
+/// Returns the extensions that are read; a reason says what each is.
 std::span<const GltfExtension> read_extensions();
-/// Those that are passed over, as they change nothing of the triangles, their places, colours and
-/// pictures; with what they change.
+/// Returns the extensions that are passed over, as they change nothing of the triangles, their
+/// places, colours and pictures; a reason says what each changes.
 std::span<const GltfExtension> harmless_extensions();
 
-/// Whether it is one of these. A file that requires another one may mean something else than what
-/// would be read of it.
+/// Returns whether an extension is one of these. A file that requires another one may mean
+/// something else than what would be read of it.
 bool may_be_required(std::string_view extension);
 
 }  // namespace meshhier::mesh_io

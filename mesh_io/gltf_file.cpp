@@ -36,7 +36,7 @@ std::uint32_t word(std::span<const std::byte> bytes, std::size_t index) {
 
 struct Chunk {
   std::uint32_t kind = 0;
-  std::uint64_t offset = 0, bytes = 0;  ///< of its data
+  std::uint64_t offset = 0, bytes = 0;  ///< the place of its data
   std::uint64_t end() const { return offset + bytes; }
 };
 

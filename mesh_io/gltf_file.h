@@ -18,31 +18,34 @@
 
 namespace meshhier::mesh_io {
 
-/// Where the bytes of a glTF are when its pictures are needed: in its file, in a file in gzip of
-/// which they are the content, or in none.
+/// The place of a glTF's bytes when its pictures are needed: its file, a file whose gzip holds
+/// them, or nowhere any more.
 enum class GltfContent : std::uint8_t { stored, packed, fleeting };
 
-/// What a reader works with.
+/// The means that a reader works with.
 struct GltfRoom {
   storage::FileSystem& files;
-  storage::ScratchFile& scratch;   ///< for what is decoded
+  storage::ScratchFile& scratch;   ///< for decoded bytes
   std::uint64_t memory_bytes = 0;  ///< for the JSON, and for what a codec decodes at once
   GltfContent content = GltfContent::stored;
-  std::filesystem::path stored_in{};  ///< that file
+  std::filesystem::path stored_in{};  ///< the file that `content` speaks of
   std::function<void()> check;        ///< called often; may throw
-  std::uint64_t begin = 0;            ///< of the glTF in it, or in its content
+  std::uint64_t begin = 0;            ///< offset of the glTF in that file, or in its content
 };
 
-/// Where a picture lies.
+/// A picture of the document and the place where its bytes lie.
 struct GltfPicture {
   std::string name;
-  std::optional<std::filesystem::path> file{};  ///< none: it cannot be had, or `data` has it
+  std::optional<std::filesystem::path> file{};  ///< none: it cannot be had, or `data` holds it
   std::uint64_t offset = 0, bytes = 0;          ///< in the file; 0 bytes: all of it
   std::vector<std::byte> data{};
-  bool is_packed = false;  ///< the file is in gzip: offset and bytes are of its content
-  std::vector<std::filesystem::path> sought{};  ///< where a file that is not there would be
+  bool is_packed = false;  ///< the file is in gzip: offset and bytes count in its content
+  /// Places where a file that is missing was looked for.
+  std::vector<std::filesystem::path> sought{};
 };
 
+/// An open glTF. Reading goes through it: buffers are opened when they are first needed, compressed
+/// views are decoded once. For one thread.
 class GltfFile {
  public:
   /// Reads the document of `file`: a GLB if it begins as one, else JSON. `folder`: where the files
@@ -53,14 +56,14 @@ class GltfFile {
   const GltfRoom& room() const { return room_; }
   const std::filesystem::path& path() const { return file_->path(); }
 
-  /// The bytes of a view; decoded once if it is compressed. They stay as long as this object.
+  /// Returns the bytes of a view, decoded if it is compressed. They stay as long as this object.
   /// Throws Error(input) naming buffer or view if the range is not there or no such stream,
   /// Error(budget) if decoding takes more memory than there is, Error(io).
   GltfRange view(std::uint32_t index);
 
-  /// A file is found as NamedFiles finds it. One in a view of fleeting bytes is read. Throws
-  /// Error(input) if the picture lies in a compressed view. A file that is not there, or no regular
-  /// one, is none.
+  /// Returns where a picture lies. Its file is found as NamedFiles finds it; a file that is
+  /// missing, or no regular one, is none. A picture in a view of fleeting bytes is read into
+  /// `data`. Throws Error(input) if it lies in a compressed view.
   GltfPicture picture(std::uint32_t image);
 
   [[noreturn]] void fail(const std::string& message) const;
@@ -90,11 +93,11 @@ class GltfFile {
   std::filesystem::path folder_;
   GltfRoom room_;
   NamedFiles named_{room_.files};
-  std::optional<GltfFileBytes> chunk_;  ///< of a GLB
+  std::optional<GltfFileBytes> chunk_;  ///< the binary chunk of a GLB
   std::uint64_t chunk_offset_ = 0;
   GltfDocument document_;
   std::vector<Buffer> buffers_;
-  std::vector<std::unique_ptr<GltfBytes>> decoded_;  ///< of each view
+  std::vector<std::unique_ptr<GltfBytes>> decoded_;  ///< per view; null: not decoded
 };
 
 }  // namespace meshhier::mesh_io

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What the parser holds of each: a node of a map with its key, or an item of a list that has just
-/// grown; beside it the characters of texts.
+/// The memory that the parser takes for each: a node of a map with its key, or an item of a list
+/// that has just grown. Characters of texts come on top.
 constexpr std::uint64_t kKeyBytes = 128;
 constexpr std::uint64_t kValueBytes = 48;
 constexpr std::size_t kLongestJsonText = 200;

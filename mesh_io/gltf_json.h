@@ -14,7 +14,7 @@
 
 namespace meshhier::mesh_io {
 
-/// A glTF nests 8 levels; what others add to it some more.
+/// A glTF nests 8 levels; extensions and extras add some more.
 inline constexpr int kDeepestGltfJson = 64;
 
 /// Parses `text`, which is freed. Throws Error(input) naming `path` if it is no JSON or nested
@@ -33,39 +33,40 @@ class GltfObject {
 
   bool has(const char* key) const { return find(key) != nullptr; }
   bool has_object(const char* key) const;
-  /// An integer from 0 to `most`; 2.0 is one.
+  /// Returns an integer from 0 to `most`; 2.0 is one. Nothing if there is no such key.
   std::optional<std::uint64_t> count(const char* key, std::uint64_t most) const;
   std::uint64_t require_count(const char* key, std::uint64_t most) const;
-  /// A number of an item of a list that has `size`.
+  /// Returns the number of an item in a list of `size` items: it is below `size`.
   std::optional<std::uint32_t> index(const char* key, std::size_t size) const;
   std::uint32_t require_index(const char* key, std::size_t size) const;
   double number(const char* key, double otherwise) const;
   bool flag(const char* key) const;
   std::optional<std::string> text(const char* key) const;
-  /// Whether there is a text that begins so.
+  /// Returns whether there is a text that begins with `start`.
   bool has_text(const char* key, std::string_view start) const;
-  /// So many numbers; nothing if there is no such key.
+  /// Returns a list of `size` numbers; nothing if there is no such key.
   std::optional<std::vector<double>> numbers(const char* key, std::size_t size) const;
   std::vector<std::uint32_t> indices(const char* key, std::size_t size) const;
   std::vector<std::string> texts(const char* key) const;
-  /// The first ones of its keys.
+  /// Returns the first `most` of its keys.
   std::vector<std::string> keys(std::size_t most) const;
-  /// Whether there is a list of so many numbers.
+  /// Returns whether there is a list of `size` numbers.
   bool has_numbers(const char* key, std::size_t size) const;
   std::optional<GltfObject> object(const char* key) const;
   GltfObject require_object(const char* key) const;
-  /// The extension of that name of this object.
+  /// Returns this object's extension of that name.
   std::optional<GltfObject> extension(const char* name) const;
   /// Visits the objects of a list, if there is one.
   void for_each(const char* key, const std::function<void(const GltfObject&)>& visit) const;
   std::size_t item_count(const char* key) const;
-  /// An object of a list; nothing if the list has no such one.
+  /// Returns an object of a list; nothing if the list has no such item.
   std::optional<GltfObject> item(const char* key, std::size_t number) const;
-  /// Calls `visit(key, index)` for each member, all of which are numbers of items of a list.
+  /// Calls `visit(key, index)` for each member; all must be numbers of items in a list of `size`
+  /// items.
   void for_each_index(std::size_t size,
                       const std::function<void(const std::string&, std::uint32_t)>& visit) const;
 
-  /// Where it stands in the JSON: "accessors[3]"; empty of the whole.
+  /// Returns where it stands in the JSON: "accessors[3]"; empty for the whole document.
   const std::string& place() const { return place_; }
   [[noreturn]] void fail(const std::string& message) const;
 
@@ -73,7 +74,7 @@ class GltfObject {
   const nlohmann::json* find(const char* key) const;
   const nlohmann::json* find_list(const char* key) const;
   std::string place_of(std::string_view key) const;
-  /// "accessors[3].count is -1, expected EXPECTED".
+  /// Throws Error(input): "accessors[3].count is -1, expected EXPECTED".
   [[noreturn]] void fail_value(const char* key, const std::string& expected) const;
   std::uint64_t checked_count(const nlohmann::json& value, const char* key,
                               std::uint64_t most) const;

@@ -9,12 +9,12 @@
 
 namespace meshhier::mesh_io {
 
-/// What is wrong with the numbers of a compressed view, among them that its elements are more than
-/// a stream of so many bytes can hold; empty if nothing is.
+/// Returns what is wrong with the numbers of a compressed view; empty if nothing is. One fault is
+/// that it has more elements than a stream of so many bytes can hold.
 std::string meshopt_fault(const GltfMeshopt& view);
 
-/// Decodes `stream` into count * stride bytes, filter and all; false if it is no such stream.
-/// Requires a view without fault.
+/// Decodes `stream` into count * stride bytes and undoes the filter; returns false if it is no such
+/// stream. Requires a view without fault.
 bool decode_meshopt(const GltfMeshopt& view, std::span<const std::byte> stream,
                     std::span<std::byte> plain);
 

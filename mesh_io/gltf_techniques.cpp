@@ -35,11 +35,11 @@ bool is_other(const std::string& name) {
 struct Uniform {
   std::string name;
   GltfObject holder;
-  std::string key;  ///< of the value in `holder`
+  std::string key;  ///< key of the value in `holder`
 };
 
-/// Those of the material before those of its technique, which many materials may have: no more are
-/// looked at than a shader has.
+/// Returns the uniforms of the material before those of its technique. Many materials may share a
+/// technique, so no more are looked at than a shader has.
 std::vector<Uniform> uniforms_of(const std::vector<GltfObject>& values) {
   constexpr std::size_t kMostUniforms = 1024;
   std::vector<Uniform> uniforms;

@@ -1,4 +1,4 @@
-// Where the nodes of a glTF document place their meshes.
+// Affine transforms, by which nodes of a glTF document place their meshes.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -15,24 +15,25 @@ struct GltfTransform {
   friend bool operator==(const GltfTransform&, const GltfTransform&) = default;
 };
 
-/// Of node.matrix: 16 numbers column by column, the last row of which is ignored.
+/// Returns the transform of node.matrix: 16 numbers column by column, whose last row is ignored.
 GltfTransform gltf_matrix(const std::array<double, 16>& columns);
-/// Of node.translation, rotation (a quaternion x y z w, of any length but 0) and scale.
+/// Returns the transform of node.translation, rotation (a quaternion x y z w, of any length but 0)
+/// and scale.
 GltfTransform gltf_placement(const Vec3d& translation, const std::array<double, 4>& rotation,
                              const Vec3d& scale);
 
-/// First `inner`, then `outer`.
+/// Applies first `inner`, then `outer`.
 GltfTransform operator*(const GltfTransform& outer, const GltfTransform& inner);
 
 inline Vec3d transformed(const GltfTransform& t, Vec3d p) {
   return Vec3d{dot(t.rows[0], p), dot(t.rows[1], p), dot(t.rows[2], p)} + t.offset;
 }
 
-/// Whether it turns left hands into right ones: triangles must be turned round.
+/// Returns whether it turns left hands into right ones: triangles must be turned round then.
 bool is_mirrored(const GltfTransform& t);
 
-/// What normals are multiplied with, up to a positive factor: the inverse of the transpose; also of
-/// what has no inverse.
+/// Returns the matrix for normals, up to a positive factor: the inverse of the transpose. Its
+/// cofactors are used, so a transform without an inverse has one, too.
 std::array<Vec3d, 3> normal_rows(const GltfTransform& t);
 
 }  // namespace meshhier::mesh_io

@@ -9,12 +9,12 @@
 
 namespace meshhier::mesh_io {
 
-/// Whether `start`, of two bytes or more, is that of a gzip member.
+/// Returns whether `start`, of two bytes or more, is that of a gzip member.
 bool is_gzip_start(std::span<const std::byte> start);
 
-/// The members of a gzip file, one behind the other; zeros behind the last one are padding.
-/// Truncated and damaged data, checksums that do not fit and other bytes behind the last member are
-/// errors. Memory: zlib's 40 KiB and a block of the file.
+/// Unpacks the members of a gzip file, one behind the other; zeros behind the last one are padding.
+/// read() throws Error(input) at truncated or damaged data, checksums that do not fit and other
+/// bytes behind the last member. Memory: zlib's 40 KiB and a block of the file.
 std::unique_ptr<InputStream> make_gzip_stream(const InputFile& input, ReadWatch watch);
 
 }  // namespace meshhier::mesh_io

@@ -15,7 +15,7 @@ struct InputPaths : std::vector<std::filesystem::path> {
   requires std::convertible_to<Path, std::filesystem::path> InputPaths(const Path& path)
       : vector{std::filesystem::path(path)} {}
 
-  /// For messages: with ", " between them.
+  /// Returns the paths with ", " between them, for messages.
   std::string string() const {
     std::string text;
     for (const std::filesystem::path& path : *this)

@@ -12,9 +12,11 @@
 
 namespace meshhier::mesh_io {
 
-/// Told of each block of the file before it is read, with its bytes. May throw.
+/// Called before each block of the file is read, with its number of bytes. May throw, which ends
+/// the reading.
 using ReadWatch = std::function<void(std::uint64_t)>;
 
+/// A content that is read once, forwards. For one thread.
 class InputStream {
  public:
   virtual ~InputStream() = default;
@@ -28,9 +30,9 @@ class FileBlocks {
  public:
   FileBlocks(const InputFile& input, ReadWatch watch);
 
-  /// The next block; empty at the end. Valid until the next call.
+  /// Returns the next block, valid until the next call; empty at the end. Throws Error(io).
   std::span<const std::byte> next();
-  /// Offset in the file behind the last block.
+  /// Returns the offset in the file behind the last block.
   std::uint64_t offset() const { return offset_; }
   const InputFile& input() const { return input_; }
 
@@ -41,11 +43,11 @@ class FileBlocks {
   std::uint64_t offset_ = 0;
 };
 
-/// Whether the file starts as gzip does (RFC 1952).
+/// Returns whether the file starts as gzip does (RFC 1952). Throws Error(io).
 bool is_gzip(const storage::File& file);
 
-/// The content of `input`, whose File must outlive the stream. All of the file is read, and added
-/// to its checksum, when read() has come to the end.
+/// Opens the content of `input`, whose File must outlive the stream. When read() has come to the
+/// end, all of the file has been read and added to its checksum.
 std::unique_ptr<InputStream> open_stream(const InputFile& input, ReadWatch watch);
 
 /// Reads and forgets `bytes`, or up to the end; returns how many there were. Throws as read().

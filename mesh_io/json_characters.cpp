@@ -20,7 +20,7 @@ bool is_number_part(int c) {
   return c > ' ' && c != ',' && c != ':' && c != '[' && c != ']';
 }
 
-/// Of UTF-8: behind the first byte of a character.
+/// Returns whether a byte of UTF-8 follows the first byte of a character.
 bool is_continuation(int c) {
   return (c & 0xC0) == 0x80;
 }

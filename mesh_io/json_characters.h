@@ -9,13 +9,13 @@
 
 namespace meshhier::mesh_io {
 
-/// The JSON of a glTF, GLB or other file: texts are cut to 8 KiB, and it ends at a number or word
-/// that is longer than 1 KiB. So no token takes much memory.
+/// The characters of the JSON of a glTF, GLB or other file. Texts are cut to 8 KiB, and the JSON
+/// ends at a number or word that is longer than 1 KiB, so no token takes much memory.
 class JsonCharacters {
  public:
   explicit JsonCharacters(InputStream& stream);
 
-  /// -1 at the end.
+  /// Returns the next character; -1 at the end. Throws as InputStream::read().
   int next();
 
  private:
@@ -23,7 +23,7 @@ class JsonCharacters {
   bool load();
 
   InputStream& stream_;
-  std::uint64_t left_ = UINT64_MAX;  ///< of the JSON chunk of a GLB
+  std::uint64_t left_ = UINT64_MAX;  ///< bytes left of the JSON chunk of a GLB
   std::vector<std::byte> block_;
   std::size_t at_ = 0;
   bool in_text_ = false, escaped_ = false, kept_ = false;

@@ -12,7 +12,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// Whether a line ends with the character at `at`, and the next one can begin behind it.
+/// Returns whether a line ends with the character at `at`, and the next one can begin behind it.
 bool ends_line(std::string_view text, std::size_t at) {
   if (!is_line_end(text[at]))
     return false;

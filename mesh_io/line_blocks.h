@@ -10,28 +10,28 @@
 
 namespace meshhier::mesh_io {
 
-/// Of a text that more follows, the bytes of its first lines, as many as make a block; 0 if none
-/// do.
+/// Returns how many bytes at the start of a text make a block of whole lines, where more text
+/// follows; 0 if none do.
 using LineCut = std::size_t (*)(std::string_view text);
 
-/// Up to the last line end at which it can be cut: lines end with LF, CRLF or CR, and a backslash
-/// before a line's end joins it with the next one.
+/// Cuts behind the last line end. Lines end with LF, CRLF or CR; a backslash before a line's end
+/// joins it with the next one.
 std::size_t whole_lines(std::string_view text);
 
-/// A byte order mark of UTF-8 at the start is left out.
+/// Cuts a stream into blocks. A byte order mark of UTF-8 at the start is left out. For one thread.
 class LineBlocks {
  public:
-  /// Of a block, at most.
+  /// The largest size of a block.
   static constexpr std::size_t kBytes = std::size_t{1} << 18;
 
   explicit LineBlocks(InputStream& stream, LineCut cut = whole_lines);
   ~LineBlocks();
 
-  /// The next lines, as many as fit and the cut allows; the file's last one may have no end. False
-  /// at the end of the file, or if the next lines do not fit: then rest() has them and all behind
-  /// them.
+  /// Reads the next lines into `block`, as many as fit and the cut allows; the file's last one may
+  /// have no end. Returns false at the end of the file, or if the next lines do not fit: then
+  /// rest() has them and all behind them.
   bool next(std::vector<char>& block);
-  /// What next() has not handed out, as a stream; valid as long as this object.
+  /// Returns the bytes that next() has not handed out as a stream, valid as long as this object.
   InputStream& rest();
 
  private:
@@ -39,7 +39,7 @@ class LineBlocks {
 
   InputStream& stream_;
   LineCut cut_;
-  std::vector<char> left_;  ///< of the block before: the start of a line
+  std::vector<char> left_;  ///< the start of a line, from the block before
   bool has_begun_ = false;
   bool has_ended_ = false;
   std::unique_ptr<Rest> rest_;

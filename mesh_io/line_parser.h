@@ -1,4 +1,4 @@
-// Reads lines of a text in memory, of which it is not known whether they are as expected.
+// Reads lines of a text in memory that may or may not have the expected form.
 #pragma once
 
 #include "mesh_io/text_chars.h"
@@ -18,7 +18,8 @@ constexpr bool is_of_number(char c) {
   return is_digit(c) || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
 }
 
-/// Reads a line from its start on. What it has read so far counts only if the line is as expected.
+/// Reads a line from its start on. Its results count only if the whole line has the expected form;
+/// else the caller reads the line by words, which tell errors.
 class LineParser {
  public:
   LineParser(const char* at, const char* end) : at_(at), end_(end) {}
@@ -37,14 +38,14 @@ class LineParser {
     at_ += is_there ? 1 : 0;
     return is_there;
   }
-  /// The word here, perhaps empty.
+  /// Takes the word here, perhaps empty.
   std::string_view take_word() {
     const char* const first = at_;
     while (!is_at_end() && !is_blank(*at_))
       ++at_;
     return {first, at_};
   }
-  /// The word here; empty if it has letters of no number.
+  /// Takes the word here; empty if it has characters of no number.
   std::string_view take_number() {
     const char* const first = at_;
     while (at_ != end_ && is_of_number(*at_))
@@ -52,7 +53,7 @@ class LineParser {
     const bool is_whole = is_at_end() || is_blank(*at_);
     return is_whole ? std::string_view(first, at_) : std::string_view();
   }
-  /// A whole number but 0.
+  /// Takes a whole number other than 0 that fits 32 bits; nothing if there is none.
   std::optional<std::int32_t> take_index() {
     const bool is_negative = take('-');
     const char* const first = at_;

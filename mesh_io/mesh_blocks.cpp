@@ -37,7 +37,7 @@ bool all_in_range(std::span<const Vec3f> points) {
 }
 
 bool all_in_range(std::span<const Vec3d> points) {
-  int good = 1;  // not a bool: what has no branch is meant to have none
+  int good = 1;  // not a bool, so that the loop has no branch
   for (const Vec3d& p : points)
     good &= int{is_coordinate(p.x)} & int{is_coordinate(p.y)} & int{is_coordinate(p.z)};
   return good != 0;
@@ -75,7 +75,7 @@ bool VertexRows::is_value(int slot) const {
   return channel >= layout_.value_offset() && channel < layout_.texcoord_offset();
 }
 
-/// Of the attributes that must be.
+/// Returns whether the attributes that must be finite are.
 bool VertexRows::all_checked_finite(std::size_t first, std::size_t count) const {
   const float* rows = memory_.attributes.data() + first * channels_;
   if (layout_.values.empty())

@@ -24,16 +24,17 @@
 
 namespace meshhier::mesh_io {
 
-/// What the header says, before any vertex is read.
+/// The header's facts, known before any vertex is read.
 struct MeshDescription {
   std::string format;  ///< for people: "PLY binary little endian"
   std::uint64_t file_bytes = 0;
   std::uint64_t vertex_count = 0;  ///< N < 2^32
-  std::uint64_t place_count = 0;   ///< where they lie, if that is known; 0: each at its own place
-  std::uint64_t face_count = 0;    ///< polygons, or triangle strips, as declared
+  /// Different places of vertices, if that is known; 0: each at its own.
+  std::uint64_t place_count = 0;
+  std::uint64_t face_count = 0;  ///< polygons, or triangle strips, as declared
   AttributeLayout attributes;
-  bool wide_coordinates =
-      false;  ///< declared as double, int32 or uint32: may not fit float exactly
+  /// Declared as double, int32 or uint32, which may not fit float exactly.
+  bool wide_coordinates = false;
   bool vertices_in_place = false;  ///< vertices are binary, of one fixed size, at a known offset:
                                    ///< reading them again costs no more than their bytes
 
@@ -48,16 +49,16 @@ struct VertexBlock {
   std::span<const float> attributes;  ///< count * attributes.channels(), see hierarchy/attributes.h
   ZeroedCounts zeroed;                ///< among these attributes
 
-  /// All coordinates do, but those that are not finite.
+  /// Returns whether all finite coordinates are floats.
   bool fits_float() const;
 };
 
-/// What reading all faces found.
+/// Counts of all faces that were read.
 struct FaceCounts {
   std::uint64_t faces = 0;
   std::uint64_t triangles = 0;  ///< handed out
-  std::uint64_t degenerate_triangles =
-      0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
+  /// Dropped: a vertex twice, or a polygon of fewer than three corners.
+  std::uint64_t degenerate_triangles = 0;
   PolygonCounts polygons;
 
   friend FaceCounts operator+(const FaceCounts& a, const FaceCounts& b) {
@@ -66,14 +67,14 @@ struct FaceCounts {
   }
 };
 
-/// Some triangles of consecutive faces. Valid as long as the memory it was read into is not used.
+/// Some triangles of consecutive faces. Valid until the memory that it was read into is used again.
 struct TriangleBlock {
   std::span<const Triangle<VertexId>> triangles;
   std::uint64_t faces = 0;  ///< taken; those without a triangle here were degenerate
   bool whole = false;       ///< all faces of the block were taken
 };
 
-/// What a block is read into; used again for the next one.
+/// The memory that a block is read into; used again for the next one. One a thread.
 struct BlockMemory {
   std::vector<std::byte> bytes;
   std::vector<Vec3f> positions;
@@ -85,25 +86,30 @@ struct BlockMemory {
 using VertexVisitor = std::function<void(const VertexBlock&)>;
 using TriangleVisitor = std::function<void(std::span<const Triangle<VertexId>>)>;
 
-/// A vertex has coordinates that are not finite. If no face uses it the mesh is whole without it:
-/// PlySource of Unplaced::visited reads it.
+/// A vertex has coordinates that are not finite. If no face uses it, the mesh is whole without it:
+/// a PlySource with Unplaced::visited reads it.
 class UnplacedVertexError : public Error {
  public:
   explicit UnplacedVertexError(const Error& error) : Error(error) {}
 };
 
-/// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
-/// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor
+/// A mesh file that is read as often as one likes, in bounded memory: peak memory does not depend
+/// on the file but for 10 bytes each 256 KiB.
+///
+/// Errors. Every failure throws Error(input) naming file, byte offset (binary) or line (text), what
+/// was expected and what was found; Error(io) if the file cannot be read. An exception of a visitor
 /// passes through.
-/// Peak memory does not depend on the file but for 10 bytes each 256 KiB. One call at a time but
-/// for the two that read single blocks; calls may come in any order.
+///
+/// Threads. One call at a time, but for read_vertex_block() and read_triangle_block(), which may
+/// run side by side. Calls may come in any order.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
   virtual const MeshDescription& description() const = 0;
 
-  /// Visits all vertices in file order, in blocks of at most kBlockSize. Coordinates are checked
-  /// finite. `runner`: for the blocks of a text, from which visits come.
+  /// Visits all vertices in file order, in blocks of at most kBlockSize, from one thread at a time.
+  /// Coordinates are checked finite. `runner` runs the blocks of a text; visits come from its
+  /// take().
   virtual void read_vertices(const VertexVisitor& visit, const BlockRunner& runner) = 0;
   void read_vertices(const VertexVisitor& visit) { read_vertices(visit, BlockRunner()); }
 
@@ -114,38 +120,41 @@ class MeshSource {
     return read_triangles_from(0, visit, runner);
   }
 
-  /// Blocks of vertices that can be read one by one: 0 unless vertices_in_place.
+  /// Returns the number of blocks of vertices that can be read one by one: 0 unless
+  /// vertices_in_place.
   virtual std::uint64_t vertex_blocks() const = 0;
-  /// Reads block `index` of vertex_blocks(); all together are the vertices in file order. Throws
-  /// for the first defect of the block. Thread-safe for different `memory`.
+  /// Reads block `index` < vertex_blocks(); all blocks together are the vertices in file order.
+  /// Throws for the first defect of the block. Thread-safe for different `memory`.
   virtual VertexBlock read_vertex_block(std::uint64_t index, BlockMemory& memory) const = 0;
 
-  /// Blocks of faces that can be read one by one if all faces before them are triangles: 0 if the
-  /// rows of triangles have no known place.
+  /// Returns the number of blocks of faces that can be read one by one, as long as all faces before
+  /// them are triangles; 0 if the rows of triangles have no known place.
   virtual std::uint64_t triangle_blocks() const = 0;
-  /// Reads block `index` of triangle_blocks(), up to the first face that is not a sound triangle.
-  /// What it returns means nothing unless all blocks before are whole. If they are, and it is not
+  /// Reads block `index` < triangle_blocks(), up to the first face that is not a sound triangle.
+  /// The result means nothing unless all blocks before it are whole. If they are, and it is not
   /// whole or the last one, read_triangles_from() goes on behind it. Thread-safe for different
   /// `memory`. Throws Error(io) only.
   virtual TriangleBlock read_triangle_block(std::uint64_t index, BlockMemory& memory) const = 0;
-  /// As read_triangles() without the first `face` faces, all of which blocks have shown to be
-  /// triangles; counts only what comes from there on.
+  /// Does as read_triangles(), but without the first `face` faces, all of which blocks have shown
+  /// to be triangles; counts only faces from there on.
   virtual FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit,
                                          const BlockRunner& runner) = 0;
 
-  /// What was read although the format has it otherwise; known once all was read.
+  /// Returns counts of oddities that were read although the format has them otherwise; complete
+  /// once all was read.
   virtual OddSyntax odd_syntax() const = 0;
 
-  /// The file's storage::FileChecksum: reads what of the file was not read so far. `check` is
-  /// called before each read and may throw.
+  /// Returns the file's storage::FileChecksum, for which it reads the blocks of the file that were
+  /// not read so far. `check` is called before each read and may throw.
   virtual std::uint64_t checksum(const std::function<void()>& check) = 0;
-  /// Of what was read so far.
+  /// Returns the sums of the blocks that were read so far.
   virtual std::vector<storage::BlockSums> known_sums() const = 0;
-  /// Takes what another process has read of the same file; false if that is not so long.
+  /// Takes the sums of blocks that another process has read of the same file; returns false if this
+  /// file has no such blocks.
   virtual bool add_sums(const storage::BlockSums& sums) = 0;
 
-  static constexpr std::size_t kBlockSize =
-      65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise
+  /// 768 KiB of positions: in the L2 cache, large enough to amortise.
+  static constexpr std::size_t kBlockSize = 65536;
 };
 
 /// Opens a mesh file; the format is known by its content. Reads the header and checks that what it

@@ -209,7 +209,7 @@ class MtlReader {
   const std::function<void(const MtlMaterial&)>& visit_;
   MtlMaterial material_;
   std::optional<MtlMap> light_, ambient_;  ///< map_Ke, map_Ka
-  bool has_begun_ = false;                 ///< not before the first newmtl
+  bool has_begun_ = false;                 ///< true from the first newmtl on
   bool has_opacity_ = false;
 };
 

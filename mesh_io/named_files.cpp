@@ -7,12 +7,13 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// Without "." and empty parts. What is behind a link's ".." only the system knows, so those stay.
+/// Removes "." and empty parts. A ".." behind a link leads to a place that only the system knows,
+/// so those stay.
 std::filesystem::path tidy(const std::filesystem::path& name) {
   return std::ranges::find(name, "..") == name.end() ? name.lexically_normal() : name;
 }
 
-/// With slashes, and without a comment.
+/// Returns a name with slashes, as it is and without a comment.
 std::vector<std::string> spellings(std::string_view name) {
   std::vector<std::string> all{std::string(name)};
   std::ranges::replace(all[0], '\\', '/');

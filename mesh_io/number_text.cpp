@@ -52,7 +52,7 @@ double unit_of_last_digit(std::string_view word) {
   return parse_real<double>("1e" + std::to_string(power)).value_or(0);
 }
 
-/// For a value that is not a float.
+/// Returns whether a float says all that a text does whose double is no float.
 bool float_says_it(std::string_view word, double value) {
   const auto narrow = static_cast<float>(value);
   if (!std::isfinite(narrow))
@@ -67,7 +67,8 @@ bool float_says_it(std::string_view word, double value) {
   return parse_real<float>(word) == narrow;
 }
 
-/// As older programs on Windows write what is no number: "-1.#IND00", "1.#QNAN0", "1.#INF".
+/// Returns whether older programs on Windows write this for no number: "-1.#IND00", "1.#QNAN0",
+/// "1.#INF".
 bool is_no_number(std::string_view word) {
   word.remove_prefix(word.starts_with('-') ? 1 : 0);
   return word.starts_with("1.#IND") || word.starts_with("1.#INF") || word.starts_with("1.#QNAN") ||

@@ -7,15 +7,17 @@
 
 namespace meshhier::mesh_io {
 
-/// A decimal integer with an optional sign that fits int64; nothing else in `word`.
+/// Parses a decimal integer with an optional sign that fits int64. Nothing if `word` is anything
+/// else.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
-/// An integer that is written as a float: "3.0", of at most 2^53.
+/// Parses an integer that is written as a float: "3.0", of at most 2^53.
 std::optional<std::int64_t> parse_whole(std::string_view word);
 
-/// A decimal number with optional sign, fraction and exponent, or "inf" or "nan" in any case;
-/// nothing else in `word`. "-nan(ind)", "1.#QNAN" and the like of Windows are no numbers, too.
-/// Correctly rounded to `Scalar` (float or double); too large becomes infinite, too small zero.
+/// Parses a decimal number with optional sign, fraction and exponent, or "inf" or "nan" in any
+/// case. Nothing if `word` is anything else. "-nan(ind)", "1.#QNAN" and the like of Windows are no
+/// numbers, too. Correctly rounded to `Scalar` (float or double); too large becomes infinite, too
+/// small zero.
 template <class Scalar>
 std::optional<Scalar> parse_real(std::string_view word);
 
@@ -27,7 +29,8 @@ struct DecimalNumber {
   bool fits_float = true;
 };
 
-/// As parse_real<double>. float(value) is the correctly rounded float if `fits_float`.
+/// Parses as parse_real<double>() does. float(value) is the correctly rounded float if
+/// `fits_float`.
 std::optional<DecimalNumber> parse_decimal(std::string_view word);
 
 }  // namespace meshhier::mesh_io

@@ -125,7 +125,7 @@ class BlockParser {
     return true;
   }
 
-  /// Up to three numbers, all finite; returns how many, 4 if it is something else.
+  /// Takes up to three numbers, all finite; returns how many, 4 if there is something else.
   static std::size_t take_floats(LineParser& line, std::array<float, 3>& numbers) {
     constexpr std::size_t kOther = 4;
     if (!is_blank(line.next()))

@@ -10,7 +10,7 @@
 
 namespace meshhier::mesh_io {
 
-/// Begins a comment that is none: colours of ZBrush.
+/// The beginning of lines that look like comments and are colours of ZBrush.
 inline constexpr std::string_view kObjPolypaint = "#MRGB";
 
 /// Lines that follow one another and say the same kind of thing, a line each.
@@ -25,7 +25,7 @@ struct ObjRun {
     others      ///< whatever else: to be read by words
   };
   Kind kind = Kind::nothing;
-  std::uint8_t corners = 0;   ///< of a face
+  std::uint8_t corners = 0;   ///< corners of each face
   bool has_texcoord = false;  ///< its corners: v/vt or v/vt/vn
   bool has_normal = false;    ///< v//vn or v/vt/vn
   std::uint32_t lines = 0;
@@ -35,29 +35,30 @@ struct ObjRun {
     return kind == run.kind && corners == run.corners && has_texcoord == run.has_texcoord &&
            has_normal == run.has_normal;
   }
-  /// Numbers of each face.
+  /// Returns how many numbers each face has.
   std::size_t indices() const {
     return corners * (std::size_t{1} + (has_texcoord ? 1 : 0) + (has_normal ? 1 : 0));
   }
 };
 
-/// Numbers are sound in themselves: what refers to what is not looked at.
+/// A parsed block. Its numbers are sound in themselves; whether indices refer to something is not
+/// checked.
 struct ObjBlock {
   std::vector<char> text;  ///< whole lines
   std::vector<ObjRun> runs;
   std::vector<Vec3d> positions;                 ///< coordinates, in range
-  std::vector<std::array<float, 3>> colours;    ///< of runs of coloured ones
+  std::vector<std::array<float, 3>> colours;    ///< colours of coloured runs
   std::vector<std::array<float, 2>> texcoords;  ///< finite
   std::vector<std::array<float, 3>> normals;    ///< finite
-  std::vector<std::int32_t> indices;            ///< of faces, as the file has them: v [vt] [vn] ...
-  bool fits_float = true;                       ///< all coordinates do (DecimalNumber)
+  std::vector<std::int32_t> indices;  ///< faces' indices as the file has them: v [vt] [vn] ...
+  bool fits_float = true;             ///< all coordinates do (DecimalNumber)
 };
 
-/// Of a block of LineBlocks::kBytes, at most: a line of 8 bytes is a run and a position.
+/// The largest memory of a block of LineBlocks::kBytes: a line of 8 bytes is a run and a position.
 inline constexpr std::uint64_t kObjBlockBytes = std::uint64_t{7} << 18;
 
-/// Fills all but the text. What is not as simple as above is left to the reader by words; it never
-/// fails. O(bytes).
+/// Fills all but the text. Lines that are not as simple as above become runs of `others`, which the
+/// reader reads by words; it never fails. O(bytes). Thread-safe for different blocks.
 void parse(ObjBlock& block);
 
 }  // namespace meshhier::mesh_io

@@ -50,7 +50,7 @@ class ObjReader::Impl {
     const char* name;
     std::uint64_t count = 0;
     std::uint64_t highest = 0;       ///< number, from 1 on, that was referred to
-    std::uint64_t highest_line = 0;  ///< where that was
+    std::uint64_t highest_line = 0;  ///< the line that did
   };
 
  public:
@@ -85,7 +85,7 @@ class ObjReader::Impl {
   }
 
  private:
-  /// Where the next run's numbers begin.
+  /// The places where the next run's numbers begin.
   struct Cursor {
     std::size_t positions = 0, colours = 0, texcoords = 0, normals = 0, indices = 0;
   };
@@ -108,7 +108,7 @@ class ObjReader::Impl {
     }
   }
 
-  /// What parse() has left to words: lines [first, first + count) of a run.
+  /// Reads lines [first, first + count) of a run by words, as parse() has left them.
   void take_by_words(const ObjBlock& block, const ObjRun& run, std::uint32_t first,
                      std::uint32_t count) {
     const std::string_view text = behind_lines(
@@ -124,7 +124,7 @@ class ObjReader::Impl {
       read_statement(words_.take_word());
   }
 
-  /// Whether there may be so many more. If not, which one is too many is found by words.
+  /// Returns whether there may be so many more. If not, which one is too many is found by words.
   static bool has_room(const Kind& kind, std::uint64_t more) {
     return kind.count + more < kMostElements;
   }
@@ -227,7 +227,7 @@ class ObjReader::Impl {
     words_.skip_line();
   }
 
-  /// What is no such number ends it: this is a comment after all.
+  /// Reads colours up to the first text that is no such number: then this is a comment after all.
   void read_polypaint() {
     constexpr std::size_t kDigits = 8;
     const std::string text = words_.take_rest();
@@ -396,12 +396,12 @@ class ObjReader::Impl {
 
   TextStream none_;
   WordStream words_;
-  std::uint64_t line_ = 1;  ///< of what is taken
+  std::uint64_t line_ = 1;  ///< number of the line that is taken
   Cursor at_;
   const std::filesystem::path& path_;
   ObjVisitor& visitor_;
   Kind positions_{"vertex"}, texcoords_{"texture coordinate"}, normals_{"normal"};
-  std::vector<ObjCorner> corners_;  ///< of a face
+  std::vector<ObjCorner> corners_;  ///< corners of a face
   PolygonCut cut_;
   ObjCounts counts_;
 };

@@ -19,7 +19,7 @@
 
 namespace meshhier::mesh_io {
 
-/// What a corner of a face refers to; the first of each kind is 0.
+/// The numbers that a corner of a face refers to; the first of each kind is 0.
 struct ObjCorner {
   static constexpr std::uint32_t kNone = UINT32_MAX;
   std::uint32_t position = 0;
@@ -34,22 +34,23 @@ class ObjVisitor {
  public:
   virtual ~ObjVisitor() = default;
   virtual void add_position(Vec3d position, const std::optional<ObjColour>& colour) = 0;
-  /// Of the next vertex that has none of these: ZBrush writes them behind all vertices.
+  /// Takes the colour of the next vertex that has none of these yet: ZBrush writes them behind all
+  /// vertices.
   virtual void add_polypaint(const ObjColour& /*colour*/) {}
   virtual void add_texcoord(std::array<float, 2> texcoord) = 0;
   virtual void add_normal(Vec3f normal) = 0;
-  /// usemtl: of the triangles from here on; the rest of the line.
+  /// Takes the rest of a line usemtl: the material of the triangles from here on.
   virtual void use_material(const std::string& /*name*/) {}
-  /// mtllib: the rest of the line, which is one name or several.
+  /// Takes the rest of a line mtllib, which is one name or several.
   virtual void use_libraries(const std::string& /*names*/) {}
-  /// Whether the next two are called.
+  /// Returns whether use_group() and use_object() are called.
   virtual bool takes_groups() const { return false; }
-  /// g and o, likewise.
+  /// Take the rest of lines g and o.
   virtual void use_group(const std::string& /*names*/) {}
   virtual void use_object(const std::string& /*name*/) {}
-  /// A position that was added; for polygons whose shape must be known.
+  /// Returns a position that was added, for polygons whose shape must be known.
   virtual Vec3d position(std::uint32_t number) = 0;
-  /// Three different positions.
+  /// Takes a triangle of three different positions.
   virtual void add_triangle(const ObjTriangle& triangle) = 0;
 };
 
@@ -62,7 +63,7 @@ struct ObjCounts {
   std::uint64_t faces = 0;
   std::uint64_t triangles = 0;
   std::uint64_t degenerate_triangles = 0;  ///< dropped: a position twice, or fewer than 3 corners
-  std::uint64_t corners = 0;               ///< of the triangles
+  std::uint64_t corners = 0;               ///< corners of the triangles
   PolygonCounts polygons;                  ///< those before their vertices are fans
   std::uint64_t textured_corners = 0;
   std::uint64_t normal_corners = 0;
@@ -73,7 +74,7 @@ struct ObjCounts {
   std::uint64_t points_and_lines = 0;  ///< p, l: ignored
   std::uint64_t others = 0;            ///< smoothing groups, curves, surfaces, ...: ignored
   bool fits_float = true;              ///< all coordinates do (DecimalNumber)
-  UnplacedVertices unplaced;           ///< are visited
+  UnplacedVertices unplaced;           ///< which are visited all the same
   ZeroedCounts zeroed;                 ///< among normals and texcoords
   OddSyntax odd;
 };
@@ -88,7 +89,7 @@ class ObjReader {
   ObjReader(const std::filesystem::path& path, ObjVisitor& visitor);
   ~ObjReader();
 
-  /// Throws as read_obj().
+  /// All throw as read_obj().
   void take(const ObjBlock& block);
   void take_rest(InputStream& rest);
   ObjCounts finish();
@@ -98,22 +99,23 @@ class ObjReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether a line of an OBJ file can begin with that word.
+/// Returns whether a line of an OBJ file can begin with that word.
 bool is_obj_statement(std::string_view word);
 
 /// Reads
 ///
-///   v x y z [w] | v x y z r g b [a]      w and a are ignored
-///   vt u [v [w]]                         v is 0 if it is not there, w is ignored
+///   v x y z [w] | v x y z r g b [a]   w and a are ignored
+///   vt u [v [w]]                      v is 0 if it is not there, w is ignored
 ///   vn x y z
-///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
-///                                        back; polygons are cut as their shape asks for
+///   f corner corner corner ...        corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
+///   back;
+///                                     polygons are cut as their shape asks for
 ///   usemtl NAME | mtllib NAME [NAME ...] | g NAME [NAME ...] | o NAME
-///   #MRGB mmrrggbb...                    colours of ZBrush, 8 hexadecimal digits a vertex; the
-///   mask
-///                                        mm is ignored
+///   #MRGB mmrrggbb...                 colours of ZBrush, 8 hexadecimal digits a vertex; the mask
+///   mm is
+///                                     ignored
 ///
-/// and counts all other statements. Indices may be of what comes later; all are looked at. Numbers
+/// and counts all other statements. Indices may refer to what comes later; all are checked. Numbers
 /// are finite. Less than 2^32 - 1 of each. Throws Error(input) naming the line, Error(io).
 ObjCounts read_obj(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor);
 

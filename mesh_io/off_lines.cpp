@@ -30,7 +30,7 @@ std::optional<OffNumber> number_of(std::string_view word, bool is_decimal) {
   return number ? std::optional(OffNumber{*number, integer.has_value(), true}) : std::nullopt;
 }
 
-/// Whether the line has nothing but numbers.
+/// Returns whether the line has nothing but numbers.
 bool take_row(LineParser& line, OffLines& block) {
   constexpr std::uint32_t kDecimals = 3;
   const auto offset = static_cast<std::uint32_t>(line.at() - block.text.data());

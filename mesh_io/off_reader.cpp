@@ -20,14 +20,14 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// What the first word says of the vertices.
+/// The first word, which says what vertices have.
 struct Keyword {
   bool is_off = false;
   bool texcoords = false;
   bool colours = false;
   bool normals = false;
   bool more_dimensions = false;  ///< 4 or n
-  bool is_odd = false;           ///< in small letters
+  bool is_odd = false;           ///< written in small letters
   std::string_view glued;        ///< digits right behind it: the count of vertices, as in ModelNet
 };
 
@@ -76,7 +76,7 @@ class TextsThenRest final : public InputStream {
   explicit TextsThenRest(LineBlocks& lines) : lines_(lines) {}
 
   void add(std::span<const char> text) { text_.insert(text_.end(), text.begin(), text.end()); }
-  /// What is left of the texts, and the last of those that were read.
+  /// Returns the texts that are left, and the last bytes of those that were read.
   std::vector<char> text_behind(std::size_t last) const {
     return {text_.begin() + static_cast<std::ptrdiff_t>(read_ - last), text_.end()};
   }
@@ -127,7 +127,7 @@ class OffReader {
       counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
     while (face_ < face_count_)
       read_face(face_++, blocks, visit_face);
-    // Where lines say nothing, a number too many may be one that was taken for another.
+    // In a file whose lines end anywhere, a number too many may mean that another was taken for it.
     if (is_wrapped_ && words_.to_row())
       words_.fail("expected the end of the file behind the faces, found " +
                   in_quotes(words_.take_word()));
@@ -151,7 +151,7 @@ class OffReader {
     std::vector<OffLines> slots(runner.in_flight);
     const auto slot = [&](std::size_t i) -> OffLines& { return slots[i % slots.size()]; };
     std::size_t read = 0, taken = 0;
-    std::size_t taken_bytes = 0;  // of the first block that was not taken as a whole
+    std::size_t taken_bytes = 0;  // bytes taken of the first block that was not taken as a whole
     std::uint64_t line = words_.line();
     const auto read_block = [&](std::size_t i) {
       std::vector<char>& text = slot(i).text;
@@ -287,8 +287,8 @@ class OffReader {
     counts_.odd.header_lines += (keyword.is_odd ? 1 : 0) + (is_split || has_line_of_edges ? 1 : 0);
   }
 
-  /// Whether the next line is the count of edges: a number alone, in front of a vertex or behind
-  /// other counts alone.
+  /// Returns whether the next line is the count of edges: a number alone, in front of a vertex or
+  /// behind other counts alone.
   bool are_edges_next(bool is_split) {
     constexpr std::size_t kPosition = 3;
     return words_.words_ahead(2, 1) == 1 &&
@@ -390,7 +390,7 @@ class OffReader {
     visit(blocks.triangles(), is_wrapped_ ? std::nullopt : take_face_colour());
   }
 
-  /// What is left of the line. One number is that of a colour in a table that nobody has.
+  /// Takes the rest of the line. A single number is that of a colour in a table that nobody has.
   std::optional<OffColour> take_face_colour() {
     OffColour colour;
     colour.are_bytes = true;
@@ -445,7 +445,7 @@ class OffReader {
 
   LineBlocks lines_;
   TextsThenRest start_;   ///< the first blocks
-  TextsThenRest behind_;  ///< of the blocks that were not taken
+  TextsThenRest behind_;  ///< the blocks that were not taken
   WordStream words_;
   std::uint64_t vertex_ = 0, face_ = 0;  ///< the next ones
   std::array<float, kMaxChannels> channels_{};

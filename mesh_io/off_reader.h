@@ -21,16 +21,16 @@
 
 namespace meshhier::mesh_io {
 
-/// Whether a file that begins with that word is an OFF file: [ST][C][N][4][n]OFF.
+/// Returns whether a file that begins with that word is an OFF file: [ST][C][N][4][n]OFF.
 bool is_off_keyword(std::string_view word);
 
 struct OffCounts {
   std::uint64_t vertices = 0;
   FaceCounts faces;
-  std::uint64_t unknown_colours = 0;  ///< of faces: not three or four finite numbers
+  std::uint64_t unknown_colours = 0;  ///< faces whose colour is not three or four finite numbers
   AttributeLayout attributes;  ///< colours are u8 if all are integers from 0 to 255, else f32
   bool fits_float = true;      ///< all coordinates do (DecimalNumber)
-  UnplacedVertices unplaced;   ///< are visited
+  UnplacedVertices unplaced;   ///< which are visited all the same
   ZeroedCounts zeroed;
   OddSyntax odd;
 };
@@ -38,7 +38,7 @@ struct OffCounts {
 /// One vertex; `attributes`: its channels in the order of AttributeLayout.
 using OffVertexVisitor = std::function<void(Vec3d position, std::span<const float> attributes)>;
 
-/// Of a face; 1 for alpha if it has none.
+/// A face's colour; alpha is 1 if it has none.
 struct OffColour {
   std::array<float, 4> numbers{1, 1, 1, 1};  ///< as the file has them
   bool has_alpha = false;
@@ -57,16 +57,15 @@ using OffFaceVisitor =
 ///   n i1 ... in [colour]                 a line each; polygons are cut as TriangleBlocks does
 ///
 /// Colours may also stand in a file whose first line does not say so: if the first vertex has three
-/// or four numbers behind its coordinates. If the first vertex of such a file has a line of
-/// fewer than three or more than seven numbers, or the first face a line that is too long for it
-/// and a colour, lines may end anywhere, there are no colours, and nothing may follow. The keyword
-/// may be in small letters, but for "noff", and each count on a line of its own. What else lies
-/// behind the last face is counted. Corners are below the count of vertices, numbers finite.
-/// Files of four dimensions or in binary are refused. Throws Error(input) naming the line,
-/// Error(io).
+/// or four numbers behind its coordinates. If the first vertex of such a file has a line of fewer
+/// than three or more than seven numbers, or the first face a line that is too long for it and a
+/// colour, lines may end anywhere, there are no colours, and nothing may follow. The keyword may be
+/// in small letters, but for "noff", and each count on a line of its own. Lines behind the last
+/// face are counted. Corners are below the count of vertices, numbers finite. Files of four
+/// dimensions or in binary are refused. Throws Error(input) naming the line, Error(io).
 ///
-/// `place_of`: a vertex that was visited. `runner`: for the blocks of the text, of kOffLinesBytes
-/// each, from which visits come.
+/// `place_of` returns where a vertex lies that was visited. `runner` runs the blocks of the text,
+/// of kOffLinesBytes each; visits come from its take().
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
                    const OffFaceVisitor& visit_face, const PlaceOf& place_of,

@@ -14,8 +14,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// By what a file is known: bytes at a place, or a word in the first part of a text that begins in
-/// some way.
+/// A mark that a file is known by: bytes at a place, or a word in the first part of a text that
+/// begins in some way.
 struct Mark {
   std::string_view bytes;
   std::size_t offset = 0;

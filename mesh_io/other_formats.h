@@ -1,5 +1,5 @@
-// The formats that people take for meshes that can be built, a row each, and other files that lie
-// beside meshes: what they are, and what to do with them.
+// Formats that are not read, a row each: formats that people take for meshes that can be built, and
+// files that lie beside meshes. Each row says what such a file is and what to do with it.
 #pragma once
 
 #include <string>
@@ -8,14 +8,15 @@
 
 namespace meshhier::mesh_io {
 
-/// What a file is that begins so, and what to do with it: "a zip archive; unpack it, and build the
-/// mesh in it". Empty if that is not known. `start`: unpacked, if the file is in gzip.
+/// Returns what a file is that begins with `start`, and what to do with it: "a zip archive; unpack
+/// it, and build the mesh in it". Empty if that is not known. `start`: unpacked, if the file is in
+/// gzip.
 std::string other_format(std::string_view start);
 
-/// Whether files of that ending, ".fbx", are of a known format, one that is read among them.
+/// Returns whether files of that ending, such as ".fbx", are of a known format, read or not.
 bool is_known_ending(std::string_view ending);
 
-/// The endings of pictures, read or not, which may belong to a mesh.
+/// Returns the endings of pictures, read or not, which may belong to a mesh.
 std::vector<std::string_view> all_picture_endings();
 
 }  // namespace meshhier::mesh_io

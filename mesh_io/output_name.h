@@ -1,4 +1,4 @@
-// Tells what an output's name promises to whoever opens it by its name.
+// Checks that an output's name does not promise another format than it gets.
 #pragma once
 
 #include <initializer_list>

@@ -221,7 +221,7 @@ void BinaryBody<Swap>::take_list(const Row& row, const PlyProperty& property, st
   }
 }
 
-/// Of an integer type.
+/// Reads a value of an integer type.
 template <bool Swap>
 std::int64_t BinaryBody<Swap>::load_integer(PlyType type) const {
   return with_type(type, [&](auto zero) {

@@ -85,7 +85,7 @@ constexpr std::array<std::string_view, 8> kFaceTexcoords{
     "texcoord", "texcoords",     "texture_coordinates", "texture_coords",
     "uv",       "texture_coord", "tex_coords",          "tex_coord"};
 
-/// Whether faces have coordinates of their own.
+/// Returns whether faces have coordinates of their own.
 bool plan_face_texcoords(PlyElementPlan& plan, const std::filesystem::path& path) {
   plan.texcoords = find_list(plan.element, kFaceTexcoords);
   for (const std::string_view name : kPlyTextureNumbers) {

@@ -1,4 +1,4 @@
-// What a reader takes of the faces of a PLY file.
+// The plan for the faces of a PLY file.
 #pragma once
 
 #include "mesh_io/ply_plan.h"

@@ -1,4 +1,4 @@
-// Faces of a PLY file with what they show: places in pictures, or a colour of their own.
+// Faces of a PLY file with their places in pictures, or a colour of their own.
 #pragma once
 
 #include "mesh_io/ply_plan.h"
@@ -14,7 +14,7 @@
 namespace meshhier::mesh_io {
 
 struct PlyFace {
-  std::optional<std::uint64_t> row;  ///< of the polygons' element; none: of a strip
+  std::optional<std::uint64_t> row;  ///< row in the polygons' element; none: the face is of a strip
   /// A face is held in memory, so it may not be of any size.
   static constexpr std::size_t kMostCorners = std::size_t{1} << 16;
 
@@ -25,23 +25,23 @@ struct PlyFace {
   std::vector<double> values;          ///< PlyPlan::face_values; of polygons
 };
 
-/// What a face shows, in a list of its own.
+/// A face's place in a picture, which stands in an element of its own.
 struct PlyTextureFace {
   std::uint64_t face = 0;              ///< row of the element with the faces
   std::vector<std::uint32_t> corners;  ///< texture vertices, one for each corner of the face
   std::int32_t texture = 0;            ///< as PlyFace's
 };
 
-/// A row's numbers.
+/// The numbers of a row.
 struct PlyRow {
   std::uint64_t number = 0;
-  std::vector<std::vector<double>> values;  ///< of each property; empty if it was not asked for
+  std::vector<std::vector<double>> values;  ///< per property; empty if it was not asked for
 };
 
 /// Returns what is wrong with a row; empty if nothing is. Valid during the visit only.
 using PlyRowVisitor = std::function<std::string(const PlyRow&)>;
 
-/// How far the numbers of faces may go.
+/// The limits of numbers in faces.
 struct PlyFaceLimits {
   std::uint64_t vertices = 0;  ///< or texture vertices
   std::uint64_t faces = 0;
@@ -51,7 +51,7 @@ struct PlyFaceLimits {
 /// Makes a face of a row of polygons; returns as PlyRowVisitor does.
 std::string take_face(const PlyElementPlan& plan, const PlyRow& row, const PlyFaceLimits& limits,
                       PlyFace& face);
-/// The same of a row of texture faces.
+/// Does the same for a row of texture faces.
 std::string take_texture_face(const PlyElementPlan& plan, const PlyRow& row,
                               const PlyFaceLimits& limits, PlyTextureFace& face);
 

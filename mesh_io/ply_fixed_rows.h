@@ -16,7 +16,7 @@
 
 namespace meshhier::mesh_io {
 
-/// Where the blocks of a run of rows lie in a file.
+/// The places of the blocks of a run of rows in a file.
 class RowBlocks {
  public:
   /// `rows` rows of `stride` bytes from `offset` on. Requires 3 <= stride <= 2^18.
@@ -32,13 +32,13 @@ class RowBlocks {
   };
   Block operator[](std::uint64_t block) const;
 
-  /// Reads a block, and what of its part of the file lies around it; returns its first row. If the
-  /// file ends within the block, `block.rows` becomes what is there.
+  /// Reads a block, with the bytes around it that belong to its part of the file; returns its first
+  /// row. If the file ends within the block, `block.rows` becomes the number of whole rows.
   const std::byte* read(const InputFile& input, std::uint64_t index, Block& block,
                         std::vector<std::byte>& bytes) const;
 
  private:
-  /// The first row that begins at `offset` or behind; at most rows_.
+  /// Returns the first row that begins at `offset` or behind; at most rows_.
   std::uint64_t first_row_from(std::uint64_t offset) const;
 
   std::uint64_t offset_, stride_, rows_;
@@ -50,14 +50,13 @@ class RowBlocks {
 /// Vertices without lists. Refers to its arguments.
 class PlyVertexBlocks {
  public:
-  /// `offset`: of the first row.
+  /// `offset`: the first row's in the file.
   PlyVertexBlocks(const PlyPlan& plan, const MeshDescription& mesh, std::uint64_t offset);
 
   std::uint64_t count() const { return blocks_.count(); }
   /// Thread-safe for different `memory`. Throws Error(input) for the block's first defect.
   VertexBlock read(const InputFile& input, std::uint64_t index, BlockMemory& memory) const;
-  /// Some rows, wherever they are; nothing of them is checked. Throws Error(input) if the file ends
-  /// before, Error(io).
+  /// Returns any rows, unchecked. Throws Error(input) if the file ends before, Error(io).
   VertexBlock rows(const InputFile& input, std::uint64_t first, std::size_t count,
                    BlockMemory& memory) const;
 
@@ -65,7 +64,7 @@ class PlyVertexBlocks {
   struct Field {
     int slot = 0;
     PlyType type{};
-    std::size_t offset = 0;  ///< in the row
+    std::size_t offset = 0;  ///< in bytes within the row
   };
   std::uint64_t decode(const std::byte* rows, std::size_t count, VertexRows& to) const;
   bool has_plain_positions() const;
@@ -79,7 +78,7 @@ class PlyVertexBlocks {
   RowBlocks blocks_;
 };
 
-/// Faces as if all were triangles of TriangleRows. Refers to its arguments.
+/// Faces, read as if all were triangles of TriangleRows. Refers to its arguments.
 class PlyTriangleBlocks {
  public:
   PlyTriangleBlocks(const PlyPlan& plan, const PlyElementPlan& faces, const TriangleRows& rows,
@@ -87,8 +86,8 @@ class PlyTriangleBlocks {
 
   std::uint64_t count() const { return blocks_.count(); }
   std::uint64_t offset_of(std::uint64_t row) const { return blocks_.offset_of(row); }
-  /// Thread-safe for different `memory`. What is not a triangle ends the block; errors are not
-  /// told.
+  /// Thread-safe for different `memory`. The first row that is no triangle ends the block; its
+  /// errors are told by a reader of rows.
   TriangleBlock read(const InputFile& input, std::uint64_t index, BlockMemory& memory) const;
 
  private:

@@ -22,7 +22,7 @@ enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 /// format does not have.
 enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64, i64, u64 };
 
-/// They have one order; integers of 64 bits are kept as doubles.
+/// Both enumerations have one order; integers of 64 bits are kept as doubles.
 constexpr ValueType value_type(PlyType type) {
   return type > PlyType::f64 ? ValueType::f64 : static_cast<ValueType>(type);
 }
@@ -32,7 +32,7 @@ constexpr PlyType ply_type(ValueType type) {
 static_assert(value_type(PlyType::f64) == ValueType::f64 && ply_type(ValueType::i8) == PlyType::i8);
 
 struct PlyTypeRow {
-  std::string_view name;  ///< that of the 1994 paper, as most files write it
+  std::string_view name;  ///< the name of the 1994 paper, as most files write it
   std::string_view sized_name;
   PlyType value;
   std::uint8_t bytes;
@@ -66,16 +66,17 @@ constexpr bool is_unsigned(PlyType type) {
   return type == PlyType::u8 || type == PlyType::u16 || type == PlyType::u32 ||
          type == PlyType::u64;
 }
-/// The type's name as most files write it: "uchar".
+/// Returns the type's name as most files write it: "uchar".
 std::string_view name_of(PlyType type);
-/// "ASCII", "binary little endian", "binary big endian".
+/// Returns "ASCII", "binary little endian", "binary big endian".
 std::string_view name_of(PlyEncoding encoding);
 
 struct PlyProperty {
   std::string name;
-  PlyType type{};                     ///< of the value, or of each item of the list
-  std::optional<PlyType> count_type;  ///< of a list's length, an integer type; none: one value
-  std::uint8_t fixed_count = 0;  ///< of a list whose length stands in no row (settle_ply_names)
+  PlyType type{};                     ///< type of the value, or of each item of the list
+  std::optional<PlyType> count_type;  ///< type of a list's length, an integer type; none: one value
+  /// Length of a list whose length stands in no row (settle_ply_names).
+  std::uint8_t fixed_count = 0;
 
   bool is_list() const { return count_type.has_value() || fixed_count > 0; }
 };
@@ -92,14 +93,15 @@ struct PlyHeader {
   std::vector<std::string> texture_files;  ///< NAME of each "comment TextureFile NAME", in any case
   std::uint64_t data_offset = 0;           ///< byte behind the line end of end_header
   std::uint64_t data_line = 0;  ///< number of the line at data_offset; the first of a file is 1
-  std::uint64_t odd_lines = 0;  ///< that the format has otherwise
+  std::uint64_t odd_lines = 0;  ///< lines that the format has otherwise
 };
 
 /// Real headers have less than 2 KiB, but some writers put metadata (cameras, JSON) into comments.
 /// 256 KiB leaves room for them and stops the search for end_header in a large file of other data.
 inline constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 18;
 
-/// One line of a header: above any real comment, below the point where a message gets absurd.
+/// The longest line of a header: above any real comment, below the point where a message gets
+/// absurd.
 inline constexpr std::size_t kMaxHeaderLineBytes = std::size_t{1} << 16;
 
 /// Parses the header at the start of a file. `start`: the first min(file size, kMaxHeaderBytes)

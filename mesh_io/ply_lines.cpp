@@ -100,11 +100,11 @@ class LineReader {
   }
 
   InputFile input_;
-  PlyPosition at_;         ///< of the next block
+  PlyPosition at_;         ///< the start of the next block
   std::uint64_t read_to_;  ///< multiple of kUnit
   std::uint64_t rows_;
   std::uint64_t row_ = 0;
-  std::string left_;  ///< from at_ on
+  std::string left_;  ///< bytes from at_ on that were read and not handed out
 };
 
 /// One row; false where it is not as expected.
@@ -122,7 +122,7 @@ class RowParser {
     line_.take_line_end();
     return true;
   }
-  /// Not empty.
+  /// Takes the next word, which is not empty.
   std::optional<std::string_view> take_word() {
     line_.skip_blanks();
     const std::string_view word = line_.take_word();
@@ -236,7 +236,7 @@ class PolygonLines {
     Lines lines;
     bool is_plain = false;
     std::vector<std::uint32_t> corners;
-    std::vector<std::uint32_t> lengths;  ///< of the polygons, unless all have three corners
+    std::vector<std::uint32_t> lengths;  ///< lengths of the polygons, unless all have three corners
   };
 
   bool can_read() const { return faces_.role == PlyElementPlan::Role::polygons; }
@@ -303,7 +303,7 @@ void add(const PolygonLines::Block& block, TriangleBlocks& blocks) {
   }
 }
 
-/// Up to the first block that take() does not take.
+/// Reads up to the first block that take() does not take.
 template <class Block, class Parse, class Take>
 PlyLinesRead read_blocks(LineReader reader, PlyPosition start, const BlockRunner& runner,
                          const Parse& parse, const Take& take) {

@@ -1,8 +1,8 @@
 // Rows of a PLY in text, a line each, decoded block by block, by as many threads as there are.
 //
-// What is not as simple as programs write it is left to make_text_body(), which also says what is
-// wrong with it: lists of vertices, blank lines, lines that end with CR alone, values that are
-// refused.
+// Rows that are not as simple as programs write them are left to make_text_body(), which also says
+// what is wrong with them: lists of vertices, blank lines, lines that end with CR alone, values
+// that are refused.
 #pragma once
 
 #include "mesh_io/block_runner.h"
@@ -16,14 +16,15 @@
 
 namespace meshhier::mesh_io {
 
-/// How far an element was read: all rows before `row`, which is looked for from `position` on.
+/// The end of reading in an element: all rows before `row` were read; the search for `row` goes on
+/// at `position`.
 struct PlyLinesRead {
   std::uint64_t row = 0;
   PlyPosition position;
 };
 
-/// Memory of a block: its text, of twice a checksum's block at most, and up to four times as much
-/// for what its rows hold.
+/// The memory of a block: its text, of twice a checksum's block at most, and up to four times as
+/// much for its rows' numbers.
 inline constexpr std::uint64_t kPlyLinesBytes = std::uint64_t{1} << 21;
 
 /// Visits vertices from `start` on. Throws Error(io), and what `visit` does.
@@ -31,7 +32,7 @@ PlyLinesRead read_vertex_lines(const InputFile& input, const PlyPlan& plan,
                                const MeshDescription& mesh, PlyPosition start,
                                const VertexVisitor& visit, const BlockRunner& runner);
 
-/// Gives the polygons of an element to `blocks`; of strips none is read. Throws likewise.
+/// Gives the polygons of an element to `blocks`; reads no strips. Throws likewise.
 PlyLinesRead read_polygon_lines(const InputFile& input, const PlyElementPlan& faces,
                                 std::uint64_t vertex_count, PlyPosition start,
                                 TriangleBlocks& blocks, const BlockRunner& runner);

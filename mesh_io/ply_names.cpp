@@ -15,7 +15,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// In small letters, without what joins words.
+/// Returns a name in small letters, without the characters that join words.
 std::string bare(std::string_view name) {
   std::string letters = small_letters(name);
   std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 2> kCornerNames{kCorners, "vertex_index"}
 constexpr std::array<std::string_view, 7> kBareCornerNames{
     "vertexindices", "vertexindex", "vertexindexes", "vertexids", "vertices", "indices", "indexes"};
 
-/// Those of scalars that are corners, before what tells them apart.
+/// Prefixes of scalars that are corners; kSuffixes tell the corners apart.
 constexpr std::array<std::string_view, 13> kPrefixes{
     "",      "v",   "vert", "vertex", "vertexindex", "vertexindices", "vertexid",
     "index", "idx", "i",    "p",      "point",       "corner"};
@@ -62,7 +62,8 @@ std::uint64_t settle_element(std::vector<PlyElement>& elements, const ElementNam
   return 1;
 }
 
-/// Whether names are one, that of corners, or end in what tells corners apart.
+/// Returns whether names are those of corners: all one, or a common beginning with an end that
+/// tells corners apart.
 bool are_corners(std::span<const PlyProperty> properties) {
   const std::string first = bare(properties[0].name);
   const auto all_are = [&](const auto& name_of_corner) {

@@ -1,4 +1,4 @@
-// Where the vertices of a PLY file lie, one by one: for its polygons.
+// Places of single vertices of a PLY file, for its polygons.
 #pragma once
 
 #include "mesh_io/input_stream.h"
@@ -13,16 +13,17 @@
 
 namespace meshhier::mesh_io {
 
-/// Reads runs of rows again, and keeps some: quick where polygons that follow one another lie near.
-/// Rows without a fixed size are found by an index of at most 1 MiB, which takes one more reading
-/// of them. Memory: 2 MiB. Refers to its arguments.
+/// Reads runs of rows again, and keeps some: quick where polygons that follow one another have
+/// vertices that stand near each other in the file. Rows without a fixed size are found by an index
+/// of at most 1 MiB, which takes one more reading of them. Memory: 2 MiB. Refers to its arguments.
 class PlyPlaces {
  public:
-  /// `start`: of the vertices.
+  /// `start`: where the vertices begin.
   PlyPlaces(const InputFile& input, const PlyPlan& plan, const MeshDescription& mesh,
             PlyPosition start);
 
-  /// Requires vertex < the count of vertices, all of which have been read once. Throws Error(io).
+  /// Returns where a vertex lies. Requires vertex < the count of vertices, all of which have been
+  /// read once. Throws Error(io).
   Vec3d at(std::uint32_t vertex);
 
  private:
@@ -44,7 +45,8 @@ class PlyPlaces {
   PlyPosition start_;
   bool is_fixed_;
   std::uint64_t run_vertices_;
-  std::vector<PlyPosition> index_;  ///< of each run, and the end; empty until it is needed
+  /// Starts of the runs, and their end; empty until they are needed.
+  std::vector<PlyPosition> index_;
   std::array<Run, kRuns> runs_;
   BlockMemory memory_;
 };

@@ -69,8 +69,8 @@ class Planner {
   PlyPlan plan_;
 };
 
-/// In text the shortest row has one digit and one separator a number; a list may be its length
-/// alone.
+/// Measures rows. In text the shortest row has one digit and one separator a number; a list may be
+/// its length alone.
 PlyElementPlan Planner::measure(const PlyElement& element) const {
   PlyElementPlan plan;
   plan.element = element;

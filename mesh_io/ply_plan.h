@@ -1,4 +1,5 @@
-// What a reader takes of each element of a PLY file, and the checks a header must pass for it.
+// The plan for reading a PLY file: the properties that are taken of each element, and the checks
+// that a header must pass for it.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -14,8 +15,8 @@
 
 namespace meshhier::mesh_io {
 
-/// Where a vertex property goes: coordinates are slots 0, 1, 2, attribute channel c is slot 3 + c;
-/// a value of two channels has the first one's.
+/// The slot that a vertex property goes to: coordinates are slots 0, 1, 2, attribute channel c is
+/// slot 3 + c; a value of two channels has the first one's.
 inline constexpr int kSkipped = -1;
 inline constexpr int kFirstAttributeSlot = 3;
 
@@ -25,35 +26,37 @@ struct PlyElementPlan {
     vertices,
     polygons,
     strips,
-    texture_vertices,  ///< that corners of texture faces name
-    texture_faces      ///< what polygons show, beside them
+    texture_vertices,  ///< which corners of texture faces name
+    texture_faces      ///< places of polygons in pictures, in an element of their own
   };
 
   PlyElement element;
   Role role = Role::skipped;
-  std::vector<int> slots;   ///< one per property: kSkipped or where a vertex property goes
-  std::size_t corners = 0;  ///< of faces of any kind: the property with the vertex indices
-  std::optional<std::size_t> texcoords;  ///< of polygons: the property with those of the corners
-  std::optional<std::size_t> texnumber;  ///< of polygons and texture faces: the texture's number
-  std::optional<std::size_t> face;       ///< of texture faces: whose they are; none: in their order
-  std::array<std::size_t, 2> texcoord{};  ///< of texture vertices: the properties u and v
-  std::vector<std::size_t> colour;        ///< of polygons: the three or four properties of theirs
-  std::vector<std::size_t> values;        ///< of polygons: PlyPlan::face_values
-  std::uint64_t min_row_bytes = 0;  ///< of a row, all lists empty; in text the fewest characters
+  std::vector<int> slots;   ///< one per property: kSkipped, or the slot of a vertex property
+  std::size_t corners = 0;  ///< the property with the vertex indices, of faces of any kind
+  std::optional<std::size_t> texcoords;  ///< the property with those of the corners; polygons only
+  std::optional<std::size_t> texnumber;  ///< the texture's number; polygons and texture faces
+  std::optional<std::size_t> face;  ///< the property with the face's number; texture faces only;
+                                    ///< none: they stand in the faces' order
+  std::array<std::size_t, 2> texcoord{};  ///< the properties u and v; texture vertices only
+  std::vector<std::size_t> colour;        ///< the three or four properties; polygons only
+  std::vector<std::size_t> values;  ///< the properties for PlyPlan::face_values; polygons only
+  /// Bytes of a row with all lists empty; in text the fewest characters.
+  std::uint64_t min_row_bytes = 0;
   std::optional<std::uint64_t> stride;  ///< bytes of every row: binary, and no property is a list
 
   bool has_faces() const { return role == Role::polygons || role == Role::strips; }
-  /// Whether a property is looked at where corners have something of their own.
+  /// Returns whether PlyBody::read_rows() reads a property.
   bool takes(std::size_t property) const;
 };
 
-/// What is looked for in rows of vertices besides what is always wrong.
+/// The checks of vertex rows besides those that are always made.
 struct RowChecks {
   bool colours = false;  ///< must be integers from 0 to 255
-  bool places = true;    ///< coordinates must be finite; else a row where one is not is let through
+  bool places = true;    ///< coordinates must be finite; else rows where one is not are let through
 };
 
-/// Where the coordinates in pictures are.
+/// The element in which coordinates in pictures stand.
 enum class PlyTexcoords : std::uint8_t { none, of_vertices, of_faces, of_texture_faces };
 
 struct PlyPlan {
@@ -62,37 +65,38 @@ struct PlyPlan {
   std::size_t vertex_element = 0;
   AttributeLayout attributes;
   bool wide_coordinates = false;  ///< a coordinate is double, int or uint
-  /// None if no picture is shown: of coordinates of vertices `attributes` tells.
+  /// None if no picture is shown; then `attributes` alone tells of coordinates of vertices.
   PlyTexcoords texcoords = PlyTexcoords::none;
   /// Empty if no picture is shown, or if `texcoords` is of_texture_faces and none is named.
   std::vector<std::string> texture_files;
-  RowChecks checks;  ///< colours: if the stored type holds values that `attributes.colour` has not
-  /// Of faces: only if vertices have none. `face_alpha`: with integers alone.
+  RowChecks checks;  ///< colours are checked if the stored type holds values that
+                     ///< `attributes.colour` has not
+  /// Colours of faces are read only if vertices have none; their alpha only with integers.
   ColourType face_colour = ColourType::none;
   bool face_alpha = false;
-  std::vector<ScalarAttribute> face_values;  ///< behind `attributes.values`
-  std::vector<std::string> unused;  ///< what is skipped: "vertex.intensity", or an element: "edge"
+  std::vector<ScalarAttribute> face_values;  ///< which come behind `attributes.values`
+  /// Skipped properties, "vertex.intensity", and elements, "edge".
+  std::vector<std::string> unused;
   bool has_unnamed_texcoords = false;        ///< faces have them, and no picture is named
-  std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
+  std::vector<std::string> unused_pictures;  ///< pictures that are named and cannot be shown
   std::uint64_t odd_header_lines = 0;        ///< as PlyHeader's
 };
 
-/// Of files that the import writes, what stands before the names of values: no other property has a
-/// name of that kind.
+/// Prefixes of the names of values in files that the import writes: no other property has a name of
+/// that kind.
 inline constexpr std::string_view kImportedQuantity = "quantity:";
 inline constexpr std::string_view kImportedLabel = "label:";
 
-/// What red, green and blue are called in files that the import writes.
+/// Returns the names of red, green and blue in files that the import writes.
 std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints);
 
-/// Of what the import wrote the vertices' property `material` is AttributeLayout::material, and
-/// imported_colour_names() are those of colours. No file can ask for it: only who wrote the file
-/// knows that its numbers are those of a MaterialList, or light, or what pictures are multiplied
-/// by.
+/// The writer of a file. In files of the import the vertices' property `material` is
+/// AttributeLayout::material, and colours have imported_colour_names(). A file cannot ask for that
+/// itself: only its writer knows that numbers are those of a MaterialList, or light, or factors of
+/// pictures.
 enum class PlyWrittenBy : std::uint8_t { anyone, import };
 
-/// What becomes of vertices with coordinates that are not finite: they are an error, or visited as
-/// they are.
+/// Vertices with coordinates that are not finite are refused by an error, or visited as they are.
 enum class Unplaced : std::uint8_t { refused, visited };
 
 /// Decides what is read:
@@ -129,11 +133,11 @@ enum class Unplaced : std::uint8_t { refused, visited };
 /// Attributes of which not all parts are there are values like others. The parts of a colour must
 /// be of one type, else they are values: uchar is u8, ushort is u16, float and double are f32; the
 /// other integer types are read as u8, as 0 to 255 is what files mean by them (other values are
-/// errors). Integers of 64 bits are values of f64, and labels as other integers are. Of values that
-/// have no sound name (is_attribute_name()), one that is taken, or do not fit kMaxValueChannels,
-/// none is read. Everything else is skipped, and listed. Throws Error(input) if the vertices or
-/// faces cannot be read, if there are 2^32 vertices or more, or if the declared counts do not fit
-/// into `file_bytes`. Allocates nothing that a count sizes.
+/// errors). Integers of 64 bits are values of f64, and labels as other integers are. Values are not
+/// read if they have no sound name (is_attribute_name()), a name that is taken, or do not fit
+/// kMaxValueChannels. Everything else is skipped, and listed. Throws Error(input) if the vertices
+/// or faces cannot be read, if there are 2^32 vertices or more, or if the declared counts do not
+/// fit into `file_bytes`. Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
                       const std::filesystem::path& path, PlyWrittenBy writer = PlyWrittenBy::anyone,
                       const AttributeChoice& attributes = {});

@@ -16,15 +16,15 @@
 
 namespace meshhier::mesh_io {
 
-/// Index of the scalar property `name`, or -1. Throws Error(input) if there are two.
+/// Returns the index of the scalar property `name`, or -1. Throws Error(input) if there are two.
 int find_scalar(const PlyElement& element, std::string_view name,
                 const std::filesystem::path& path);
 
-/// True if all `names` are there; fills `found` with their indices.
+/// Returns whether all `names` are there, and fills `found` with their indices.
 bool find_all(const PlyElement& element, std::span<const std::string_view> names,
               std::span<int> found, const std::filesystem::path& path);
 
-/// The first list property that has one of `names`; none if there is none.
+/// Returns the first list property that has one of `names`; none if there is none.
 std::optional<std::size_t> find_list(const PlyElement& element,
                                      std::span<const std::string_view> names);
 
@@ -32,7 +32,7 @@ using PlyNames3 = std::array<std::string_view, 3>;
 inline constexpr std::array<PlyNames3, 3> kPlyNormals{
     {{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}, {"normal_x", "normal_y", "normal_z"}}};
 
-/// Of faces: which texture they show.
+/// Names of the number of the texture that a face shows.
 inline constexpr std::array<std::string_view, 4> kPlyTextureNumbers{"texnumber", "texture_number",
                                                                     "texture_index", "texid"};
 
@@ -49,7 +49,7 @@ struct PlyColour {
   bool is_checked = false;  ///< the type holds values that `kind` does not
 };
 
-/// None unless the three are there and of one type.
+/// Returns the colour of these names; none unless the three are there and of one type.
 std::optional<PlyColour> find_colour(const PlyElement& element, const PlyColourNames& names,
                                      const std::filesystem::path& path);
 

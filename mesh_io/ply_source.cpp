@@ -89,13 +89,13 @@ class PlyFileSource final : public PlySource {
   std::uint64_t content_bytes_;             ///< without the zeros behind a text
   mutable storage::FileChecksum checksum_;  ///< thread-safe
   PlyPlan plan_;
-  /// Where each element starts, as far as known, and the end: what was scanned once is not again.
+  /// The place where each element starts, as far as known, and the end: nothing is scanned twice.
   std::vector<std::optional<PlyPosition>> starts_;
-  std::vector<OddSyntax> odd_;  ///< of each element, and behind them
+  std::vector<OddSyntax> odd_;  ///< per element, and for the lines behind them
   MeshDescription description_;
   std::optional<PlyVertexBlocks> vertex_blocks_;
   std::optional<PlyPlaces> places_;
-  std::optional<PlyTriangleBlocks> triangle_blocks_;  ///< of the first element with faces
+  std::optional<PlyTriangleBlocks> triangle_blocks_;  ///< blocks of the first element with faces
 };
 
 PlyHeader PlyFileSource::read_header() const {
@@ -105,7 +105,7 @@ PlyHeader PlyFileSource::read_header() const {
   return parse_ply_header(start, file_->path());
 }
 
-/// Where a text ends: some programs fill files up with zeros.
+/// Returns where a text ends: some programs fill files up with zeros.
 std::uint64_t PlyFileSource::text_end(std::uint64_t begin) const {
   std::string part;
   std::uint64_t end = file_bytes_;
@@ -128,7 +128,7 @@ OddSyntax PlyFileSource::odd_syntax() const {
   return all;
 }
 
-/// Of an element of faces, or one behind them that is skipped.
+/// Notes the oddities of an element of faces, or of one behind them that is skipped.
 void PlyFileSource::note_odd(std::size_t element, PlyBody& body) {
   const OddSyntax odd = body.take_odd();
   if (element != plan_.vertex_element)
@@ -186,7 +186,7 @@ std::unique_ptr<PlyBody> PlyFileSource::body_at(std::size_t element) {
     body->skip(plan_.elements[known]);
     starts_[known + 1] = body->position();
   }
-  body->take_odd();  // what is skipped is read later, or not at all
+  body->take_odd();  // skipped elements are read later, or not at all
   return body;
 }
 
@@ -269,7 +269,7 @@ FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const Triangle
   return blocks.finish();
 }
 
-/// What strips need of blocks: each triangle is a face.
+/// Reads strips, each triangle of which is a face.
 FaceCounts read_strips(PlyBody& body, const PlyElementPlan& plan, const PlyFaceVisitor& visit) {
   PlyFace face;
   const TriangleVisitor each = [&](std::span<const Triangle<VertexId>> triangles) {
@@ -348,7 +348,7 @@ std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::pa
     return make_ply_plan(parse_ply_header(start, path), UINT64_MAX, path, PlyWrittenBy::anyone,
                          attributes);
   } catch (const Error&) {
-    return std::nullopt;  // who reads it says why it cannot be read
+    return std::nullopt;  // the reading itself will say why it cannot be read
   }
 }
 

@@ -19,21 +19,21 @@ namespace meshhier::mesh_io {
 class PlySource : public MeshSource {
  public:
   virtual const PlyPlan& plan() const = 0;
-  /// As read_triangles(), but whole faces with what they show; triangle strips as single triangles,
-  /// of picture 0. Returns how many faces the file has, and what degenerate triangles strips had;
-  /// polygons are visited as they are.
+  /// Visits whole faces in file order, with their places in pictures and their colours: polygons as
+  /// they are, triangle strips as single triangles of picture 0. Returns how many faces the file
+  /// has, and how many degenerate triangles its strips had. Throws as read_triangles().
   virtual FaceCounts read_faces(const PlyFaceVisitor& visit) = 0;
   /// Visits u and v of all texture vertices. Both require PlyTexcoords::of_texture_faces.
   virtual void read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) = 0;
   virtual void read_texture_faces(const PlyTextureFaceVisitor& visit) = 0;
-  /// Where a vertex lies; reads it again. Throws Error(io).
+  /// Returns where a vertex lies; reads it again. Throws Error(io).
   virtual Vec3d place_of(std::uint32_t vertex) = 0;
 };
 
 /// Texture faces may have this many pictures if the header does not name them.
 inline constexpr std::size_t kMostUnnamedTextures = std::size_t{1} << 16;
 
-/// What is read of the file at the start of which is `start`; none if its header cannot be read.
+/// Plans the reading of a file that begins with `start`; none if its header cannot be read.
 std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path,
                                const AttributeChoice& attributes = {});
 
@@ -43,8 +43,8 @@ struct PlyReading {
   AttributeChoice attributes{};
 };
 
-/// Reads the header of `file` and checks it. What is accepted: ply_header.h, ply_plan.h,
-/// ply_body.h.
+/// Reads the header of `file` and checks it. ply_header.h, ply_plan.h and ply_body.h say what is
+/// accepted.
 std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
                                            const PlyReading& reading = {});
 

@@ -17,7 +17,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// Of a length or an index: what is so large is none.
+/// Makes a number fit 64 bits; as a length or an index, one so large is wrong anyway.
 std::int64_t clamped(double value) {
   return static_cast<std::int64_t>(std::clamp(value, -0x1p62, 0x1p62));
 }
@@ -70,10 +70,10 @@ class TextBody final : public PlyBody {
   void take_property(const Row& row, std::size_t property, std::vector<double>& values);
   bool could_be_row(const std::vector<double>& numbers) const;
 
-  /// Where a line ends before its row.
+  /// The place where a line ends before its row does.
   struct Break {
     std::uint64_t line = 0;
-    const PlyProperty* property = nullptr;  ///< that is next
+    const PlyProperty* property = nullptr;  ///< the next one
     bool ends_file = false;
   };
 
@@ -300,7 +300,7 @@ void TextBody::take_property(const Row& row, std::size_t index, std::vector<doub
 
 void TextBody::expect_end() {
   for (; cursor_.to_row(); ++odd_.lines_behind) {
-    constexpr std::size_t kMost = std::size_t{1} << 16;  // what a line of sense has
+    constexpr std::size_t kMost = std::size_t{1} << 16;  // more numbers than a line of sense has
     std::string first;
     std::vector<double> numbers;
     for (bool is_number = true; is_number && cursor_.to_word() && numbers.size() < kMost;) {
@@ -321,7 +321,7 @@ void TextBody::expect_end() {
   }
 }
 
-/// Whether a line of these numbers, and nothing else, could be one more row of any element.
+/// Returns whether a line of these numbers, and nothing else, could be one more row of any element.
 bool TextBody::could_be_row(const std::vector<double>& numbers) const {
   return std::ranges::any_of(plan_.elements, [&](const PlyElementPlan& plan) {
     std::size_t taken = 0;

@@ -11,7 +11,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// What MeshLab notes of vertices and faces while it works, as that they are selected.
+/// A name that MeshLab gives to its own notes, as that vertices and faces are selected.
 constexpr std::string_view kBookkeeping = "flags";
 
 /// The properties of a face that say what vertices say better, or which texture it has.

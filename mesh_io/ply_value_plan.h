@@ -1,4 +1,4 @@
-// Which properties of a PLY file are values: quality, label, temperature.
+// The properties of a PLY file that are values: quality, label, temperature.
 #pragma once
 
 #include "mesh_io/ply_plan.h"
@@ -8,13 +8,13 @@
 
 namespace meshhier::mesh_io {
 
-/// The value that a scalar property is, behind those that `known` has. None if it is not chosen
-/// (by all "flags" is not: MeshLab's own), has no sound name or a name of `known`, or if its
-/// channels would be too many.
+/// Returns the value that a scalar property is, which comes behind those of `known`. None if it is
+/// not chosen (by all "flags" is not: MeshLab's own), has no sound name or a name of `known`, or if
+/// its channels would be too many.
 std::optional<ScalarAttribute> value_of(const PlyProperty& property, const AttributeChoice& choice,
                                         PlyWrittenBy writer, const AttributeLayout& known);
 
-/// Takes what scalars of polygons are not used yet. Requires all else of the plan.
+/// Takes the scalars of polygons that are not used yet as values. Requires all else of the plan.
 void plan_face_values(PlyPlan& plan, const AttributeChoice& choice,
                       const std::filesystem::path& path);
 

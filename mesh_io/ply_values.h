@@ -14,12 +14,12 @@
 
 namespace meshhier::mesh_io {
 
-/// True if the file's byte order is not this machine's. Of a binary encoding.
+/// Returns whether the file's byte order is not this machine's. Requires a binary encoding.
 constexpr bool is_swapped(PlyEncoding encoding) {
   return (encoding == PlyEncoding::big_endian) != (std::endian::native == std::endian::big);
 }
 
-/// The value at `bytes`; `Swap` if the file's byte order is not this machine's.
+/// Returns the value at `bytes`; `Swap` if the file's byte order is not this machine's.
 template <class T, bool Swap>
 T load(const std::byte* bytes) {
   std::array<std::byte, sizeof(T)> raw_bytes;
@@ -57,7 +57,7 @@ auto with_type(PlyType type, Visit visit) {
   return visit(double{});
 }
 
-/// Whether a double does not hold all numbers of that size.
+/// Returns whether a number is so large that a double does not hold all integers of its size.
 template <class T>
 constexpr bool is_rounded(T value) {
   constexpr std::int64_t kMostExact = std::int64_t{1} << 53;
@@ -69,15 +69,15 @@ constexpr bool is_rounded(T value) {
     return false;
 }
 
-/// The usual faces, `list uchar int` (or uint) and perhaps scalars around it: the rows of those
-/// that are triangles have one size.
+/// The rows of usual faces, `list uchar int` (or uint) with perhaps scalars around it: those of
+/// triangles have one size.
 struct TriangleRows {
   std::size_t before = 0;  ///< bytes of a row before the list
   std::size_t stride = 0;
-  std::uint64_t limit = 0;  ///< corners are below
+  std::uint64_t limit = 0;  ///< the count of vertices, which corners are below
 };
 
-/// None if the faces are of another form. `faces`: binary.
+/// Returns none if the faces are of another form. `faces`: of a binary file.
 std::optional<TriangleRows> triangle_rows(const PlyElementPlan& faces, std::uint64_t vertex_count);
 
 /// Calls take(a, b, c) for each of `rows` rows at `bytes`, up to the first one that is not a

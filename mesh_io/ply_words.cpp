@@ -38,7 +38,7 @@ std::optional<double> number_of(PlyType type, std::string_view word) {
 std::optional<double> odd_integer_of(PlyType type, std::string_view word) {
   const auto value = parse_real<double>(word);
   const auto [low, high] = range_of(type);
-  // As doubles the highest of 64 bits is one more.
+  // The double of the highest integer of 64 bits is one more than that.
   const double most = static_cast<double>(high) * (type == PlyType::u64 ? 2 : 1);
   const bool is_it =
       value && *value == std::floor(*value) && *value >= static_cast<double>(low) && *value <= most;

@@ -14,17 +14,17 @@ struct IntegerRange {
   std::int64_t high = 0;
 };
 
-/// Requires is_integer(type). Of 64 bits without a sign those of 63.
+/// Returns the integers of a type; for u64 those up to 2^63 - 1. Requires is_integer(type).
 IntegerRange range_of(PlyType type);
 
-/// An integer that `type`, one of integers, can hold.
+/// Parses an integer that `type`, one of integers, can hold.
 std::optional<std::int64_t> integer_of(PlyType type, std::string_view word);
 
-/// A number of any type; a float is the one nearest to what the word says. None of an integer that
-/// no double is.
+/// Parses a number of any type; a float is the one nearest to the word's number. None for an
+/// integer that no double is.
 std::optional<double> number_of(PlyType type, std::string_view word);
 
-/// An integer that is written as a float, or that has 64 bits and is rounded to a double.
+/// Parses an integer that is written as a float, or that has 64 bits and is rounded to a double.
 std::optional<double> odd_integer_of(PlyType type, std::string_view word);
 
 }  // namespace meshhier::mesh_io

@@ -35,7 +35,8 @@ struct WrittenProperty {
   std::string name;
 };
 
-/// Of normals and colours, which stand before values, and of texture coordinates, behind them.
+/// Properties of known attributes: normals and colours stand before values, texture coordinates
+/// behind them.
 struct KnownProperties {
   std::vector<WrittenProperty> before, behind;
 

@@ -1,4 +1,4 @@
-// Writes a binary little endian PLY by stream.
+// Writes a binary little endian PLY as a stream.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -25,22 +25,23 @@ struct PlyContent {
   std::vector<std::string> comments;  ///< one line each
 };
 
-/// Vertices, then triangles, then edges, in the declared numbers, each in as many calls as one
-/// likes, from the file's first byte to its last. Colours are written in their stored type
-/// (attributes.h), those that are light as kLinearColours, materials as `float material`, indices
-/// as `int` (`uint` from 2^31 vertices on). Buffered: at most 1 MiB. Throws Error(io). finish() is
-/// required and asserts that all declared content came.
+/// Takes vertices, then triangles, then edges, in the declared numbers, each in as many calls as
+/// one likes, and writes the file from its first byte to its last. Colours are written in their
+/// stored type (attributes.h), those that are light as kLinearColours, materials as `float
+/// material`, indices as `int` (`uint` from 2^31 vertices on). Buffered: at most 1 MiB. Throws
+/// Error(io). finish() is required and asserts that all declared content came; without it the file
+/// is incomplete. For one thread.
 class PlyWriter {
  public:
   PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& content);
   ~PlyWriter();
 
-  /// `attributes`: of each vertex content.attributes.channels() floats.
+  /// `attributes`: content.attributes.channels() floats a vertex.
   void write_vertices(std::span<const Vec3f> positions, std::span<const float> attributes);
   void write_vertices(std::span<const Vec3d> positions, std::span<const float> attributes);
   void write_triangles(std::span<const Triangle<std::uint32_t>> triangles);
   void write_edges(std::span<const std::array<std::uint32_t, 2>> edges);
-  /// Flushes; the file is complete after it.
+  /// Flushes; the file is complete after it, and not synced.
   void finish();
 
  private:

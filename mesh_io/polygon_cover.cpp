@@ -16,8 +16,8 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// How often the polygon winds around a face, and how often its edges run along each of the face's
-/// edges with the face to their left, less those that have it to their right.
+/// Counts of a face: how often the polygon winds around it, and how often its edges run along each
+/// of the face's edges with the face to their left, less those that have it to their right.
 struct FaceInfo {
   std::int32_t winding = 0;
   bool is_known = false;
@@ -62,7 +62,8 @@ class Cover {
   std::size_t next(std::size_t i) const { return i + 1 == corners_.size() ? 0 : i + 1; }
   std::size_t previous(std::size_t i) const { return i == 0 ? corners_.size() - 1 : i - 1; }
 
-  /// Corners at one place have one number; those of a place follow one another in sorted_.
+  /// Numbers the places: corners at one place have one number; those of a place follow one another
+  /// in sorted_.
   void number_places() {
     sorted_.resize(corners_.size());
     std::iota(sorted_.begin(), sorted_.end(), 0U);
@@ -91,7 +92,8 @@ class Cover {
       vertices_[vertex->info()] = vertex;
   }
 
-  /// An edge of the polygon consists of several where vertices lie on it.
+  /// Counts an edge of the polygon on both of its sides. It consists of several edges of the
+  /// triangulation where vertices lie on it.
   void count_along(Vertex from, Vertex to) {
     while (from != to) {
       Vertex behind;
@@ -110,7 +112,8 @@ class Cover {
     }
   }
 
-  /// From the outside, around which nothing winds.
+  /// Walks from the outside, around which nothing winds, over the faces. Any way to a face gives
+  /// the same number, as the polygon is closed.
   void wind() {
     std::vector<Face> todo{mesh_.infinite_face()};
     todo.back()->info().is_known = true;
@@ -133,6 +136,7 @@ class Cover {
     for (auto face = mesh_.finite_faces_begin(); face != mesh_.finite_faces_end(); ++face) {
       if (face->info().winding == 0)
         continue;
+      // The polygon covers this face more than once, or the other way round.
       if (face->info().winding != sign_)
         return std::nullopt;
       std::array<std::uint32_t, 3> at{};
@@ -150,7 +154,8 @@ class Cover {
     return all;
   }
 
-  /// The corner at a place in whose angle a triangle lies, which goes on to `second` and `third`.
+  /// Returns the corner at a place in whose angle a triangle lies; the triangle goes on to `second`
+  /// and `third`.
   std::uint32_t corner_of(std::uint32_t place, std::uint32_t second, std::uint32_t third) const {
     const std::uint32_t end = place + 1 == firsts_.size()
                                   ? static_cast<std::uint32_t>(sorted_.size())
@@ -170,17 +175,18 @@ class Cover {
     const Point2& behind = corners_[next(corner)];
     const auto turn = [&](const Point2& a, const Point2& b) { return sign_ * turn_of(at, a, b); };
     const bool follows = turn(behind, second) >= 0;  // the edge that leaves
-    const bool precedes = turn(third, before) >= 0;  // that comes
+    const bool precedes = turn(third, before) >= 0;  // the edge that arrives
+    // In a convex corner the triangle lies beside both edges, in a reflex one beside either.
     return turn(behind, before) >= 0 ? follows && precedes : follows || precedes;
   }
 
   std::span<const Point2> corners_;
   int sign_;
   std::vector<std::uint32_t> sorted_;  ///< corners by place
-  std::vector<std::uint32_t> firsts_;  ///< of each place, in sorted_
-  std::vector<std::uint32_t> places_;  ///< of each corner
+  std::vector<std::uint32_t> firsts_;  ///< per place: its first corner in sorted_
+  std::vector<std::uint32_t> places_;  ///< per corner: the number of its place
   Triangulation mesh_;
-  std::vector<Vertex> vertices_;  ///< of each place
+  std::vector<Vertex> vertices_;  ///< per place
   bool is_whole_ = true;          ///< all edges are there
 };
 

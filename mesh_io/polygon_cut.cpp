@@ -48,7 +48,7 @@ std::string PolygonCut::limit_text() {
       kMostCorners);
 }
 
-/// False if it has no area.
+/// Projects the corners; returns false if the polygon has no area.
 bool PolygonCut::project(std::span<const Vec3d> corners) {
   const Vec3d area = doubled_area(corners);
   const int axis = widest_axis(area);
@@ -61,7 +61,8 @@ bool PolygonCut::project(std::span<const Vec3d> corners) {
   return true;
 }
 
-/// Triangles that all turn as the polygon does do not cover each other.
+/// Returns whether the fan covers the polygon: triangles that all turn as the polygon does do not
+/// cover each other.
 bool PolygonCut::is_fan() const {
   for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
     if (turn(0, i, i + 1) < 0)
@@ -70,9 +71,9 @@ bool PolygonCut::is_fan() const {
   return true;
 }
 
-/// Whether the corner turns as the polygon does and nothing of it lies in the triangle with its
-/// neighbours. What is where one of these is does not count: polygons around holes have such
-/// corners.
+/// Returns whether the corner turns as the polygon does, and its triangle with its neighbours is
+/// free of other corners. Corners at the places of these three do not count: polygons around holes
+/// have such ones.
 bool PolygonCut::is_ear(std::size_t place) const {
   const std::size_t n = left_.size();
   const std::uint32_t a = left_[(place + n - 1) % n], b = left_[place], c = left_[(place + 1) % n];
@@ -89,8 +90,8 @@ void PolygonCut::look_at(std::size_t place) {
   ears_[left_[place]] = static_cast<char>(is_ear(place));
 }
 
-/// The place of the next one; the count of corners that are left if there is none. A corner may
-/// become an ear by what is cut off far from it.
+/// Returns the place of the next ear; the count of corners that are left if there is none. A cut
+/// may make an ear of a corner far from it, so all are looked at again when no ear is known.
 std::size_t PolygonCut::find_ear() {
   const auto find = [&] {
     return static_cast<std::size_t>(
@@ -105,8 +106,9 @@ std::size_t PolygonCut::find_ear() {
   return find();
 }
 
-/// The place of a corner on a line with its neighbours, or where one of these is: it has no area,
-/// so it waits until there is no ear. The count of corners that are left if there is none.
+/// Returns the place of a corner on a line with its neighbours, or where one of these is: its
+/// triangle has no area, so it waits until there is no ear. The count of corners that are left if
+/// there is none.
 std::size_t PolygonCut::find_flat() const {
   const std::size_t n = left_.size();
   std::size_t place = 0;

@@ -1,4 +1,25 @@
 // Polygons as triangles that cover their shape.
+//
+// Problem. Files have polygons of any shape; a fan (0, i, i + 1) is right for convex ones and
+// covers others twice, or covers what lies outside.
+//
+// Idea. Three ways, from the cheapest on, on the corners seen along the axis where the area is
+// largest:
+//
+//   fan: all its triangles     ears, cut off one after another:     cover (polygon_cover.h):
+//   turn as the polygon        corners that turn as the polygon     for more than kMostEars
+//                              does, with no other corner in        corners
+//        3-----2               their triangle
+//        |   / |                    4---3
+//        | /   |                    |   2---1     all are ears but 2, which turns the other way,
+//        0-----1                    5-------0     and 5, on whose triangle 2 lies
+//
+// Invariant. The corners that are left and the triangles that were cut off cover the polygon
+// together. Meisters ("Polygons have ears", 1975) proves that a simple polygon always has an ear; a
+// slit to a hole is not simple, so corners in a place of the ear's own corners do not count, and a
+// corner without area is cut off when nothing else can be.
+//
+// Cost. O(n) for fans, about O(n^2) for ears, O(n log n) for covers.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -16,32 +37,34 @@
 
 namespace meshhier::mesh_io {
 
-/// Cuts polygons one after another. Their corners are looked at along that axis along which their
-/// area is largest; so they need not lie in a plane.
+/// Cuts polygons one after another. Their corners are seen along the axis where their area is
+/// largest, so they need not lie in a plane. For one thread.
 class PolygonCut {
  public:
-  /// Of what has more, ears take too long, as they do the square of it: cover_polygon() cuts it.
+  /// Polygons of more corners are cut by cover_polygon(): the time of ears grows with the square.
   static constexpr std::size_t kMostEars = 1024;
-  /// A polygon is held in memory as a whole: of that many corners in 40 MiB.
+  /// A polygon is held in memory as a whole: one of that many corners takes 40 MiB.
   static constexpr std::size_t kMostCorners = std::size_t{1} << 17;
 
-  /// What is said of a face of more.
+  /// Returns the message for a face of more corners.
   static std::string limit_text();
 
   enum class Kind : std::uint8_t {
     fan,     ///< (0, i, i + 1) covers it: convex, or near enough; or it has no area
-    cut,     ///< triangles() do, exactly: ears (Meisters, "Polygons have ears", 1975), or many
-    crossed  ///< no triangles do: it crosses itself, or winds more than once
+    cut,     ///< triangles() cover it exactly
+    crossed  ///< no triangles cover it: it crosses itself, or winds more than once
   };
 
-  /// Requires 3 corners or more. O(n) if a fan will do, else O(n log n) beyond kMostEars.
+  /// Finds out how a polygon is cut. Requires 3 corners or more.
   Kind cut(std::span<const Vec3d> corners);
-  /// Of numbers of corners, as the last polygon of `cut` turns.
+  /// Returns the triangles of the last polygon that was `cut`, by numbers of its corners; they turn
+  /// as it does.
   std::span<const Triangle<std::uint32_t>> triangles() const { return triangles_; }
 
   /// Calls visit(a, b, c) for each triangle of a polygon, by numbers of its corners, and counts
-  /// what it is. `place_at(i)`: of corner i; none: not known, then it is a fan. If a place is not
-  /// finite, all triangles have that corner. Throws Error(input) beyond kMostCorners.
+  /// what it is. `place_at(i)` returns where corner i lies; none: that is not known, then the
+  /// polygon is a fan. If a place is not finite, all triangles have that corner. Throws
+  /// Error(input) beyond kMostCorners.
   template <class PlaceAt, class Visit>
   void for_each_triangle(std::size_t corners, const PlaceAt& place_at, PolygonCounts& counts,
                          const Visit& visit) {
@@ -97,9 +120,9 @@ class PolygonCut {
   std::vector<Vec3d> places_;
   std::size_t hub_ = 0;  ///< the corner that all triangles of a fan have
   std::vector<Point2> points_;
-  int sign_ = 1;                     ///< of the polygon's area
+  int sign_ = 1;                     ///< sign of the polygon's area
   std::vector<std::uint32_t> left_;  ///< corners that are not cut off yet
-  std::vector<char> ears_;           ///< of each corner: whether it is known to be one
+  std::vector<char> ears_;           ///< per corner: it is known to be an ear
   std::vector<Triangle<std::uint32_t>> triangles_;
 };
 

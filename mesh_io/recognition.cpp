@@ -25,7 +25,7 @@ constexpr std::size_t kTextProof = 1024;
 
 constexpr std::string_view kBlanks = " \t\v\f\r\n";
 
-/// Whether numbers of the first facets are such as meshes have.
+/// Returns whether numbers of the first facets are such as meshes have.
 bool has_facets(std::string_view start) {
   constexpr std::size_t kLooked = 16;
   constexpr std::size_t kNormalBytes = 12, kNumbers = 9;
@@ -44,8 +44,9 @@ bool has_facets(std::string_view start) {
   return true;
 }
 
-/// Whether a file is a binary STL although its header's count, by which it would have `size` bytes,
-/// does not say so: bytes of another kind follow, fewer than the facets have, or the count is 0.
+/// Returns whether a file is a binary STL although its header's count, by which it would have
+/// `size` bytes, does not say so: bytes of another kind follow, fewer than the facets have, or the
+/// count is 0.
 bool is_stl_with_more(std::string_view start, std::uint64_t size, std::uint64_t file_bytes) {
   if (file_bytes <= size || !has_facets(start))
     return false;
@@ -57,7 +58,7 @@ bool is_ply(std::string_view start) {
   return start.starts_with("ply") && start.size() > 3 && kBlanks.find(start[3]) != kBlanks.npos;
 }
 
-/// What is behind the mark of UTF-8 and blanks.
+/// Returns the text behind the mark of UTF-8 and blanks.
 std::string_view behind_blanks(std::string_view start) {
   start = without_mark(start);
   start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
@@ -73,7 +74,7 @@ bool is_odd_ply(std::string_view start) {
          small_letters(line.substr(0, line.find_last_not_of(kBlanks) + 1)) == "ply";
 }
 
-/// Of a text what is before the zeros that fill it up.
+/// Returns a text without the zeros that fill it up.
 std::string_view without_padding(std::string_view start) {
   const std::string_view text = start.substr(0, start.find_last_not_of('\0') + 1);
   const bool has_lines = text.find_first_of("\r\n") != std::string_view::npos;
@@ -83,7 +84,7 @@ std::string_view without_padding(std::string_view start) {
 /// Looks at the keys of an object of JSON until they tell a glTF from a tileset.
 class JsonKeys final : public storage::JsonVisitor {
  public:
-  /// Of one that was read to its end or to its first defect, too.
+  /// Returns the kind by the keys so far; the object may have ended, or broken off at a defect.
   std::optional<MeshKind> kind() const {
     if (has_meshes_)
       return MeshKind::gltf;

@@ -1,4 +1,4 @@
-// A file under another name: a temporary one that messages are to tell by what it was made of.
+// A file under another name: messages name a temporary file by the file that it was made of.
 #pragma once
 
 #include "storage/io/file.h"
@@ -8,7 +8,7 @@
 
 namespace meshhier::mesh_io {
 
-/// `file` with `name` for its path(). To be read only.
+/// Returns `file` with `name` for its path(). It can only be read.
 std::unique_ptr<storage::File> renamed(std::unique_ptr<storage::File> file,
                                        std::filesystem::path name);
 

@@ -42,7 +42,7 @@ class StlBlockParser {
   }
 
  private:
-  /// Behind its first word.
+  /// Takes a facet behind its first word.
   bool take_facet() {
     skip_line();  // the normal
     if (!takes("outer"))
@@ -94,7 +94,7 @@ class StlBlockParser {
   LineParser line_;
 };
 
-/// Whether a line is the end of a facet and nothing else.
+/// Returns whether a line is the end of a facet and nothing else.
 bool ends_facet(std::string_view line) {
   LineParser words(line.data(), line.data() + line.size());
   words.skip_blanks();

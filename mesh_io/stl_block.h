@@ -10,25 +10,25 @@
 
 namespace meshhier::mesh_io {
 
-/// Whole facets, and beginnings and ends of solids.
+/// A block of whole facets, and of beginnings and ends of solids.
 struct StlBlock {
   std::vector<char> text;
-  bool is_plain = false;  ///< all is as follows; else it is to be read by words
+  bool is_plain = false;  ///< the fields below hold all of it; else it must be read by words
   bool begins_in_solid = false, ends_in_solid = false;
   std::uint64_t lines = 0;
-  std::uint64_t solids = 0;  ///< that begin
+  std::uint64_t solids = 0;  ///< solids that begin
   std::vector<SoupTriangle> facets;
   bool fits_float = true;  ///< all coordinates do (DecimalNumber)
 };
 
-/// Of a block of LineBlocks::kBytes, at most: a facet has 65 bytes of text.
+/// The largest memory of a block of LineBlocks::kBytes: a facet has 65 bytes of text.
 inline constexpr std::uint64_t kStlBlockBytes = std::uint64_t{1} << 20;
 
-/// Fills all but the text. What is not as simple as programs write it is not plain; it never fails.
-/// O(bytes).
+/// Fills all but the text. A text that is not as simple as programs write it is not plain; parsing
+/// never fails. O(bytes). Thread-safe for different blocks.
 void parse_facets(StlBlock& block);
 
-/// Of a text that more follows, the bytes up to the end of its last facet: a LineCut.
+/// Returns the bytes up to the end of a text's last facet, where more text follows: a LineCut.
 std::size_t whole_facets(std::string_view text);
 
 }  // namespace meshhier::mesh_io

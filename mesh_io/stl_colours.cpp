@@ -39,7 +39,7 @@ void StlColours::add(std::span<const std::uint16_t> attributes) {
 
 std::optional<StlColour> StlColours::colour_of(std::uint16_t attributes) const {
   const bool has_bit = (attributes & kValid) != 0;
-  // Where all are 0, nobody has chosen black.
+  // If all are 0, nobody has chosen black.
   if (whole_ && (has_bit || !has_number_))
     return whole_;
   if (whole_)

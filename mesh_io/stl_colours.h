@@ -12,10 +12,11 @@ namespace meshhier::mesh_io {
 
 using StlColour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
-/// The colour of the whole that Materialise Magics writes into the header: "COLOR=" and four bytes.
+/// Returns the colour of the whole mesh that Materialise Magics writes into the header: "COLOR="
+/// and four bytes.
 std::optional<StlColour> stl_header_colour(std::span<const std::byte> header);
 
-/// Finds out what the last two bytes of facets say:
+/// Finds out what the last two bytes of facets mean:
 ///
 ///   VisCAM, SolidView   bit 15 is set: the facet has a colour; bits 0 to 4 are blue, 5 to 9 green,
 ///                       10 to 14 red
@@ -29,14 +30,14 @@ class StlColours {
   void set_header(std::optional<StlColour> colour) { whole_ = colour; }
   void add(std::span<const std::uint16_t> attributes);
 
-  /// Once all facets were added.
+  /// Returns whether there are colours. Requires that all facets were added.
   bool any() const { return whole_ ? true : has_colour_ && !has_other_; }
-  /// Of a facet; none: it has no colour beside others that have. Requires any().
+  /// Returns a facet's colour; none: it has no colour beside others that have. Requires any().
   std::optional<StlColour> colour_of(std::uint16_t attributes) const;
 
  private:
   std::optional<StlColour> whole_;
-  bool has_number_ = false;  ///< that is not 0
+  bool has_number_ = false;  ///< a number that is not 0
   bool has_colour_ = false;  ///< bit 15, and not black
   bool has_other_ = false;   ///< a number without bit 15
 };

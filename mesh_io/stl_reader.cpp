@@ -79,7 +79,7 @@ class BinaryStl {
     }
   }
 
-  /// Of the first bytes of the buffer.
+  /// Takes the facets in the first bytes of the buffer.
   void take_facets(std::size_t bytes) {
     block_.clear();
     attributes_.clear();
@@ -124,7 +124,7 @@ class BinaryStl {
   const StlAttributeVisitor& visit_attributes_;
   std::vector<std::byte> bytes_;
   std::vector<SoupTriangle> block_;
-  std::vector<std::uint16_t> attributes_;  ///< of the block
+  std::vector<std::uint16_t> attributes_;  ///< attributes of the block's facets
   std::uint64_t done_ = 0;
   StlCounts counts_;
 };

@@ -25,10 +25,10 @@ inline constexpr std::size_t kStlFacetBytes = 50;
 
 using SoupTriangle = std::array<Vec3d, 3>;
 using SoupVisitor = std::function<void(std::span<const SoupTriangle>)>;
-/// Of the same facets as the call of SoupVisitor before.
+/// Visits the last two bytes of the facets of the SoupVisitor's call before.
 using StlAttributeVisitor = std::function<void(std::span<const std::uint16_t>)>;
 
-/// Facets of which a coordinate is not finite: they are not handed out.
+/// Facets with a coordinate that is not finite: they are not handed out.
 struct DroppedFacets {
   std::uint64_t count = 0;
   std::string first;  ///< for messages: file, place, which facet, and what was found
@@ -36,16 +36,16 @@ struct DroppedFacets {
 
 struct StlCounts {
   std::uint64_t facets = 0;
-  std::uint64_t solids = 0;      ///< of a text
+  std::uint64_t solids = 0;      ///< solids of a text
   std::uint64_t attributes = 0;  ///< facets of a binary file whose last two bytes are not 0
   std::optional<StlColour> header_colour;
   DroppedFacets dropped;
-  std::uint64_t bytes_behind = 0;  ///< the last facet of a binary file: ignored
+  std::uint64_t bytes_behind = 0;  ///< bytes behind the last facet of a binary file: ignored
   bool fits_float = true;          ///< all coordinates do (DecimalNumber)
   OddSyntax odd;
 };
 
-/// Words of an ASCII file are in any case.
+/// Returns whether a word of an ASCII file is this keyword, in any case.
 bool is_stl_keyword(std::string_view word, std::string_view keyword);
 
 /// Hands out all facets in order, in blocks; their normals, which follow from the corners, are
@@ -58,17 +58,17 @@ StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path
 
 struct StlBlock;
 
-/// Reads an ASCII file, of one solid or several, block by block: their numbers were parsed, each
-/// apart from the others. Else as read_text_stl().
+/// Reads an ASCII file of one solid or several from blocks that were parsed apart from each other.
+/// Throws as read_text_stl(). For one thread.
 class StlTextReader {
  public:
   /// Both must outlive it.
   StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit);
   ~StlTextReader();
 
-  /// The blocks of the file in their order (LineBlocks, by whole_facets()).
+  /// Takes the blocks of the file in their order (LineBlocks, by whole_facets()).
   void take(const StlBlock& block);
-  /// What is behind them, by words. Once, after all blocks.
+  /// Reads the text behind the blocks by words. Once, after all blocks.
   void take_rest(InputStream& rest);
   StlCounts finish();
 
@@ -77,9 +77,9 @@ class StlTextReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The same as read_binary_stl() of an ASCII file; errors name the line. A solid's end may be glued
-/// to its name, or be two words. A solid may begin where another one has not ended, and end twice:
-/// these lines are counted as odd.
+/// Does the same as read_binary_stl() for an ASCII file; errors name the line. A solid's end may be
+/// glued to its name, or be two words. A solid may begin where another one has not ended, and end
+/// twice: these lines are counted as odd.
 StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                         const SoupVisitor& visit);
 

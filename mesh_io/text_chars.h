@@ -1,4 +1,4 @@
-// What separates words and lines, and words among others.
+// Characters that separate words and lines, and words in lists.
 #pragma once
 
 #include <algorithm>

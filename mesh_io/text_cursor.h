@@ -10,8 +10,9 @@
 
 namespace meshhier::mesh_io {
 
-/// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; blank lines do not count
-/// as rows. Memory: one ByteWindow, however long a line is.
+/// Reads forwards. Lines end with LF, CRLF or CR; words are separated by blanks and tabs; blank
+/// lines do not count as rows. Memory: one ByteWindow, however long a line is. All throw Error(io).
+/// For one thread.
 class TextCursor {
  public:
   /// The longest word: a double written out in full has 1,077 characters.
@@ -48,8 +49,8 @@ class TextCursor {
     return false;
   }
 
-  /// The word here; empty if it is longer than kMaxWordBytes. Valid until the next call. Requires
-  /// that to_row() or to_word() was true just before.
+  /// Takes the word here; empty if it is longer than kMaxWordBytes. Valid until the next call.
+  /// Requires that to_row() or to_word() was true just before.
   std::string_view take_word() {
     look_ahead();
     const std::byte* const first = window_.begin();
@@ -79,7 +80,7 @@ class TextCursor {
     return kKinds[static_cast<std::size_t>(c)];
   }
 
-  /// Makes a word and what separates it available, if the file has as much.
+  /// Makes a word and its separator available, if the file has as much.
   bool look_ahead() {
     return window_.available() > kMaxWordBytes || window_.ensure(kMaxWordBytes + 1) ||
            window_.available() > 0;

@@ -29,9 +29,9 @@ constexpr std::uint64_t kTileHeaderBytes = 12;
 constexpr std::uint64_t kBatchedHeaderBytes = 28;
 constexpr std::uint64_t kCompositeHeaderBytes = 16;
 constexpr int kDeepestComposite = 8;
-/// Of tiles in a file; the least takes 12 bytes of it, and more to be remembered.
+/// The most tiles in a file; the least takes 12 bytes of it, and more to be remembered.
 constexpr std::uint64_t kMostComposed = 65536;
-/// Of a file in gzip, which is unpacked anew to reach each.
+/// The most tiles in a file in gzip, which is unpacked anew to reach each.
 constexpr std::uint64_t kMostPackedComposed = 256;
 
 /// A range of the file that is a tile.
@@ -149,7 +149,7 @@ class TileFileReader {
                               file_.path().string(), parts.bytes[0]));
     const std::uint64_t begin = tile + parts.header;
     std::string table_text = text(begin, parts.bytes[0]);
-    table_text.erase(table_text.find_last_not_of('\0') + 1);  // what some pad it with
+    table_text.erase(table_text.find_last_not_of('\0') + 1);  // some programs pad it with zeros
     const auto json = parse_gltf_json(std::move(table_text), file_.path(), most_bytes_);
     const GltfObject table(json, file_.path(), "feature table");
     const char* key = "RTC_CENTER";

@@ -1,5 +1,5 @@
-// What a file of a tileset holds (OGC, 3D Tiles 1.0 and 1.1): a glTF, one within a b3dm, or several
-// tiles within a cmpt.
+// The content of a tileset's file (OGC, 3D Tiles 1.0 and 1.1): a glTF, one within a b3dm, or
+// several tiles within a cmpt.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -14,21 +14,20 @@ namespace meshhier::mesh_io {
 /// A glTF within a file.
 struct TileGltf {
   MeshKind kind{};                      ///< gltf, glb or b3dm
-  std::uint64_t offset = 0, bytes = 0;  ///< of the glTF in the file
-  Vec3d centre;                         ///< RTC_CENTER: added to positions, z-up
+  std::uint64_t offset = 0, bytes = 0;  ///< the glTF's place in the file
+  Vec3d centre;                         ///< added to positions, z-up (RTC_CENTER)
 };
 
 struct TileFile {
   std::vector<TileGltf> meshes{};
   std::uint64_t instanced = 0, points = 0;  ///< tiles of these kinds, which are no meshes
   bool is_tileset = false;                  ///< the JSON of another one
-  bool is_packed = false;                   ///< in gzip: offsets are of what it holds
+  bool is_packed = false;                   ///< in gzip: offsets count in its content
 };
 
-/// Reads headers and feature tables, of a file that is packed by gzip or not. Throws Error(input)
-/// if the file is none of these, if it is truncated, or if tiles lie in each other deeper than 8
-/// levels or are more than 65,536; Error(budget) if a feature table takes more than `most_bytes` of
-/// memory.
+/// Reads headers and feature tables of a file, packed by gzip or not. Throws Error(input) if the
+/// file is none of these, if it is truncated, or if tiles lie in each other deeper than 8 levels or
+/// are more than 65,536; Error(budget) if a feature table takes more than `most_bytes` of memory.
 TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes);
 
 }  // namespace meshhier::mesh_io

@@ -8,8 +8,8 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// Of a volume whose middle tells where its content is: within it the ground leaves its tangent
-/// plane by 800 m.
+/// The largest radius of a volume whose middle tells where its content is: within it the ground
+/// leaves its tangent plane by 800 m.
 constexpr double kLocalRadius = 100'000;
 
 double largest_scale(const GltfTransform& t) {
@@ -31,7 +31,7 @@ Ball ball_of(const TileVolume& volume, const GltfTransform& to_globe) {
   return {transformed(to_globe, volume.middle), volume.radius * largest_scale(to_globe)};
 }
 
-/// Where on the globe a content is.
+/// Returns where on the globe a content is.
 std::optional<Vec3d> place_of(const ShownContent& shown) {
   std::optional<Ball> ball;
   if (shown.tile.volume)
@@ -48,7 +48,7 @@ std::optional<Vec3d> place_of(const ShownContent& shown) {
   return std::nullopt;
 }
 
-/// Where the tiles are that are shown.
+/// Returns the frame amid the tiles that are shown.
 std::optional<GlobeFrame> frame_of_contents(const TilesetTree& tree) {
   std::vector<Vec3d> places;
   std::optional<GltfTransform> first;
@@ -72,9 +72,9 @@ std::optional<GlobeFrame> frame_of_contents(const TilesetTree& tree) {
   return frame_amid(places);
 }
 
-/// What the root says of the frame.
+/// The frame as far as the root tells it.
 struct RootFrame {
-  bool is_known = false;  ///< else its tiles must be asked
+  bool is_known = false;  ///< if not, its tiles must be asked
   std::optional<GlobeFrame> frame{};
 };
 

@@ -48,15 +48,15 @@ GltfTransform transform_of(const GltfObject& tile) {
   return gltf_matrix(columns);
 }
 
-/// Of the parallel between two latitudes that is nearest to the equator.
+/// Returns the radius of the longest parallel between two latitudes.
 double longest_parallel(double south, double north) {
   if (south * north <= 0)
     return wgs84::kEquator;
   return wgs84::kEquator * std::max(turn_by(south).cosine, turn_by(north).cosine);
 }
 
-/// Of west, south, east, north in radians, least and largest height; nothing if there is no such
-/// region.
+/// Returns the volume of west, south, east, north in radians, least and largest height; nothing if
+/// there is no such region.
 std::optional<TileVolume> volume_of_region(const std::vector<double>& region) {
   constexpr double kTurn = 2 * std::numbers::pi;
   if (!std::ranges::all_of(std::span(region).first(4),
@@ -79,7 +79,7 @@ TileVolume volume_of_box(const std::vector<double>& box) {
   return {.middle = {box[0], box[1], box[2]}, .radius = std::sqrt(square)};
 }
 
-/// Of the root; a volume that is none is refused.
+/// Returns the root's volume; refuses one whose numbers are no volume.
 std::optional<TileVolume> volume_of_root(const GltfObject& root) {
   const auto volume = root.object("boundingVolume");
   if (!volume)
@@ -98,7 +98,8 @@ std::optional<TileVolume> volume_of_root(const GltfObject& root) {
   return std::nullopt;
 }
 
-/// Of other tiles nothing depends on it but where a tileset of the whole globe is.
+/// Returns a tile's volume. Only the root's is refused: volumes of other tiles only serve to place
+/// a tileset of the whole globe.
 std::optional<TileVolume> volume_of(const GltfObject& tile, bool is_root) {
   try {
     return volume_of_root(tile);
@@ -167,7 +168,7 @@ void add_tile(const GltfObject& tile, std::optional<std::uint32_t> parent, std::
                 [&](const GltfObject& within) { add_tile(within, number, next++, to); });
 }
 
-/// Of the root of a hierarchy.
+/// Returns the origin's move of a hierarchy, which its root has.
 GltfTransform origin_of(const GltfObject& root) {
   GltfTransform move;
   const auto extras = root.object("extras");

@@ -13,20 +13,21 @@
 
 namespace meshhier::mesh_io {
 
-/// Whether the children of a tile take its place or are shown beside it.
+/// The children of a tile take its place, or are shown beside it.
 enum class Refine : std::uint8_t { inherited, replace, add };
 
 /// A ball around what a tile holds: all of its bounding volume lies in it.
 struct TileVolume {
   Vec3d middle;
   double radius = 0;
-  bool is_geocentric = false;  ///< whatever the tile's transform; else in the tile's coordinates
+  bool is_geocentric = false;  ///< it is in geocentric coordinates, whatever the tile's transform;
+                               ///< else in the tile's
 };
 
-/// What a tile names.
+/// A content that a tile names.
 struct TileContentName {
-  std::optional<std::string> uri;  ///< none: to be told when it is looked for
-  std::uint32_t tile = 0;          ///< of it
+  std::optional<std::string> uri;  ///< none: an error, if it is looked for
+  std::uint32_t tile = 0;          ///< number of the tile
   std::string place;               ///< in the tile: ".content"
 };
 
@@ -37,22 +38,22 @@ struct TilesetTile {
   bool is_leaf = true;
   GltfTransform transform;  ///< to the parent's coordinates
   std::optional<TileVolume> volume{};
-  std::uint32_t first_content = 0, end_content = 0;  ///< of TilesetDocument::contents
+  std::uint32_t first_content = 0, end_content = 0;  ///< range of TilesetDocument::contents
 };
 
 struct TilesetDocument {
   std::filesystem::path path;
   std::vector<TilesetTile> tiles{};  ///< parents first, in the order of the document
   std::vector<TileContentName> contents{};
-  GltfTransform axes{};       ///< from those of a glTF to those of 3D Tiles
-  bool is_hierarchy = false;  ///< one that a build made
-  GltfTransform origin{};     ///< what the root's transform of a hierarchy does first: a move
+  GltfTransform axes{};       ///< from the axes of a glTF to those of 3D Tiles
+  bool is_hierarchy = false;  ///< a build made it
+  GltfTransform origin{};     ///< the move that the root's transform of a hierarchy does first
 };
 
-/// The root's transform, but from the input's coordinates: without the move by the origin.
+/// Returns the root's transform from the input's coordinates: without the move by the origin.
 GltfTransform from_input(const TilesetDocument& document);
 
-/// "root.children[3].content", for messages.
+/// Returns "root.children[3].content", for messages.
 std::string place_of(const TilesetDocument& document, const TileContentName& content);
 
 /// Reads a document, packed by gzip or not. `most_bytes`: memory for its JSON. Throws Error(input)

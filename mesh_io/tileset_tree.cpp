@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostDocuments = 64;  ///< of which each is within the one before
+constexpr std::size_t kMostDocuments = 64;  ///< each within the one before
 constexpr std::size_t kLongestContent = 255;
 /// Counts beyond are told as more than it.
 constexpr std::uint64_t kMostCounted = 1'000'000'000'000'000'000;
@@ -31,7 +31,7 @@ bool is_shown(const TilesetTile& tile, bool is_added) {
   return is_added || tile.is_leaf;
 }
 
-/// What they are, or what they hold in gzip, of which no more is read than is refused.
+/// Returns bytes, unpacked if they are gzip. Reads just so far that too many are noticed.
 std::vector<std::byte> unpacked_bytes(const fs::path& path, std::vector<std::byte> bytes) {
   const auto file =
       file_of_bytes(path, std::make_shared<const std::vector<std::byte>>(std::move(bytes)));
@@ -182,7 +182,7 @@ fs::path TilesetTree::file_of(const Part& part, const TileContentName& content) 
       const fs::path path = (folder / name).lexically_normal();
       if (is_below_place(path) && files_.kind(path) == storage::FileKind::regular)
         return path;
-      name.resize(std::min(name.find_first_of("?#"), name.size()));  // what a server would take
+      name.resize(std::min(name.find_first_of("?#"), name.size()));  // as a server would
     }
   }
   fail(fmt::format("is {}, which is no file below the folder of the tileset", shown));

@@ -18,18 +18,18 @@
 
 namespace meshhier::mesh_io {
 
-/// So many tiles and contents are read at most, each as often as it is shown: documents that name
-/// each other would else make any number. A mesh has up to 2^32 vertices: 4,096 for each of them.
+/// The most tiles and contents that are read, each counted as often as it is shown: documents that
+/// name each other would else make any number. A mesh has up to 2^32 vertices: 4,096 for each tile.
 inline constexpr std::uint64_t kMostTiles = std::uint64_t{1} << 20;
-/// Memory for contents that documents hold as data.
+/// The most memory for contents that documents hold as data.
 inline constexpr std::uint64_t kMostTileData = std::uint64_t{64} << 20;
 
-/// What a tile shows: a file, or data that a document holds.
+/// A content that tiles show: a file, or data that a document holds.
 struct TileContent {
-  std::filesystem::path file;  ///< of data: the document
+  std::filesystem::path file;  ///< the document, if it is data
   std::shared_ptr<const std::vector<std::byte>> data{};
   TileFile tile;
-  std::optional<std::uint32_t> document{};  ///< of an external tileset
+  std::optional<std::uint32_t> document{};  ///< number of the document of an external tileset
 };
 
 /// A content where a tile shows it.
@@ -37,10 +37,12 @@ struct ShownContent {
   const TileContent& content;
   const TilesetTile& tile;
   const GltfTransform& axes;
-  const GltfTransform& to_globe;   ///< of the tile, from its coordinates to the tileset's
-  const GltfTransform& placement;  ///< the same to the frame's
+  const GltfTransform& to_globe;   ///< from the tile's coordinates to the tileset's
+  const GltfTransform& placement;  ///< from the tile's coordinates to the frame's
 };
 
+/// The documents of a tileset and their contents. Reading is done by the constructor; for_each() is
+/// thread-safe.
 class TilesetTree {
  public:
   /// Reads the documents, and the headers of the contents that are shown. Throws as
@@ -49,12 +51,13 @@ class TilesetTree {
               std::uint64_t most_bytes);
 
   const TilesetDocument& root() const { return documents_[0].document; }
-  /// Those of external tilesets, each once, but for those that are data.
+  /// Returns the files of external tilesets, each once, but for those that are data.
   const std::vector<std::filesystem::path>& external() const { return external_; }
 
   using Visit = std::function<void(const ShownContent&)>;
-  /// Visits what is shown, in the order of the documents, and calls `coarser` for each content that
-  /// finer tiles replace. A tile whose coordinates are the frame's is placed there exactly.
+  /// Visits the contents that are shown, in the order of the documents, and calls `coarser` for
+  /// each content that finer tiles replace. A tile whose coordinates are the frame's is placed
+  /// there exactly.
   void for_each(const std::optional<GlobeFrame>& frame, const Visit& visit,
                 const std::function<void()>& coarser) const;
 
@@ -64,13 +67,13 @@ class TilesetTree {
     TilesetDocument document;
     std::vector<std::optional<std::uint32_t>> contents;
   };
-  /// What a document makes of itself.
+  /// The size of a document with all that it names.
   struct Size {
     std::uint64_t tiles = 0;  ///< with those of the documents that it names
-    std::size_t levels = 0;   ///< of documents in each other
+    std::size_t levels = 0;   ///< documents within each other
     bool is_open = true;      ///< being counted
   };
-  /// Where a tile stands.
+  /// The placement of a tile.
   struct Stand {
     GltfTransform to_globe, placement;
     bool adds = false;

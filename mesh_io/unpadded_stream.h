@@ -10,13 +10,13 @@
 
 namespace meshhier::mesh_io {
 
-/// Hands on all but the zeros at the end of a stream, which must outlive it.
+/// Hands on all but the zeros at the end of a stream, which must outlive it. Throws as that stream.
 class UnpaddedStream final : public InputStream {
  public:
   explicit UnpaddedStream(InputStream& stream);
 
   std::size_t read(std::span<std::byte> to) override;
-  /// How many zeros were left out; known at the end.
+  /// Returns how many zeros were left out; known at the end.
   std::uint64_t padding() const { return held_; }
 
  private:
@@ -24,9 +24,9 @@ class UnpaddedStream final : public InputStream {
 
   InputStream& stream_;
   std::vector<std::byte> buffer_;
-  std::size_t begin_ = 0, end_ = 0;  ///< in the buffer, what is to be handed on
-  std::uint64_t zeros_ = 0;          ///< that come before it
-  std::uint64_t held_ = 0;           ///< that come behind it, if more follows
+  std::size_t begin_ = 0, end_ = 0;  ///< bytes of the buffer to be handed on
+  std::uint64_t zeros_ = 0;          ///< zeros that come before them
+  std::uint64_t held_ = 0;           ///< zeros that come behind them, if more follows
   bool has_ended_ = false;
 };
 

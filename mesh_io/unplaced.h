@@ -7,7 +7,7 @@
 
 namespace meshhier::mesh_io {
 
-/// Those of a file.
+/// The unplaced vertices of a file.
 struct UnplacedVertices {
   std::uint64_t count = 0;
   std::string first;  ///< for messages: file, place and what was found

@@ -51,7 +51,7 @@ std::size_t Utf16Stream::read(std::span<std::byte> to) {
   return done;
 }
 
-/// With the next characters; nothing at the end.
+/// Fills ready_ with the next characters; it stays empty at the end.
 void Utf16Stream::fill() {
   ready_.clear();
   taken_ = 0;

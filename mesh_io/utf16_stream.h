@@ -11,9 +11,9 @@
 
 namespace meshhier::mesh_io {
 
-/// The content of another stream: if that begins with the byte order mark of UTF-16, in UTF-8
-/// without the mark; else as it is. What is no character becomes U+FFFD. Throws Error(input) if a
-/// UTF-16 text has an odd number of bytes.
+/// Hands on the content of another stream: in UTF-8 without the mark, if that begins with the byte
+/// order mark of UTF-16; else as it is. Halves of characters become U+FFFD. Throws Error(input) if
+/// a UTF-16 text has an odd number of bytes.
 class Utf16Stream final : public InputStream {
  public:
   /// Both must outlive it; `path`: for messages.

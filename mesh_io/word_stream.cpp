@@ -170,7 +170,7 @@ void WordStream::skip_comment() {
 }
 
 void WordStream::skip_line() {
-  bool in_word = true;  // behind the first one
+  bool in_word = true;  // its first character was taken
   while (look_ahead(3) && !is_line_end(buffer_[begin_])) {
     if (skip_joint()) {
       in_word = false;
@@ -186,7 +186,7 @@ void WordStream::skip_line() {
 
 std::string WordStream::take_rest() {
   std::string rest;
-  std::size_t blanks = 0;   // not known yet whether something follows them
+  std::size_t blanks = 0;   // blanks that count if something follows them
   bool in_comment = false;  // perhaps: a name may have a '#' as well
   while (look_ahead(3) && !is_line_end(buffer_[begin_])) {
     if (!in_comment && skip_joint()) {

@@ -7,7 +7,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// How many were made 0: none or one.
+/// Returns how many were made 0: none or one.
 std::uint64_t zero_if_not_finite(std::span<float> numbers) {
   if (std::ranges::all_of(numbers, [](float number) { return std::isfinite(number); }))
     return 0;

@@ -9,7 +9,7 @@
 
 namespace meshhier::mesh_io {
 
-/// How many became 0, or another number.
+/// Counts of attributes that became 0, or another number.
 struct ZeroedCounts {
   std::uint64_t normals = 0;
   std::uint64_t texcoords = 0;
@@ -25,8 +25,8 @@ struct ZeroedCounts {
 };
 
 /// Makes the whole normal 0 if one of its numbers is not finite, and likewise the texture
-/// coordinates. Many programs write "nan" as the normal of what has no area. `rows`: of each vertex
-/// its layout.channels() floats.
+/// coordinates. Many programs write "nan" as the normal of what has no area. `rows`:
+/// layout.channels() floats a vertex. Returns how many became 0.
 ZeroedCounts zero_what_is_not_finite(const AttributeLayout& layout, std::span<float> rows);
 
 }  // namespace meshhier::mesh_io
