@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kMostParts = 16;
 /// A part has room for dozens of blocks.
 constexpr std::uint64_t kLeastBytesOfPart = 1 << 20;
-/// Of a block besides its texels: its places in list and table, and what the allocator adds.
+/// The memory of a block besides its texels: its places in list and table, and the allocator's own.
 constexpr std::uint64_t kBytesBeside = 160;
 
 std::uint64_t cost(std::size_t block_bytes) {

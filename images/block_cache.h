@@ -1,4 +1,4 @@
-// Blocks of texels that were read lately.
+// A cache of the blocks of texels that were read lately.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,15 @@
 
 namespace meshhier::images {
 
-/// The least recently used blocks go first. Thread-safe: keys are spread over parts with a lock
-/// each.
+/// Keeps blocks by keys; the least recently used ones go first. Thread-safe: keys are spread over
+/// parts with a lock each.
 class BlockCache {
  public:
-  /// `most_bytes`: of blocks and what finds them.
+  /// `most_bytes`: memory for blocks, and for their places in list and table.
   explicit BlockCache(std::uint64_t most_bytes);
 
-  /// Calls `use` with the block's bytes; false if it is not there. `use` is quick: others wait.
+  /// Calls `use` with the block's bytes; returns false if the block is not there. `use` must be
+  /// quick: other threads wait.
   template <class Use>
   bool use(std::uint64_t key, const Use& use) {
     Part& part = part_of(key);
@@ -30,7 +31,7 @@ class BlockCache {
     return block != nullptr;
   }
 
-  /// Keeps a copy, unless there is one or there is no room at all.
+  /// Keeps a copy of the block, unless there is one or the block is larger than all room.
   void put(std::uint64_t key, std::span<const std::byte> block);
 
  private:
@@ -39,12 +40,12 @@ class BlockCache {
     std::vector<std::byte> bytes;
   };
   struct Part {
-    /// Null if it is not there; then it is the last to go.
+    /// Returns null if the block is not there; else the block becomes the last to go.
     const std::byte* find(std::uint64_t key);
     void put(std::uint64_t key, std::span<const std::byte> bytes, std::uint64_t most_bytes);
     void drop_oldest();
 
-    std::mutex mutex;         ///< of what follows
+    std::mutex mutex;         ///< guards the members below
     std::list<Block> blocks;  ///< the one used last comes first
     std::unordered_map<std::uint64_t, std::list<Block>::iterator> places;
     std::uint64_t held_bytes = 0;

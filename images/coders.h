@@ -1,4 +1,5 @@
-// What reads and writes one format each: the functions that formats.cpp names.
+// The functions that read and write one format each, which the rows of formats.cpp name. Their
+// contracts are those of open_image(), open_row_writer(), encode_image() and encode_normal_map().
 #pragma once
 
 #include "images/image.h"
@@ -17,10 +18,10 @@ std::unique_ptr<ImageReader> open_png(ByteSource source, const std::string& name
 std::unique_ptr<ImageReader> open_webp(ByteSource source, const std::string& name);
 std::unique_ptr<ImageReader> open_ktx2(ByteSource source, const std::string& name);
 
-/// The best codes for a picture are known after its last row: all of its coefficients wait for
-/// them.
+/// Huffman codes. The best ones for a picture are known after its last row: all of its coefficients
+/// wait for them.
 enum class JpegCodes { standard, best };
-/// What three channels are: light of a screen, seen with less detail in its hues, or directions.
+/// The meaning of three channels: colours, whose hues are seen with less detail, or directions.
 enum class JpegContent { colours, directions };
 std::unique_ptr<RowWriter> open_jpeg_writer(const WrittenImage& image, JpegCodes codes,
                                             ByteSink sink,
@@ -28,7 +29,6 @@ std::unique_ptr<RowWriter> open_jpeg_writer(const WrittenImage& image, JpegCodes
 std::unique_ptr<RowWriter> open_png_writer(const WrittenImage& image, ByteSink sink);
 
 std::vector<std::byte> encode_jpeg(const Image& image, int quality);
-/// As encode_normal_map().
 std::vector<std::byte> encode_normal_jpeg(const Image& image, int quality);
 std::vector<std::byte> encode_png(const Image& image);
 std::vector<std::byte> encode_webp(const Image& image, int quality);

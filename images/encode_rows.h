@@ -1,4 +1,4 @@
-// A whole picture by way of a writer of rows.
+// Encodes a whole picture by a writer of rows.
 #pragma once
 
 #include "images/image.h"
@@ -11,7 +11,7 @@
 
 namespace meshhier::images {
 
-/// `open(sink)`: a writer of pictures of this size.
+/// `open(sink)` returns a RowWriter for a picture of this size.
 template <class Open>
 std::vector<std::byte> encode_rows(const Image& image, const Open& open) {
   std::vector<std::byte> file;

@@ -1,5 +1,5 @@
-// The formats of pictures: what reads and writes each, and what that costs. Their names:
-// hierarchy/image_format.h.
+// The formats of pictures, a row each: functions that read and write it, limits and costs. Their
+// names, endings and media types stand in hierarchy/image_format.h.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -15,45 +15,52 @@
 
 namespace meshhier::images {
 
-/// What a texel of a tile takes, about.
+/// The costs of a texel of a tile, about.
 struct TexelCosts {
   double file_bytes;
   double device_bytes;  ///< on a graphics device that knows blocks, without smaller pictures
-  double seconds;       ///< of other processes: what libraries take is little beside the baking
+  double seconds;  ///< CPU time of other processes; that of libraries is little beside the baking
 };
 
 /// Processes that code a format for which there is no library.
 struct CoderProcesses {
-  /// What keeps this machine from coding, and what mends it, in a sentence; empty: nothing does.
+  /// Says in a sentence what keeps this machine from coding, and what to do; empty: it can.
+  /// Thread-safe.
   std::string (*missing)();
-  /// Memory of a process that codes a picture, which it keeps for the next one.
+  /// Returns the memory of a process that codes a picture, which it keeps for the next one.
   std::uint64_t (*bytes)(std::uint64_t texels);
-  /// Ends those that wait for pictures. Thread-safe.
+  /// Ends the processes that wait for pictures. Thread-safe.
   void (*end)();
 };
 
+/// A format. All functions are thread-safe for different pictures.
 struct FormatRow {
   ImageFormat format;
+  /// Reads the head; as open_image(), once the format is known.
   std::unique_ptr<ImageReader> (*open)(ByteSource source, const std::string& name);
+  /// Encode a whole picture, as encode_image() and encode_normal_map() say.
   std::vector<std::byte> (*encode)(const Image& image, int quality);
   std::vector<std::byte> (*encode_directions)(const Image& image, int quality);
-  /// Writes rows as they come; null: they all wait for the last one.
+  /// Writes rows as they come, as open_row_writer() says; null: all rows wait for the last one.
   std::unique_ptr<RowWriter> (*open_rows)(const WrittenImage& image, ByteSink sink);
-  std::uint64_t most_held_texels;  ///< rows of pictures up to this size wait nevertheless
-  std::uint64_t (*encoder_bytes)(std::uint64_t texels, int quality);  ///< besides the picture
-  std::uint32_t most_side;                                            ///< that is written
+  std::uint64_t most_held_texels;  ///< rows of pictures up to this size wait all the same
+  /// Returns the memory of encoding, besides the picture.
+  std::uint64_t (*encoder_bytes)(std::uint64_t texels, int quality);
+  std::uint32_t most_side;  ///< the longest side that is written
+  /// Costs at a quality of 90, at the best quality, and of normal maps.
   TexelCosts colours, best_colours, directions;
-  const CoderProcesses* processes;  ///< null: libraries do it
+  const CoderProcesses* processes;  ///< null: a library codes in this process
 };
 
+/// Return the row of a format, and the costs of a texel in pictures and in normal maps.
 const FormatRow& coders_of(ImageFormat format);
 const TexelCosts& costs_of(const TextureFormat& textures);
 const TexelCosts& costs_of(const NormalMapFormat& maps);
 
-/// As CoderProcesses has them; formats without have nothing missing and take no memory.
+/// Return CoderProcesses::missing() and bytes() of a format; "" and 0 if a library codes it.
 std::string missing_coder(ImageFormat format);
 std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels);
-/// Of all formats.
+/// Ends the waiting processes of all formats. Thread-safe.
 void end_coders();
 
 }  // namespace meshhier::images

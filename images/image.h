@@ -7,7 +7,7 @@
 
 namespace meshhier::images {
 
-/// 8 bits a channel, sRGB, row by row from the top, without padding.
+/// A picture of 8 bits a channel, sRGB, row by row from the top, without padding.
 struct Image {
   std::uint32_t width = 0, height = 0;
   std::uint32_t channels = 3;        ///< 3: red, green, blue; 4: alpha too, not premultiplied
@@ -26,7 +26,7 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// Of 3 or 4 channels.
+/// Copies a texel of 3 or 4 channels.
 inline void copy_texel(const std::uint8_t* from, std::uint8_t* to, std::uint32_t channels) {
   to[0] = from[0], to[1] = from[1], to[2] = from[2];
   if (channels == 4)

@@ -41,9 +41,9 @@ bool is_sound(const StoredImage& image) {
 
 /// Part of a block and where it goes.
 struct BlockPart {
-  std::span<const std::uint32_t> columns, rows;  ///< of the picture
+  std::span<const std::uint32_t> columns, rows;  ///< numbers in the picture
   std::uint32_t block_width = 0;
-  std::uint32_t channels = 0;  ///< of the block
+  std::uint32_t channels = 0;  ///< channels of the block
   Image& into;
   std::uint32_t at_x = 0, at_y = 0;
 };
@@ -85,7 +85,7 @@ struct ImageStore::Impl {
   Impl(storage::ScratchFile& file, std::uint64_t cache_bytes) : scratch(file), cache(cache_bytes) {}
 
   bool is_there(const StoredImage& image) const;
-  /// Of a strip in a mounted file, the first time it is used. Throws Error(corrupt).
+  /// Checks a strip in a mounted file the first time it is used. Throws Error(corrupt).
   void check(std::uint32_t image, std::uint32_t strip, std::size_t bytes);
   void read_block(std::uint32_t image, std::uint32_t level, std::uint32_t column, std::uint32_t row,
                   const BlockPart& part);

@@ -2,8 +2,8 @@
 //
 // Each picture lies in blocks of 64 x 64 texels, with a pyramid above it: each level has half of
 // the width and height of the one below (rounded up), its texels are means of up to four in linear
-// light, weighted by alpha. Blocks are decoded once, row by row; what is read lies in a cache of
-// fixed size. What is read never depends on the cache.
+// light, weighted by alpha. Pictures are decoded once, row by row; blocks that are read lie in a
+// cache of fixed size. Results never depend on the cache.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -24,7 +24,7 @@ namespace meshhier::images {
 struct TexelRect {
   std::uint32_t image = 0;
   std::uint32_t level = 0;    ///< 0: the picture itself
-  std::int64_t x = 0, y = 0;  ///< of the upper left texel; any, wraps count
+  std::int64_t x = 0, y = 0;  ///< the upper left texel; any number, as wraps count
   std::uint32_t width = 0, height = 0;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
@@ -34,40 +34,42 @@ class ImageStore {
  public:
   static constexpr std::uint32_t kBlockSide = 64;
 
-  /// `cache_bytes`: of decoded blocks, at most.
+  /// `cache_bytes`: the most memory of decoded blocks. `scratch` must outlive it.
   ImageStore(storage::ScratchFile& scratch, std::uint64_t cache_bytes);
   ~ImageStore();
 
-  /// Called after each row of blocks of a picture with the texels it had; may throw.
+  /// Called after each row of a picture's blocks, with the number of its texels; may throw.
   using Step = std::function<void(std::uint64_t texels)>;
 
-  /// Decodes a picture, to be added. Throws as ImageReader. O(texels) time, O(width) memory besides
-  /// the reader's.
+  /// Decodes a picture into the scratch file, to be added by add(). Throws as ImageReader, and
+  /// Error(io). O(texels) time, O(width) memory besides the reader's.
   StoredImage write(ImageReader& reader, const Step& step) const;
   /// Gives the next number to a picture that was written.
   void add(StoredImage written);
-  /// Both.
+  /// Writes and adds a picture.
   void add(ImageReader& reader, const Step& step) { add(write(reader, step)); }
 
-  /// Takes pictures that an earlier process added, all or none: false if the scratch file does not
-  /// hold what was stored; reads it all. On an empty store, before anything is appended there.
+  /// Takes pictures that an earlier process added, all or none; returns false if the scratch file
+  /// does not hold them any more, for which it reads them all. Requires an empty store, and a
+  /// scratch file to which nothing was appended yet.
   bool restore(std::span<const StoredImage> images);
-  /// For restore(), once the scratch file is synced.
+  /// Returns the facts that restore() takes, once the scratch file is synced.
   const StoredImage& stored(std::uint32_t image) const;
 
   std::size_t size() const;
   const ImageInfo& info(std::uint32_t image) const;
-  /// Levels of its pyramid, the last of 1 x 1 texels.
+  /// Returns the number of levels of its pyramid, the last of 1 x 1 texels.
   std::uint32_t levels(std::uint32_t image) const;
 
-  /// Writes the rectangle into `into` at (at_x, at_y), which has room for it; `into` has 3 channels
-  /// (alpha is dropped) or 4 (it is 255 if the picture has none).
+  /// Writes the rectangle into `into` at (at_x, at_y), where it must fit; `into` has 3 channels
+  /// (alpha is dropped) or 4 (alpha is 255 if the picture has none). Throws Error(io), and
+  /// Error(corrupt) if a mounted scratch file has changed.
   void read(const TexelRect& rect, Image& into, std::uint32_t at_x, std::uint32_t at_y) const;
 
-  /// Bytes of scratch space that a picture of this size takes, pyramid and all.
+  /// Returns the bytes of scratch space that a picture of this size takes, with its pyramid.
   static std::uint64_t stored_bytes(std::uint32_t width, std::uint32_t height,
                                     std::uint32_t channels);
-  /// Bytes of memory that write() holds besides the reader's.
+  /// Returns the bytes of memory that write() holds besides the reader's.
   static std::uint64_t adding_bytes(std::uint32_t width, std::uint32_t height,
                                     std::uint32_t channels);
 

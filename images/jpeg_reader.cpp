@@ -107,8 +107,8 @@ void JpegReader::skip(std::uint64_t bytes) {
   input_.skip(bytes - here);
 }
 
-/// The library goes on with grey where data is missing or broken: that is no picture. What leaves
-/// the texels as they are is passed over.
+/// Fails at missing or broken data, where the library would go on with grey. Warnings that leave
+/// the texels as they are are passed over.
 void JpegReader::warn() {
   switch (errors_.msg_code) {
     case JWRN_ADOBE_XFORM:

@@ -19,7 +19,7 @@ namespace {
 
 /// From here on chroma has as many samples as luma.
 constexpr int kFullChromaQuality = 90;
-/// Of the blue of a direction, which follows from red and green but for its sign.
+/// The quality of a direction's blue, which follows from red and green but for its sign.
 constexpr int kBlueQuality = 30;
 
 class JpegWriter final : public RowWriter {

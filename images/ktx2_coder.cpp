@@ -14,7 +14,7 @@
 namespace meshhier::images {
 namespace {
 
-// As coder.mjs has them.
+// Both numbers are those of coder.mjs.
 constexpr std::uint32_t kProtocol = 1;
 constexpr std::uint32_t kDecode = 3;
 using Request = std::array<std::uint32_t, 5>;  ///< kind, width, height, quality, bytes

@@ -61,7 +61,7 @@ class Ktx2Reader final : public ImageReader {
   std::string name_;
   ImageInfo info_;
   std::uint64_t file_bytes_ = 0;
-  std::uint32_t next_row_ = 0;  ///< to be handed out
+  std::uint32_t next_row_ = 0;  ///< the next row to be handed out
   Image whole_;
 };
 
@@ -108,7 +108,7 @@ std::uint32_t Ktx2Reader::channels_of(std::span<const std::byte> head) const {
   return (channel & kChannelBits) == kUastcRgba ? 4 : 3;
 }
 
-/// Of all levels and what they share.
+/// Returns the end of all levels, and of the data that they share.
 std::uint64_t Ktx2Reader::end_of(std::span<const std::byte> head) const {
   const std::uint64_t most =
       std::uint64_t{info_.width} * info_.height * kMostKtx2BytesPerTexel + kMostSlack;

@@ -1,7 +1,7 @@
 // Calls into C libraries whose error handlers must not return.
 //
 // An error leaves the library by longjmp() to where the call began, so no exception passes through
-// its frames; from there it goes on as an exception.
+// its frames; there it becomes an exception.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -19,13 +19,13 @@ namespace meshhier::images {
 
 class LibraryCall {
  public:
-  /// Failures are told as Error(code) "subject: message".
+  /// Failures become Error(code) "subject: message".
   LibraryCall(ErrorCode code, std::string subject) : code_(code), subject_(std::move(subject)) {}
   LibraryCall(const LibraryCall&) = delete;
   LibraryCall& operator=(const LibraryCall&) = delete;
 
   /// Runs `call`. While the library is at work, no frame above this one may hold anything that is
-  /// to be destroyed. Throws what a callback threw, or what fail() was told.
+  /// to be destroyed. Throws the exception of a callback, or the failure that fail() was told.
   template <class Call>
   void run(const Call& call) {
     if (setjmp(way_back_) == 0) {
@@ -35,7 +35,7 @@ class LibraryCall {
     }
   }
 
-  /// What the library calls back: runs `work`, which may throw.
+  /// Runs `work`, which may throw, in a function that the library calls back.
   template <class Work>
   void callback(const Work& work) {
     try {

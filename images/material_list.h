@@ -1,4 +1,4 @@
-// The materials of a mesh, and where their pictures are.
+// The materials of a mesh, and the sources of their pictures.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -16,11 +16,11 @@ namespace meshhier::images {
 /// A picture that a mesh file names or holds.
 struct ImageSource {
   std::string name;               ///< as the mesh names it, for messages
-  std::filesystem::path file;     ///< where it lies; empty if `data` holds it
-  std::uint64_t offset = 0;       ///< of its first byte in that file
+  std::filesystem::path file;     ///< the file it lies in; empty if `data` holds it
+  std::uint64_t offset = 0;       ///< its first byte in that file
   std::uint64_t bytes = 0;        ///< 0: to the end of the file
   std::vector<std::byte> data{};  ///< the encoded picture, decoded from a data URI
-  bool is_packed = false;         ///< the file is in gzip: offset and bytes are of what it holds
+  bool is_packed = false;         ///< the file is in gzip: offset and bytes count in its content
   friend bool operator==(const ImageSource&, const ImageSource&) = default;
 };
 
@@ -28,9 +28,9 @@ struct Material {
   std::string name;
   std::array<float, 4> colour{1, 1, 1, 1};  ///< sRGB and alpha, 0 ... 1; if it has no picture
   std::optional<std::uint32_t> image;       ///< in MaterialList::images
-  /// What the light and the alpha of its picture are multiplied by, from 0 on.
+  /// The factors of the light and the alpha of its picture, from 0 on.
   std::array<float, 4> factor{1, 1, 1, 1};
-  /// What is added to the light of its picture then, from 0 on.
+  /// The light that is added to its picture's then, from 0 on.
   std::array<float, 3> light{0, 0, 0};
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   AlphaMode alpha = AlphaMode::opaque;
@@ -39,8 +39,8 @@ struct Material {
   friend bool operator==(const Material&, const Material&) = default;
 };
 
-/// Of a mesh. Corners of its triangles name a material by its number; a number beyond the last one
-/// is refused by who reads it.
+/// The materials of a mesh. Corners of its triangles name a material by its number; readers refuse
+/// a number beyond the last one.
 struct MaterialList {
   std::vector<ImageSource> images;
   std::vector<Material> materials;

@@ -13,7 +13,7 @@ constexpr std::size_t kAlpha = 3;
 constexpr double kMost = 255;
 
 std::uint8_t shown_alpha(const Material& material, std::size_t value) {
-  constexpr double kCutoff = 0.5;  // of the pictures that are written
+  constexpr double kCutoff = 0.5;  // the cutoff of the pictures that are written
   double alpha = material.factor[kAlpha] * static_cast<double>(value) / kMost;
   if (material.alpha == AlphaMode::opaque)
     alpha = 1;

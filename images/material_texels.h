@@ -17,8 +17,8 @@ class MaterialTexels {
  public:
   MaterialTexels(const Material& material, const ImageStore& pictures);
 
-  /// Of a level of the picture the rectangle that has (x, y) as its upper left texel, into `into`
-  /// at (at_x, at_y), as ImageStore::read().
+  /// Reads the rectangle of a level that has (x, y) as its upper left texel, into `into` at (at_x,
+  /// at_y), as ImageStore::read(). Thread-safe.
   void read(std::uint32_t level, std::int64_t x, std::int64_t y, std::uint32_t width,
             std::uint32_t height, Image& into, std::uint32_t at_x, std::uint32_t at_y) const;
 
@@ -29,7 +29,7 @@ class MaterialTexels {
   const ImageStore& pictures_;
   std::uint32_t image_;
   Wrap wrap_u_, wrap_v_;
-  std::uint32_t tinted_channels_ = 0;                      ///< a bit each
+  std::uint32_t tinted_channels_ = 0;  ///< a bit each: channels that the factor or the light change
   std::array<std::array<std::uint8_t, 256>, 4> tinted_{};  ///< by channel and value
 };
 

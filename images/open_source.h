@@ -1,4 +1,4 @@
-// Pictures where a material list says that they are.
+// Opens pictures at the places that a material list gives.
 #pragma once
 
 #include "images/image_codec.h"

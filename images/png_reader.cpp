@@ -20,7 +20,7 @@
 namespace meshhier::images {
 namespace {
 
-/// What the library and zlib hold: fixed tables and a window; rows of up to 8 bytes a texel.
+/// The memory of the library and zlib: fixed tables and a window; rows of up to 8 bytes a texel.
 constexpr std::uint64_t kLibraryBytes = 65536;
 constexpr std::uint64_t kBytesPerColumn = 32;
 
@@ -50,8 +50,8 @@ class PngReader final : public ImageReader {
   png_structp png_ = nullptr;
   png_infop head_ = nullptr;
   int passes_ = 1;                   ///< over the picture; more than 1 if it is interlaced
-  std::uint32_t next_row_ = 0;       ///< to be handed out
-  std::vector<std::uint8_t> whole_;  ///< of an interlaced one
+  std::uint32_t next_row_ = 0;       ///< the next row to be handed out
+  std::vector<std::uint8_t> whole_;  ///< all rows of an interlaced picture
   std::string warning_;              ///< the last one
 };
 
@@ -77,12 +77,13 @@ void PngReader::read_head() {
   });
 }
 
-/// What is wrong with a head the library tells as a warning.
+/// Fails with a message; the library tells as a warning what is wrong with a head.
 void PngReader::fail(std::string_view message) {
   call_.fail(message == "Invalid IHDR data" && !warning_.empty() ? warning_ : message);
 }
 
-/// What changes no texel is neither unpacked nor kept, and nothing that is broken is passed over.
+/// Chunks that change no texel are neither unpacked nor kept, and nothing that is broken is passed
+/// over.
 void PngReader::set_limits() {
   png_set_user_limits(png_, kMaxSourceSide, kMaxSourceSide);
   png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);

@@ -22,7 +22,7 @@ void mean_of_opaque(const LightTable& table, const Four& texels, std::uint8_t* m
   }
 }
 
-/// Where all is transparent, colours count alike.
+/// Weighs colours by alpha; where all is transparent, they count alike.
 void mean_of_transparent(const LightTable& table, const Four& texels, std::uint8_t* mean) {
   std::uint32_t alpha = 0;
   for (const std::uint8_t* texel : texels)

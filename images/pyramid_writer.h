@@ -1,4 +1,17 @@
 // Takes a picture row by row, and writes it with its pyramid to scratch space, block by block.
+//
+// Idea. All levels are open at once. A row of a level goes into the level's strip of blocks; of
+// every second one, together with the row before it, a row of the next level is made:
+//
+//       level 0   row 0   row 1   row 2   row 3   row 4   row 5   ...
+//                   waits   |       waits   |       waits   |
+//       level 1           row 0           row 1           row 2
+//                           waits           |               waits
+//       level 2                           row 0
+//
+// A strip is written when it has 64 rows, or the level's last one. An odd last row stands for two.
+//
+// Cost. O(texels) time, O(width) memory: a strip of 64 rows and two rows a level.
 #pragma once
 
 #include "images/block_grid.h"
@@ -19,20 +32,20 @@ class PyramidWriter {
   /// Gives back the scratch space of a picture that was not finished.
   ~PyramidWriter();
 
-  /// The next row from the top.
+  /// Takes the next row from the top: width * channels bytes. Throws Error(io).
   void put_row(const std::uint8_t* row) { put_row(0, row); }
-  /// After the last row.
+  /// Returns the picture's facts. Requires that all rows came.
   StoredImage finish();
 
-  /// What a writer holds.
+  /// Returns the memory that a writer holds, in bytes.
   static std::uint64_t bytes(TexelSize picture, std::uint32_t channels);
 
  private:
-  /// What is at work of a level.
+  /// A level at work.
   struct OpenLevel {
     TexelSize size;
-    std::uint32_t rows = 0;            ///< that it has so far
-    std::vector<std::uint8_t> strip;   ///< in blocks
+    std::uint32_t rows = 0;            ///< rows that it has so far
+    std::vector<std::uint8_t> strip;   ///< the rows of a strip, in blocks
     std::vector<std::uint8_t> above;   ///< an even row that waits for the odd one
     std::vector<std::uint8_t> halved;  ///< a row of the next level
   };

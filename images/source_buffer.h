@@ -1,4 +1,4 @@
-// Encoded bytes one after another, a buffer at a time.
+// Reads encoded bytes one after another, a buffer at a time.
 #pragma once
 
 #include "images/image_codec.h"
@@ -28,7 +28,7 @@ class SourceBuffer {
  public:
   explicit SourceBuffer(ByteSource source) : source_(std::move(source)) {}
 
-  /// Some bytes behind the last ones; none at the end.
+  /// Returns some bytes behind the last ones, valid until the next call; none at the end.
   std::span<const std::byte> next() {
     const std::size_t count = source_(offset_, buffer_);
     offset_ += count;

@@ -1,4 +1,4 @@
-// What a later process must know to read a picture that was stored.
+// The facts by which a later process reads a picture that was stored.
 #pragma once
 
 #include "images/image_codec.h"
@@ -8,7 +8,7 @@
 
 namespace meshhier::images {
 
-/// Where a row of blocks lies in the scratch file.
+/// The place of a row of blocks in the scratch file.
 struct StoredStrip {
   std::uint64_t offset = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64
@@ -17,7 +17,7 @@ struct StoredStrip {
 
 struct StoredImage {
   ImageInfo info;
-  std::vector<StoredStrip> strips;  ///< of all levels (block_grid.h)
+  std::vector<StoredStrip> strips;  ///< strips of all levels (block_grid.h)
   friend bool operator==(const StoredImage&, const StoredImage&) = default;
 };
 

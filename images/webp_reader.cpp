@@ -59,7 +59,7 @@ class WebpReader final : public ImageReader {
   std::string name_;
   ImageInfo info_;
   std::uint64_t file_bytes_ = 0;
-  std::uint32_t next_row_ = 0;  ///< to be handed out
+  std::uint32_t next_row_ = 0;  ///< the next row to be handed out
   std::vector<std::uint8_t> whole_;
 };
 

@@ -13,8 +13,8 @@
 namespace meshhier::images {
 namespace {
 
-/// 0 ... 6. Of photographs: 32 million texels a second; 3 takes 2.3 times as long for 3 % less, 0
-/// takes half as long for 19 % more.
+/// 0 ... 6. Photographs take a second for 32 million texels; 3 takes 2.3 times as long for 3 %
+/// less, 0 takes half as long for 19 % more.
 constexpr int kLossyMethod = 2;
 /// 0 ... 9. 20 million texels a second; 2 takes 3.7 times as long for 6 % less.
 constexpr int kLosslessLevel = 0;

@@ -16,7 +16,7 @@ std::uint64_t floor_modulo(std::int64_t x, std::int64_t period) {
   return static_cast<std::uint64_t>(rest < 0 ? rest + period : rest);
 }
 
-/// How far left of 0 a column is.
+/// Returns how far left of 0 a column is.
 std::uint64_t below_zero(std::int64_t x) {
   return x < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(x) : 0;
 }

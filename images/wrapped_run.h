@@ -1,4 +1,4 @@
-// Which texels a side of a rectangle shows, by how the picture goes on beyond itself.
+// The texels that a side of a rectangle shows, where the picture goes on beyond itself.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -9,8 +9,8 @@
 
 namespace meshhier::images {
 
-/// Of the columns first ... first + count - 1 the ones that they show, each < side. Any `first`;
-/// side > 0.
+/// Returns the column, < side, that each of the columns first ... first + count - 1 shows. Any
+/// `first`; side > 0.
 std::vector<std::uint32_t> wrapped_run(std::int64_t first, std::uint32_t count, std::uint32_t side,
                                        Wrap wrap);
 
