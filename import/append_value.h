@@ -1,4 +1,4 @@
-// Values one behind the other, as vertices have them.
+// Appends values to channels, as vertices have them.
 #pragma once
 
 #include "hierarchy/scalar_value.h"

@@ -1,4 +1,4 @@
-// Vertices that lie where an earlier one does.
+// A list of vertices that lie where an earlier one does.
 #pragma once
 
 #include "hierarchy/copy_vertex.h"
@@ -13,7 +13,7 @@
 
 namespace meshhier::importing {
 
-/// Where a scratch file holds the copies of a block of ids.
+/// The place in a scratch file of the copies of a block of ids.
 struct StoredCopies {
   std::uint64_t block = 0;
   storage::StoredBlob blob;
@@ -26,14 +26,14 @@ class CopyList {
   /// `scratch` must outlive the list.
   explicit CopyList(storage::ScratchFile& scratch);
 
-  /// Of so many vertices, for restore().
+  /// Makes an empty list for a mesh of so many vertices, for restore().
   CopyList(storage::ScratchFile& scratch, std::uint64_t vertices);
 
-  /// In ascending order.
+  /// Takes the next copy; ids ascend.
   void append(const CopyVertex& copy);
 
-  /// Puts all into another scratch file, for restore(), in another process even; `check` as for
-  /// for_each().
+  /// Puts all copies into another scratch file, for restore(), in another process even; `check` as
+  /// for for_each(). Throws Error(io).
   template <class Check>
   std::vector<StoredCopies> store(storage::ScratchFile& scratch, const Check& check) const;
   /// Takes a block that was stored; false if it is none of this mesh, or if the scratch file does
@@ -43,8 +43,9 @@ class CopyList {
   std::uint64_t count() const { return copies_ ? copies_->size() : restored_count_; }
   bool empty() const { return count() == 0; }
 
-  /// Those with ids in [first, first + count), in `memory`. Thread-safe for different `memory`.
-  /// Reads whole blocks of kBlockIds ids. Throws as BlobStore::view() of what was restored.
+  /// Returns the copies with ids in [first, first + count), which lie in `memory`. Thread-safe for
+  /// different `memory`. Reads whole blocks of kBlockIds ids. Throws as BlobStore::view() of what
+  /// was restored.
   std::span<const CopyVertex> read(std::uint64_t first, std::uint64_t count,
                                    std::vector<CopyVertex>& memory) const;
 
@@ -53,7 +54,7 @@ class CopyList {
   void for_each(const Check& check, const Visit& visit) const {
     for_each(0, blocks() * kBlockIds, check, visit);
   }
-  /// Likewise of those with ids in [first, end).
+  /// Does the same for the copies with ids in [first, end).
   template <class Check, class Visit>
   void for_each(std::uint64_t first, std::uint64_t end, const Check& check,
                 const Visit& visit) const {
@@ -72,16 +73,17 @@ class CopyList {
 
  private:
   std::uint64_t blocks() const { return blobs_ ? blobs_->count() : starts_.size(); }
-  /// Those of a block of ids, behind what is in `memory`.
+  /// Appends the copies of a block of ids to `memory`.
   void add_block(std::uint64_t block, std::vector<CopyVertex>& memory) const;
-  /// The first copy of a block of ids, or behind it.
+  /// Returns the index of a block's first copy, or of the next block's if it has none.
   std::uint64_t start(std::uint64_t block) const {
     return block < starts_.size() ? starts_[block] : count();
   }
 
   std::unique_ptr<storage::RecordSpool<CopyVertex>> copies_;
-  std::vector<std::uint64_t> starts_;          ///< of each block of ids that is begun
-  std::unique_ptr<storage::BlobStore> blobs_;  ///< of a restored list, by block of ids
+  /// Indices of first copies, for each block of ids that is begun.
+  std::vector<std::uint64_t> starts_;
+  std::unique_ptr<storage::BlobStore> blobs_;  ///< copies of a restored list, by block of ids
   std::uint64_t restored_count_ = 0;
 };
 
@@ -102,12 +104,12 @@ std::vector<StoredCopies> CopyList::store(storage::ScratchFile& scratch, const C
   return stored;
 }
 
-/// Asks for ids in ascending order whether they are copies.
+/// Tells of ids in ascending order whether they are copies. For one thread.
 class CopyCursor {
  public:
   explicit CopyCursor(const CopyList& copies) : copies_(copies) {}
 
-  /// `id` not below that of the call before.
+  /// Requires an `id` not below that of the call before.
   bool is_copy(std::uint32_t id);
 
  private:

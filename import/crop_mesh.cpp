@@ -71,7 +71,7 @@ void keep_points(const RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
   copy_vertices(mesh, inside, cropped, room);
 }
 
-/// Of the source, those that are used, which ascend.
+/// The vertices of the source that are used; their numbers ascend.
 class UsedVertices {
  public:
   UsedVertices(const storage::RecordSpool<std::uint32_t>& used, std::size_t channels, RawMesh& mesh,
@@ -95,7 +95,7 @@ class UsedVertices {
   std::uint64_t next_ = 0;
 };
 
-/// Of each vertex the sides that it is beyond, in memory.
+/// The sides that each vertex is beyond, in memory.
 class SideTable {
  public:
   explicit SideTable(std::uint64_t vertices) : sides_(vertices) {}

@@ -10,17 +10,17 @@
 
 namespace meshhier::importing {
 
-/// Appends what may touch the box: triangles whose corners are not all beyond one of its sides, and
-/// their vertices, in the order of the file. Reads vertices twice and triangles once: memory
-/// holds a byte a vertex, and the disk what is kept; where room.sort_bytes are fewer, the disk also
-/// holds triangles that wait. Returns what reading the triangles found; `visit` is told of each
-/// block of vertices once.
+/// Appends the part of a source that may touch the box: triangles whose corners are not all beyond
+/// one of its sides, and their vertices, in the order of the file. Reads vertices twice and
+/// triangles once: memory holds a byte a vertex, the disk the part that is kept; where
+/// room.sort_bytes are fewer, the disk also holds triangles that wait. Returns the counts of all
+/// triangles; `visit` gets each block of vertices once. Throws as MeshSource.
 mesh_io::FaceCounts append_near(mesh_io::MeshSource& source, const BoundsD& box, RawMesh& mesh,
                                 const mesh_io::VertexVisitor& visit, const ImportRoom& room);
 
 /// Fills `cropped` with the piece of `mesh`, whose spools are cleared. Vertices stay in their
-/// order, and triangles, but for those that wait for a part of a large table. Of a mesh without
-/// triangles the vertices in the box stay. Returns how many triangles went. O(n), with sorts where
+/// order, and triangles, but for those that wait for a part of a large table. If the mesh has no
+/// triangles, the vertices in the box stay. Returns how many triangles went. O(n), with sorts where
 /// the positions exceed room.sort_bytes.
 std::uint64_t crop_mesh(RawMesh& mesh, RawMesh& cropped, const BoundsD& box,
                         const ImportRoom& room);

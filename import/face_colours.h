@@ -13,8 +13,8 @@ namespace meshhier::importing {
 
 using FaceColour = std::array<float, 4>;
 
-/// The numbers of a colour as parts of a corner, all but CornerParts::kValues, and back: integers
-/// of 16 bits, or three floats.
+/// Packs the numbers of a colour into parts of a corner, all but CornerParts::kValues: integers of
+/// 16 bits, or three floats. colour_of() unpacks them.
 inline CornerParts::Parts parts_of(const FaceColour& colour, ColourType type) {
   if (type == ColourType::f32) {
     return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]), 0,
@@ -35,7 +35,7 @@ inline FaceColour colour_of(const CornerParts::Parts& parts, ColourType type) {
   return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};
 }
 
-/// Of faces without a colour.
+/// Returns the colour of faces without one.
 inline FaceColour white_face(ColourType type) {
   const float most = full_number(type);
   return {most, most, most, most};

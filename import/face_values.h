@@ -12,23 +12,24 @@
 
 namespace meshhier::importing {
 
-/// Takes the values of triangles and says which triangles have the same.
+/// Takes the values of triangles and tells which triangles have the same. For one thread.
 class FaceValues {
  public:
   FaceValues(const std::vector<ScalarAttribute>& attributes, const ImportRoom& room);
 
   bool any() const { return !attributes_.empty(); }
-  /// Of the next triangle, one an attribute; none: it has no values (NaN, or 0 of an integer).
-  /// Throws Error(input) if there are 2^32 triangles or more.
+  /// Takes the values of the next triangle, one an attribute; none: it has no values (NaN, or 0 for
+  /// an integer). Throws Error(input) if there are 2^32 triangles or more.
   void add(std::span<const double> values);
   /// Ends adding. Two sorts an attribute.
   void compare();
-  /// From 1 on: equal if the values are, bit for bit; 0 if faces have none. Ascending triangles.
+  /// Returns a number from 1 on that is equal for equal values, bit for bit; 0 if faces have none.
+  /// Asked for ascending triangles.
   std::uint32_t number_of(std::uint64_t triangle) {
     return any() ? numbers_cursor_.at(triangle) + 1 : 0;
   }
-  /// The channels of the values of that number, as AttributeLayout has them; 0: of none. Valid
-  /// until the next call.
+  /// Returns the channels of the values of that number, as AttributeLayout has them; for 0 those of
+  /// no values. Valid until the next call.
   std::span<const float> channels(std::uint32_t number);
 
  private:
@@ -36,8 +37,9 @@ class FaceValues {
 
   const std::vector<ScalarAttribute>& attributes_;
   const ImportRoom& room_;
-  storage::RecordSpool<double> values_;          ///< one an attribute of each triangle
-  storage::RecordSpool<std::uint32_t> numbers_;  ///< the first triangle that has the same
+  storage::RecordSpool<double> values_;  ///< one for each triangle and attribute
+  /// For each triangle the first one that has the same.
+  storage::RecordSpool<std::uint32_t> numbers_;
   execution::SpoolCursor<std::uint32_t> numbers_cursor_;
   SpoolLookup<double> lookup_;
   std::uint64_t triangles_ = 0;

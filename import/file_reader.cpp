@@ -78,7 +78,8 @@ class FileReader::Impl {
   using Path = std::filesystem::path;
   using AddStream = AddedFile (Impl::*)(InputStream& stream, const Path& path);
 
-  /// How a file of a kind is read. `room`: where a file may be while it is read.
+  /// The way in which a file of a kind is read. `room`: a path where a file may be while it is
+  /// read.
   struct Reader {
     MeshKind kind;
     AddedFile (Impl::*read)(const InputFileFacts& facts, const Path& room);
@@ -173,7 +174,7 @@ class FileReader::Impl {
             .unplaced = import.unplaced};
   }
 
-  /// Where nearly each face has values of its own, each vertex becomes about six.
+  /// Warns if nearly each face has values of its own: each vertex becomes about six then.
   void warn_of_split(const mesh_io::PlySource& source, const PlyImport& import,
                      const std::filesystem::path& path) {
     const std::uint64_t given = source.description().vertex_count;
@@ -214,7 +215,7 @@ class FileReader::Impl {
     return added;
   }
 
-  /// Of a PLY that is read in place: a piece of a large file leaves no copy of it.
+  /// Adds a piece of a PLY that is read in place: a large file is not copied for it.
   AddedFile add_near(mesh_io::PlySource& source, const std::filesystem::path& path) {
     AddedFile added{.layout = source.description().attributes};
     const std::uint64_t before = mesh_.triangles.size();
@@ -245,7 +246,7 @@ class FileReader::Impl {
     return add_plain_gltf(facts, mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
   }
 
-  /// Of a file that may hold many meshes, one behind the other.
+  /// Returns the checksum of a file that may hold many meshes, for which it is asked again.
   std::uint64_t checksum_of(const std::filesystem::path& path) {
     const auto known = checked_.find(path);
     if (known != checked_.end())

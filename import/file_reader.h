@@ -12,18 +12,19 @@
 
 namespace meshhier::importing {
 
-/// What a file adds to the mesh besides vertices and triangles.
+/// Facts of a file that was added to the mesh, besides its vertices and triangles.
 struct AddedFile {
   AttributeLayout layout{};
   bool fits_float = true;
   std::uint64_t faces = 0;
   std::uint64_t degenerate_triangles = 0;
-  std::uint64_t material_colours = 0;  ///< that vertices have
-  bool is_painted = false;             ///< no vertex has another one
+  std::uint64_t material_colours = 0;  ///< materials' colours that vertices have
+  bool is_painted = false;             ///< vertices have no other colours
   mesh_io::UnplacedVertices unplaced{};
 };
 
-/// Of one thread.
+/// Reads files of any format one behind the other; each comes behind the vertices of the files
+/// before. For one thread; blocks of texts are parsed on all threads.
 class FileReader {
  public:
   /// All must outlive this.
@@ -32,18 +33,19 @@ class FileReader {
   FileReader& operator=(const FileReader&) = delete;
   ~FileReader();
 
-  /// Appends the mesh of a file to that of all, but for its layout. `room`: where the file may lie
-  /// unpacked meanwhile. Throws as the reader of its format; Error(input) if the mesh gets 2^32
-  /// vertices or more.
+  /// Appends the mesh of a file to that of all, but for its layout, which it returns:
+  /// join_layouts() brings the layouts together. `room`: a path where the file may lie unpacked
+  /// meanwhile. Throws as the reader of its format; Error(input) if the mesh gets 2^32 vertices or
+  /// more; Error(io), Error(interrupted).
   AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room);
-  /// Writes the content of a packed file.
+  /// Writes the content of a packed file to `to`.
   void unpack(const InputFileFacts& facts, TemporaryFile& to);
 
-  /// The checksums of the files that were read, in their order.
+  /// Returns the checksums of the files that were read, in their order.
   const std::vector<std::uint64_t>& checksums() const;
-  /// What was counted in them.
+  /// Returns the counts of all files together, by name.
   const std::vector<SourceCount>& counts() const;
-  /// Triangles that were passed over, as they are not near the crop.
+  /// Returns how many triangles were passed over, as they are not near the crop.
   std::uint64_t near_apart() const;
 
  private:

@@ -18,12 +18,13 @@
 namespace meshhier::importing {
 namespace {
 
-/// Of a bucket: it is settled in the L2 cache.
+/// The positions of a bucket: it is settled in the L2 cache.
 constexpr std::uint64_t kBucketPositions = 8192;
-/// Of what a bucket writes at a time, where there are many in little memory; and where not.
+/// The least bytes that a bucket writes at a time, if there are many in little memory; and the
+/// most.
 constexpr std::uint64_t kLeastBucketBytes = 4096;
 constexpr std::uint64_t kMostBucketBytes = 65536;
-/// Of the memory, one part in so many is for what buckets write at a time.
+/// The part of the memory, one in so many, that buckets have for writing.
 constexpr std::uint64_t kWritingParts = 4;
 
 /// A position by its bits, of which equal coordinates have equal ones, and its vertex.
@@ -66,7 +67,7 @@ std::size_t hash_bits(std::uint64_t hash, int skipped, int count) {
 template <std::size_t Words>
 struct Grouped {
   std::vector<Located<Words>> vertices;
-  std::vector<std::uint32_t> ends;  ///< of each group
+  std::vector<std::uint32_t> ends;  ///< the end of each group
 
   std::span<Located<Words>> group(std::size_t i) {
     const std::uint32_t begin = i == 0 ? 0 : ends[i - 1];
@@ -147,7 +148,7 @@ class Buckets {
                 [&](const Vertex& vertex) { return hash_bits(vertex.hash(), 0, bits_); });
   }
 
-  /// In any order, which decides nothing. Thread-safe.
+  /// Appends vertices to the buckets; their order decides nothing. Thread-safe.
   void append(Grouped<Words>& spread) {
     for (std::size_t i = 0; i < buckets_.size(); ++i) {
       const std::span<Vertex> group = spread.group(i);

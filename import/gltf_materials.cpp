@@ -15,7 +15,7 @@ float srgb(double linear) {
   return static_cast<float>(screen_value(linear)) / kWhite;
 }
 
-/// What it shows without a picture. `emits`: with the light that is its own.
+/// Returns the material as it shows without a picture. `emits`: with the light that is its own.
 images::Material plain_material(const mesh_io::GltfMaterial& from, bool emits) {
   images::Material to;
   to.name = from.name;

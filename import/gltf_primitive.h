@@ -1,4 +1,4 @@
-// What one primitive of a glTF file reads: its accessors, or what a codec made of them.
+// The data of a primitive of a glTF file: its accessors, or a codec's output.
 #pragma once
 
 #include "mesh_io/gltf_draco.h"
@@ -11,17 +11,18 @@
 
 namespace meshhier::importing {
 
+/// The elements of one primitive. For one thread.
 class PrimitiveSources {
  public:
   /// Decodes it, if it is compressed. Both must outlive it. Throws as mesh_io::decode_draco().
   PrimitiveSources(mesh_io::GltfFile& file, const mesh_io::GltfPrimitive& primitive);
 
-  /// The attribute, of so many components; nothing if the primitive does not have it. Throws
-  /// Error(input) naming the accessor if it is of another type.
+  /// Returns the attribute, with `least` to `most` components; nothing if the primitive does not
+  /// have it. Throws Error(input) naming the accessor if it is of another type.
   std::optional<mesh_io::GltfElementSource> attribute(const std::string& name, std::uint32_t least,
                                                       std::uint32_t most) const;
   std::optional<mesh_io::GltfElementSource> indices() const;
-  /// Draco's triangles are a list of them, even if they were a strip.
+  /// Returns how indices make triangles: Draco's are a list, even if they were a strip.
   mesh_io::GltfPrimitive::Mode mode() const;
 
  private:

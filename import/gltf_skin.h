@@ -13,32 +13,33 @@
 
 namespace meshhier::importing {
 
-/// Where each joint of a skin brings what it moves from the coordinates of the mesh: its place by
+/// Returns for each joint of a skin the transform of the vertices that it moves: its place times
 /// its inverse bind matrix. Throws Error(input) naming the accessor if these are no matrices, fewer
 /// than the joints, or not finite.
 std::vector<mesh_io::GltfTransform> joint_matrices(mesh_io::GltfFile& file,
                                                    const mesh_io::GltfSkin& skin,
                                                    const mesh_io::GltfScene& scene);
 
-/// Whether most of them turn left hands into right ones.
+/// Returns whether most of them turn left hands into right ones.
 bool are_mirrored(const std::vector<mesh_io::GltfTransform>& matrices);
 
-/// Whether a primitive says which joints its vertices hang on.
+/// Returns whether a primitive says which joints its vertices hang on.
 bool is_skinned(const mesh_io::GltfPrimitive& primitive);
 
-/// The vertices of a primitive of which is_skinned() is true.
+/// Places the vertices of a primitive of which is_skinned() is true. For one thread.
 class GltfSkinning {
  public:
-  /// `matrices`: of the joints, one or more; all must outlive it. Throws Error(input) naming the
-  /// accessor if it is of no type that joints or weights may have, or has not `count` elements.
+  /// `matrices`: those of the joints, one or more. All arguments must outlive it. Throws
+  /// Error(input) naming the accessor if it is of no type that joints or weights may have, or has
+  /// not `count` elements.
   GltfSkinning(mesh_io::GltfFile& file, const mesh_io::GltfPrimitive& primitive,
                const PrimitiveSources& sources, const std::vector<mesh_io::GltfTransform>& matrices,
                std::uint64_t count);
 
-  /// The mean of its joints' matrices by its weights, whatever their sum is; those that are no
-  /// numbers, or below 0, are 0, and where all are 0 the first joint counts. No call may ask for a
-  /// vertex before that of the call before. Throws Error(input) naming the accessor if a joint that
-  /// counts is beyond the skin.
+  /// Returns a vertex's transform: the mean of its joints' matrices by its weights, whatever their
+  /// sum is. Weights that are no numbers, or below 0, are 0; where all are 0 the first joint
+  /// counts. `vertex` never falls from one call to the next. Throws Error(input) naming the
+  /// accessor if a joint that counts is beyond the skin.
   mesh_io::GltfTransform at(std::uint32_t vertex);
 
  private:

@@ -1,5 +1,4 @@
-// What vertices of glTF have besides the attributes that glTF names: those of applications,
-// `_NAME`.
+// Values of glTF's vertices: the attributes of applications, `_NAME`, and ids of features.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -14,14 +13,15 @@
 
 namespace meshhier::importing {
 
-/// A value, and where it comes from.
+/// A value, and its source.
 struct GltfValue {
   ScalarAttribute attribute;
   std::string source;           ///< "_QUALITY"
-  std::uint32_t component = 0;  ///< of its elements
+  std::uint32_t component = 0;  ///< component of its elements
 };
 
-/// Of attributes of glTF, without what marks them as an application's: ids of features.
+/// Returns whether a name is one of ids of features; the name comes without the mark of an
+/// application's attribute.
 inline bool is_feature_name(std::string_view name) {
   return name.starts_with("FEATURE_ID_") || name == "BATCHID";
 }
@@ -31,15 +31,16 @@ class GltfValues {
  public:
   explicit GltfValues(const mesh_io::AttributeChoice& choice) : choice_(choice) {}
 
-  /// Of one that has triangles.
+  /// Takes the attributes of a primitive, which has triangles.
   void add(const mesh_io::GltfDocument& document, const mesh_io::GltfPrimitive& primitive);
 
-  /// Those that are read, in the order of their names: `_NAME` is "NAME"; of several components
-  /// "NAME_1", "NAME_2", and so on; of primitives of several types the one that holds all. Integers
-  /// that not all primitives have are left out, because no number says that there is none; others
-  /// are NaN there. Ids of features (EXT_mesh_features, b3dm) are labels whatever their type.
+  /// Returns the values that are read, in the order of their names: `_NAME` is "NAME", its
+  /// components "NAME_1", "NAME_2", and so on if there are several. Where primitives have several
+  /// types, the value has the one that holds all. Integers that not all primitives have are left
+  /// out, because no number says that there is none; others are NaN there. Ids of features
+  /// (EXT_mesh_features, b3dm) are labels whatever their type.
   std::vector<GltfValue> values() const;
-  /// How many vertices have what was left out for that.
+  /// Returns how many vertices have values that were left out for that.
   std::uint64_t dropped() const;
 
  private:

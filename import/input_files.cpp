@@ -22,7 +22,7 @@ namespace meshhier::importing {
 
 namespace {
 
-// Of names in messages.
+// The longest names in messages.
 constexpr std::size_t kLongestPath = 4096;
 constexpr std::size_t kLongestUnused = 100;
 

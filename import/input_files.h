@@ -1,4 +1,5 @@
-// The mesh files of a build: what they are, and whether they can be read where they lie.
+// The mesh files of a build: their formats and companions, and whether they can be read where they
+// lie.
 #pragma once
 
 #include "execution/cancel.h"
@@ -24,21 +25,21 @@
 
 namespace meshhier::importing {
 
-/// Whether textures that a mesh names are used, or passed over as if there were none.
+/// Textures that a mesh names are used, or passed over as if there were none.
 enum class Textures : std::uint8_t { use, ignore };
 
-/// How the files become a mesh, besides what is in them.
+/// The user's choices for making a mesh of the files.
 struct InputUse {
   bool weld = false;  ///< vertices of equal position and attributes become one
   Textures textures = Textures::use;
-  std::optional<BoundsD> crop{};  ///< only triangles that touch it, input coordinates
+  std::optional<BoundsD> crop{};  ///< only triangles that touch it; in the input's coordinates
   mesh_io::AttributeChoice attributes{};
 };
 
-/// What a file is called unpacked: "a.ply" of "a.ply.gz".
+/// Returns a file's name unpacked: "a.ply" for "a.ply.gz".
 std::filesystem::path without_gz(std::filesystem::path path);
 
-/// Whether a PLY's faces give their corners something of their own, so that it is imported.
+/// Returns whether a PLY's faces give their corners something of their own, so that it is imported.
 bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures);
 
 struct InputFileFacts {
@@ -46,43 +47,44 @@ struct InputFileFacts {
   mesh_io::MeshFormat format;
   storage::FileIdentity identity;
   bool has_corner_attributes = false;          ///< as importing::has_corner_attributes()
-  std::optional<mesh_io::TilesetMesh> tile{};  ///< of a tileset: where in the file it is
-  std::size_t face_values = 0;                 ///< that faces have, a colour counts as one
+  std::optional<mesh_io::TilesetMesh> tile{};  ///< place in the file, of a tileset's tile
+  std::size_t face_values = 0;                 ///< values that faces have; a colour counts as one
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
-  /// The file, or the data that stand for it.
+  /// Opens the file, or the data that stand for it.
   std::unique_ptr<storage::File> content(storage::FileSystem& files) const;
-  /// What its content is called in messages when it is no longer packed.
+  /// Returns the content's name in messages when it is no longer packed.
   std::string unpacked_name() const { return path.string() + " (unpacked)"; }
 };
 
-/// So many names of SourceSummary::unused are kept.
+/// The most names of SourceSummary::unused that are kept.
 inline constexpr std::size_t kMostUnused = 100;
 
+/// The files of a build and their companions.
 class InputFiles {
  public:
-  /// Looks at what each file is; of a tileset at all its files. All is read by files.input().
-  /// Throws as mesh_io::detect_format and mesh_io::read_tileset.
+  /// Recognises each file, and all files of a tileset. All is read by files.input(). Throws as
+  /// mesh_io::detect_format and mesh_io::read_tileset.
   InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, const InputUse& use);
 
-  /// Where all of them lie.
+  /// Returns the file system in which all of them lie.
   storage::FileSystem& system() const { return files_; }
   /// The meshes.
   const std::vector<InputFileFacts>& all() const { return all_; }
-  /// What belongs to them: buffers of glTF files that are there; libraries and pictures as well
-  /// once it is known which, from an import or from an earlier build.
+  /// Returns the files that belong to the meshes: buffers of glTF files that are there; libraries
+  /// and pictures as well, once an import or an earlier build has told them.
   const Companions& companions() const { return companions_; }
   void set_companions(Companions companions) { companions_ = std::move(companions); }
-  /// Takes those of an earlier build, as they are now. False if one is not there any more, or if
-  /// one that was not there is; then nothing is changed.
+  /// Takes the companions of an earlier build, as they are now. Returns false, and changes nothing,
+  /// if one is not there any more, or if one that was missing is there.
   bool recall(const InputRecord& earlier);
-  /// As SourceSummary's: metres if those of all meshes are.
+  /// Returns SourceSummary's units: metres if those of all meshes are.
   std::optional<Unit> units() const;
-  /// As SourceSummary's, each once: the first kMostUnused and how many more.
+  /// Returns SourceSummary's unused attributes, each once: the first kMostUnused and how many more.
   std::vector<std::string> unused() const;
-  /// Of tilesets: what was not read of them.
+  /// Returns counts of the parts of tilesets that are not read.
   const std::vector<SourceCount>& tileset_counts() const { return tileset_counts_; }
-  /// What all should know of pictures and tiles that are not used, a line each.
+  /// Returns warnings about pictures and tiles that are not used, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return use_.weld; }
   const std::optional<BoundsD>& crop() const { return use_.crop; }
@@ -91,43 +93,43 @@ class InputFiles {
   void note_unplaced() { has_unplaced_ = true; }
   bool has_unplaced() const { return has_unplaced_; }
   Textures textures() const { return use_.textures; }
-  /// Not one PLY that is read in place as it is.
+  /// Returns false if the input is one PLY that is read in place as it is.
   bool needs_import() const {
     return is_changed() || all_.size() != 1 || !all_[0].is_plain_ply() ||
            all_[0].has_corner_attributes;
   }
 
-  /// The format of each mesh for people, equal ones together: "b3dm x 120".
+  /// Returns the formats of the meshes for people, equal ones together: "b3dm x 120".
   std::string formats() const;
-  /// One packed PLY, to be unpacked and nothing else.
+  /// Returns true if the input is one packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
     return !is_changed() && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply &&
            !all_[0].has_corner_attributes;
   }
 
-  /// File names, with ", " between them.
+  /// Returns file names, with ", " between them.
   std::string name() const;
-  /// What the mesh that they are imported to is called in messages.
+  /// Returns the name in messages of the mesh that they are imported to.
   std::string imported_name() const;
-  /// Of all files, companions among them.
+  /// Returns the bytes of all files, companions among them.
   std::uint64_t bytes() const;
-  /// Of meshes and buffers.
+  /// Returns the bytes of meshes and buffers.
   std::uint64_t geometry_bytes() const;
-  /// One number for the times of all files: as long as it stays, so does what is in them.
+  /// Returns one number for the times of all files: as long as it stays, so does their content.
   std::int64_t times() const;
   /// Throws Error(input) if a file is not what it was any more.
   void check_unchanged() const;
-  /// As SourceSummary's. Reads all files.
+  /// Returns SourceSummary's checksum. Reads all files.
   std::uint64_t checksum(const execution::CancelToken& cancel) const;
-  /// Of all files, each with its checksum; `meshes`: those of the meshes. Reads the companions, and
-  /// calls `visit` for each.
+  /// Returns the record of all files, each with its checksum; `meshes`: those of the meshes. Reads
+  /// the companions, and calls `visit` for each.
   InputRecord record(const std::vector<std::uint64_t>& meshes, const execution::CancelToken& cancel,
                      const std::function<void(const CompanionFile&)>& visit) const;
-  /// One entry a mesh, as SourceSummary has them, and one for the files of each other part.
+  /// Returns SourceSummary's files: one entry a mesh, and one for the files of each other part.
   std::vector<SourceFile> describe(const InputRecord& record) const;
 
  private:
-  /// The mesh is another one than that of the files.
+  /// Returns whether the mesh is another one than that of the files.
   bool is_changed() const { return use_.weld || use_.crop || has_unplaced_; }
   void add_mesh(const std::filesystem::path& path);
   void add_tileset(const std::filesystem::path& path);
@@ -146,10 +148,10 @@ class InputFiles {
       visit(companion.path, companion.part, companion.identity);
   }
 
-  storage::FileSystem& files_;  ///< that may refuse what it is asked for
+  storage::FileSystem& files_;  ///< may refuse to open a file
   mesh_io::InputPaths named_;   ///< meshes and tilesets
   std::vector<InputFileFacts> all_;
-  /// Of the first tileset, if there is one, for all.
+  /// The frame of the first tileset, if there is one; all tilesets stand in it.
   std::optional<std::optional<mesh_io::GlobeFrame>> frame_;
   std::vector<SourceCount> tileset_counts_;
   Companions companions_;

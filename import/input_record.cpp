@@ -18,7 +18,7 @@ constexpr std::array kParts{
     NamedValue{"material library", InputPart::library}, NamedValue{"picture", InputPart::picture},
     NamedValue{"tileset", InputPart::tileset}};
 
-/// Of at least one file of a part.
+/// Joins the files of a part, one or more.
 SourceFile joined(std::span<const ReadFile> files) {
   SourceFile all;
   all.name = files[0].path.filename().string();

@@ -1,4 +1,4 @@
-// Which files an input was made of: the meshes, and what they are not whole without.
+// The files that an input was made of: the meshes, and files that they are not whole without.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -16,7 +16,7 @@
 
 namespace meshhier::importing {
 
-/// What a file is to the input, in the order in which checksums are joined.
+/// The part of a file in the input, in the order in which checksums are joined.
 enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset };
 
 /// A file that meshes are not whole without.
@@ -26,11 +26,12 @@ struct CompanionFile {
   storage::FileIdentity identity;
 };
 
-/// Each once, in the order in which they were added.
+/// The companions of an input, each once, in the order in which they were added.
 class Companions {
  public:
   void add(CompanionFile file);
-  /// Notes where a file would have been: what appears at any of these places belongs to the input.
+  /// Notes where a missing file would have been: one that appears at any of these places belongs to
+  /// the input.
   void await(const std::vector<std::filesystem::path>& places);
 
   const std::vector<CompanionFile>& files() const { return files_; }
@@ -54,22 +55,22 @@ struct InputRecord {
   std::vector<std::filesystem::path> awaited;
 };
 
-/// So many meshes are listed one by one, or one fewer and an entry for all behind these: the
-/// manifest has room for that, with names of any length.
+/// The most meshes that are listed one by one; if there are more, one fewer and an entry for all
+/// behind these. The manifest has room for that, with names of any length.
 inline constexpr std::size_t kMostListedMeshes = 50;
 
-/// As SourceSummary has them: an entry for each of kMostListedMeshes, and one for all files of each
-/// other part. `files`: by part, meshes first. `formats`: of the meshes, for people.
+/// Returns SourceSummary's files: an entry for each of kMostListedMeshes, and one for all files of
+/// each other part. `files`: by part, meshes first. `formats`: those of the meshes, for people.
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats);
 
-/// SourceCount of the colours of materials that vertices have.
+/// Names of SourceCounts follow. Colours of materials that vertices have.
 inline constexpr std::string_view kMaterialColours = "material_colours";
-/// Of vertices: in a wider type, but all of them are such numbers.
+/// Colours of vertices in a wider type whose numbers are all those of bytes.
 inline constexpr std::string_view kColoursTakenForBytes = "colours_taken_for_bytes";
 /// Vertices without a colour, where others have one.
 inline constexpr std::string_view kMadeWhite = "vertices_made_white";
-/// The same of faces.
+/// Faces without a colour, where others have one.
 inline constexpr std::string_view kFacesMadeWhite = "faces_made_white";
 /// Vertices that show no picture, and whose colour is not seen either, as others have both.
 inline constexpr std::string_view kHiddenColours = "vertices_with_hidden_colours";
@@ -86,26 +87,25 @@ inline constexpr std::string_view kPointsAndLines = "ignored_points_and_lines";
 /// Vertices of which a coordinate is not finite.
 inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 
-/// SourceCounts of normals and texture coordinates that were no numbers.
+/// Normals and texture coordinates that were no numbers.
 inline constexpr std::string_view kZeroedNormals = "normals_made_zero";
 inline constexpr std::string_view kZeroedTexcoords = "texcoords_made_zero";
-/// Of 64 bits, to doubles.
+/// Integers of 64 bits that were rounded to doubles.
 inline constexpr std::string_view kRounded = "rounded_integers";
 
 /// Adds to the count of that name, which is made if there is none; nothing if `count` is 0.
 void add_count(std::vector<SourceCount>& counts, std::string_view name, std::uint64_t count);
 
-/// Those that are not 0, by name.
+/// Return the counts that are not 0, by name.
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed);
 std::vector<SourceCount> source_counts(const mesh_io::OddSyntax& odd);
-/// The same of polygons.
 std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons);
 
-/// Whether the import looked for materials, as Textures::use makes it: there are textures or
-/// colours of materials, or a library or a picture is among the files.
+/// Returns whether the import looked for materials, as it does with Textures::use: there are
+/// textures or colours of materials, or a library or a picture is among the files.
 bool shows_materials(const SourceSummary& source);
 
-/// Of several files from their checksums; of one it is its own.
+/// Returns the checksum of several files from theirs; one file's is its own.
 std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);
 std::uint64_t joined_checksum(const std::vector<SourceFile>& files);
 

@@ -1,5 +1,4 @@
-// What numbers of labels mean where the input has names: groups, objects and materials of OBJ
-// files.
+// The names that numbers of labels stand for: groups, objects and materials of OBJ files.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +12,13 @@ namespace meshhier::importing {
 /// The names of one label in all files of an input, by first use.
 class LabelNames {
  public:
-  /// Different ones, and the bytes of all.
+  /// The most different names, and the most bytes of all.
   static constexpr std::size_t kMost = 65535;
   static constexpr std::size_t kMostBytes = std::size_t{1} << 24;
 
-  /// Its number, from 1 on; 0 is no name. Throws Error(input) beyond the limits.
+  /// Returns the number of a name, from 1 on; 0 is no name. Throws Error(input) beyond the limits.
   std::uint16_t number(const std::string& name);
-  /// Requires the number of a name.
+  /// Returns the name of a number, which must be one's.
   const std::string& name(std::uint16_t number) const { return names_[number - std::size_t{1}]; }
   std::size_t count() const { return names_.size(); }
 
@@ -29,7 +28,7 @@ class LabelNames {
   std::vector<std::string> names_;
 };
 
-/// By the attribute's name.
+/// The names of all labels, by the attribute's name.
 using AllLabelNames = std::map<std::string, LabelNames>;
 
 }  // namespace meshhier::importing

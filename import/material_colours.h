@@ -13,7 +13,7 @@
 
 namespace meshhier::importing {
 
-/// Of a material, as 8-bit vertex colours are: those of a screen.
+/// A material's colour as an 8-bit vertex colour, sRGB.
 struct PlainColour {
   std::array<std::uint8_t, 3> channels{255, 255, 255};
 
@@ -23,12 +23,12 @@ struct PlainColour {
   }
 
   bool is_grey() const { return channels[0] == channels[1] && channels[1] == channels[2]; }
-  /// As attributes have it.
+  /// Returns the colour as attributes have it.
   std::array<float, 3> values() const {
     return {static_cast<float>(channels[0]), static_cast<float>(channels[1]),
             static_cast<float>(channels[2])};
   }
-  /// One number for each colour, below 2^24.
+  /// Returns one number for each colour, below 2^24.
   std::uint32_t number() const {
     return std::uint32_t{channels[0]} << 16 | std::uint32_t{channels[1]} << 8 | channels[2];
   }
@@ -46,12 +46,12 @@ class PlainColours {
 
   void add(PlainColour colour) { colours_.insert(colour); }
   std::size_t count() const { return colours_.size(); }
-  /// Whether vertices get them. Not if all are one shade of grey: programs write that where nobody
-  /// chose a colour.
+  /// Returns whether vertices get them: not if all are one shade of grey, as programs write that
+  /// where nobody chose a colour.
   bool are_seen() const {
     return colours_.size() > 1 || (colours_.size() == 1 && !colours_.begin()->is_grey());
   }
-  /// Whether any is not white.
+  /// Returns whether any is not white.
   bool are_coloured() const {
     return colours_.size() > 1 || (colours_.size() == 1 && *colours_.begin() != PlainColour());
   }

@@ -30,7 +30,7 @@ std::string without_comment(const std::string& name) {
 constexpr std::size_t kMostSpaces = 15;
 
 struct Word {
-  std::size_t begin, end;  ///< in its text
+  std::size_t begin, end;  ///< range in its text
 };
 
 std::vector<Word> words_of(std::string_view text) {
@@ -78,10 +78,10 @@ class LibraryReader {
   }
 
  private:
-  /// What a name in small letters may mean.
+  /// The materials that a name in small letters may mean.
   struct Loose {
     std::optional<LibraryMaterial> material;
-    bool is_clear = true;  ///< of one name alone
+    bool is_clear = true;  ///< all are of one name
   };
 
   bool is_undefined(std::size_t number) const {
@@ -250,11 +250,11 @@ class LibraryReader {
   Companions& companions_;
   const execution::CancelToken& cancel_;
   std::map<std::string, std::vector<std::size_t>> wanted_;  ///< numbers of each name
-  std::map<std::string, Loose> loose_;                      ///< what is wanted, in small letters
+  std::map<std::string, Loose> loose_;                      ///< wanted names, in small letters
   std::set<std::string> defined_;                           ///< names, two at most
   std::optional<LibraryMaterial> only_;
   std::uint64_t statement_ = 0;       ///< whose files are read
-  std::vector<std::uint64_t> ranks_;  ///< of what each use means so far
+  std::vector<std::uint64_t> ranks_;  ///< ranks of the materials that uses mean so far
   std::set<fs::path> done_;
   Libraries read_;
 };

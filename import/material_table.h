@@ -15,22 +15,25 @@
 
 namespace meshhier::importing {
 
+/// Collects materials and pictures. For one thread.
 class MaterialTable {
  public:
-  /// Vertices hold the numbers as floats, which are exact below.
+  /// The most materials: vertices hold the numbers as floats, which are exact below.
   static constexpr std::size_t kMost = std::size_t{1} << 24;
 
-  /// Returns the picture's number for Material::image. Those in the same bytes of a file are one;
-  /// those that are held in memory are not compared.
+  /// Returns the picture's number for Material::image. Pictures in the same bytes of a file are
+  /// one; pictures that are held in memory are not compared.
   std::uint32_t add_picture(images::ImageSource picture);
   /// Returns the material's number. Throws Error(input) beyond kMost.
   std::uint32_t add(images::Material material);
-  /// Where materials that blend are beside others, they become masks: a tile has one material, and
-  /// a viewer that blends all of it draws it in the wrong order. Visible is what has at least half
-  /// of its material's alpha. Returns how many became one. Once, when all materials are there.
+  /// Makes masks of materials that blend if there are others: a tile has one material, and a viewer
+  /// that blends all of it draws it in the wrong order. Texels with at least half of their
+  /// material's alpha are visible then. Returns how many became masks. Called once, when all
+  /// materials are there.
   std::uint64_t mask_mixed();
-  /// Notes that triangles should show a picture that is not there. One of the same name and place
-  /// counts once. `name`: as `place`, a file, names it; `sought`: where it would have been found.
+  /// Notes that triangles should show a picture that is not there. A picture of the same name and
+  /// place counts once. `name`: as `place`, a file, names it; `sought`: where it would have been
+  /// found.
   void miss(const std::string& name, const std::string& place,
             const std::vector<std::filesystem::path>& sought);
 
@@ -47,12 +50,12 @@ class MaterialTable {
 
   const images::MaterialList& list() const { return list_; }
   std::uint64_t missing() const { return missing_.size(); }
-  /// What all should know of missing pictures, in one line; empty if there are none.
-  /// `is_textured`: others are there.
+  /// Returns a warning about missing pictures, in one line; empty if there are none. `is_textured`:
+  /// others are there.
   std::string warning(bool is_textured) const;
-  /// The same of missing libraries.
+  /// Does the same for missing libraries.
   std::string warning_of_libraries() const;
-  /// The same of materials.
+  /// Do the same for materials.
   std::string warning_of_materials() const;
   std::string warning_of_left_materials() const;
 
@@ -68,7 +71,7 @@ class MaterialTable {
   std::string first_missing_library_;
   std::uint64_t missing_materials_ = 0;
   std::string first_missing_material_;
-  std::vector<std::string> left_;  ///< files whose materials nobody has
+  std::vector<std::string> left_;  ///< files with materials that no triangle has
 };
 
 }  // namespace meshhier::importing

@@ -1,5 +1,5 @@
-// What a build reads: its input where it lies, or the PLY that it was imported to, or nothing any
-// more, if an earlier build that was stopped has read it all.
+// The mesh that a build reads: its input where it lies, or the PLY that it was imported to, or
+// nothing any more, if an earlier build that was stopped has read it all.
 #pragma once
 
 #include "import/copy_list.h"
@@ -15,14 +15,15 @@
 
 namespace meshhier::importing {
 
+/// The input of a build. One call at a time; sources that open() returns have their own rules.
 class MeshInput {
  public:
-  /// What an import works with.
+  /// The means that an import works with.
   struct Place {
     std::filesystem::path ply;      ///< becomes the imported mesh
     std::filesystem::path scratch;  ///< a temporary file
     storage::MemoryPool& pool;
-    std::uint64_t sort_bytes = 0;  ///< of each of two sorts
+    std::uint64_t sort_bytes = 0;  ///< memory of each of two sorts
     execution::Progress& progress;
     const execution::CancelToken& cancel;
     std::filesystem::path copies{};  ///< a temporary file
@@ -34,18 +35,18 @@ class MeshInput {
 
   const InputFiles& files() const { return input_; }
   bool needs_import() const { return input_.needs_import(); }
-  /// As InputFiles::note_unplaced.
+  /// Does as InputFiles::note_unplaced().
   void note_unplaced();
 
-  /// Imports; the PLY stays until drop() or the end of this object.
+  /// Imports; the PLY stays until drop() or the end of this object. Throws as import_input().
   void import(const Place& place);
   /// Finds the vertices that lie where others do: copies() and the description's place_count are
   /// known then. The list stays until drop() or the end of this object. Imports a PLY that has
   /// vertices without a place, if there is one.
   void find_copies(const Place& place);
-  /// Empty unless find_copies() has found any.
+  /// Returns the copies; none unless find_copies() has found any.
   const CopyList& copies() const { return copies_; }
-  /// Whether find_copies() was called.
+  /// Returns whether find_copies() was called.
   bool was_looked_at() const { return copy_scratch_.has_value(); }
 
   /// Takes the companions of an earlier build, as InputFiles::recall.
@@ -57,21 +58,22 @@ class MeshInput {
   const mesh_io::MeshDescription& description() const { return description_; }
   std::uint64_t imported_bytes() const { return ply_ ? ply_->bytes() : 0; }
 
-  /// Whether there is something to read: not if it was recalled.
+  /// Returns whether there is something to read: not if it was recalled.
   bool can_be_read() const { return !needs_import() || ply_; }
   std::unique_ptr<mesh_io::MeshSource> open();
-  /// What AttributeLayout::material of the description numbers; empty if it was recalled.
+  /// Returns the materials that AttributeLayout::material of the description numbers; none if it
+  /// was recalled.
   const images::MaterialList& materials() const { return facts_.materials; }
-  /// Whether an attribute is a label whatever its values are: the input has names for these, or
-  /// says that they are features of a glTF.
+  /// Returns whether an attribute is a label whatever its values are: the input has names for
+  /// these, or says that they are features of a glTF.
   bool is_sure_label(const std::string& name) const;
-  /// Adds what the PLY does not say.
+  /// Adds the facts that are not in the PLY.
   void complete(SourceSummary& summary) const { facts_.complete(summary); }
-  /// Of the files; `checksum`: of a mesh that is read in place.
+  /// Returns the record of the files; `checksum`: that of a mesh that is read in place.
   InputRecord record(std::uint64_t checksum) const;
   void drop();
 
-  /// The files' as in SourceSummary. Reads what was not read so far.
+  /// Returns SourceSummary's checksum of the files. Reads the bytes that were not read so far.
   std::uint64_t checksum(const execution::CancelToken& cancel);
 
  private:

@@ -1,4 +1,4 @@
-// What triangles of an OBJ file belong to, as labels: groups, objects, materials.
+// Labels of an OBJ file's triangles: the groups, objects and materials that they belong to.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -22,25 +22,26 @@ enum class ObjLabel : std::uint8_t { group, object, material };
 /// Numbers the combinations that triangles have of the labels that are asked for by name.
 class ObjLabels {
  public:
-  /// `names`: gets those of the file. Both must stay.
+  /// `names` gets the names of the file. Both must outlive it.
   ObjLabels(const mesh_io::AttributeChoice& choice, AllLabelNames& names);
 
   bool are_asked() const { return !asked_.empty(); }
-  /// Of the triangles from here on.
+  /// Begins a label: that of the triangles from here on.
   void begin(ObjLabel label, const std::string& name);
-  /// Of one more triangle: the number of its combination, from 1 on. Throws as LabelNames.
+  /// Returns the number of one more triangle's combination, from 1 on. Throws as LabelNames.
   std::uint32_t use();
 
-  /// Those that the file has statements of.
+  /// Returns the labels that the file has statements for.
   std::vector<ScalarAttribute> attributes() const;
-  /// A channel for each of attributes(); 0: what is of no triangle. Valid until the next call.
+  /// Returns a channel for each of attributes(); combination 0 stands for vertices of no triangle.
+  /// Valid until the next call.
   std::span<const float> channels(std::uint32_t combination);
 
  private:
   static constexpr std::size_t kLabels = 3;
   using Combination = std::array<std::uint16_t, kLabels>;
 
-  std::vector<std::size_t> asked_;  ///< ObjLabel, in their order
+  std::vector<std::size_t> asked_;  ///< ObjLabels, in the order of the attributes
   AllLabelNames& names_;
   std::array<std::optional<std::string>, kLabels> names_now_;  ///< none before the first statement
   std::uint32_t current_ = 0;                                  ///< 0: to be looked up

@@ -1,4 +1,4 @@
-// Which picture each triangle of an OBJ file shows, and where on it.
+// The pictures that triangles of an OBJ file show, and their places on them.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -15,11 +15,11 @@
 
 namespace meshhier::importing {
 
-/// Of a picture that is a whole, or one of several squares of texture coordinates.
+/// A picture's part of texture coordinates: the whole, or one of several squares (UDIM).
 class PictureTile {
  public:
   constexpr PictureTile() = default;
-  /// The square from (column, row) on: none if its number has not four digits.
+  /// Returns the square from (column, row) on; none if its number has not four digits.
   static std::optional<PictureTile> at(double column, double row);
   static constexpr PictureTile from(std::uint32_t number) { return PictureTile(number); }
 
@@ -48,28 +48,29 @@ class ObjTextures {
         first_number_(static_cast<std::uint32_t>(table.list().materials.size())) {}
 
   bool is_tiled(std::uint32_t name) const { return materials_[name].is_tiled(); }
-  /// The square in which a triangle of these coordinates lies; none if no picture can be there.
+  /// Returns the square in which a triangle of these coordinates lies; none if no picture can be
+  /// there.
   std::optional<PictureTile> tile_of(std::uint32_t name,
                                      const std::array<Texcoord, 3>& corners) const;
 
-  /// Looks for a picture that a triangle shows.
+  /// Looks for a picture that a triangle shows; returns whether it is there.
   bool find_picture(std::uint32_t name, PictureTile tile);
-  /// One was found.
+  /// Returns whether one was found.
   bool has_pictures() const { return has_pictures_; }
 
-  /// Of a triangle of that name; no tile: without texture coordinates.
+  /// The material that a triangle shows.
   struct Shown {
     std::uint32_t number = 0;  ///< in the table
     bool has_picture = false;
   };
   Shown show(std::uint32_t name, std::optional<PictureTile> tile);
-  /// A coordinate of a corner that shows a picture, as glTF has it.
+  /// Returns a coordinate of a corner that shows a picture, as glTF has it.
   Vec2f texcoord(std::uint32_t number, Texcoord texcoord) const;
 
   const std::vector<LibraryMaterial>& materials() const { return materials_; }
 
  private:
-  /// Of a number: from the file's coordinates to the picture's.
+  /// The way from the file's coordinates to the picture's, for a material's number.
   struct Mapping {
     std::array<double, 2> scale{1, 1}, offset{};
   };

@@ -30,7 +30,8 @@ struct OffParts {
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<float> attributes;
   storage::RecordSpool<Triangle<VertexId>> triangles;
-  storage::RecordSpool<FaceColour> colours;  ///< of triangles, as far as there are any; or kFull
+  /// Colours of triangles, as far as there are any; or kFull.
+  storage::RecordSpool<FaceColour> colours;
 };
 
 /// Collects the colours of faces.

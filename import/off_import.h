@@ -13,9 +13,10 @@ namespace meshhier::importing {
 struct OffImport {
   mesh_io::OffCounts counts;
   AttributeLayout layout;
-  std::uint64_t split_vertices = 0;   ///< that a vertex of the file has beyond one
-  std::uint64_t white_faces = 0;      ///< without a colour, beside others that have one
-  std::uint64_t ignored_colours = 0;  ///< of faces: vertices have some, or they are unknown
+  std::uint64_t split_vertices = 0;  ///< vertices that a vertex of the file has beyond one
+  std::uint64_t white_faces = 0;     ///< faces without a colour, beside others that have one
+  /// Colours of faces that are unknown, or that vertices have already.
+  std::uint64_t ignored_colours = 0;
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout. If faces have colours and vertices

@@ -1,4 +1,4 @@
-// Records of a spool in any order, as long as those that follow one another lie near.
+// Reads records of a spool in any order: quick if records that follow one another lie near.
 #pragma once
 
 #include "storage/io/spool.h"
@@ -12,13 +12,14 @@
 namespace meshhier::importing {
 
 /// Keeps the last of some lines of records, each at its own place: 512 KiB of positions. The spool
-/// may grow meanwhile, on the same thread.
+/// may grow meanwhile, on the same thread. For one thread.
 template <class Record>
 class SpoolLookup {
  public:
   explicit SpoolLookup(const storage::RecordSpool<Record>& spool) : spool_(spool) {}
 
-  /// Requires index < the spool's size.
+  /// Returns a record, valid until the next call. Requires index < the spool's size. Throws
+  /// Error(io).
   const Record& at(std::uint64_t index) {
     const std::uint64_t first = index / kRecords * kRecords;
     Line& line = lines_[index / kRecords % kLines];

@@ -10,13 +10,13 @@
 
 namespace meshhier::importing {
 
-/// Counts those of a block of a PLY file.
+/// Counts the unplaced vertices of a block of a PLY file.
 void count_unplaced(const mesh_io::VertexBlock& block, const std::filesystem::path& path,
                     mesh_io::UnplacedVertices& unplaced);
 
 struct DroppedUnplaced {
   std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;  ///< that use one of them
+  std::uint64_t triangles = 0;  ///< triangles that use one of them
 };
 
 /// Fills `placed` with `mesh`, whose spools are cleared, without the vertices that have no place

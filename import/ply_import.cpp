@@ -36,7 +36,7 @@ struct FaceTriangle {
   std::int32_t texture;  ///< -1: none
 };
 
-/// Of a corner; none if they are not finite.
+/// Returns a corner's coordinates; none if they are not finite.
 std::optional<Texcoord> texcoord_of(const mesh_io::PlyFace& face, std::size_t corner) {
   const Texcoord at{face.texcoords[2 * corner], face.texcoords[2 * corner + 1]};
   return std::isfinite(at[0]) && std::isfinite(at[1]) ? std::optional(at) : std::nullopt;
@@ -56,8 +56,9 @@ struct PlyTriangles {
   }
 
   storage::RecordSpool<FaceTriangle> all;
-  storage::RecordSpool<std::array<Texcoord, 3>> texcoords;  ///< of each, if faces have their own
-  storage::RecordSpool<FaceColour> colours;                 ///< the same
+  /// One for each triangle, if faces have their own.
+  storage::RecordSpool<std::array<Texcoord, 3>> texcoords;
+  storage::RecordSpool<FaceColour> colours;  ///< one for each triangle, if faces have colours
   std::set<std::int32_t> textures;
 };
 
@@ -294,13 +295,13 @@ class PlyImporter {
   mesh_io::NamedFiles& files_;
   const ImportRoom& room_;
   PlyTexcoords texcoords_;
-  FaceColour white_;  ///< of strips
+  FaceColour white_;  ///< the colour of strips
   PlyTriangles triangles_;
   FaceValues values_;
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;
   std::optional<PlyTextureFaces> texture_faces_;
-  mesh_io::PlyFace shown_;  ///< with what its texture face says
+  mesh_io::PlyFace shown_;  ///< a face with the places of its texture face
   std::optional<PlyPictures> pictures_;
   bool is_textured_ = false;  ///< a picture is there
   PlyImport import_;

@@ -18,13 +18,14 @@ struct PlyImport {
   AttributeLayout layout;
   bool fits_float = true;
   mesh_io::FaceCounts counts;
-  std::uint64_t split_vertices = 0;  ///< that a vertex of the file has beyond one
-  std::uint64_t hidden_colours = 0;  ///< of vertices that show no picture, beside those that do
+  std::uint64_t split_vertices = 0;  ///< vertices that a vertex of the file has beyond one
+  /// Colours of vertices that show no picture, beside others that do.
+  std::uint64_t hidden_colours = 0;
   mesh_io::UnplacedVertices unplaced;
-  mesh_io::ZeroedCounts zeroed;  ///< of vertices, and of corners of polygons
+  mesh_io::ZeroedCounts zeroed;  ///< attributes of vertices and of polygons' corners
 };
 
-/// Appends the mesh of `source` to `mesh`, but for its layout. `path`: of the file, whose folder
+/// Appends the mesh of `source` to `mesh`, but for its layout. `path`: that of the file; its folder
 /// has the pictures. If a triangle shows a picture that is there, the file is textured: vertices
 /// are ordered as in the file, then by the bits of their texture coordinates, which are glTF's,
 /// then by the first triangle with their values, then by their material. There is one material for

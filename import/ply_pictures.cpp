@@ -11,7 +11,7 @@
 namespace meshhier::importing {
 namespace {
 
-/// What a texture's picture may be called.
+/// Returns the names that a texture's picture may have.
 std::vector<std::string> names_of(std::int32_t texture, const mesh_io::PlyPlan& plan,
                                   const std::filesystem::path& ply) {
   const auto number = static_cast<std::size_t>(texture);

@@ -1,4 +1,5 @@
-// What faces of a PLY file show that has it in lists of their own, as Artec Studio writes them.
+// The places in pictures of faces of a PLY file that has them in elements of their own, as Artec
+// Studio writes them.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -12,15 +13,15 @@
 
 namespace meshhier::importing {
 
-/// Out of core: texture vertices are looked up in the order of texture faces, which are sorted by
-/// the face that they belong to.
+/// Brings places to faces, out of core: texture vertices are looked up in the order of texture
+/// faces, which are sorted by the face that they belong to. For one thread.
 class PlyTextureFaces {
  public:
   /// Reads both lists. `path` is for messages. Throws as PlySource.
   PlyTextureFaces(mesh_io::PlySource& source, const std::filesystem::path& path,
                   const ImportRoom& room);
 
-  /// Gives `face` its texture and texture coordinates; those that are not listed show no texture.
+  /// Gives `face` its texture and texture coordinates; faces that are not listed show no texture.
   /// Faces come in the order of the file. Throws Error(input) unless each corner has one place.
   void complete(mesh_io::PlyFace& face);
 

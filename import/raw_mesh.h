@@ -16,6 +16,12 @@ namespace meshhier::importing {
 /// Blocks of the import's spools: large writes, but small beside the least budget.
 inline constexpr std::size_t kImportSpoolBytes = std::size_t{1} << 18;
 
+/// A mesh whose vertices and triangles lie in spools, in the order in which vertices are numbered.
+/// Readers append to it; welding, cropping and joining make another one of it. For one thread.
+///
+/// Invariant. attributes has channels() numbers a vertex, corners of triangles are below
+/// vertex_count(). While files of a list are read, vertices have the channels of their own files,
+/// until join_layouts() gives all of them the same.
 struct RawMesh {
   explicit RawMesh(storage::ScratchFile& scratch)
       : positions(scratch, kImportSpoolBytes),
@@ -26,18 +32,19 @@ struct RawMesh {
   std::size_t channels() const { return static_cast<std::size_t>(layout.channels()); }
 
   AttributeLayout layout;
-  MaterialTable materials;    ///< numbered as layout.material has them
+  MaterialTable materials;    ///< numbered as layout.material says
   AllLabelNames label_names;  ///< numbered as values of these attributes
-  bool fits_float = true;     ///< all coordinates do, or their texts (mesh_io::DecimalNumber)
+  /// All coordinates are floats, or their texts say no more (DecimalNumber).
+  bool fits_float = true;
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<float> attributes;  ///< channels() a vertex
   storage::RecordSpool<Triangle<std::uint32_t>> triangles;
 };
 
-/// What an import works with.
+/// The means that an import works with.
 struct ImportRoom {
   storage::ScratchFile& scratch;
-  std::uint64_t sort_bytes = 0;  ///< of each of two sorts, or of a table
+  std::uint64_t sort_bytes = 0;  ///< memory of each of two sorts, or of a table
   const execution::CancelToken& cancel;
 };
 

@@ -1,4 +1,4 @@
-// Triangles of a mesh in spools whose vertices get other numbers.
+// Gives vertices other numbers in the triangles of a mesh in spools.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -11,7 +11,7 @@
 
 namespace meshhier::importing {
 
-/// Hands triangles of ids on as triangles of a table's values: take(triangle) for each. In their
+/// Hands triangles of ids on as triangles of a table's values: take(triangle) for each, in their
 /// order, but for those that wait for a part of a table that exceeds room.sort_bytes.
 template <class Value, class Take>
 class TriangleTranslator {
@@ -39,7 +39,7 @@ class TriangleTranslator {
       add(std::span<const Triangle<std::uint32_t>>(block));
     }
   }
-  /// Those that wait, too.
+  /// Hands on the triangles that wait.
   void finish() {
     while (renumberer_.next_round()) {
       for (std::uint64_t batch = 0; batch < renumberer_.batches(); ++batch) {
@@ -62,7 +62,7 @@ class TriangleTranslator {
   const ImportRoom& room_;
 };
 
-/// Entry i of `numbers` is for corner i.
+/// Calls take(triangle) for each triangle with new numbers: vertex i becomes numbers[i].
 template <class Take>
 void renumber_triangles(const storage::RecordSpool<Triangle<std::uint32_t>>& triangles,
                         const storage::RecordSpool<std::uint32_t>& numbers, const ImportRoom& room,

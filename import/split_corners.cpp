@@ -23,7 +23,7 @@ class CornerSplitter::Numbering {
   Numbering(const std::function<bool(std::uint32_t)>& hides_material, SplitVertices& vertices)
       : hides_material_(hides_material), vertices_(vertices) {}
 
-  /// Of corners at a position that show the same. Ascending.
+  /// Returns the number of the vertex of corners with these parts. Parts ascend from call to call.
   std::uint64_t number(CornerParts shown) {
     // The material is the last part, so that equal ones stay together without it.
     if (hides_material_ && hides_material_(shown.position))
@@ -33,7 +33,7 @@ class CornerSplitter::Numbering {
     last_ = shown;
     return vertices_.count() - 1;
   }
-  /// Of a position that no corner uses.
+  /// Adds the vertex of a position that no corner uses.
   void add_unused(std::uint32_t position) {
     last_ = {position};
     vertices_.add(last_);
@@ -83,7 +83,7 @@ void CornerSplitter::split(SplitVertices& vertices, RawMesh& mesh,
 void CornerSplitter::number(Numbering& numbering, CornerSort& corners) {
   uses_.sort();
   std::uint32_t at = 0;
-  bool is_done = false;  // what the table has at this position, or some use there
+  bool is_done = false;  // this position has a vertex: the table's, or that of a use
   const auto take_first = [&] {
     vertices_[at] = static_cast<std::uint32_t>(numbering.number({at, firsts_[at]}));
     is_done = true;

@@ -1,5 +1,23 @@
 // Corners of triangles that show something else than others at the same vertex of a file become
 // vertices of their own, out of core.
+//
+// Problem. In OBJ and PLY files corners have references: a position, and apart from it a texture
+// coordinate, a normal, a material, values of the face. Vertices of a mesh have all of it together.
+//
+// Idea. Corners are sorted by position and parts; each group of equal ones is a vertex:
+//
+//       corner   0     1     2     3     4     5        sorted     p0 a  p1 a  p1 b  p2 a
+//       shows    p0 a  p1 a  p2 a  p1 b  p2 a  p0 a     corners    0,5   1     3     2,4
+//                                                       vertex      0     1     2     3
+//
+// A second sort, by corner, brings the numbers back to the triangles. Most positions show one
+// combination alone, so with enough memory a table holds the first one of each position, and only
+// the corners that show another one (3 above) are sorted.
+//
+// Invariant. Vertices are ordered by position, then by parts, with the table or without: the result
+// depends on the corners alone.
+//
+// Cost. Two sorts of the corners, or of those that are not in the table.
 #pragma once
 
 #include "execution/spool_cursor.h"
@@ -14,11 +32,11 @@
 
 namespace meshhier::importing {
 
-/// What a corner shows: a vertex of the file, and what it has there, as references or as bits; 0 is
-/// none.
+/// A corner's parts: a vertex of the file, and the corner's own attributes there, as references or
+/// as bits; 0 is none.
 struct CornerParts {
   static constexpr std::size_t kCount = 4;
-  static constexpr std::size_t kValues = 2;    ///< which values its face has, from 1 on
+  static constexpr std::size_t kValues = 2;    ///< number of its face's values, from 1 on
   static constexpr std::size_t kMaterial = 3;  ///< its number in the mesh's table, from 1 on
 
   using Parts = std::array<std::uint32_t, kCount>;
@@ -67,21 +85,22 @@ class SplitCursor {
   std::array<Cursor, CornerParts::kCount> parts_;
 };
 
-/// Takes the corners of triangles, three after three, then numbers their vertices.
+/// Takes the corners of triangles, three after three, then numbers their vertices. For one thread.
 ///
 /// Most positions are used in one combination alone. If a table of the first one of each position
 /// fits into memory, only corners that show another one are sorted; else all are. The result is the
 /// same.
 class CornerSplitter {
  public:
-  /// `positions`: how many the file has.
+  /// `positions`: how many the file has; a corner's is below.
   CornerSplitter(std::uint64_t positions, const ImportRoom& room);
 
   /// Requires corner.position < positions.
   void add(const CornerParts& corner);
   /// Appends the triangles to `mesh`, whose next vertices will be `vertices`: they are ordered by
-  /// position, then by their parts. `hides_material`: asked of ascending positions, of the same one
-  /// perhaps again, whether corners there have no material after all; empty: none. Once.
+  /// position, then by their parts. `hides_material` is asked for ascending positions, perhaps
+  /// again for the same one, whether corners there have no material after all; empty: all keep
+  /// theirs. Called once.
   void split(SplitVertices& vertices, RawMesh& mesh,
              const std::function<bool(std::uint32_t)>& hides_material = {});
 
@@ -93,7 +112,7 @@ class CornerSplitter {
 
     std::uint64_t corner() const { return std::uint64_t{corner_high} << 32 | corner_low; }
   };
-  /// Of equal ones the corner does not matter.
+  /// The order of uses; among equal ones the corner does not matter.
   struct UseKey {
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
     Key operator()(const Use& use) const {
@@ -121,11 +140,11 @@ class CornerSplitter {
 
   std::uint64_t positions_;
   const ImportRoom& room_;
-  std::vector<Parts> firsts_;  ///< of each position what the first corner there shows; or empty
-  std::vector<std::uint32_t> vertices_;        ///< of these; kUnused until there is a corner
+  std::vector<Parts> firsts_;            ///< parts of the first corner at each position; or empty
+  std::vector<std::uint32_t> vertices_;  ///< numbers of these; kUnused until there is a corner
   storage::RecordSpool<CornerParts> shown_;    ///< all corners, if there is a table
-  std::uint64_t sort_bytes_;                   ///< of each of two sorts
-  partition::ExternalSort<Use, UseKey> uses_;  ///< of all corners, or of what is not in the table
+  std::uint64_t sort_bytes_;                   ///< memory of each of two sorts
+  partition::ExternalSort<Use, UseKey> uses_;  ///< all corners, or those that are not in the table
   std::uint64_t corners_ = 0;
 };
 

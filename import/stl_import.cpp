@@ -85,7 +85,7 @@ class StlImporter {
 
   const ImportRoom& room_;
   storage::RecordSpool<Point> corners_;
-  storage::RecordSpool<std::uint16_t> attributes_;  ///< of each facet of a binary file
+  storage::RecordSpool<std::uint16_t> attributes_;  ///< one for each facet of a binary file
   storage::RecordSpool<FacetColour> colours_;       ///< the same
   mesh_io::StlColours known_;
   bool has_colours_ = false;

@@ -1,4 +1,4 @@
-// STL files as meshes: corners at one place become one vertex, but where colours of facets meet.
+// STL files as meshes: corners at one place become one vertex, unless colours of facets meet there.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -18,7 +18,7 @@ struct StlImport {
   std::uint64_t welded_corners = 0;
   std::uint64_t degenerate_triangles = 0;
   std::uint64_t ignored_attributes = 0;  ///< facets with numbers that are no colours
-  std::uint64_t white_facets = 0;        ///< without a colour, where others have one
+  std::uint64_t white_facets = 0;        ///< facets without a colour, where others have one
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout: vertices by first appearance, with the

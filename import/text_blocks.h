@@ -19,14 +19,14 @@ inline mesh_io::BlockRunner parallel_blocks(std::size_t in_flight,
           }};
 }
 
-/// Likewise for an import, while it reads no sort runs. `block_bytes`: of a block at work.
+/// Does the same for an import, while no sort runs. `block_bytes`: memory of a block at work.
 inline mesh_io::BlockRunner parallel_blocks(std::uint64_t block_bytes, const ImportRoom& room) {
   return parallel_blocks(execution::useful_blocks(2 * room.sort_bytes, block_bytes), room.cancel);
 }
 
 /// Hands the blocks of a text to `reader` in their order, each after parse(block), and the rest to
-/// be read by words; returns what its finish() does. `block_bytes`: of a block at work. While it
-/// reads no sort runs.
+/// be read by words; returns what its finish() does. `block_bytes`: memory of a block at work. No
+/// sort may run meanwhile.
 template <class Block, class Reader>
 auto read_text_blocks(mesh_io::LineBlocks lines, std::uint64_t block_bytes, void (*parse)(Block&),
                       Reader& reader, const ImportRoom& room) {

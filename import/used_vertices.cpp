@@ -18,7 +18,7 @@ constexpr std::uint64_t kWordVertices = 64;
 constexpr std::uint64_t kWordBytes = 12;
 constexpr std::uint64_t kLeastWords = 64;
 
-/// Which vertices of [begin, end) are used.
+/// The vertices of [begin, end) that are used, a bit each.
 class UseTable {
  public:
   UseTable(std::uint64_t begin, std::uint64_t end)
@@ -33,7 +33,7 @@ class UseTable {
       before += static_cast<std::uint32_t>(std::popcount(word));
     }
   }
-  /// Of a marked one, how many are before it.
+  /// Returns how many marked ones are before a marked vertex.
   std::uint32_t number(std::uint32_t vertex) const {
     const std::size_t index = (vertex - begin_) / kWordVertices;
     return counts_[index] +

@@ -1,8 +1,20 @@
 // Vertices that are equal become one, out of core.
 //
-// Items (corners of a soup, or vertices) are sorted by what they hold; of equal ones the first
-// stands for all. A second sort, by who stands for whom, numbers those that stay in the order in
-// which they first appear; a third one brings the numbers back into the order of the items.
+// Problem. A soup of a billion triangles has no table of places that fits into memory, and vertices
+// must keep the order in which they first appear.
+//
+// Idea. Items (corners of a soup, or vertices) are sorted three times:
+//
+//    items                0 A   1 B   2 A   3 C   4 B
+//    1. by their bits     A: 0 2      B: 1 4      C: 3       the first stands for equal ones
+//    2. by that first     0: 0 2      1: 1 4      3: 3
+//                         number 0    number 1    number 2   numbers by first appearance
+//    3. by item           0 1 0 2 1                          numbers in the items' order
+//
+// Invariant. Items are compared themselves; the key that sorts them only decides their order. Of
+// equal items the first one's bits stay (-0 equals 0).
+//
+// Cost. Three external sorts, O(n log n); nothing is held in memory but room.sort_bytes, twice.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -21,16 +33,16 @@ struct WeldCounts {
 using FacetColour = std::array<std::uint8_t, 3>;
 
 /// Appends the triangles of a soup to `mesh`: `corners` are three a triangle. Corners of equal
-/// coordinates, and of equal colours if each triangle has one, which vertices have then, are one
-/// vertex (-0 equals 0; the first one's bits stay); vertices are numbered by
-/// first appearance. Deterministic. Throws Error(input) if there are 2^32 vertices or more.
+/// coordinates are one vertex; if each triangle has a colour, only those of equal colours are, and
+/// vertices have it (-0 equals 0; the first one's bits stay); vertices are numbered by first
+/// appearance. Deterministic. Throws Error(input) if there are 2^32 vertices or more.
 template <class Scalar>
 WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners,
                      const storage::RecordSpool<FacetColour>* colours, RawMesh& mesh,
                      const ImportRoom& room);
 
 /// Fills `welded` with `mesh`, whose spools are cleared: vertices of equal position and equal
-/// attributes are one, the first; those that no triangle uses as well. The order of vertices and
+/// attributes become one, the first; also those that no triangle uses. The order of vertices and
 /// triangles stays, but triangles that wait for a part of a large table may come later.
 WeldCounts weld_vertices(RawMesh& mesh, RawMesh& welded, const ImportRoom& room);
 
