@@ -45,7 +45,7 @@ ColourType colour_type(GltfComponent component) {
                                            : ColourType::f32;
 }
 
-/// What the primitives of a file have together.
+/// The attributes that the primitives of a file have together.
 class CommonLayout {
  public:
   void add(const GltfFile& file, const GltfPrimitive& primitive, const std::string& texcoords) {
@@ -122,7 +122,7 @@ class GltfImporter {
     return file_.document().meshes[instance.mesh].primitives;
   }
 
-  /// Of pictures that the file requires and nobody can read.
+  /// Throws if the file requires pictures of a format that is not read.
   void require_readable_pictures() const {
     if (textures_ == Textures::ignore)
       return;
@@ -167,7 +167,7 @@ class GltfImporter {
     return primitive.material && file_.document().materials[*primitive.material].is_invisible();
   }
 
-  /// Those that the material's texture takes.
+  /// Returns the name of the coordinates that the material's texture takes.
   std::string texcoords_of(const GltfPrimitive& primitive) const {
     const mesh_io::GltfTextureUse* shown = materials_.look(primitive.material).texture;
     return fmt::format("TEXCOORD_{}", shown != nullptr ? shown->texcoord : 0);
@@ -175,7 +175,7 @@ class GltfImporter {
 
   bool is_textured() const { return textures_ == Textures::use && materials_.is_textured(); }
 
-  /// What all primitives have, before any is read.
+  /// Finds out what all primitives have, before any is read.
   void look() {
     std::set<std::uint32_t> meshes;
     CommonLayout layout;
@@ -326,8 +326,8 @@ class GltfImporter {
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
-    std::vector<std::optional<GltfElements>> values;  ///< of values_
-    // Of the material, if vertices have its colour.
+    std::vector<std::optional<GltfElements>> values;  ///< one for each of values_
+    // The material's, if vertices have its colour.
     std::array<double, 4> factor{1, 1, 1, 1};
     std::array<double, 3> light{};
     bool is_untinted = false;  ///< the material's picture is shown as it is
@@ -483,7 +483,7 @@ class GltfImporter {
     }
   }
 
-  /// By the material's factor, and with its light. Whole numbers stay whole.
+  /// Changes a colour by the material's factor and light. Whole numbers stay whole.
   void show_through(std::span<float> colour, const Attributes& all) const {
     const bool is_whole = import_.layout.colour != ColourType::f32;
     const double most = full_number(import_.layout.colour);
@@ -538,9 +538,9 @@ class GltfImporter {
   GltfMaterials materials_;
   GltfImport import_;
   GltfValues found_values_;
-  std::vector<GltfValue> values_;  ///< of import_.layout
+  std::vector<GltfValue> values_;  ///< values of import_.layout
   bool widens_colours_ = false;    ///< from 8 bits to 16
-  std::uint64_t copies_ = 0;       ///< of EXT_mesh_gpu_instancing
+  std::uint64_t copies_ = 0;       ///< copies by EXT_mesh_gpu_instancing
   std::map<std::uint32_t, std::vector<GltfTransform>> skins_;
   std::uint64_t skinned_ = 0, ignored_skins_ = 0, invisible_ = 0;
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;

@@ -14,22 +14,21 @@ namespace meshhier::importing {
 struct GltfImport {
   AttributeLayout layout;
   bool fits_float = true;
-  std::uint64_t material_colours = 0;  ///< that vertices have
+  std::uint64_t material_colours = 0;  ///< materials' colours that vertices have
   bool is_painted = false;             ///< vertices have no other colours
   std::uint64_t triangles = 0;         ///< as primitives declare them
   std::uint64_t degenerate_triangles = 0;
-  std::vector<SourceCount> counts;  ///< of what was filled in, left out or ignored
+  std::vector<SourceCount> counts;  ///< things that were filled in, left out or ignored
   mesh_io::ZeroedCounts zeroed;
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout, with its scene at `placement`:
-/// primitive by primitive in the order of the scene, of each the vertices that its triangles use,
+/// primitive by primitive in the order of the scene, each with the vertices that its triangles use,
 /// in their order. The mesh is textured if `textures` are used and a primitive's base colour has a
 /// picture that is there and coordinates. If it is not, and no primitive has vertex colours, the
 /// vertices have the base colours, if they are to be seen (PlainColours). Attributes that a
 /// primitive does not have, but another has, are filled in and counted. Values are those of
-/// GltfValues. Throws Error(input) naming
-/// the accessor, node or view; as GltfFile.
+/// GltfValues. Throws Error(input) naming the accessor, node or view, and as GltfFile.
 GltfImport import_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement,
                        RawMesh& mesh, Textures textures, const mesh_io::AttributeChoice& attributes,
                        const ImportRoom& room);

@@ -58,7 +58,8 @@ class Import {
   }
 
  private:
-  /// What of glTF and tiles is left out may be all.
+  /// Fails if nothing is left of glTF and tiles: all of their parts may be of kinds that are left
+  /// out.
   void require_triangles() const {
     const auto has = [&](std::string_view name) {
       return std::ranges::any_of(facts_.counts,
@@ -92,7 +93,8 @@ class Import {
 
   void count(std::string_view name, std::uint64_t count) { add_count(facts_.counts, name, count); }
 
-  /// When all is read. Pictures are read for their checksums, which is little beside decoding them.
+  /// Notes the files when all is read. Pictures are read for their checksums, which is little
+  /// beside decoding them.
   void note_files() {
     Companions all = input_.companions();
     for (const CompanionFile& library : mesh_.materials.companions().files())
@@ -241,7 +243,7 @@ void TemporaryFile::counted() {
 
 namespace {
 
-/// Of the values that vertices have.
+/// Names the labels among the values that vertices have.
 void name_labels(const AllLabelNames& all, SourceSummary& summary) {
   constexpr std::size_t kLongest = 100;
   for (std::size_t i = 0; i < summary.values.size(); ++i) {
@@ -263,7 +265,7 @@ void ImportFacts::complete(SourceSummary& summary) const {
     summary.file_bytes += file.bytes;
   summary.checksum = joined_checksum(files);
   summary.files = files;
-  // Of an unpacked PLY they were counted while it was read.
+  // The counts of an unpacked PLY were made while it was read.
   summary.counts.insert(summary.counts.end(), counts.begin(), counts.end());
   std::ranges::sort(summary.counts, {}, &SourceCount::name);
   summary.textures = textures;
@@ -289,15 +291,15 @@ ImportMemory plan_import(std::uint64_t memory_budget) {
   constexpr std::uint64_t kFixed = 30 * kImportMiB;
   constexpr std::uint64_t kAllocatorParts = 12;
   const std::uint64_t taken = kFixed + memory_budget / kAllocatorParts;
-  // What cannot be is refused when the mesh is known.
+  // A budget that is too small is refused when the mesh is known.
   const std::uint64_t rest = std::max(memory_budget, taken + 4 * kImportMiB) - taken;
   return {rest / 4, rest / 4};
 }
 
 std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory) {
-  // The PLY has at most the size of the text or soup. What lies in spools and sorts beside it, up
-  // to the pool in memory: once the size of a text of floats, three times where corners have
-  // attributes, and three times that of an STL, whose corners are sorted. Six times that of a PLY
+  // The PLY has at most the size of the text or soup. Spools and sorts beside it, but for the pool
+  // in memory, take once the size of a text of floats, three times where corners have attributes,
+  // and three times that of an STL, whose corners are sorted. They take six times that of a PLY
   // with textured faces: corners are sorted twice, 44 bytes each, and a face has 17. Ten times
   // where faces have values: a face has 14 bytes, and each corner may become a vertex. Gzip packs
   // such files to a third or a quarter.
@@ -307,7 +309,7 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   constexpr std::uint64_t kPacked = 4;
   constexpr std::uint64_t kLeastVertexBytes = 12;
   std::uint64_t content = input.geometry_bytes();
-  std::uint64_t cornered = 0;  // what these take beyond kSpools times
+  std::uint64_t cornered = 0;  // bytes that such files take beyond kSpools times their size
   for (const InputFileFacts& file : input.all()) {
     if (input.crop() && file.is_plain_ply() && !file.has_corner_attributes) {
       // A byte a vertex, of 12 bytes at least; how large the piece is shows when it is read.

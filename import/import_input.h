@@ -32,7 +32,7 @@ namespace meshhier::importing {
 /// A file that is removed with its object.
 class TemporaryFile {
  public:
-  /// What is written there counts in `use` from counted() on.
+  /// The file's bytes count in `use` from counted() on.
   TemporaryFile(storage::FileSystem& files, std::filesystem::path path, storage::ScratchUse& use)
       : files_(files), path_(std::move(path)), use_(use) {}
   TemporaryFile(const TemporaryFile&) = delete;
@@ -51,37 +51,38 @@ class TemporaryFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// What was learnt of the files, and is not in the PLY.
+/// Facts of the files that are not in the PLY.
 struct ImportFacts {
-  InputRecord record;             ///< of the files that were read, and those that were not there
-  std::vector<SourceFile> files;  ///< the same as the hierarchy tells it
+  InputRecord record;             ///< the files that were read, and places of missing ones
+  std::vector<SourceFile> files;  ///< the same files, as the hierarchy tells of them
   std::vector<SourceCount> counts;
-  mesh_io::PlyWrittenBy writer =
-      mesh_io::PlyWrittenBy::anyone;   ///< of the PLY; else it is unpacked
+  /// Writer of the PLY; `anyone` if it is an input unpacked.
+  mesh_io::PlyWrittenBy writer = mesh_io::PlyWrittenBy::anyone;
   std::optional<std::uint64_t> faces;  ///< none: as many as the PLY has
   std::uint64_t degenerate_triangles = 0;
-  /// Those that triangles use, as AttributeLayout::material of the PLY numbers them; empty unless
-  /// the mesh is textured.
+  /// The materials that triangles use, as AttributeLayout::material of the PLY numbers them; empty
+  /// unless the mesh is textured.
   images::MaterialList materials;
   AllLabelNames label_names;
-  /// Of a textured mesh. Its texels are not counted: nothing is decoded here.
+  /// The textures of a textured mesh. Texels are not counted: nothing is decoded here.
   std::optional<SourceTextures> textures;
 
-  /// What a mesh that was read from the PLY is a summary of.
+  /// Completes the summary of a mesh that was read from the PLY.
   void complete(SourceSummary& summary) const;
 };
 
-/// For people: "12 groups, 3 split vertices".
+/// Returns counts for people: "12 groups, 3 split vertices".
 std::string counts_text(const std::vector<SourceCount>& counts);
 
 /// The budget's division while it runs.
 struct ImportMemory {
   std::uint64_t pool_bytes = 0;
-  std::uint64_t sort_bytes = 0;  ///< of each of two sorts, or of a table
+  std::uint64_t sort_bytes = 0;  ///< memory of each of two sorts, or of a table
 };
+/// Divides the budget.
 ImportMemory plan_import(std::uint64_t memory_budget);
 
-/// About what it has in temporary files at most, the PLY included, from the files' sizes alone.
+/// Returns the most bytes of temporary files, about, the PLY included, by the files' sizes alone.
 std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory);
 
 struct ImportEnvironment {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kBlockVertices = 4096;
 
-/// Of a file's own, but for colours of materials.
+/// Returns the type of a file's own colours, other than those of materials.
 ColourType own_colour(const JoinedFile& file) {
   return file.is_painted ? ColourType::none : file.layout.colour;
 }
@@ -94,7 +94,7 @@ bool has_own_colours(const JoinedFile& file) {
   return own_colour(file) != ColourType::none;
 }
 
-/// Whether pictures stay as they are if colours of all files tint them.
+/// Returns whether pictures stay as they are if colours of all files tint them.
 bool may_tint(std::span<const JoinedFile> files) {
   return std::ranges::none_of(files, [](const JoinedFile& file) {
     return has_own_colours(file) && file.layout.material && !file.layout.tints;
@@ -202,7 +202,7 @@ class RowJoin {
   PlainMaterials& plain_;
   bool keeps_paint_ = false;
   ColourType colour_{};
-  std::vector<PlacedValue> values_;  ///< of the file's vertices
+  std::vector<PlacedValue> values_;  ///< places in the file's vertices
 };
 
 /// So many channels from `first` on.

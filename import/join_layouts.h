@@ -1,4 +1,4 @@
-// Files of a list that have other attributes than each other.
+// Joins files of a list that have different attributes.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -16,16 +16,17 @@ struct JoinedFile {
   bool is_painted = false;  ///< its colours are those of its materials
 };
 
-/// What files got or lost to be like the others.
+/// Counts of attributes that files got or lost to be like the others.
 struct JoinCounts {
-  std::uint64_t untextured_files = 0;   ///< beside textured ones
-  std::uint64_t dropped_normals = 0;    ///< of vertices
-  std::uint64_t dropped_texcoords = 0;  ///< of vertices, of files without pictures
-  /// Of files without colours, beside files with colours, and without pictures.
+  std::uint64_t untextured_files = 0;   ///< files without pictures beside textured ones
+  std::uint64_t dropped_normals = 0;    ///< normals of vertices
+  std::uint64_t dropped_texcoords = 0;  ///< coordinates of vertices of files without pictures
+  /// Vertices of files without colours and pictures, beside files with colours.
   std::uint64_t white_vertices = 0;
-  std::uint64_t hidden_colours = 0;     ///< of vertices that show no picture or were to tint theirs
-  std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
-  std::uint64_t dropped_values = 0;     ///< of vertices
+  /// Colours of vertices that show no picture or were to tint theirs.
+  std::uint64_t hidden_colours = 0;
+  std::uint64_t converted_colours = 0;  ///< colours of vertices, to the type of other files
+  std::uint64_t dropped_values = 0;     ///< values of vertices
 };
 
 /// Gives all vertices of `mesh`, which have the channels of their own files, those of all files

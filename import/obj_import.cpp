@@ -65,7 +65,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
   void add_position(Vec3d position, const std::optional<ObjColour>& colour) override {
     positions.append(position);
     if (colour && !has_colours_) {
-      colours.clear();  // of ZBrush
+      colours.clear();  // those of ZBrush
       has_colours_ = true;
       for (std::uint64_t i = 1; i < positions.size(); ++i)
         colours.append(kNoColour);
@@ -120,7 +120,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
 
  private:
   bool keeps_materials_;
-  bool has_colours_ = false;  ///< of v
+  bool has_colours_ = false;  ///< lines v have colours
   SpoolLookup<Vec3d> places_;
 };
 
@@ -143,8 +143,8 @@ struct PlaceKey {
   }
 };
 
-/// What each vertex refers to, in the vertices' order; what refers to nothing gets Value{}. Two
-/// sorts, however the references jump.
+/// Gathers the values that vertices refer to, in the vertices' order; vertices without a reference
+/// get Value{}. Two sorts, however the references jump.
 template <class Value>
 void gather(const References& references, const storage::RecordSpool<Value>& values,
             storage::RecordSpool<Value>& gathered, const ImportRoom& room) {
@@ -211,7 +211,7 @@ class TileFinder {
     return tile && textures_.find_picture(name, *tile) ? tile->number() : 0;
   }
 
-  /// Of all corners, so that they come in the triangles' order.
+  /// Gathers the coordinates of all corners, so that they come in the triangles' order.
   void gather_texcoords() {
     if (3 * parts_.triangles.size() >= UINT32_MAX) {
       mesh_io::fail_file(parts_.names.obj(),
@@ -232,14 +232,14 @@ class TileFinder {
   storage::RecordSpool<Texcoord> texcoords_;
 };
 
-/// What the triangles of a textured file show.
+/// The pictures that triangles of a textured file show.
 struct ObjSurface {
   ObjSurface(std::vector<LibraryMaterial> materials, mesh_io::NamedFiles& files, RawMesh& mesh,
              const ImportRoom& room)
       : textures(std::move(materials), files, mesh.materials),
         tiles(room.scratch, kImportSpoolBytes) {}
 
-  /// Of triangle `i`. Pictures of squares that are not there were none when they were looked for.
+  /// Returns the square of triangle `i`; none if its picture was not there when it was looked for.
   std::optional<PictureTile> tile(std::uint32_t name, std::uint64_t i,
                                   execution::SpoolCursor<std::uint32_t>& all_tiles) const {
     if (!textures.is_tiled(name))
@@ -252,13 +252,13 @@ struct ObjSurface {
   storage::RecordSpool<std::uint32_t> tiles;  ///< one a triangle if a material has them
 };
 
-/// What programs write where there is no material is none.
+/// Returns whether a name means a material, and is not one that programs write where there is none.
 bool is_name(const std::string& name) {
   const std::string small = small_letters(name);
   return !small.empty() && small != "none" && small != "(null)" && small != "null";
 }
 
-/// Of each name in `parts`.
+/// Returns the material of each name in `parts`.
 std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
                                             mesh_io::NamedFiles& files, const ImportRoom& room) {
   Libraries libraries =
@@ -321,7 +321,7 @@ class ObjPaint {
   std::uint32_t part(std::uint32_t name) const {
     return of_names_[name].is_defined ? of_names_[name].colour.number() + 1 : 0;
   }
-  /// Of a vertex with that part.
+  /// Returns the colour of a vertex with that part.
   static PlainColour colour(std::uint32_t part) {
     return part == 0 ? PlainColour() : PlainColour::from(part - 1);
   }
@@ -335,7 +335,7 @@ class ObjPaint {
   PlainColours all_;
 };
 
-/// What the materials of a file are to be seen by: pictures, their colours, or nothing.
+/// The look of a file's materials: pictures, their colours, or nothing.
 struct ObjLook {
   std::unique_ptr<ObjSurface> surface;
   std::optional<ObjPaint> paint;
@@ -381,7 +381,7 @@ class ShownTriangles {
   execution::SpoolCursor<std::uint32_t> names_, tiles_;
 };
 
-/// Of corners of triangles, which of them the file has.
+/// Counts the corners of triangles that have colours in the file.
 class CornerColours {
  public:
   explicit CornerColours(const ObjParts& parts) : colours_(parts.colours) {}
@@ -395,8 +395,8 @@ class CornerColours {
   SpoolLookup<ObjColour> colours_;
 };
 
-/// Whether colours of a textured file tint: vertices have them where there is no picture, and there
-/// alone. Programs colour the vertices of what they paint with pictures, too: that says the same
+/// Returns whether colours of a textured file tint: vertices have them where there is no picture,
+/// and there alone. Programs also colour vertices that have pictures: such colours say the same
 /// twice.
 bool do_colours_tint(const ObjParts& parts, ObjSurface& surface, const ImportRoom& room) {
   ShownTriangles triangles(parts, surface, room);
@@ -427,7 +427,8 @@ class CornerLabels {
   execution::SpoolCursor<std::uint32_t> combinations_;
 };
 
-/// Where all corners have colours that tint, no material changes them.
+/// Adds the corners of triangles with their materials. Triangles without a picture whose corners
+/// all have colours that tint get a white one.
 void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, RawMesh& mesh,
                        CornerSplitter& splitter, const ImportRoom& room) {
   ShownTriangles triangles(parts, surface, room);
