@@ -29,7 +29,7 @@ void require_box(const BoundsD& box) {
                 "of the second one");
 }
 
-/// From places of the map, or of the input, to those of the region.
+/// Moves polygons from places of the map, or of the input, to those of the region.
 void move(std::vector<PlanPolygon>& polygons, const HierarchyReader& reader,
           const std::optional<config::MapPlaces>& map) {
   const PlanPoint origin = plan_of(reader.manifest().origin, reader.manifest().up);

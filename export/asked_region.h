@@ -14,23 +14,23 @@
 namespace meshhier::exporting {
 
 struct RegionRequest {
-  /// In the input's coordinates; of a map instead its x and y, and heights of the input.
+  /// In the input's coordinates, or with `crs` in x and y of that map and heights of the input.
   std::optional<BoundsD> box{};
   std::filesystem::path polygon{};  ///< GeoJSON, seen along the hierarchy's up axis; empty: none
-  std::string crs{};                ///< of the map; empty: coordinates are the input's
+  std::string crs{};                ///< the map's; empty: coordinates are the input's
 
   bool is_any() const { return box || !polygon.empty(); }
-  /// For people: "box", "polygon".
+  /// Returns a name for people: "box", "polygon".
   std::string name() const;
 };
 
-/// Relative to the hierarchy's origin. `files`: where the polygon lies. Throws Error(usage) if the
-/// box is none, and as read_polygons() and config::MapPlaces. The region looks at `cancel`, which
-/// must outlive it, while it cuts.
+/// Returns the region relative to the hierarchy's origin. `files` has the polygon. Throws
+/// Error(usage) if the box is none, and as read_polygons() and config::MapPlaces. The region looks
+/// at `cancel`, which must outlive it, while it cuts.
 Region region_of(storage::FileSystem& files, const storage::HierarchyReader& reader,
                  const RegionRequest& request, const execution::CancelToken& cancel);
 
-/// Throws Error(usage): nothing of the mesh lies there, and where it does.
+/// Throws Error(usage), which says that nothing of the mesh lies there, and where the mesh lies.
 [[noreturn]] void fail_empty(const storage::HierarchyReader& reader, const RegionRequest& request);
 
 }  // namespace meshhier::exporting

@@ -10,7 +10,7 @@ namespace meshhier::exporting {
 
 std::string base64(std::span<const std::byte> bytes);
 
-/// Characters that base64() makes of so many bytes.
+/// Returns the number of characters that base64() makes of so many bytes.
 constexpr std::uint64_t base64_size(std::uint64_t bytes) {
   return (bytes + 2) / 3 * 4;
 }

@@ -12,6 +12,7 @@
 
 namespace meshhier::exporting {
 
+/// Writes a file in buffers of 1 MiB. All throw Error(io). For one thread.
 class ByteStream {
  public:
   explicit ByteStream(storage::File& file) : file_(file) { buffer_.reserve(kBufferBytes); }

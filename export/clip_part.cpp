@@ -132,7 +132,7 @@ class PartClipper {
   std::size_t channels_;
   CornerMixer mixer_;
   TriangleClipper clipper_;
-  std::vector<std::uint32_t> numbers_;  ///< of the part's vertices; kNoPlace: not used
+  std::vector<std::uint32_t> numbers_;  ///< new numbers of the part's vertices; kNoPlace: not used
   std::unordered_map<std::string, std::uint32_t> cuts_;
   CutPart made_;
 };

@@ -20,19 +20,20 @@ namespace meshhier::exporting {
 
 inline constexpr std::size_t kNewVertex = std::numeric_limits<std::size_t>::max();
 
-/// Some hundred bytes: polygons are small.
+/// A corner takes some hundred bytes: polygons are small.
 struct ClippedCorner {
-  std::size_t vertex = kNewVertex;  ///< of what was cut; kNewVertex: made by cutting
+  /// Number in the part that was cut; kNewVertex: made by cutting.
+  std::size_t vertex = kNewVertex;
   Vec3f position;
   std::array<float, kMaxChannels> attributes{};
   Vec3f normal;
   Vec2f texcoord;
 };
 
-/// Convex, the corners in order. Fewer than three: nothing.
+/// A convex polygon, its corners in order. Fewer than three: nothing.
 using ClippedPolygon = std::vector<ClippedCorner>;
 
-/// All that a corner has, for an order that does not depend on the triangle.
+/// Returns all that a corner has, for an order that does not depend on the triangle.
 inline auto key_of(const ClippedCorner& c) {
   // Channels of values need not be numbers.
   std::array<std::uint32_t, kMaxChannels> bits;
@@ -42,17 +43,16 @@ inline auto key_of(const ClippedCorner& c) {
                     c.normal.z, c.texcoord.u, c.texcoord.v);
 }
 
-/// Makes corners between others.
+/// Makes corners between others. Thread-safe.
 class CornerMixer {
  public:
-  /// `channels`: of the corners' attributes, as `layout` has them; those that it does not have are
-  /// plain numbers.
+  /// `channels`: how many attributes corners have; those beyond `layout` are plain numbers.
   CornerMixer(const AttributeLayout& layout, std::size_t channels)
       : layout_(layout), light_(layout), values_(layout), channels_(channels) {}
 
-  /// `from` plus the weights' parts of the ways to `to`, as many: positions, normals of unit
-  /// length, texture coordinates and attributes; colours by their light, those of integers rounded;
-  /// values as ValueMixer makes them.
+  /// Returns `from` plus the weights' parts of the ways to `to`; there are as many weights. It
+  /// mixes positions, normals (made of unit length again), texture coordinates and attributes;
+  /// colours by their light, those of integers rounded; values as ValueMixer makes them.
   ClippedCorner mixed(const ClippedCorner& from, std::span<const ClippedCorner* const> to,
                       std::span<const double> weights) const;
   ClippedCorner between(const ClippedCorner& from, const ClippedCorner& to, double t) const {

@@ -1,4 +1,4 @@
-// Cuts by what their tiles are from the original.
+// Cuts by the distance of their tiles from the original.
 #pragma once
 
 #include "hierarchy/cut.h"
@@ -6,12 +6,13 @@
 
 namespace meshhier::exporting {
 
-/// Tiles that are no farther from the original than this, input units; the coarsest that do.
+/// The largest error of a tile, in input units.
 struct LargestError {
   double error = 0;
 };
 
-/// O(tiles of the cut).
+/// Returns the coarsest tiles that are no farther from the original than that. O(tiles of the cut).
+/// Throws Error(io | corrupt).
 Cut cut_by_error(const storage::HierarchyReader& reader, LargestError largest);
 
 }  // namespace meshhier::exporting

@@ -12,13 +12,13 @@
 
 namespace meshhier::exporting {
 
-/// Reads a list of nodes: either lines "L/I" (blank lines and what follows a # are skipped), or a
-/// JSON array of such strings. `name` starts the messages. Throws Error(usage) naming the line or
-/// entry.
+/// Reads a list of nodes: either lines "L/I" (blank lines, and the rest of a line behind a #, are
+/// skipped), or a JSON array of such strings. `name` starts the messages. Throws Error(usage)
+/// naming the line or entry.
 std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name);
 
-/// The cut that a text file lists (parse_nodes()). Throws Error(io), and Error(usage) naming the
-/// file for text that is no list or nodes that are no cut.
+/// Reads the cut that a text file lists (parse_nodes()). Throws Error(io), and Error(usage) naming
+/// the file for text that is no list or nodes that are no cut.
 Cut read_cut(storage::FileSystem& files, const Tree& tree, const std::filesystem::path& path);
 
 }  // namespace meshhier::exporting

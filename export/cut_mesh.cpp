@@ -42,7 +42,7 @@ BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base,
 /// A border triangle that is not the input's, where the cut shows it.
 struct DrawnImage {
   CutTriangle corners;
-  std::uint32_t border = 0;  ///< which of the tile's border triangles
+  std::uint32_t border = 0;  ///< index among the tile's border triangles
   friend auto operator<=>(const DrawnImage&, const DrawnImage&) = default;
 };
 

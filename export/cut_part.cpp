@@ -14,11 +14,11 @@
 namespace meshhier::exporting {
 namespace {
 
-/// Where a tile's place is shown.
+/// The place where the cut shows a tile's place.
 struct ShownPlace {
-  std::uint32_t number = 0;                      ///< in the cut
+  std::uint32_t number = 0;                      ///< number in the cut
   std::shared_ptr<const PublishedTile> other{};  ///< null: as the tile has it
-  std::uint32_t place = 0;                       ///< of `other`
+  std::uint32_t place = 0;                       ///< the place's number in `other`
 };
 
 using FindPlace = std::function<ShownPlace(std::uint32_t place)>;

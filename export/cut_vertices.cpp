@@ -135,8 +135,8 @@ class CutVertices::TileVertices {
                             to_text({tile_.node.level, tile_.mesh.ghosts[ghost].tile})));
   }
 
-  /// Of each vertex here the first candidate that is like it, in order; nothing if there are too
-  /// few.
+  /// Matches each vertex here with the first candidate that is like it, in order; nothing if there
+  /// are too few.
   static std::optional<Wedges> match(const std::vector<VertexAt>& here,
                                      const std::vector<VertexAt>& all, const Wedges& candidates) {
     Wedges wedges{0};
@@ -163,7 +163,8 @@ class CutVertices::TileVertices {
   CutVertices& cut_;
   std::size_t position_;
   const PublishedTile& tile_;
-  std::vector<std::vector<std::uint32_t>> ghosts_;  ///< of each its vertices; empty: not looked up
+  /// Vertices of each ghost; empty: not looked up.
+  std::vector<std::vector<std::uint32_t>> ghosts_;
 };
 
 std::vector<CutTriangle> CutVertices::triangles(std::size_t position, const PublishedTile& tile,

@@ -1,8 +1,12 @@
 // The vertices of the mesh that a cut shows: all wedges of its places.
 //
-// A corner beside a neighbour of the tile's own level is the vertex there that is like it, bit for
-// bit; of several alike, one that the neighbour's triangles at this border use. Beside a neighbour
-// that is shown coarser it is the vertex of the place that it moves to that nearest_vertex() finds.
+// Problem. A place may have several vertices, which differ in normal, colour or values. A tile's
+// border triangle says which vertex of its own places a corner is; at a ghost it only has the
+// attributes that the neighbour's vertex had when both were built.
+//
+// Idea. The corner is the vertex of the neighbour that is like it, bit for bit. Of several alike,
+// it is one that the neighbour's triangles at this border use. If the neighbour is shown coarser,
+// the ghost moves to a place there, and the corner is the vertex that nearest_vertex() finds at it.
 #pragma once
 
 #include "execution/cancel.h"
@@ -15,29 +19,32 @@
 
 namespace meshhier::exporting {
 
+/// Tells the vertices of a cut. For one thread.
 class CutVertices {
  public:
-  /// Reads those of the cut's tiles that have copies. `reader` and `numbered` must outlive it.
+  /// Reads the cut's tiles that have copies. `reader` and `numbered` must outlive it.
   /// `cache_bytes`: for neighbours. Throws Error(corrupt) if there are 2^32 vertices or more,
   /// Error(interrupted), and as HierarchyReader::read_tile.
   CutVertices(const storage::HierarchyReader& reader, const NumberedCut& numbered,
               std::uint64_t cache_bytes, const execution::CancelToken& cancel);
 
-  /// Of each tile, from left to right: the first vertices of its own places, then their copies.
+  /// Returns how many vertices there are. They are numbered tile by tile, from left to right: the
+  /// first vertices of a tile's own places, then their copies.
   std::uint64_t count() const { return bases_.back(); }
 
-  /// What draw_tile() says that a tile draws, with vertices for corners. `tile`: at `position` in
-  /// the cut. Throws Error(corrupt) naming the tile if a ghost is no vertex of its neighbour.
+  /// Returns the triangles that draw_tile() gives to a tile, with vertices for corners. `tile`: the
+  /// one at `position` in the cut. Throws Error(corrupt) naming the tile if a ghost is no vertex of
+  /// its neighbour.
   std::vector<CutTriangle> triangles(std::size_t position, const PublishedTile& tile,
                                      const DrawnTile& drawn);
 
  private:
-  /// That triangles which touch `tile` have a corner at a copy of an own place.
+  /// Says that triangles which touch `tile` have a corner at a copy of an own place.
   struct BorderUse {
     std::uint32_t tile, place, wedge;
     friend constexpr auto operator<=>(const BorderUse&, const BorderUse&) = default;
   };
-  /// What neighbours need to know of a tile's vertices.
+  /// The facts that neighbours need of a tile's vertices.
   struct OwnVertices {
     VertexArray vertices;
     Copies copies;

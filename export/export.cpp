@@ -42,7 +42,7 @@ constexpr std::size_t kTriangleBlock = 65536;
 /// Grain of the scratch: large writes, small beside any budget.
 constexpr std::size_t kScratchBlockBytes = std::size_t{1} << 20;
 
-/// What the four kinds of export share.
+/// The means that the four kinds of export share.
 struct ExportJob {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;
@@ -67,7 +67,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   const Tree& tree = job.reader.tree();
   const NumberedCut numbered = number_vertices(job.reader, std::move(cut));
   CutVertices vertices(job.reader, numbered, job.memory_budget / 8, job.cancel);
-  // What is left: a tile, the writer, the cut.
+  // The other half is for a tile, the writer and the cut.
   storage::MemoryPool pool(job.memory_budget / 2);
   storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
   TriangleSpool triangles(scratch, kScratchBlockBytes);
@@ -134,7 +134,7 @@ std::string export_tile(const ExportJob& job, NodeId node) {
                      counted(content.triangle_count, "triangles"), mesh.border.size());
 }
 
-/// Whether a PLY leaves them out.
+/// Returns whether a PLY leaves textures out.
 bool loses_textures(const storage::HierarchyReader& reader, const ExportSelection& selection) {
   return reader.manifest().textures && !std::holds_alternative<OutlineSelection>(selection);
 }
@@ -164,7 +164,7 @@ std::string export_outline(const ExportJob& job) {
                      counted(content.edge_count, "edges"));
 }
 
-/// By the ending of its name.
+/// The format of an output, by the ending of its name.
 enum class ExportFormat { ply, glb, obj };
 
 ExportFormat format_of(const fs::path& output) {
@@ -220,7 +220,7 @@ std::string text_of(const Piece& piece) {
   return fmt::format("{} of {}", piece.size(), counted(piece.cut_size(), "tiles"));
 }
 
-/// As export_cut, but for the order of vertices.
+/// Exports as export_cut(), but for the order of vertices.
 std::string export_piece(const ExportJob& job, Piece& piece, const RegionRequest& region,
                          const std::string& what) {
   storage::MemoryPool pool(job.memory_budget / 4);
@@ -265,7 +265,7 @@ std::string export_piece(const ExportJob& job, Piece& piece, const RegionRequest
                      counted(content.triangle_count, "triangles"));
 }
 
-/// In a file with the parts' pictures.
+/// Writes a piece into a file with the parts' pictures.
 std::string export_parts_of_piece(const PartsJob& job, Piece& piece, const RegionRequest& region,
                                   ExportFormat format) {
   std::vector<std::uint32_t> bases{0};
@@ -312,7 +312,7 @@ std::optional<NamedCut> cut_of(storage::FileSystem& files, const storage::Hierar
   return std::nullopt;
 }
 
-/// As GLB or OBJ, published.
+/// Writes a GLB or OBJ and publishes it.
 std::string export_parts(const PartsJob& job, const ExportOptions& options, ExportFormat format) {
   if (const auto* node = std::get_if<NodeId>(&options.selection))
     return fmt::format("tile {}: {}", to_text(*node), export_parts_of_tile(job, *node, format));

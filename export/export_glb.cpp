@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is kept of each part.
+/// The facts that are kept of each part.
 struct PartFacts {
   std::uint32_t vertices = 0, triangles = 0, image_bytes = 0;
   ImageFormat format{};
@@ -61,7 +61,7 @@ std::uint64_t component_bytes(unsigned component) {
   return component == storage::kU8 ? 1 : component == storage::kU16 ? 2 : 4;
 }
 
-/// What the parts' sections are.
+/// The sections of the parts.
 class GlbLayout {
  public:
   explicit GlbLayout(const storage::TileFormat& format) : format_(format) {}
@@ -244,7 +244,7 @@ class GlbText {
         });
   }
 
-  /// Of those that have bytes: visit(number, offset, part, section).
+  /// Calls visit(number, offset, part, section) for sections that have bytes.
   template <class Visit>
   void each_section(const Visit& visit) const {
     std::size_t view = 0;
@@ -347,7 +347,7 @@ class PartBytes {
   const AttributeLayout& layout_;
   const CutPart& part_;
   storage::TileColours colours_;
-  std::vector<float> shown_;  ///< as the sections hold them
+  std::vector<float> shown_;  ///< in the form of the sections
   std::array<GlbSection, 6> sections_;
   std::vector<std::byte> bytes_;
 };
@@ -366,7 +366,7 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
   storage::TileFormat format = job.reader.tile_format();
   format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
   std::vector<PartFacts> facts;
-  std::vector<std::size_t> shown;  // that draw something
+  std::vector<std::size_t> shown;  // parts that draw something
   std::uint64_t vertices = 0, triangles = 0;
   for (std::size_t i = 0; i < parts.count; ++i) {
     job.cancel.check();

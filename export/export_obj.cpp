@@ -37,7 +37,7 @@ std::string_view ending_of(ImageFormat format) {
   return row_of(format).file.endings[0];
 }
 
-/// Of a tile: "02_000017.jpg".
+/// Returns whether a name is that of a tile's picture: "02_000017.jpg".
 bool is_picture_name(std::string_view name) {
   const std::size_t low = name.find('_'), dot = name.find('.');
   if (low == std::string_view::npos || dot == std::string_view::npos || low > dot)
@@ -74,7 +74,7 @@ class ObjPictures {
     try {
       files_.remove_all(unfinished_);
     } catch (const Error&) {
-      // What was not published stays, and is told by nobody: there is an error already.
+      // Files that were not published stay; no message tells it, as there is an error already.
     }
   }
 
@@ -188,7 +188,7 @@ class ObjWriter {
   void finish() { out_.flush(); }
 
  private:
-  /// Of so many digits that they are read back as the same numbers.
+  /// Returns a position with so many digits that the same numbers are read back.
   std::string position_text(Vec3f p) const {
     if (origin_ == Vec3d{})
       return fmt::format(" {} {} {}", p.x, p.y, p.z);

@@ -1,4 +1,4 @@
-// What export writes of a hierarchy besides a PLY. For export*.cpp only.
+// Writes parts of a hierarchy as GLB and OBJ. For export*.cpp only.
 #pragma once
 
 #include "execution/cancel.h"
@@ -16,7 +16,7 @@
 
 namespace meshhier::exporting {
 
-/// Tile by tile. What `load` and `places` return depends on the number alone.
+/// The parts to be written, tile by tile. `load` and `places` return the same for the same number.
 struct ExportedParts {
   std::size_t count = 0;
   std::function<NodeId(std::size_t)> node;
@@ -35,14 +35,14 @@ struct PartsJob {
   const execution::CancelToken& cancel;
 };
 
-/// glTF binary: a primitive and a picture a tile. Reads each part twice; holds one, and some 80
-/// bytes of each. Throws Error(usage) if there are no triangles, or more than a GLB can hold.
-/// Returns what was written, for people.
+/// Writes glTF binary: a primitive and a picture a tile. Reads each part twice; holds one, and some
+/// 80 bytes for each. Throws Error(usage) if there are no triangles, or more than a GLB can hold.
+/// Both return a line for people.
 std::string write_glb(const PartsJob& job, const ExportedParts& parts);
 
-/// Wavefront OBJ; of a textured hierarchy also NAME.mtl, a material a tile, and the pictures in
-/// NAME_textures, WebP as PNG. These are there when the OBJ is, and Error(exists) is thrown if they
-/// are there before and not to be replaced. Holds one part. Publishes the output.
+/// Writes Wavefront OBJ; for a textured hierarchy also NAME.mtl, a material a tile, and the
+/// pictures in NAME_textures, WebP as PNG. They appear before the OBJ does; throws Error(exists) if
+/// they are there already and not to be replaced. Holds one part. Publishes the output.
 std::string write_obj(const PartsJob& job, const ExportedParts& parts);
 
 }  // namespace meshhier::exporting

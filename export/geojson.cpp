@@ -20,7 +20,7 @@ namespace {
 using GeoJson = nlohmann::json;
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
-/// For the parser: a position takes some 200 bytes.
+/// The parser's memory: a position takes some 200 bytes.
 constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 30;
 
 class PolygonReader {
@@ -124,7 +124,7 @@ void refuse_lines(std::string_view text, const std::filesystem::path& path) {
                      "'{type: \"FeatureCollection\", features: .}' FILE");
 }
 
-/// What a text in capitals that begins so is, in place of GeoJSON.
+/// Other formats, told by how a text in capitals begins.
 struct OtherFormat {
   std::string_view begins, what;
 };
@@ -146,7 +146,7 @@ constexpr auto kOtherFormats = std::to_array<OtherFormat>({
     {"<", "is XML (perhaps KML or GML)"},
 });
 
-/// As long as the longest of these.
+/// The length of the longest of these.
 constexpr std::size_t kLookedAt = 32;
 
 [[noreturn]] void fail_other(const std::filesystem::path& path, std::string_view what) {

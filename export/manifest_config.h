@@ -6,7 +6,8 @@
 
 namespace meshhier::exporting {
 
-/// As the manifest tells it: without the paths of its files. Throws Error(usage) if it is none.
+/// Returns the config that the manifest tells, without the paths of its files. Throws Error(usage)
+/// if it is none.
 config::Config config_of(const storage::Manifest& manifest);
 
 }  // namespace meshhier::exporting

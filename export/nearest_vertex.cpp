@@ -15,7 +15,7 @@ double squared_difference(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-/// How unlike two vertices are: by values, normal, colour, texture coordinate.
+/// Returns how unlike two vertices are: by values, normal, colour, texture coordinate.
 std::array<double, 4> difference(const AttributeLayout& layout, std::span<const PlacedValue> values,
                                  const VertexAt& a, const VertexAt& b) {
   const auto between = [&](int begin, int end) {

@@ -1,4 +1,4 @@
-// Which vertex of a place is most like another one.
+// Finds the vertex of a place that is most like another one.
 #pragma once
 
 #include "export/tile_vertices.h"
@@ -11,14 +11,14 @@
 
 namespace meshhier::exporting {
 
-/// All vertices at a place: its first one, then the copies there. `vertices`, `copies`: of a tile,
-/// which must outlive them.
+/// Returns all vertices at a place: its first one, then the copies there. `vertices` and `copies`
+/// are a tile's, and must outlive the result.
 std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& copies,
                                   std::uint32_t place);
 
-/// The one of `all` that differs from `vertex` in the fewest values, so that labels stay on their
-/// side; among equals the nearest normal decides, then the colour, the texture coordinate, the
-/// order. Requires at least one.
+/// Returns the index of the vertex of `all` that differs from `vertex` in the fewest values, so
+/// that labels stay on their side; among equals the nearest normal decides, then the colour, the
+/// texture coordinate, the order. Requires at least one.
 std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
                            std::span<const VertexAt> all);
 

@@ -1,4 +1,4 @@
-// What was last made of nodes' files, kept while a byte limit lasts.
+// Keeps what was last made of nodes' files, as far as a limit of bytes allows.
 #pragma once
 
 #include "hierarchy/ids.h"
@@ -24,7 +24,7 @@ inline std::uint64_t memory_bytes(const Shading& shading) {
          (shading.interior.size() + shading.border.size()) * sizeof(TileTriangle);
 }
 
-/// Bytes a tile holds in memory.
+/// Returns the bytes that a tile holds in memory.
 inline std::uint64_t memory_bytes(const PublishedTile& tile) {
   const TileMesh& mesh = tile.mesh;
   return sizeof(PublishedTile) + memory_bytes(mesh.vertices) + memory_bytes(mesh.copies.vertices) +
@@ -36,8 +36,8 @@ inline std::uint64_t memory_bytes(const PublishedTile& tile) {
          tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }
 
-/// Values by node; the least recently used go first. What get() returns never depends on the limit,
-/// only its cost does. Not thread-safe.
+/// Keeps values by node; the least recently used go first. The limit changes the cost of get(),
+/// never its result. Not thread-safe.
 template <class Value>
 class NodeCache {
  public:
@@ -48,7 +48,8 @@ class NodeCache {
   NodeCache(std::uint64_t limit_bytes, Load load, Cost cost)
       : limit_bytes_(limit_bytes), load_(std::move(load)), cost_(std::move(cost)) {}
 
-  /// The value stays valid as long as the pointer is held.
+  /// Returns the value of a node, loaded if it is not there. It stays valid as long as the pointer
+  /// is held. Throws as `load`.
   std::shared_ptr<const Value> get(NodeId node) {
     if (const auto found = places_.find(node); found != places_.end()) {
       entries_.splice(entries_.begin(), entries_, found->second);

@@ -28,12 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the viewer's page takes the hierarchy.
+/// The mark in the viewer's page that the hierarchy replaces.
 constexpr std::string_view kMark = "<!-- meshhier: hierarchy -->";
 constexpr std::string_view kTitle = "<title>meshhier</title>";
 /// Chromium's longest text has 2^29 - 24 characters, and the hierarchy in the page is one.
 constexpr std::uint64_t kMostPageBytes = 500'000'000;
-/// What the manifest of a page has more than the hierarchy's: the lattice, and other numbers.
+/// Bytes that the manifest of a page may have more than the hierarchy's: the lattice, and other
+/// numbers.
 constexpr std::uint64_t kManifestSlack = 600;
 
 std::string escaped(std::string_view text) {
@@ -56,7 +57,7 @@ std::string escaped(std::string_view text) {
   return made;
 }
 
-/// As JSON in a script element: no "<" can end it.
+/// Returns JSON for a script element: no "<" can end it.
 std::string json_text(const std::string& text) {
   std::string json = storage::json_text(nlohmann::json(text));
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;)
@@ -64,8 +65,8 @@ std::string json_text(const std::string& text) {
   return json;
 }
 
-/// What lies beside a hierarchy, with its pictures, which take half of what the viewer leaves at
-/// the most. Throws Error(io), and Error(corrupt) if it is no JSON object.
+/// Returns the story beside a hierarchy, with its pictures, which take half of the room that the
+/// viewer leaves at the most. Throws Error(io), and Error(corrupt) if it is no JSON object.
 PageStory story_of(storage::FileSystem& files, const fs::path& hierarchy,
                    const PageOptions& options, std::uint64_t room) {
   if (!options.looks_for_story)
@@ -104,16 +105,17 @@ Frame frame_of(const std::string& viewer, const std::string& story, const PageOp
   return frame;
 }
 
-/// What is chosen, and how it is packed.
+/// The tiles that are chosen, and their packing.
 struct Filling {
   PagePacker packer;
   PageChoice choice;
 
-  /// How far the page is from the original, at the most, besides a rounding of the hierarchy.
+  /// Returns how far the page is from the original, at the most, besides a rounding of the
+  /// hierarchy.
   double error() const { return double{choice.error} + choice.rounding; }
 };
 
-/// What a page is made of.
+/// The sources of a page.
 struct PageSource {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;
@@ -195,7 +197,7 @@ std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{}MB", (bytes + kMegabyte - 1) / kMegabyte);
 }
 
-/// What did not fit, and what would make it fit; a line, or nothing.
+/// Returns a line that says what did not fit, and what would make it fit; or nothing.
 std::string left_out_text(const PageSource& source, const Filling& filling,
                           std::uint64_t other_bytes) {
   const std::uint64_t all = source.reader.records().size();

@@ -15,13 +15,13 @@ namespace meshhier::exporting {
 
 struct PageOptions {
   std::filesystem::path output;
-  bool replace = false;             ///< a file that is there
+  bool replace = false;             ///< takes the place of a file that is there
   std::uint64_t size = 15'000'000;  ///< bytes of the file, at the most: what mail takes, where an
                                     ///< attachment grows by a third and 20 to 25 MB are allowed
-  std::string link;                 ///< where all of the hierarchy is; empty: nowhere
-  std::string name;                 ///< of the model
-  bool looks_for_story = false;     ///< beside the hierarchy: then the page tells it
-  OpenPicture open_picture{};       ///< of the story; required if it looks for one
+  std::string link;                 ///< address of the whole hierarchy; empty: none
+  std::string name;                 ///< name of the model
+  bool looks_for_story = false;     ///< a story beside the hierarchy becomes part of the page
+  OpenPicture open_picture{};       ///< opens pictures of the story; required if it looks for one
   std::vector<std::filesystem::path> inputs{};  ///< files and folders that stay, too
 };
 
@@ -29,10 +29,10 @@ struct PageOptions {
 /// always both children of the node with the largest error, as long as they fit. Without a link
 /// tiles are packed, and where not all fit, their positions are rounded if that is at most half of
 /// the error of what is shown, or if the page is nearer to the original that way. Holds a tile and
-/// the story. Deterministic. The output appears complete or not at all. Returns lines for people:
-/// what is in it, what is not, and what would change that; warns of pictures that are left out.
-/// Throws Error(usage) if not even the root fits, Error(exists | io | corrupt), the last for a
-/// story that is no JSON object, too.
+/// the story. Deterministic. The output appears complete or not at all. Returns lines for people,
+/// which say what is in the page, what is not, and what would change that; warns of pictures that
+/// are left out. Throws Error(usage) if not even the root fits, Error(exists | io | corrupt), the
+/// last for a story that is no JSON object, too.
 std::string write_page(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                        const std::string& viewer, const PageOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel);

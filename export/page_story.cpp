@@ -19,9 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of arrays and objects within each other: what is deeper is no story.
+/// The most arrays and objects within each other: a deeper JSON is no story.
 constexpr int kDeepestStory = 64;
-/// Of an address in a message.
+/// The longest address in a message.
 constexpr std::size_t kMostShown = 120;
 
 /// Without what may be secret: user and password, and what stands behind a '?'.

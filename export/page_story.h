@@ -11,18 +11,18 @@
 
 namespace meshhier::exporting {
 
-/// The bytes of the picture that a story names by this address, at most `most_bytes`. Throws Error
-/// that says why there are none.
+/// Returns the bytes of the picture that a story names by this address, at most `most_bytes`.
+/// Throws Error, which says why there are none.
 using OpenPicture =
     std::function<std::vector<std::byte>(const std::string& address, std::uint64_t most_bytes)>;
 
-/// No picture of a story is larger: in base64, it would be more than a story's file may have.
+/// The largest picture of a story: in base64, more would exceed a story's file.
 inline constexpr std::uint64_t kMostStoryPictureBytes = storage::kMostStoryBytes / 4 * 3;
 
 struct PageStory {
   std::string text;                   ///< JSON; empty: there is no story
-  std::uint64_t pictures = 0;         ///< that are in it
-  std::vector<std::string> left_out;  ///< a line each, why
+  std::uint64_t pictures = 0;         ///< pictures that are in it
+  std::vector<std::string> left_out;  ///< a line for each picture that is not, which says why
 };
 
 /// Puts the pictures of annotations (objects of the type "Image" in a "body") in the place of their
@@ -33,7 +33,8 @@ struct PageStory {
 PageStory with_pictures(const std::string& text, const std::string& name, std::uint64_t most_bytes,
                         const OpenPicture& open);
 
-/// The type of a picture that browsers show, by its first bytes: "image/png"; empty for all else.
+/// Returns the media type of a picture that browsers show, by its first bytes: "image/png"; empty
+/// for all else.
 std::string_view picture_type(const std::vector<std::byte>& bytes);
 
 }  // namespace meshhier::exporting

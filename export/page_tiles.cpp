@@ -26,7 +26,7 @@ namespace {
 
 /// Records of the index that the viewer fetches at once (viewer/src/hierarchy/tile_index.ts).
 constexpr std::uint64_t kPageRecords = 545;
-/// Of a file of a hierarchy: what a GLB can say of its length.
+/// The largest file of a hierarchy: the largest length that a GLB can have.
 constexpr std::uint64_t kMostFile = std::numeric_limits<std::uint32_t>::max();
 
 /// One for all levels, over the boxes of all tiles, which coarse ones may leave a little. Nothing
@@ -65,7 +65,7 @@ std::uint64_t index_bytes_with(const storage::HierarchyReader& reader, std::uint
   return std::min(storage::index_bytes(records), reader.manifest().index_bytes);
 }
 
-/// What its entry takes, at most.
+/// Returns the most bytes that the index's entry takes.
 std::uint64_t index_entry_bytes(const storage::HierarchyReader& reader, std::uint64_t record) {
   constexpr std::uint64_t kName = 100;
   return base64_size(index_bytes_with(reader, record)) + kName;
@@ -110,7 +110,8 @@ class Choosing {
     return true;
   }
 
-  /// In place of the coarsest tile what is below it; false: nothing is coarse, or it does not fit.
+  /// Takes the tiles below the coarsest one; returns false if nothing is coarse, or they do not
+  /// fit.
   bool refine() {
     if (coarse_.empty())
       return false;

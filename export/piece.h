@@ -1,4 +1,4 @@
-// A piece of the mesh that a cut shows: what a region has of it, tile by tile.
+// A piece of the mesh that a cut shows: the part within a region, tile by tile.
 #pragma once
 
 #include "export/clip_part.h"
@@ -15,27 +15,28 @@
 
 namespace meshhier::exporting {
 
-/// Positions in the cut of the tiles that may draw something in the region: those whose vertices
-/// do, and, as a ghost moves to where a coarser neighbour has it, finer neighbours of coarser ones
-/// of these.
+/// Returns positions in the cut of the tiles that may draw something in the region: tiles whose
+/// vertices may lie in it, and their finer neighbours, as a ghost moves to the place that a coarser
+/// neighbour has for it.
 std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const Cut& cut,
                                   const Region& region);
 
-/// Reads only tiles that may reach into the region, and coarser neighbours of these.
+/// A piece. It reads only tiles that may reach into the region, and coarser neighbours of these.
+/// For one thread.
 class Piece {
  public:
-  /// `region`: relative to the hierarchy's origin. As CutParts.
+  /// `region`: relative to the hierarchy's origin. `reader` must outlive it. Throws as CutParts.
   Piece(const storage::HierarchyReader& reader, Cut cut, Region region, Clipping clipping,
         std::uint64_t cache_bytes);
 
-  /// Tiles that may have something in the region, and those of the whole cut.
+  /// Return how many tiles may have something in the region, and how many the whole cut has.
   std::size_t size() const { return positions_.size(); }
   std::size_t cut_size() const { return parts_.cut().size(); }
   NodeId node(std::size_t i) const { return parts_.cut()[positions_[i]]; }
-  /// What the region has of a tile, perhaps nothing. Depends on `i` alone. Throws as
-  /// CutParts::load().
+  /// Returns the part of a tile in the region, perhaps nothing. The result depends on `i` alone.
+  /// Throws as CutParts::load().
   CutPart load(std::size_t i);
-  /// Whether another tile may have a vertex of load(i), too.
+  /// Returns whether another tile may have a vertex of load(i), too.
   bool is_shared(std::size_t i, std::uint32_t place) const {
     return place == kNoPlace || parts_.is_at_border(positions_[i], place);
   }
@@ -48,16 +49,16 @@ class Piece {
   std::vector<std::size_t> positions_;  ///< in the cut
 };
 
-/// Numbers the vertices of parts one after another, each once: those at one place, or where an edge
-/// was cut, with the same attributes are one vertex.
+/// Numbers the vertices of parts one after another, each once: vertices at one place, or where an
+/// edge was cut, with the same attributes are one vertex. For one thread.
 class PieceNumbers {
  public:
-  /// Throws Error(budget) if it would hold more bytes than that, of vertices at borders of tiles
-  /// and where edges were cut.
+  /// add() throws Error(budget) if the vertices at borders of tiles and where edges were cut would
+  /// take more than `most_bytes`.
   explicit PieceNumbers(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
 
   struct Numbered {
-    std::vector<std::uint32_t> numbers;  ///< of each vertex of the part
+    std::vector<std::uint32_t> numbers;  ///< per vertex of the part
     std::vector<std::uint32_t> fresh;    ///< vertices of the part that are new, in their order
   };
   Numbered add(const Piece& piece, std::size_t i, const CutPart& part);

@@ -1,4 +1,4 @@
-// A piece of a hierarchy on its way to become one of its own.
+// A piece of a hierarchy, as the input of a hierarchy of its own.
 #pragma once
 
 #include "config/config.h"
@@ -14,11 +14,11 @@
 
 namespace meshhier::exporting {
 
-/// Whether an output of export is a hierarchy: NAME.hier or NAME.3tz.
+/// Returns whether an output of export is a hierarchy: NAME.hier or NAME.3tz.
 bool is_hierarchy_name(const std::filesystem::path& output);
 
-/// By which the hierarchy was built, for something of the same kind that becomes `output`; without
-/// input and crop. Throws as HierarchyReader, and as storage::check_output().
+/// Returns the config by which a hierarchy was built, for another one like it that becomes
+/// `output`; without input and crop. Throws as HierarchyReader, and as storage::check_output().
 config::Config config_like(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                            const std::filesystem::path& output, bool replace,
                            std::uint64_t memory_budget, storage::FileSystem& local);
@@ -27,12 +27,13 @@ config::Config config_like(storage::FileSystem& files, const std::filesystem::pa
 /// the object.
 ///
 /// A piece has another tree than the whole, as partitions have equal vertex counts: all of its
-/// simplified levels are to be made. Coordinates are the whole's, and vertices and triangles of the
-/// original partitions come bit for bit; of a textured hierarchy through the text of an OBJ.
+/// simplified levels are made anew. Coordinates are the whole's, and vertices and triangles of the
+/// original partitions come bit for bit; those of a textured hierarchy come through the text of an
+/// OBJ.
 class PieceMesh {
  public:
-  /// Exports it. `files`: where the hierarchy lies; `local`: where the output does. Throws as
-  /// export_mesh(), Error(usage) if the output is the hierarchy, or the outline is asked for.
+  /// Exports the piece. `files` has the hierarchy, `local` the output. Throws as export_mesh(),
+  /// Error(usage) if the output is the hierarchy, or the outline is asked for.
   PieceMesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
             const ExportOptions& options, storage::FileSystem& local, execution::Progress& progress,
             const execution::CancelToken& cancel);

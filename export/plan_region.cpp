@@ -58,13 +58,13 @@ double rounded(const Exact::FT& number) {
   return CGAL::to_double(CGAL::exact(number));
 }
 
-/// Where it is on the way from `a` to `b`, which are two points.
+/// Returns the part of the way from `a` to another point `b` that `p` lies at.
 Exact::FT part_of_way(const ExactPoint& a, const ExactPoint& b, const ExactPoint& p) {
   return a.x() != b.x() ? Exact::FT((p.x() - a.x()) / (b.x() - a.x()))
                         : Exact::FT((p.y() - a.y()) / (b.y() - a.y()));
 }
 
-/// Of a face of a cut triangle.
+/// The side of a face of a cut triangle.
 enum class Side : std::uint8_t { unknown, outside, inside };
 
 using Face =
@@ -84,7 +84,7 @@ struct PlanTriangle {
   CGAL::Orientation turn;  ///< COLLINEAR: it is vertical
 };
 
-/// What of a border lies in a triangle.
+/// The part of a border within a triangle.
 struct Part {
   Exact::Segment_2 segment;  ///< perhaps a point
   std::uint32_t polygon = 0;
@@ -155,7 +155,7 @@ void tell_sides(const Triangulation& plan, const BordersOfEdges& borders,
                 std::set<std::uint32_t> open) {
   struct Step {
     Triangulation::Face_handle face;
-    int came = -1;  ///< by this side
+    int came = -1;  ///< the side it was entered by
     int next = 0;   ///< side to look at
   };
   const auto cross = [&](Triangulation::Face_handle face, int side) {
@@ -171,6 +171,8 @@ void tell_sides(const Triangulation& plan, const BordersOfEdges& borders,
   };
   for (const auto face : plan.all_face_handles())
     face->info() = Side::unknown;  // CGAL leaves it open
+  // A walk in depth instead of sets for each face: `open` is that of the face at hand, and crossing
+  // the same border on the way back restores it.
   enter(plan.finite_faces_begin(), -1);
   while (!way.empty()) {
     Step& at = way.back();
@@ -218,7 +220,8 @@ class CutVertices {
     }
     return number(p, -1, [&] { return vertex_at(p); });
   }
-  /// Of a vertical triangle, whose edges lie above each other. Between its ends.
+  /// Numbers a vertex between the ends of an edge of a vertical triangle, whose edges lie above
+  /// each other.
   std::uint32_t on_edge(int edge, const ExactPoint& p) {
     return number(p, edge, [&] { return on_way(edge, p); });
   }
@@ -269,7 +272,7 @@ struct PlanRegion::Parts {
     for (auto entry = tree.qbegin(boost::geometry::index::intersects(box)); entry != tree.qend();
          ++entry)
       found.push_back(entry->second);
-    std::ranges::sort(found);  // what the tree makes of them decides nothing
+    std::ranges::sort(found);  // the tree's order decides nothing
     return found;
   }
 
@@ -379,7 +382,7 @@ TriangleCut PlanRegion::cut(const std::array<Vec3d, 3>& corners) const {
                                           : parts_->cut_by(triangle, borders);
 }
 
-/// What of the borders lies in the triangle.
+/// Returns the parts of borders within the triangle.
 std::vector<Part> PlanRegion::Parts::parts_within(const PlanTriangle& triangle,
                                                   const std::vector<std::uint32_t>& borders) const {
   const Exact::Triangle_2 shape(triangle.corners[0], triangle.corners[1], triangle.corners[2]);
@@ -430,7 +433,7 @@ TriangleCut PlanRegion::Parts::cut_by(const PlanTriangle& triangle,
   return cut;
 }
 
-/// Along the line that it is seen as, border by border.
+/// Cuts a vertical triangle along the line that it is from above, from border to border.
 TriangleCut PlanRegion::Parts::cut_into_strips(const PlanTriangle& triangle,
                                                const std::vector<std::uint32_t>& borders) const {
   const auto [first, last] = std::ranges::minmax(triangle.corners);
@@ -457,7 +460,8 @@ TriangleCut PlanRegion::Parts::cut_into_strips(const PlanTriangle& triangle,
       continue;
     if (stops.size() == 2)
       return {true, {}, {}};
-    // The corners and cut edges of the strip, around it.
+    // Going around the triangle collects the strip's corners and cut edges in order, so a fan
+    // covers the strip: it is convex.
     std::vector<std::uint32_t> around;
     for (int edge = 0; edge < 3; ++edge) {
       const auto from = static_cast<std::size_t>(edge);

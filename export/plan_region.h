@@ -1,4 +1,33 @@
 // A part of space that polygons seen from above bound, on whatever height.
+//
+// Problem. Triangles end where a polygon's border runs over them. Cut one by one, two triangles at
+// an edge must get the same new vertices on it, or a gap opens; and a border may pass through
+// corners, along edges or over itself.
+//
+// Idea. Seen from above, the borders within a triangle are inserted into a triangulation of it;
+// then each small face lies wholly within or without:
+//
+//        2                          2
+//        |\                         |\            1. borders near the triangle, by an R-tree
+//        | \      border            |i\           2. their parts within it, as constraints
+//        |  \    /                  |ii\          3. one face is tested: a ray to the east crosses
+//        |   \  /                   |iii\            borders an odd number of times, or even
+//        |    \/                    |iiii*        4. from face to face, each border that is crossed
+//        |    /\                    |iii/o\          turns within to without (i, o), and back
+//        |   /  \                   |ii/ooo\      5. the faces within are the cut
+//        0--/----1                  0-*-----1
+//
+// Vertices that cutting makes are told by where they lie: on an edge, as a part of its way; else by
+// weights of the corners. The caller mixes heights and attributes by these.
+//
+// Invariant. Decisions and places are exact numbers; only the parts of ways are rounded, once, at
+// the end. On an edge they depend on the edge and the border alone, so both triangles there have
+// the same, bit for bit. A triangle that no border touches is not cut.
+//
+// A vertical triangle is a line from above. It is cut along that line into strips, each within or
+// without by its middle.
+//
+// Cost. O(log n) for a triangle away from borders; O(n + k log k) for k borders over it.
 #pragma once
 
 #include "hierarchy/bounds.h"
@@ -21,47 +50,48 @@ struct PlanPoint {
   friend bool operator==(const PlanPoint&, const PlanPoint&) = default;
 };
 
-/// What lies at `p`: its x, and its y or, if y points up, -z.
+/// Returns the place of `p` seen from above: its x, and its y or, if y points up, -z.
 constexpr PlanPoint plan_of(Vec3d p, UpAxis up) {
   const Vec3d z_up = to_z_up(p, up);
   return {z_up.x, z_up.y};
 }
 
-/// Corners in order, the last one joined to the first.
+/// The corners of a ring in order, the last one joined to the first.
 using PlanRing = std::vector<PlanPoint>;
-/// Where an odd number of its rings runs around: the first one without those of its holes.
+/// The places around which an odd number of its rings runs: within the first one, without its
+/// holes.
 using PlanPolygon = std::vector<PlanRing>;
 
-/// What a triangle has in a region.
+/// The part of a triangle in a region.
 struct TriangleCut {
   struct Vertex {
-    /// On an edge: from this corner to the next one; else -1.
+    /// The edge it lies on, from this corner to the next one; else -1.
     int edge = -1;
-    /// On an edge: the part of the way from its first corner to its second one, and the rest of it;
-    /// else the weights of the second and the third corner. Rounded from exact numbers, so that
-    /// both triangles at an edge have the same.
+    /// The part of the way from the edge's first corner to its second one, and the rest of it;
+    /// without an edge the weights of the second and the third corner. Rounded from exact numbers,
+    /// so that both triangles at an edge have the same.
     double to = 0, rest = 0;
   };
   bool is_whole = false;
-  std::vector<Vertex> vertices;  ///< besides the corners
-  /// Corners are 0 to 2, vertices 3 and up; turned as the triangle is. Empty if it is whole or
-  /// nothing of it lies in the region.
+  std::vector<Vertex> vertices;  ///< vertices besides the corners
+  /// Triangles of corners (0 to 2) and vertices (3 and up), turned as the triangle is. Empty if it
+  /// is whole or nothing of it lies in the region.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// What lies in any of the polygons. Decisions are exact: about the numbers as they are, without
-/// rounding.
+/// The points that lie in any of the polygons. Decisions are exact: about the numbers as they are,
+/// without rounding. Thread-safe.
 class PlanRegion {
  public:
-  /// Finite numbers. `check` is called before each cut and again and again in one, by any thread,
-  /// and may throw. O(n log n).
+  /// Requires finite numbers. `check` is called before each cut and again and again in one, by any
+  /// thread, and may throw. O(n log n).
   PlanRegion(
       const std::vector<PlanPolygon>& polygons, UpAxis up, std::function<void()> check = [] {});
   ~PlanRegion();
   PlanRegion(PlanRegion&&) noexcept;
   PlanRegion& operator=(PlanRegion&&) noexcept;
 
-  /// False: no point of the box lies in it.
+  /// Returns false only if no point of the box lies in it.
   bool may_meet(const BoundsD& box) const;
   bool contains(Vec3d p) const;
   /// Cuts a triangle where borders of polygons run over it, seen from above. Two triangles that

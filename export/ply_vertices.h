@@ -1,4 +1,4 @@
-// Vertices of tiles as a PLY has them.
+// Writes vertices of tiles into a PLY.
 #pragma once
 
 #include "hierarchy/tile_mesh.h"
@@ -10,11 +10,10 @@
 
 namespace meshhier::exporting {
 
-/// Without counts. `what`: for its comment.
+/// Returns the content without counts. `what`: for its comment.
 mesh_io::PlyContent ply_content(const storage::HierarchyReader& reader, const std::string& what);
 
-/// `count` vertices from the first on: in doubles where the hierarchy has an origin, colours as
-/// screens have them.
+/// Writes the first `count` vertices: in doubles if the hierarchy has an origin, colours as sRGB.
 void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& reader,
                     const VertexArray& vertices, std::size_t count);
 

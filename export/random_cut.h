@@ -8,7 +8,7 @@
 
 namespace meshhier::exporting {
 
-/// A pseudo-random cut that mixes all levels; the same for the same seed everywhere.
+/// Returns a pseudo-random cut that mixes all levels; the same for the same seed everywhere.
 Cut random_cut(const Tree& tree, std::uint64_t seed);
 
 }  // namespace meshhier::exporting

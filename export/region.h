@@ -1,4 +1,4 @@
-// What a piece of a mesh is cut out with.
+// The region that a piece of a mesh is cut out with.
 #pragma once
 
 #include "export/convex_region.h"
@@ -10,12 +10,12 @@
 
 namespace meshhier::exporting {
 
-/// A box, polygons seen from above, or what lies in both.
+/// A box, polygons seen from above, or the part of space in both. Thread-safe.
 struct Region {
   std::optional<ConvexRegion> box;
   std::shared_ptr<const PlanRegion> plan;
 
-  /// False: no point of the box lies in it.
+  /// Returns false only if no point of the box lies in it.
   bool may_meet(const BoundsD& bounds) const {
     return (!box || box->may_meet(bounds)) && (!plan || plan->may_meet(bounds));
   }

@@ -13,25 +13,25 @@
 
 namespace meshhier::exporting {
 
-/// How many of the tile's copies lie at its own places: they come first.
+/// Returns how many of the tile's copies lie at its own places: they come first.
 inline std::size_t own_copy_count(const TileMesh& mesh) {
   return mesh.copies.first_of(mesh.own_count);
 }
 
-/// As the tile's file has them.
+/// Returns the numbers of vertices as the tile's file has them.
 inline VertexNumbers vertex_numbers(const TileMesh& mesh) {
   return {static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places};
 }
 
-/// The computed normal of a vertex or split, by its number, as neighbours have it too; none if
-/// there are none. In a tile with texture coordinates they tell which normal of a vertex is its
-/// first, so that neighbours have the same normals at corners of triangles alone.
+/// Returns the computed normal of a vertex or split, by its number, if neighbours have it too; else
+/// none. In a tile with texture coordinates these decide which normal of a vertex is its first, so
+/// neighbours have the same normals at corners of triangles only.
 inline std::span<const NormalCode> normal_of(const Shading& shading, std::size_t number) {
   const bool is_common = !shading.normals.empty() && shading.texcoords.empty();
   return is_common ? std::span(shading.normals).subspan(number, 1) : std::span<const NormalCode>();
 }
 
-/// Of a triangle; `all` is empty where there are no copies.
+/// Returns the wedges of a triangle; `all` is empty if there are no copies.
 inline CornerWedges corner_wedges(const std::vector<CornerWedges>& all, std::size_t triangle) {
   return all.empty() ? CornerWedges{} : all[triangle];
 }
@@ -49,7 +49,7 @@ class VertexAt {
   std::size_t index_;
 };
 
-/// Bits, not values: -0 is not 0 where "bit for bit" is promised.
+/// Both compare bits, not values: -0 is not 0 where "bit for bit" is promised.
 inline bool has_same_position(const VertexAt& a, const VertexAt& b) {
   return std::memcmp(&a.position(), &b.position(), sizeof(Vec3f)) == 0;
 }

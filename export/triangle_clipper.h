@@ -8,19 +8,21 @@
 
 namespace meshhier::exporting {
 
+/// Cuts triangles. Thread-safe.
 class TriangleClipper {
  public:
   /// Both must outlive it.
   TriangleClipper(const Region& region, const CornerMixer& mixer)
       : region_(region), mixer_(mixer) {}
 
-  /// What of a triangle lies in the region, turned as it is: itself if all of it does. Triangles
-  /// that share an edge, with the same values at its ends, get the same corners on it, bit for bit.
-  /// On a side of a box a corner has the side's coordinate, rounded to float.
+  /// Returns the pieces of a triangle in the region, turned as it is; the triangle itself if all of
+  /// it lies there. Triangles that share an edge, with the same values at its ends, get the same
+  /// corners on it, bit for bit. On a side of a box a corner has the side's coordinate, rounded to
+  /// float.
   std::vector<ClippedPolygon> pieces(ClippedPolygon triangle) const;
 
-  /// Whether a point of the triangle lies in the region: of a box a corner or an edge on a side is
-  /// enough.
+  /// Returns whether a point of the triangle lies in the region; a corner or an edge on a side of a
+  /// box is enough.
   bool touches(const ClippedPolygon& triangle) const;
 
  private:

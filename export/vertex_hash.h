@@ -1,5 +1,5 @@
-// Vertices as two tiles must both know them, in 64 bits. That unlike ones are equal by accident is
-// as unlikely as that a damaged file keeps its checksum.
+// Hashes vertices as two tiles must both know them, to 64 bits. Unlike ones are equal by accident
+// as rarely as a damaged file keeps its checksum.
 #pragma once
 
 #include "export/tile_vertices.h"
@@ -15,7 +15,7 @@ namespace meshhier::exporting {
 
 class VertexHash {
  public:
-  /// Of chain and position, and of attributes and normal if `with_attributes`. `normal`: one or
+  /// Hashes chain and position, and attributes and normal if `with_attributes`. `normal`: one or
   /// none.
   std::uint64_t operator()(std::span<const std::uint16_t> chain, const VertexAt& vertex,
                            std::span<const NormalCode> normal, bool with_attributes) {

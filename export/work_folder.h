@@ -1,4 +1,4 @@
-// A folder beside an output, for what it is made of; `meshhier clean` knows its name.
+// A folder beside an output, for the files that it is made of; `meshhier clean` knows its name.
 #pragma once
 
 #include "storage/io/file.h"
