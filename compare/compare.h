@@ -1,4 +1,5 @@
-// How far a surface is from another one: the difference of two scans, or of a model and its scan.
+// Measures how far a surface is from another one: the difference of two scans, or of a model and
+// its scan.
 #pragma once
 
 #include "compare/distance_tally.h"
@@ -22,52 +23,54 @@
 
 namespace meshhier::comparing {
 
-/// The original surfaces.
+/// Selects the original surfaces.
 struct Originals {};
 
-/// 4 x 4, rows first; the last row is 0 0 0 1.
+/// An affine map as 4 x 4 numbers, rows first; the last row is 0 0 0 1.
 using PlaceTransform = std::array<double, 16>;
 
-/// Sixteen numbers between blanks, commas and brackets, perhaps behind a byte order mark. `name`
-/// begins messages. Throws Error(usage) if they are not so many, not finite, no affine map, or one
-/// that makes all flat.
+/// Reads sixteen numbers between blanks, commas and brackets, perhaps behind a byte order mark.
+/// `name` begins messages. Throws Error(usage) if they are not so many, not finite, no affine map,
+/// or one that makes all flat.
 PlaceTransform parse_transform(std::string_view text, const std::string& name);
 
 struct CompareOptions {
-  /// Of both hierarchies: all partitions; a level, or the finest one of a tree that is less deep;
-  /// tiles by their error.
+  /// The part of both hierarchies: all partitions; a level, or the finest one of a tree that is
+  /// less deep; tiles by their error.
   std::variant<Originals, Level, exporting::LargestError> selection{};
   bool is_signed = true;
   /// Bound each triangle by the one of `to` that is nearest to its middle: distances to it are
   /// convex. Else bounds are loose where distances are less than edges. Two more points a vertex.
   bool bounds_triangles = false;
-  std::optional<double> tolerance{};            ///< >= 0
-  std::optional<Unit> tolerance_unit{};         ///< none: that of the second surface's coordinates
-  std::optional<PlaceTransform> transform{};    ///< of the first surface, before it is compared
+  std::optional<double> tolerance{};     ///< >= 0
+  std::optional<Unit> tolerance_unit{};  ///< none: the unit of the second surface's coordinates
+  std::optional<PlaceTransform> transform{};    ///< moves the first surface before it is compared
   std::uint64_t memory_budget = 1U << 30;       ///< bytes
   std::filesystem::path output{};               ///< a PLY; empty: none
   std::vector<std::filesystem::path> inputs{};  ///< files and folders that stay, besides the two
+  /// Takes the place of an output that is there.
   bool replace = false;
 };
 
-/// Whether there is a hierarchy, of whatever state, rather than a mesh: a directory, an archive.
-/// Throws Error(io).
+/// Returns whether there is a hierarchy, of whatever state, rather than a mesh: a directory, an
+/// archive. Throws Error(io).
 bool is_hierarchy_there(storage::FileSystem& files, const std::filesystem::path& path);
 
-/// Where a hierarchy is read.
+/// The place where a hierarchy is read.
 struct ComparedPlace {
   storage::FileSystem& files;
   std::filesystem::path path;
   std::string name{};  ///< for people; empty: the path
 };
 
-/// What is compared of a hierarchy.
+/// The part of a hierarchy that is compared.
 struct ComparedSurface {
   std::string name;
   std::uint64_t tiles = 0;
   std::uint64_t vertices = 0;  ///< places
   std::uint64_t triangles = 0;
-  double error_bound = 0;  ///< its original surface is nowhere farther from it, nor it from that
+  double error_bound = 0;  ///< the original surface is nowhere farther from this one, nor this one
+                           ///< from that; units of `to`
 };
 
 struct SurfaceComparison {
@@ -76,29 +79,31 @@ struct SurfaceComparison {
   ComparedSurface from, to;
   bool is_signed = false;
   std::optional<double> tolerance;
-  std::uint64_t tiles_read = 0;  ///< of `to`
+  std::uint64_t tiles_read = 0;  ///< tiles of `to`
   /// Weights are areas: a third of each triangle's for each of its corners. Without triangles all
   /// vertices weigh the same.
   DistanceTally distances;
-  /// Of `from`: they are no part of its surface, unless it has no triangle at all.
+  /// Vertices of `from` that no triangle uses: they are no part of its surface, unless it has no
+  /// triangle at all.
   std::uint64_t lone_vertices = 0;
-  std::uint64_t unknown_sides = 0;  ///< vertices nearest to a border of `to`: taken for outside
-  double farthest = 0;              ///< of the vertices compared, exact
+  std::uint64_t unknown_sides = 0;  ///< vertices nearest to a border of `to`, taken for outside
+  double farthest = 0;              ///< the largest distance of a vertex, exact
   /// No point of the original surface of `from` is farther from that of `to`.
   double no_farther_than = 0;
   std::vector<std::string> warnings;
 
-  /// All vertices are; true without a tolerance.
+  /// Returns whether all vertices are within the tolerance; true without one.
   bool is_within() const { return !tolerance || farthest <= *tolerance; }
 };
 
-/// For each vertex of `from`, exactly (to double rounding), the distance to the nearest point of
-/// `to`'s surface, in the coordinates of the inputs; inside of `to` (surface_sides.h) it is
-/// negative. Of `to` only tiles that may be nearest are read, unless they are chosen by their
-/// error. O(n log n) expected.
+/// Measures for each vertex of `from`, exactly (to double rounding), the distance to the nearest
+/// point of `to`'s surface, in the coordinates of the inputs; inside of `to` (surface_sides.h) it
+/// is negative. Only tiles of `to` that may be nearest are read, unless they are chosen by their
+/// error. O(n log n) expected; memory stays about options.memory_budget.
 ///
 /// The output has the compared vertices of `from`, where `from` has them, with the property
-/// `distance`, and its triangles.
+/// `distance`, and its triangles. It appears complete or not at all. `files`: the file system of
+/// the output.
 ///
 /// Deterministic to the bit for any threads. Throws Error(usage) if the level is in neither tree or
 /// the tolerance is none or of a unit that cannot be converted, or the transform leads out of the
@@ -109,9 +114,9 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
                                    execution::Progress& progress,
                                    const execution::CancelToken& cancel);
 
-/// For people.
+/// Returns the comparison for people.
 std::string comparison_text(const SurfaceComparison& comparison);
-/// For scripts: docs/command_line.md.
+/// Returns the comparison for scripts, as docs/command_line.md describes it.
 nlohmann::ordered_json comparison_json(const SurfaceComparison& comparison);
 
 }  // namespace meshhier::comparing

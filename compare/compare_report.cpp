@@ -1,4 +1,4 @@
-// What was compared, in words.
+// Tells a comparison in words.
 #include "compare/compare.h"
 #include "hierarchy/plain_text.h"
 
@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kParts{0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99};
 constexpr std::array kSizeParts{0.5, 0.9, 0.95, 0.99};
-/// Of the histogram: all but so much of the surface lies between its ends, beyond each of them.
+/// The part of the surface that lies beyond each end of the histogram.
 constexpr double kBeyond = 0.005;
 constexpr std::size_t kTextBins = 15;
 constexpr std::size_t kJsonBins = 60;

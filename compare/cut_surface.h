@@ -18,27 +18,28 @@
 
 namespace meshhier::comparing {
 
-/// What one tile draws in its cut. Corners are where the cut shows them.
+/// The triangles that one tile draws in its cut. Corners are where the cut shows them, relative to
+/// the origin.
 struct TileSurface {
   std::vector<SurfaceTriangle> triangles;  ///< interior ones, then border ones
   std::size_t interior_count = 0;
-  /// Of each border triangle: the positions in the cut of the tiles that have its corners.
+  /// For each border triangle the positions in the cut of the tiles that have its corners.
   std::vector<Triangle<std::uint32_t>> touched;
 };
 
-/// The same by places: the tile's own ones in their order, then those of other tiles.
+/// The same triangles by places: the tile's own ones in their order, then those of other tiles.
 struct PlacedTile {
   /// A place of another tile.
   struct Foreign {
-    std::uint32_t number = 0;  ///< in the cut
-    std::uint32_t tile = 0;    ///< position in the cut
+    std::uint32_t number = 0;  ///< number in the cut
+    std::uint32_t tile = 0;    ///< the tile's position in the cut
   };
 
   std::uint32_t base = 0;  ///< number in the cut of the first place
   std::uint32_t own_count = 0;
   std::vector<Vec3f> places;
-  std::vector<bool> is_used;     ///< of the own places: a triangle of the tile has it
-  std::vector<Foreign> foreign;  ///< of places from own_count on, ascending
+  std::vector<bool> is_used;     ///< for each own place: a triangle of the tile has it
+  std::vector<Foreign> foreign;  ///< places from own_count on, ascending by number
   std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
   std::size_t interior_count = 0;
 
@@ -47,35 +48,35 @@ struct PlacedTile {
   }
 };
 
-/// What is kept of every tile.
+/// The facts that are kept of every tile.
 struct TileSurfaceFacts {
   std::uint64_t triangles = 0;
-  std::uint64_t flat = 0;  ///< of them without area
+  std::uint64_t flat = 0;  ///< triangles without area
   double area = 0;         ///< input units squared
   Bounds bounds;           ///< of the triangles drawn, relative to the origin; empty() if none
 };
 
-/// Thread-safe once constructed.
+/// The surface of a cut. Thread-safe once constructed.
 class CutSurface {
  public:
-  /// Reads every tile once, to gather its facts. `cache_bytes`: for what neighbours show. `reader`
-  /// must outlive it. Advances `progress` by one for each tile. Throws Error(io | corrupt |
-  /// interrupted).
+  /// Reads every tile once, to gather its facts. `cache_bytes`: memory for positions of neighbours.
+  /// `reader` must outlive it. Advances `progress` by one for each tile. Throws Error(io | corrupt
+  /// | interrupted).
   CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
              execution::Progress& progress, const execution::CancelToken& cancel);
 
-  /// Reads no tile: facts are what the index says. Of a cut of several levels boxes may be too
-  /// small where a ghost is shown coarser; areas and flat triangles are not known.
+  /// Reads no tile: facts are those of the index. In a cut of several levels boxes may be too small
+  /// where a ghost is shown coarser; areas and flat triangles are not known.
   CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes);
 
   const Cut& cut() const { return numbered_.cut; }
   std::uint64_t place_count() const { return numbered_.vertex_count(); }
   std::size_t size() const { return facts_.size(); }
   const TileSurfaceFacts& facts(std::size_t position) const { return facts_[position]; }
-  /// All tiles together.
+  /// Returns the facts of all tiles together.
   const TileSurfaceFacts& total() const { return total_; }
 
-  /// Reads a tile, and of its neighbours those that are shown coarser.
+  /// Both read a tile, and its neighbours that are shown coarser. Throw Error(io | corrupt).
   TileSurface load(std::size_t position) const;
   PlacedTile load_placed(std::size_t position) const;
 
@@ -92,7 +93,7 @@ class CutSurface {
   TileSurfaceFacts total_;
 };
 
-/// How many tiles are worked on at a time where each takes a thread.
+/// Returns how many tiles are worked on at a time where each takes a thread.
 std::size_t tiles_in_flight();
 
 }  // namespace meshhier::comparing

@@ -1,4 +1,4 @@
-// Sums up distances, signed or not, each with a weight.
+// Sums up distances, signed or not, each with a weight, and tells their distribution.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,13 @@
 
 namespace meshhier::comparing {
 
+/// Weighted sums and a histogram of distances, in 2048 bins for each doubling. For one thread.
 class DistanceTally {
  public:
-  /// `tolerance`: weights of what is no farther are summed apart.
+  /// `tolerance`: weights of distances that are no larger are summed apart.
   explicit DistanceTally(std::optional<double> tolerance);
 
-  /// `distance` is finite, `weight` >= 0. The order of calls decides how sums are rounded.
+  /// Adds a finite distance with a weight >= 0. The order of calls decides how sums are rounded.
   void add(double distance, double weight);
 
   double weight() const { return weight_; }
@@ -21,19 +22,19 @@ class DistanceTally {
   bool empty() const { return !(weight_ > 0); }
   double least() const { return least_; }
   double largest() const { return largest_; }
-  /// Of distances without their sign.
+  /// Returns the largest distance without its sign.
   double farthest() const;
-  double mean() const;  ///< 0 if empty
-  double mean_size() const;
+  double mean() const;       ///< 0 if empty, as the next two
+  double mean_size() const;  ///< the mean of distances without their sign
   double rms() const;
 
-  /// The distance that `part` of the weight is at most, to a part in 2048 of itself. Requires that
-  /// it is not empty; part in [0, 1]. O(bins).
+  /// Returns the distance that `part` of the weight is at most, to a part in 2048 of itself.
+  /// Requires that it is not empty; part in [0, 1]. O(bins).
   double quantile(double part) const;
-  /// The same without signs.
+  /// Does the same for distances without their sign.
   double size_quantile(double part) const;
-  /// The weight in `bins` intervals of equal width between `from` and `to`; what is beyond them
-  /// is in the first and the last.
+  /// Returns the weight in `bins` intervals of equal width between `from` and `to`; distances
+  /// beyond count in the first and the last.
   std::vector<double> histogram(double from, double to, std::size_t bins) const;
 
  private:

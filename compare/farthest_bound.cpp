@@ -45,7 +45,8 @@ void FarthestBound::drop_settled() {
   });
 }
 
-/// Of equal ones any may go: the bound is the same.
+/// Gives up the triangles with the smallest bounds. Of equal ones any may go: the bound is the
+/// same.
 void FarthestBound::drop_nearest(std::size_t kept) {
   const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(kept);
   std::ranges::nth_element(candidates_, end, std::greater<>(), &Candidate::bound);
@@ -63,7 +64,7 @@ std::vector<Vec3d> FarthestBound::middles() const {
   return points;
 }
 
-/// Each triangle into four.
+/// Splits each triangle into four; `distances` are those of middles().
 void FarthestBound::split(std::span<const double> distances) {
   const std::vector<Candidate> whole = std::exchange(candidates_, {});
   for (const double distance : distances)

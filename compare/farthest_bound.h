@@ -2,9 +2,26 @@
 // by branch and bound (as for the Hausdorff distance: Tang, Lee & Kim 2009; Guthe, Borodin & Klein
 // 2005).
 //
-// Distances change by no more than one goes: a point of a triangle whose longest edge is e is
-// within e / sqrt(3) of a corner, so no farther than the farthest corner and that. Triangles that
-// may hold the farthest point are split until that says little.
+// Problem. Vertices have exact distances; the farthest point of the surface may lie between them.
+//
+// Idea. Distances change by no more than one goes: a point of a triangle whose longest edge is e is
+// within e / sqrt(3) of a corner, so no farther than the farthest corner and that. A triangle whose
+// bound says little above a known distance is settled; others are split at the middles of their
+// edges, whose distances are measured:
+//
+//              c                 known:   the largest distance of a measured point
+//             / \                bound:   max(da, db, dc) + e / sqrt(3)
+//            /   \               enough:  max(1.01 known, largest bound of settled triangles)
+//          ca-----bc             bound <= enough:  settled
+//          / \   / \             else:    four triangles with half of e, whose bounds are smaller
+//         /   \ /   \
+//        a-----ab----b
+//
+// Invariant. No point of all triangles ever added is farther than max(enough, bounds of
+// candidates): a triangle that is given up, for want of room or points, leaves its bound in
+// `settled`.
+//
+// Cost. At most kMostPoints distances and kMostCandidates triangles, whatever the surface.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -18,30 +35,32 @@
 
 namespace meshhier::comparing {
 
+/// The bound of one surface. For one thread.
 class FarthestBound {
  public:
-  /// Corners and their distances, >= 0. `most`: a bound of the triangle that is known.
+  /// Adds a triangle: its corners and their distances, >= 0. `most`: a bound of the triangle that
+  /// is known.
   void add(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& distances,
            double most = std::numeric_limits<double>::infinity());
-  /// Whether add() would not keep it, for want of a better bound.
+  /// Returns whether add() would not keep the triangle even without a better bound.
   bool is_settled(const std::array<Vec3d, 3>& corners,
                   const std::array<double, 3>& distances) const {
     return candidate(corners, distances).bound <= enough();
   }
-  /// Of a point in no triangle.
+  /// Adds the distance of a point in no triangle.
   void add(double distance) { known_ = distance > known_ ? distance : known_; }
 
-  /// Distances of points, in their order.
+  /// Returns distances of points, in their order.
   using Measure = std::function<std::vector<double>(const std::vector<Vec3d>&)>;
-  /// No point of the triangles is farther; at most a hundredth above what some point is, unless
-  /// that takes more than kMostPoints more distances. Deterministic. Passes on what `measure`
-  /// throws.
+  /// Returns a distance that no point of the triangles exceeds. It is at most a hundredth above the
+  /// distance of some point, unless that takes more than kMostPoints more distances. Deterministic.
+  /// Throws as `measure`.
   double refine(const Measure& measure);
 
  private:
   static constexpr std::size_t kMostPoints = 400'000;
   static constexpr std::size_t kMostCandidates = 8'192;  ///< triangles that are kept
-  static constexpr double kEnough = 1.01;                ///< times what is known
+  static constexpr double kEnough = 1.01;                ///< times the largest known distance
 
   struct Candidate {
     std::array<Vec3d, 3> corners;
@@ -58,7 +77,7 @@ class FarthestBound {
   std::vector<Vec3d> middles() const;
   void split(std::span<const double> distances);
 
-  double known_ = 0;    ///< of some point
+  double known_ = 0;    ///< the largest distance of a measured point
   double settled_ = 0;  ///< bound of all triangles that are candidates no more
   std::vector<Candidate> candidates_;
 };

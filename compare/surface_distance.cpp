@@ -92,8 +92,8 @@ void TreeCache::insert(std::uint32_t position, std::shared_ptr<const TriangleSea
   }
 }
 
-/// No tile is left out that is nearer than what the nearest is certain to reach: a tile's box has a
-/// triangle in it.
+/// Returns the tiles that may be nearest to a point of the block. A box has a triangle in it, so
+/// the nearest triangle is no farther than the far side of any box: boxes beyond that are left out.
 std::vector<SurfaceDistance::Candidate> SurfaceDistance::candidates(
     std::span<const Vec3d> block) const {
   BoundsD box;
@@ -137,7 +137,7 @@ std::vector<SurfaceDistance::Query> SurfaceDistance::take_batch(
   return batch;
 }
 
-/// What the queries of a batch find. None influences another.
+/// Answers the queries of a batch. None influences another.
 std::vector<NearestTriangle> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
                                                            std::span<const NearestTriangle> found,
                                                            std::span<const Query> batch) {
@@ -167,7 +167,7 @@ std::vector<NearestTriangle> SurfaceDistance::answer_batch(std::span<const Vec3d
   return answers;
 }
 
-/// Lowers found[query.point] to what query.tile has.
+/// Lowers found[query.point] to the distance that query.tile has, if that is less.
 void SurfaceDistance::answer(std::span<const Vec3d> points, std::span<const Query> queries,
                              std::vector<NearestTriangle>& found,
                              const execution::CancelToken& cancel) {

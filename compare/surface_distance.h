@@ -1,4 +1,27 @@
 // The exact distance of points to the surface that a cut shows, without holding all of it.
+//
+// Problem. Each point needs the tile with the nearest triangle; trees of all tiles do not fit into
+// memory, and a tile is slow to load.
+//
+// Idea. Blocks of points that lie near each other share a list of candidate tiles, those whose
+// boxes may hold the nearest triangle of one of them, nearest box first. All points are looked up
+// tile by tile, in two rounds:
+//
+//      1. in the tile whose box is nearest (nearly always the right one):   a distance d
+//      2. in the other candidates whose boxes are nearer than d             -> the least
+//
+//            +-- tile 1 --+        +-- tile 2 --+
+//            |        *   |   p    |  *         |     the box of tile 2 is nearer to p than
+//            |        <---|---|    |            |     the triangle found in tile 1: look there, too
+//            +------------+   |<-->+            |
+//                                  +------------+
+//
+// A few tiles are searched at a time, in parallel; distances found in one batch prune the next one.
+//
+// Invariant. Batches have fixed sizes (kSearchedPoints, kSearchedTiles): results do not depend on
+// threads or on the cache, to the bit.
+//
+// Cost. O(log n) a point and tile; most points are looked up in one tile.
 #pragma once
 
 #include "compare/cut_surface.h"
@@ -19,14 +42,15 @@
 
 namespace meshhier::comparing {
 
-/// Points that share a list of candidate tiles, and a chain of hints. Results must not depend on
-/// threads or budget, so neither may this.
+/// The number of points that share a list of candidate tiles, and a chain of hints. Results must
+/// not depend on threads or budget, so neither may this.
 inline constexpr std::size_t kSearchedPoints = 256;
-/// Tiles searched at the same time: their trees are held beside the cache's. With 32,768 vertices a
-/// tile, 60 MiB. Fixed, as what is found in one batch prunes the next.
+/// The number of tiles that are searched at the same time: their trees are held beside the cache's,
+/// 60 MiB with 32,768 vertices a tile. It is fixed, as distances found in one batch prune the next
+/// one.
 inline constexpr std::size_t kSearchedTiles = 8;
 
-/// Square of the distance between two boxes, neither of them empty; 0 if they meet.
+/// Returns the square of the distance between two boxes, neither of them empty; 0 if they meet.
 template <class A, class B>
 double squared_gap(const BoundsOf<A>& a, const BoundsOf<B>& b) {
   const auto squared = [](double low, double high) {
@@ -37,19 +61,19 @@ double squared_gap(const BoundsOf<A>& a, const BoundsOf<B>& b) {
          squared(double{b.min.y} - a.max.y, double{a.min.y} - b.max.y) +
          squared(double{b.min.z} - a.max.z, double{a.min.z} - b.max.z);
 }
-/// Square of the distance of a point to a box; 0 inside. `bounds` must not be empty.
+/// Returns the square of the distance of a point to a box; 0 inside. `bounds` must not be empty.
 double squared_distance(Vec3d point, const Bounds& bounds);
 
-/// Trees of a surface's tiles; the least recently used go first.
+/// Keeps trees of a surface's tiles; the least recently used go first. For one thread.
 class TreeCache {
  public:
   TreeCache(const CutSurface& surface, std::uint64_t limit_bytes)
       : surface_(surface), limit_bytes_(limit_bytes), was_read_(surface.size()) {}
 
-  /// The trees of some tiles, built in parallel as far as they are not there. Positions without
-  /// repeats.
+  /// Returns the trees of some tiles, built in parallel as far as they are not there. Requires
+  /// positions without repeats. Throws as CutSurface::load().
   std::vector<std::shared_ptr<const TriangleSearch>> get(std::span<const std::uint32_t> positions);
-  /// How many different ones were asked for.
+  /// Returns how many different tiles were asked for.
   std::uint64_t tiles_read() const {
     return static_cast<std::uint64_t>(std::ranges::count(was_read_, true));
   }
@@ -70,11 +94,12 @@ class TreeCache {
   std::map<std::uint32_t, std::list<Entry>::iterator> places_;
 };
 
-/// Where a surface is nearest to a point.
+/// The triangle of a surface that is nearest to a point.
 struct NearestTriangle {
-  double squared = std::numeric_limits<double>::infinity();  ///< distance; if there is no triangle
+  double squared = std::numeric_limits<double>::infinity();  ///< the distance's square; infinite if
+                                                             ///< there is no triangle
   std::uint32_t tile = 0;                                    ///< position in the cut
-  std::uint32_t triangle = 0;                                ///< of TileSurface::triangles
+  std::uint32_t triangle = 0;                                ///< index in TileSurface::triangles
 };
 
 /// A point to be looked up in a tile.
@@ -83,7 +108,7 @@ struct TileQuery {
   std::uint32_t point = 0;
 };
 
-/// Queries in the order of their tiles; those of a tile as they come. O(n + tiles).
+/// Returns queries in the order of their tiles; those of a tile as they come. O(n + tiles).
 std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles);
 
 /// Calls look(tree, number of the query, query) for each, in parallel, those of a few tiles at a
@@ -118,25 +143,26 @@ void look_up(TreeCache& trees, std::span<const TileQuery> queries,
   }
 }
 
+/// Measures distances to a surface. One call at a time; it works in parallel.
 class SurfaceDistance {
  public:
-  /// `cache_bytes`: for the trees of tiles; a few are held at a time whatever it is. `surface` must
-  /// outlive it.
+  /// `cache_bytes`: memory for the trees of tiles; a few are held at a time whatever it is.
+  /// `surface` must outlive it.
   SurfaceDistance(const CutSurface& surface, std::uint64_t cache_bytes)
       : surface_(surface), trees_(surface, cache_bytes) {}
 
-  /// The distance of each point, in the order of the points: infinite if the surface has no
+  /// Returns the distance of each point, in the order of the points; infinite if the surface has no
   /// triangle. Points that follow each other should be near each other (curve_order()), for speed
   /// only. Holds some 50 bytes a point; parallel; the result depends on the points and the surface
   /// alone, to the bit. Throws Error(io | corrupt) if a tile cannot be read, Error(interrupted).
   std::vector<double> distances(std::span<const Vec3d> points,
                                 const execution::CancelToken& cancel);
-  /// Likewise; of several triangles that are equally near one.
+  /// Returns the nearest triangle of each point, likewise; one of them if several are equally near.
   std::vector<NearestTriangle> nearest(std::span<const Vec3d> points,
                                        const execution::CancelToken& cancel);
 
-  /// The triangles themselves. Requires that nearest() has found them: squared distances are
-  /// finite.
+  /// Returns the triangles themselves. Requires that nearest() has found them: squared distances
+  /// are finite.
   std::vector<SurfaceTriangle> triangles(std::span<const NearestTriangle> found,
                                          const execution::CancelToken& cancel);
 

@@ -17,16 +17,16 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// In [0, 1), with 53 bits. A sample takes three: its place in the stratum, and two within the
-/// triangle.
+/// The three numbers that a sample takes: its place in the stratum, and two within the triangle.
 enum class Draw : std::uint64_t { stratum, first, second };
 
 double chance(std::uint64_t stream, std::uint64_t sample, Draw draw) {
+  /// Returns a number in [0, 1), with 53 bits.
   const std::uint64_t bits = mix(mix(mix(stream) + sample) + static_cast<std::uint64_t>(draw));
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-/// Uniform over the triangle (Turk 1990).
+/// Returns a point, uniform over the triangle (Turk 1990).
 Vec3d point_in(const SurfaceTriangle& triangle, double first, double second) {
   const double root = std::sqrt(first);
   return to_double(triangle[0]) * (1 - root) + to_double(triangle[1]) * (root * (1 - second)) +

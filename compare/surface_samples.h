@@ -1,4 +1,4 @@
-// Points spread evenly over the surface that a cut shows.
+// Points that are spread evenly over the surface of a cut.
 #pragma once
 
 #include "compare/cut_surface.h"
@@ -9,7 +9,7 @@
 
 namespace meshhier::comparing {
 
-/// Sample numbers [begin, end).
+/// A range of samples' numbers, [begin, end).
 struct SampleRange {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
@@ -18,25 +18,32 @@ struct SampleRange {
 
 struct SurfaceSample {
   Vec3d point;                 ///< relative to the origin
-  std::uint32_t triangle = 0;  ///< of TileSurface::triangles
+  std::uint32_t triangle = 0;  ///< index in TileSurface::triangles
 };
 
-/// Area-uniform samples in strata (Cignoni, Rocchini & Scopigno 1998 sample faces one by one; this
-/// has the same density with less noise): with the triangles laid out in order, sample k of N falls
-/// where (k + u) / N of the whole area lies, u and the place within the triangle from a hash of k
-/// and `stream`. So a triangle with the share a of the area has N a samples, give or take fewer
-/// than two. Deterministic; thread-safe.
+/// Takes area-uniform samples in strata (Cignoni, Rocchini & Scopigno 1998 sample faces one by one;
+/// this has the same density with less noise). The triangles are laid out in order along a line, as
+/// long as their areas; sample k of N falls into the k-th of N equal parts of it:
+///
+///      triangles   |   t0   |t1|      t2       | t3 |
+///      parts       | 0  | 1  | 2  | 3  | 4  | 5  | 6|      sample k at (k + u) / N of the whole
+///      area samples       *    *   *      *    *   *    *
+///
+/// u, and the place within the triangle, come from a hash of k and `stream`. So a triangle with the
+/// share a of the area has N a samples, give or take fewer than two. A tile knows its samples from
+/// the area before it alone: tiles can be drawn in any order. Deterministic; thread-safe.
 class SurfaceSampler {
  public:
-  /// `surface` must outlive it. Without any area there are no samples.
+  /// `surface` must outlive it. Without any area there are no samples. O(tiles).
   SurfaceSampler(const CutSurface& surface, std::uint64_t count, std::uint64_t stream);
 
   std::uint64_t count() const { return count_; }
 
-  /// The samples on a tile.
+  /// Returns the samples on a tile. O(log count).
   SampleRange on_tile(std::size_t position) const;
 
-  /// Those of `range`, ascending. Requires: part of on_tile(position), which `tile` was loaded for.
+  /// Draws the samples of `range`, ascending by number. Requires that `range` is part of
+  /// on_tile(position), and `tile` the one at that position. O(triangles + samples).
   std::vector<SurfaceSample> draw(std::size_t position, const TileSurface& tile,
                                   SampleRange range) const;
 
@@ -44,14 +51,14 @@ class SurfaceSampler {
   double target(std::uint64_t sample) const;
   std::uint64_t first_from(double area) const;
 
-  std::vector<double> areas_;  ///< before each tile; then the whole area
+  std::vector<double> areas_;  ///< area before each tile; then the whole area
   std::size_t last_ = 0;       ///< the last tile with any area
   std::uint64_t count_;
   std::uint64_t stream_;
 };
 
-/// The order of points along a Z curve through their box: neighbours in it are near each other.
-/// Deterministic.
+/// Returns the order of points along a Z curve through their box: neighbours in it are near each
+/// other. O(n log n). Deterministic.
 std::vector<std::uint32_t> curve_order(const std::vector<Vec3d>& points);
 
 }  // namespace meshhier::comparing

@@ -14,7 +14,7 @@
 namespace meshhier::comparing {
 namespace {
 
-/// What a nearest point lies on: a face has no corner, an edge two.
+/// The feature that a nearest point lies on: a face has no corner, a vertex one, an edge two.
 struct Feature {
   std::array<Vec3f, 2> corners{};
   int count = 0;
@@ -78,7 +78,8 @@ Fan fan_in(const TriangleSearch& tree, const Feature& feature) {
   return fan;
 }
 
-/// Whether each edge at the feature has two triangles, or no triangle is missing that is flat.
+/// Returns whether each edge at the feature has two triangles, or no triangle is missing that is
+/// flat.
 bool is_closed(const Fan& fan, const Feature& feature) {
   if (feature.count == 2)
     return fan.size() == 2;
@@ -114,7 +115,7 @@ Side side_of(Vec3d point, Vec3d nearest, Vec3d normal) {
   return height < 0 ? Side::inside : Side::outside;
 }
 
-/// Of a point whose own tile does not have all triangles there.
+/// A point whose own tile does not have all triangles at its feature.
 struct OpenFan {
   Feature feature;
   Fan fan;
