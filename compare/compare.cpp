@@ -39,7 +39,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kBatchPoints = 65536;
 /// Triangles that are bounded together.
 constexpr std::size_t kBatchTriangles = 16384;
-/// What a comparison holds beside its caches, about: the program, a batch and the trees it is
+/// The memory of a comparison beside its caches, about: the program, a batch and the trees it is
 /// looked up in, tiles on their way, sums.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{56} << 20;
 /// Grain of the scratch: large writes, small beside any budget.
@@ -168,7 +168,7 @@ class DifferencePly {
   storage::RecordSpool<Triangle<std::uint32_t>> triangles_;
 };
 
-/// For caches.
+/// Returns the memory that caches may have.
 std::uint64_t spare_bytes(const CompareOptions& options) {
   return options.memory_budget - std::min(options.memory_budget, kFixedBytes);
 }
@@ -269,7 +269,7 @@ class Comparer {
     return points;
   }
 
-  /// In the order of the points.
+  /// Returns the distances of points, in their order.
   std::vector<double> distances_of(const std::vector<Vec3d>& points, std::vector<Side>& sides,
                                    bool with_sides) {
     const std::vector<std::uint32_t> order = curve_order(points);
@@ -307,7 +307,7 @@ class Comparer {
     waiting_points_ = 0;
   }
 
-  /// Those of the waiting tiles.
+  /// Bounds the triangles of the waiting tiles.
   void bound_triangles(std::span<const Vec3d> points, std::span<const double> distances) {
     std::vector<MeasuredTriangle> loose;
     std::size_t first = 0;
@@ -330,7 +330,8 @@ class Comparer {
     bound_loose(loose);
   }
 
-  /// By the triangle that is nearest to their middle: the farthest point from that is a corner.
+  /// Bounds triangles by the triangle of `to` that is nearest to their middle: the farthest point
+  /// from that one is a corner.
   void bound_loose(std::vector<MeasuredTriangle>& loose) {
     std::vector<Vec3d> middles;
     for (const MeasuredTriangle& t : loose)
@@ -418,7 +419,7 @@ class Comparer {
   FarthestBound bound_;
 };
 
-/// In units of the coordinates of `to`.
+/// Returns the tolerance in units of the coordinates of `to`.
 std::optional<double> tolerance_in(const Opened& to, const CompareOptions& options) {
   const std::optional<Unit>& units = to.reader.manifest().units;
   if (!options.tolerance || !options.tolerance_unit)
@@ -448,7 +449,7 @@ void check_options(const Opened& from, const Opened& to, const CompareOptions& o
   }
 }
 
-/// Whether what is moved by it has no volume left, but for rounding.
+/// Returns whether a transform leaves no volume, but for rounding.
 bool is_flat(const PlaceTransform& m) {
   return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
 }
@@ -490,7 +491,7 @@ PlaceTransform parse_transform(std::string_view text, const std::string& name) {
 
 bool is_hierarchy_there(storage::FileSystem& files, const fs::path& path) {
   if (files.kind(path) != storage::FileKind::regular)
-    return true;  // who reads it says what is wrong
+    return true;  // the reading will say what is wrong
   return storage::is_archive(*files.open(path));
 }
 
