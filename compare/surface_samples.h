@@ -26,8 +26,8 @@ struct SurfaceSample {
 /// long as their areas; sample k of N falls into the k-th of N equal parts of it:
 ///
 ///      triangles   |   t0   |t1|      t2       | t3 |
-///      parts       | 0  | 1  | 2  | 3  | 4  | 5  | 6|      sample k at (k + u) / N of the whole
-///      area samples       *    *   *      *    *   *    *
+///      parts       | 0  | 1  | 2  | 3  | 4  | 5  | 6|
+///      samples       *    *   *      *    *   *    *     sample k at (k + u) / N of the area
 ///
 /// u, and the place within the triangle, come from a hash of k and `stream`. So a triangle with the
 /// share a of the area has N a samples, give or take fewer than two. A tile knows its samples from

@@ -11,7 +11,7 @@
 namespace meshhier::verifying {
 namespace {
 
-/// Of its corners, and of their normals if `with_normals`.
+/// Hashes the corners, and their normals if `with_normals`.
 std::uint64_t hash_of(const ShadedTriangle& triangle, bool with_normals) {
   const ShadedTriangle known{triangle.corners,
                              with_normals ? triangle.normals : Triangle<std::uint64_t>{}};
@@ -150,7 +150,7 @@ bool BorderPairs::compare_attributes(NodeId a, NodeId b) const {
 }
 
 bool BorderPairs::agree(const PairSide& low, const PairSide& high) const {
-  // What an early node's neighbours look like is written nowhere: it has no ghosts of its own.
+  // An early node has no ghosts of its own, so it makes no claims of its neighbours' vertices.
   const auto level = static_cast<Level>(low.pair.level);
   const bool low_knows = !tree_.is_early({level, low.pair.low});
   const bool high_knows = !tree_.is_early({level, low.pair.high});
@@ -162,7 +162,7 @@ bool BorderPairs::agree(const PairSide& low, const PairSide& high) const {
 void BorderPairs::finish(const std::function<void(const NodePair&)>& differ) {
   sides_.sort();
   PairSide low;
-  bool waits = false;  // for what `high` says of the pair of `low`
+  bool waits = false;  // for the claims of `high` about the pair of `low`
   const auto give_up = [&] {
     if (waits)
       differ(low.pair);

@@ -1,15 +1,20 @@
-// What two neighbouring nodes of a level say of each other, summed up.
+// Sums up the claims that two neighbouring nodes of a level make of each other.
 //
-// Neighbours agree if both list the same border triangles between them, with the same normals if
-// these are computed, and if each has the other's places there as they are: number, chain,
-// position, attributes and, if neither has texture coordinates, normal of the first vertex
-// (copy_claims.h sees to the others). To look
-// into every neighbour's tile would be quadratic where all tiles are neighbours (a soup of long
-// triangles). So each node sums up what it says of every pair it is in, and the two sums of a pair
-// meet in one sort: every tile is read once, whatever the mesh. Only pairs that differ need to be
-// looked into.
+// Problem. Neighbours agree if both list the same border triangles between them, with the same
+// normals if these are computed, and if each has the other's places there as they are: number,
+// chain, position, attributes and, if neither has texture coordinates, normal of the first vertex
+// (copy_claims.h sees to the others). To look into every neighbour's tile would be quadratic where
+// all tiles are neighbours (a soup of long triangles).
 //
-// The sums are of 64-bit hashes (vertex_hash.h), so their order does not matter.
+// Idea. Each node sums up its claims of every pair it is in, and the two sums of a pair meet in one
+// sort. Only pairs that differ need to be looked into:
+//
+//      node 3 says of (3, 7):   12 triangles' sum, its vertices' sum, 7's vertices' sum
+//      node 7 says of (3, 7):   the same three sums                     equal: they agree
+//
+// Invariant. The sums are of 64-bit hashes (vertex_hash.h), so their order does not matter.
+//
+// Cost. Every tile is read once, whatever the mesh; one sort of two records a pair.
 #pragma once
 
 #include "export/node_cache.h"
@@ -31,8 +36,8 @@ namespace meshhier::verifying {
 /// Parent maps by node that has a tile; empty ones where it cannot be read.
 using ParentMaps = exporting::NodeCache<std::vector<std::uint16_t>>;
 
-/// Whether the tile of a node that is not early has texture coordinates: which normal of a vertex
-/// is its first, and which are splits, is such a tile's own matter.
+/// Returns whether the tile of a node that is not early has texture coordinates. In such a tile it
+/// is its own matter which normal of a vertex is its first, and which are splits.
 using HasTexcoords = std::function<bool(NodeId)>;
 
 /// Two nodes of a level; low < high.
@@ -41,19 +46,19 @@ struct NodePair {
   friend constexpr auto operator<=>(const NodePair&, const NodePair&) = default;
 };
 
-/// What one of the two says.
+/// The claims of one of the two.
 struct PairSide {
   NodePair pair;
-  std::uint32_t by_high = 0;        ///< 1: `high` says it
-  std::uint64_t triangles = 0;      ///< border triangles that touch both
-  std::uint64_t low_vertices = 0;   ///< vertices of `low` in them
-  std::uint64_t high_vertices = 0;  ///< vertices of `high` in them
+  std::uint32_t by_high = 0;        ///< 1: the claims are `high`'s, 0: `low`'s
+  std::uint64_t triangles = 0;      ///< sum of border triangles that touch both
+  std::uint64_t low_vertices = 0;   ///< sum of vertices of `low` in them
+  std::uint64_t high_vertices = 0;  ///< sum of vertices of `high` in them
 };
 
-/// Gathers the sides of all pairs and compares them.
+/// Gathers the sides of all pairs and compares them. For one thread.
 class BorderPairs {
  public:
-  /// `maps` must outlive it. `memory_bytes`: of the sort.
+  /// `maps` must outlive it. `memory_bytes`: those of the sort.
   BorderPairs(const Tree& tree, ParentMaps& maps, HasTexcoords has_texcoords,
               storage::ScratchFile& scratch, std::uint64_t memory_bytes)
       : tree_(tree),
@@ -61,12 +66,12 @@ class BorderPairs {
         has_texcoords_(std::move(has_texcoords)),
         sides_(scratch, memory_bytes) {}
 
-  /// What a tile says; for a partition also what the early node above it says, if there is one.
-  /// O(b log b), b its border triangles.
+  /// Adds the claims of a tile; for a partition also those of the early node above it, if there is
+  /// one. O(b log b), b its border triangles.
   void add(const PublishedTile& tile);
 
-  /// Visits the pairs whose sides are not equal, or of which one is missing, ascending. Call it
-  /// once, after all tiles.
+  /// Visits the pairs whose sides are not equal, or where one is missing, ascending. Called once,
+  /// after all tiles.
   void finish(const std::function<void(const NodePair&)>& differ);
 
  private:

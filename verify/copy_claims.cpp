@@ -60,7 +60,7 @@ class CopyClaims::Judge {
       next_ = static_cast<std::size_t>(found - owned_.begin()) + 1;
       return;
     }
-    next_ = owned_.size();  // what follows is in no order either; linear, however many there are
+    next_ = owned_.size();  // later claims of the tile are wrong, too; so the time is linear
     const auto level = static_cast<Level>(claim.level);
     const WrongCopies first{{level, claim.tile}, {level, claim.owner}, 0, claim.place};
     ++wrong_.try_emplace(claim.tile, first).first->second.count;
@@ -68,9 +68,9 @@ class CopyClaims::Judge {
 
   const std::function<void(const WrongCopies&)>& visit_;
   Claim last_;
-  std::vector<Claim> owned_;                    ///< of the place being heard
-  std::size_t next_ = 0;                        ///< of owned_, behind what the tile has claimed
-  std::map<std::uint32_t, WrongCopies> wrong_;  ///< of one owner, by tile
+  std::vector<Claim> owned_;                    ///< claims of the owner about the place at hand
+  std::size_t next_ = 0;                        ///< index in owned_ behind the tile's last claim
+  std::map<std::uint32_t, WrongCopies> wrong_;  ///< wrong claims about one owner, by tile
 };
 
 void CopyClaims::add(const PublishedTile& tile) {
@@ -106,7 +106,7 @@ void CopyClaims::add_ghosts(const PublishedTile& tile) {
 
 void CopyClaims::add_splits(const PublishedTile& tile) {
   if (!tile.shading.texcoords.empty())
-    return;  // those differ from tile to tile
+    return;  // splits differ from tile to tile then
   const TileMesh& mesh = tile.mesh;
   const VertexNumbers numbers = exporting::vertex_numbers(mesh);
   for (std::size_t split = 0; split < tile.shading.split_of.size(); ++split) {

@@ -1,10 +1,10 @@
-// Whether tiles know the copies at their ghosts' places, and the splits of vertices there, as the
-// tiles do that own them.
+// Checks that tiles know the copies at their ghosts' places, and the splits of vertices there, as
+// the tiles do that own them.
 //
-// A tile has of a neighbour's copies and splits only those that its own border triangles use, so
-// the two do not say the same: what the one says must be among what the other says, in the same
-// order. All of it meets in one sort, as in border_pairs.h; tiles without either say nothing. A
-// tile with texture coordinates says nothing of splits, and of copies not which normal is their
+// A tile has only those copies and splits of a neighbour that its own border triangles use. So the
+// two do not claim the same: the claims of the one must be among those of the other, in the same
+// order. All claims meet in one sort, as in border_pairs.h; tiles without copies and splits make
+// none. A tile with texture coordinates claims no splits, and not which normal of a copy is its
 // first.
 #pragma once
 
@@ -31,29 +31,31 @@ struct WrongCopies {
   std::uint32_t first_place = 0;  ///< the neighbour's
 };
 
+/// Gathers the claims of all tiles and compares them. For one thread.
 class CopyClaims {
  public:
-  /// `tree` must outlive it. `memory_bytes`: of the sort.
+  /// `tree` must outlive it. `memory_bytes`: those of the sort.
   CopyClaims(const Tree& tree, HasTexcoords has_texcoords, storage::ScratchFile& scratch,
              std::uint64_t memory_bytes)
       : tree_(tree), has_texcoords_(std::move(has_texcoords)), claims_(scratch, memory_bytes) {}
 
-  /// What a tile says of its own copies and splits and of its neighbours'; for a partition also of
-  /// copies for the early node above it, if there is one. O(copies and splits).
+  /// Adds the claims of a tile about its own copies and splits and its neighbours'; for a partition
+  /// also claims about copies for the early node above it, if there is one. O(copies and splits).
   void add(const PublishedTile& tile);
 
-  /// Visits what is wrong, ascending by neighbour, then tile. Call it once, after all tiles.
+  /// Visits the tiles with wrong claims, ascending by neighbour, then tile. Called once, after all
+  /// tiles.
   void finish(const std::function<void(const WrongCopies&)>& visit);
 
  private:
-  /// That a place has a copy, or a vertex there a split. The owner's claims come first, then those
-  /// of one tile after the other.
+  /// Says that a place has a copy, or a vertex there a split. The owner's claims come first, then
+  /// those of one tile after the other.
   struct Claim {
     std::uint16_t level = 0;
-    std::uint16_t by_neighbour = 0;  ///< 0: the owner says it
+    std::uint16_t by_neighbour = 0;  ///< 0: the claim is the owner's
     std::uint32_t owner = 0, place = 0;
-    std::uint32_t tile = 0;             ///< who says it
-    std::uint32_t wedge = 0;            ///< as that tile numbers it; splits come after all copies
+    std::uint32_t tile = 0;             ///< the tile whose claim it is
+    std::uint32_t wedge = 0;            ///< number in that tile; splits come after all copies
     std::uint32_t normal = kAnyNormal;  ///< its computed normal's bytes
     std::uint64_t vertex = 0;           ///< a hash of the rest
 

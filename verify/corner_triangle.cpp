@@ -24,7 +24,8 @@ void turn(ShadedTriangle& t, std::size_t first) {
   t = {turned(t.corners, first), turned(t.normals, first)};
 }
 
-/// With which corner it begins. smallest_corner() does not tell where one is there twice.
+/// Returns the corner that a triangle begins with. smallest_corner() does not tell it where a
+/// corner comes twice.
 std::size_t first_corner(const CornerTriangle& t) {
   if (!is_degenerate(t))
     return smallest_corner(t);

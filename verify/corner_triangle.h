@@ -25,7 +25,7 @@ constexpr std::uint32_t vertex_index(Corner corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
 }
 
-/// With the computed normals of its corners, as numbers; 0 where there are none.
+/// A triangle with the computed normals of its corners, as numbers; 0 where there are none.
 struct ShadedTriangle {
   CornerTriangle corners;
   Triangle<std::uint64_t> normals{};
@@ -38,12 +38,12 @@ static_assert(sizeof(ShadedTriangle) == 48, "hashed by bytes: no padding");
 void normalize(std::vector<CornerTriangle>& triangles, bool unique);
 void normalize(std::vector<ShadedTriangle>& triangles, bool unique);
 
-/// The tile's border triangles with ghosts as places of their own tiles, normalized: of a partition
-/// all, of other tiles the `unique` ones.
+/// Returns the tile's border triangles with ghosts as places of their own tiles, normalized: all of
+/// a partition, the `unique` ones of other tiles.
 std::vector<ShadedTriangle> border_of(const PublishedTile& tile, const Tree& tree);
 
-/// The border triangles that the early node above a partition would have, without normals. Requires
-/// that tile.node is a partition whose parent is early.
+/// Returns the border triangles that the early node above a partition would have, without normals.
+/// Requires that tile.node is a partition whose parent is early.
 std::vector<ShadedTriangle> early_border_of(const PublishedTile& tile, const Tree& tree);
 
 }  // namespace meshhier::verifying

@@ -1,6 +1,6 @@
 // Counts the triangles at the edges of a cut's mesh, by place, tile by tile, out of core.
 //
-// Triangles with a place twice count nowhere: they have no area, and close no gap.
+// Triangles with a place twice do not count: they have no area, and close no gap.
 #pragma once
 
 #include "export/cut_mesh.h"
@@ -26,33 +26,33 @@ struct CutEdgeKey {
   std::uint64_t operator()(const CutEdge& edge) const { return edge.key(); }
 };
 
-/// What meets at an edge.
+/// The triangles that meet at an edge.
 struct EdgeCount {
   CutEdge edge;
   std::uint64_t triangles = 0;
   std::int64_t net = 0;  ///< triangles that run from low to high, less those that run back
 
-  /// Nothing is missing at an edge that is neither: in a closed, oriented surface none is.
+  /// An edge that is neither has no gap: a closed, oriented surface has no such edges.
   bool is_border() const { return triangles == 1; }
   bool is_unbalanced() const { return net != 0; }
 };
 
-/// Edges whose triangles are all drawn by one tile are counted there; only the others, along the
-/// seams, go through an external sort.
+/// Counts edges. Those whose triangles are all drawn by one tile are counted there; only the
+/// others, along the seams, go through an external sort. For one thread.
 class EdgeCensus {
  public:
-  /// Sees every edge that is a border or unbalanced, once, in a deterministic order.
+  /// Visits every edge that is a border or unbalanced, once, in a deterministic order.
   using Visit = std::function<void(const EdgeCount&)>;
 
-  /// `memory_bytes`: of the sort.
+  /// `memory_bytes`: those of the sort.
   EdgeCensus(storage::ScratchFile& scratch, std::uint64_t memory_bytes, Visit visit)
       : seams_(scratch, memory_bytes), visit_(std::move(visit)) {}
 
-  /// Adds what a tile draws (exporting::draw_tile()); `base`: number of its first place. O(t log
-  /// t).
+  /// Adds the triangles that a tile draws (exporting::draw_tile()); `base`: number of its first
+  /// place. O(t log t).
   void add(const PublishedTile& tile, std::uint32_t base, const exporting::DrawnTile& drawn);
 
-  /// Counts the edges along the seams. Call it once, after all tiles.
+  /// Counts the edges along the seams. Called once, after all tiles.
   void finish();
 
  private:

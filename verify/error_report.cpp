@@ -1,4 +1,4 @@
-// What was measured, in words.
+// Tells measurements in words.
 #include "hierarchy/plain_text.h"
 #include "verify/verify_error.h"
 

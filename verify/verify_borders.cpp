@@ -1,4 +1,4 @@
-// What is wrong between two neighbours that do not agree (inspection/border_pairs.h).
+// Explains what is wrong between two neighbours that do not agree (border_pairs.h).
 #include "export/tile_vertices.h"
 #include "hierarchy/cut.h"
 #include "verify/corner_triangle.h"
@@ -121,7 +121,7 @@ std::vector<ShadedTriangle> border_triangles(const VerifyJob& job, const Publish
   return tile.node == node ? border_of(tile, job.tree()) : early_border_of(tile, job.tree());
 }
 
-/// Those of `border` that touch another tile.
+/// Returns the triangles of `border` that touch another tile.
 std::vector<ShadedTriangle> touching(const std::vector<ShadedTriangle>& border,
                                      std::uint32_t other) {
   std::vector<ShadedTriangle> met;
@@ -152,7 +152,8 @@ void check_lists(const VerifyJob& job, NodeId node, const PublishedTile& tile, N
     told("have other normals");
 }
 
-/// What the first of two neighbours says of the second. The tiles stand for the nodes.
+/// Checks the claims of the first of two neighbours about the second. The tiles stand for the
+/// nodes.
 void check_side(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
                 const PublishedTile& neighbour) {
   if (tile.node == node) {

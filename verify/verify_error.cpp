@@ -41,7 +41,7 @@ constexpr double kMostMean = 2;
 constexpr std::uint64_t kForwardStream = 1;
 constexpr std::uint64_t kBackwardStream = 2;
 
-/// What all measurements share.
+/// The means that all measurements share.
 struct MeasureJob {
   const storage::HierarchyReader& reader;
   const ErrorOptions& options;
@@ -77,7 +77,7 @@ Samples along_curve(const Samples& samples) {
 struct DistanceTally {
   explicit DistanceTally(std::size_t tiles) : tile_max(tiles) {}
 
-  /// `told`: what the owner says of itself.
+  /// `told`: the owner's own error.
   void add(double distance, std::uint32_t owner, float told) {
     ++count;
     sum_of_errors += double{told};
@@ -93,8 +93,8 @@ struct DistanceTally {
             *std::max_element(tile_max.begin(), tile_max.end())};
   }
 
-  /// What the mean of all of the surface hardly is below: few samples of a surface whose largest
-  /// distances lie at a small part of it may show too much of that part.
+  /// Returns a mean that the whole surface's is hardly below: few samples of a surface whose
+  /// largest distances lie at a small part of it may show too much of that part.
   double least_mean() const {
     constexpr double kDeviations = 3;
     if (count == 0)
@@ -104,14 +104,14 @@ struct DistanceTally {
     return mean - kDeviations * std::sqrt(variance / n);
   }
 
-  /// What the tiles say, as `summary().mean` is what was found.
+  /// Returns the mean of the tiles' errors, to be compared with summary().mean.
   double mean_error() const { return count == 0 ? 0 : sum_of_errors / static_cast<double>(count); }
 
   std::uint64_t count = 0;
   double sum_of_errors = 0;
   double sum = 0;
   double sum_of_squares = 0;
-  std::vector<double> tile_max;  ///< of the shown cut's tiles
+  std::vector<double> tile_max;  ///< the largest distance for each tile of the shown cut
 };
 
 /// The position in the shown cut of the tile that shows the tile at a position of the sampled one.
@@ -125,7 +125,7 @@ struct Direction {
   std::uint64_t stream = 0;
 };
 
-/// Which tile answers for each triangle of a tile.
+/// Tells which tile answers for each triangle of a tile.
 class Owners {
  public:
   Owners(const MeasureJob& job, const Cut& shown, const Direction& direction, std::size_t position,
@@ -224,13 +224,14 @@ double largest_coordinate(const Bounds& box) {
   return std::max(largest(box.min), largest(box.max));
 }
 
-/// What a distance may be off by without anybody's fault.
+/// Returns how far rounding alone may make a distance wrong.
 double slack_of(const MeasureJob& job, const comparing::CutSurface& shown) {
   return kRounding * std::max(largest_coordinate(job.original.total().bounds),
                               largest_coordinate(shown.total().bounds));
 }
 
-/// What a mean of distances may be off by: vertices are rounded at each level above the partitions.
+/// Returns how far rounding alone may make a mean wrong: vertices are rounded at each level above
+/// the partitions.
 double mean_slack_of(const MeasureJob& job, const comparing::CutSurface& shown) {
   int steps = 1;
   for (const NodeId node : shown.cut().nodes())
@@ -344,7 +345,7 @@ ErrorMeasurement measure_cut(const MeasureJob& job, Cut cut, std::string name,
   return result;
 }
 
-/// As a scan of 54 partitions took.
+/// Returns the expected times of the stages, as measured for a scan of 54 partitions.
 std::vector<execution::ExpectedStage> expected_times(const Tree& tree, const ErrorOptions& options,
                                                      const std::optional<Cut>& cut) {
   std::vector<execution::ExpectedStage> times{
@@ -377,7 +378,7 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const f
   const storage::HierarchyFiles place(files, directory);
   const storage::HierarchyReader reader(place.files(), directory);
   const Tree& tree = reader.tree();
-  std::optional<Cut> cut;  // what is wrong with the selection is told before the work begins
+  std::optional<Cut> cut;  // read first: errors of the selection are told before the work begins
   if (const auto* level = std::get_if<Level>(&options.selection))
     require_level(tree, *level);
   if (const auto* path = std::get_if<fs::path>(&options.selection))

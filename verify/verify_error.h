@@ -1,5 +1,5 @@
-// Measures how far what a hierarchy shows is from the original surface, and holds it against the
-// bounds that the hierarchy promises.
+// Measures how far the surfaces of a hierarchy are from the original one, and compares that with
+// the bounds that the hierarchy promises.
 #pragma once
 
 #include "execution/cancel.h"
@@ -18,11 +18,11 @@
 
 namespace meshhier::verifying {
 
-/// Every level of simplified tiles.
+/// Selects every level of simplified tiles.
 struct AllLevels {};
 
 struct ErrorOptions {
-  /// A level (Cut::of_level); all; the cut in a text file (parse_nodes()).
+  /// The cuts to be measured: a level (Cut::of_level); all; the cut in a text file (parse_nodes()).
   std::variant<Level, AllLevels, std::filesystem::path> selection = Level{};
   std::uint64_t samples = 400'000;         ///< in each direction, >= 1; Metro figures use so many
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
@@ -35,7 +35,7 @@ struct DistanceSummary {
   double max = 0;
 };
 
-/// bound / measured maximum, over the tiles of a cut: 1 would be a perfect bound.
+/// The ratio bound / measured maximum over the tiles of a cut: 1 would be a perfect bound.
 struct BoundRatio {
   double median = 0;
   double p95 = 0;
@@ -46,29 +46,29 @@ struct ErrorMeasurement {
   std::optional<Level> level;  ///< none: a cut from a file
   std::string name;            ///< "level 3"
   std::uint64_t tiles = 0;
-  std::uint64_t triangles = 0;        ///< the cut draws
-  std::uint64_t flat = 0;             ///< of them without area: edges or points of the surface
-  double diagonal = 0;                ///< of the source's bounds, input units
-  std::uint64_t samples = 0;          ///< asked for, in each direction
-  DistanceSummary forward;            ///< from the original surface to the cut's
-  DistanceSummary backward;           ///< from the cut's surface to the original
-  double error = 0;                   ///< the mean over the samples of what their tiles say
-  double bound = 0;                   ///< the largest of the tiles shown, input units
+  std::uint64_t triangles = 0;  ///< triangles that the cut draws
+  std::uint64_t flat = 0;       ///< triangles without area: edges or points of the surface
+  double diagonal = 0;          ///< diagonal of the source's bounds, input units
+  std::uint64_t samples = 0;    ///< samples that were asked for, in each direction
+  DistanceSummary forward;      ///< from the original surface to the cut's
+  DistanceSummary backward;     ///< from the cut's surface to the original
+  double error = 0;             ///< the mean over the samples of their tiles' errors, input units
+  double bound = 0;             ///< the largest bound of the tiles shown, input units
   std::optional<BoundRatio> ratio;    ///< none if no tile is off by more than rounding
   std::vector<std::string> problems;  ///< empty: bounds and errors hold
 };
 
 /// Measures the Hausdorff-like distances of Metro (Cignoni, Rocchini & Scopigno 1998) between the
 /// cut's surface and that of all partitions: from area-uniform samples of one to the nearest point
-/// of the other, both ways. Distances are exact for each sample (to double rounding); what lies
-/// between samples is not seen, so maxima are from below. Triangles without area have no samples,
+/// of the other, both ways. Distances are exact for each sample (to double rounding); places
+/// between samples are not seen, so maxima are from below. Triangles without area have no samples,
 /// but are part of the surface that is measured to.
 ///
-/// A sample belongs to the tile of the cut that shows it: of the original surface the one that has
-/// the partition, of the cut's surface the one that draws it; on a border triangle, whose corners
+/// A sample belongs to the tile of the cut that shows it: for the original surface the tile above
+/// the partition, for the cut's surface the tile that draws it; on a border triangle, whose corners
 /// several tiles have, to the one of them with the largest bound. A tile whose samples are off by
 /// more than its bound, in either direction, is a problem; so is a cut that is off on average by
-/// more than twice what its tiles' errors say, and by more than a 64th of the largest bound.
+/// more than twice its tiles' errors, and by more than a 64th of the largest bound.
 ///
 /// Deterministic to the bit for any threads and budget. Memory stays about `memory_budget`. Throws
 /// Error(usage) if the selection is not in the tree or the file is no cut, Error(io | corrupt) if a
@@ -79,12 +79,12 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files,
                                              execution::Progress& progress,
                                              const execution::CancelToken& cancel);
 
-/// For people: a table.
+/// Returns a table for people.
 std::string to_text(const ErrorMeasurement& measurement);
 
-/// For scripts: level, name, tiles, triangles, flat_triangles, diagonal, samples, forward and
-/// backward with mean, rms, max; error; bound; ratio with median, p95; problems. Lengths in input
-/// units; level is null for a cut from a file, ratio if there is none.
+/// Returns an object for scripts: level, name, tiles, triangles, flat_triangles, diagonal, samples,
+/// forward and backward with mean, rms, max; error; bound; ratio with median, p95; problems.
+/// Lengths in input units; level is null for a cut from a file, ratio if there is none.
 nlohmann::ordered_json to_json(const ErrorMeasurement& measurement);
 
 }  // namespace meshhier::verifying

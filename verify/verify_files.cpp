@@ -55,7 +55,7 @@ std::set<fs::path> known_directories(const Tree& tree, const std::set<fs::path>&
   return known;
 }
 
-/// What neither the hierarchy has nor a system leaves in folders.
+/// Returns whether a file is neither the hierarchy's nor one that systems leave in folders.
 bool is_strange(const VerifyJob& job, const fs::path& path) {
   const fs::path relative = path.lexically_relative(job.reader.directory());
   return !storage::is_system_file(relative.generic_string());
@@ -81,7 +81,7 @@ void find_strange_entries(const VerifyJob& job, const std::set<fs::path>& known,
 
 struct FoundFiles {
   std::uint64_t all = 0;
-  std::uint64_t of_systems = 0;  ///< of these, which systems leave in folders
+  std::uint64_t of_systems = 0;  ///< those of them that systems leave in folders
 };
 
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.

@@ -4,8 +4,8 @@
 // Both sides become sums over multisets: a vertex is hashed from the bits of its position (as
 // stored) and attributes, a triangle from the hashes of its corners in their order around it. The
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
-// chance of 2^-128. Of each input vertex one 64-bit hash is kept, in a spool,
-// with its position and texture coordinate for the texels (verify_texels.h).
+// chance of 2^-128. One 64-bit hash is kept for each input vertex, in a spool, with its position
+// and texture coordinate for the texels (verify_texels.h).
 //
 // Where vertices of equal coordinates are one place, the input's distinct coordinates are counted,
 // by sorting them. Copies lie where their places do (decode_tile), so if there are as many places
@@ -121,7 +121,7 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
   const auto add = [&](const TileTriangle& t) {
     sums.add_triangle({hashes[raw(t[0])], hashes[raw(t[1])], hashes[raw(t[2])]});
   };
-  // Of the tiles that list a triangle, the one counts it that draws it among all partitions.
+  // A triangle that several tiles list is counted by the one that draws it among all partitions.
   const auto before = [&](std::size_t ghost) {
     return draws_before(tile.node, mesh.ghosts[ghost].tile, tile.node.level);
   };
@@ -191,26 +191,27 @@ class PlaceCount {
   partition::ExternalSort<Vec3d, Key> coordinates_;
 };
 
-/// What the input comes to.
+/// The sums of the input.
 struct InputSums {
   MeshSums mesh;
-  std::optional<std::uint64_t> places;  ///< where the hierarchy has one for each coordinates
-  double worst_rounding = 0;            ///< to the hierarchy's lattice, if it has one
+  /// Distinct coordinates, if the hierarchy has one place for each.
+  std::optional<std::uint64_t> places;
+  double worst_rounding = 0;  ///< to the hierarchy's lattice, if it has one
 };
 
-/// Whether vertices of equal coordinates were one place, as the manifest's config says.
+/// Returns whether vertices of equal coordinates were one place, as the manifest's config says.
 bool has_topology_by_place(const VerifyJob& job) {
   const nlohmann::ordered_json& config = job.reader.manifest().config;
   const auto topology = config.find("topology");
   return topology != config.end() && *topology == "place";
 }
 
-/// What tiles have of an input's attributes, besides coordinates in their own pictures.
+/// Returns the attributes of an input that tiles have, besides coordinates in their own pictures.
 AttributeLayout kept_layout(const AttributeLayout& layout) {
   return layout.material ? layout.without_texcoords() : layout;
 }
 
-/// What of a vertex goes to the corners of triangles.
+/// The facts of a vertex that corners of triangles need.
 struct CornerFacts {
   std::uint64_t hash = 0;
   InputCorner corner;
@@ -313,7 +314,7 @@ std::string described(const SourceFile& file) {
   return fmt::format("{} ({})", plain_text(file.name, kLongestName), file.format);
 }
 
-/// Which of several files are others.
+/// Tells which of several files are others.
 void compare_each(const std::vector<SourceFile>& expected, const std::vector<SourceFile>& found,
                   const InputProblems& problems) {
   const auto is_in = [](const SourceFile& file, const std::vector<SourceFile>& all) {
@@ -346,7 +347,7 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
     compare_each(expected.files, found.files, problems);
 }
 
-/// As the build did. A config that is none is told elsewhere.
+/// Returns the use of the input as in the build. A config that is none is told elsewhere.
 importing::InputUse use_of(const storage::Manifest& manifest) {
   importing::InputUse use;
   use.attributes = {.which = mesh_io::AttributeChoice::Which::named, .labels = {{}}};
@@ -399,7 +400,7 @@ void verify_input(const VerifyJob& job) {
   const AttributeLayout& layout = source->description().attributes;
   AttributeLayout kept = kept_layout(layout);
   if (job.reader.manifest().screen_colours)
-    kept.space = expected.attributes.space;  // which these formats did not tell apart
+    kept.space = expected.attributes.space;  // older formats did not tell the two apart
   kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
   if (kept.colour != ColourType::none && expected.count_of(importing::kColoursTakenForBytes) > 0)
     kept.colour = ColourType::u8;

@@ -1,4 +1,4 @@
-// What the manifest says, against what follows from tiles, index and itself.
+// Compares the manifest with facts that follow from tiles, index and itself.
 #include "config/config.h"
 #include "config/partition_size.h"
 #include "config/placement.h"
@@ -79,8 +79,7 @@ std::string first_difference(const Json& part, const Json& whole, const std::str
   return "";
 }
 
-/// What the rest of the manifest says of what the config asked for. Older programs wrote fewer
-/// keys.
+/// Checks that the rest of the manifest agrees with the config. Older programs wrote fewer keys.
 void check_config_against_rest(const storage::Manifest& manifest, const config::Config& config,
                                const ManifestProblems& problems) {
   const Json& told = manifest.config;
@@ -156,7 +155,8 @@ void check_config(const VerifyJob& job, const ManifestProblems& problems) {
   }
 }
 
-/// How far the partitions' box may be from the input's: by rounding, which has an end near 0.
+/// Returns how far rounding may move the partitions' box from the input's. Near 0 floats have a
+/// smallest step.
 double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
   const double rounding = manifest.quantization ? manifest.quantization->worst_rounding : 0;
   if (manifest.origin == Vec3d{} && !manifest.source.double_precision)
@@ -199,7 +199,7 @@ void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
   problems.compare("the number of triangles of the source", manifest.source.triangles, triangles);
 }
 
-/// Of the files that were imported, together.
+/// Checks the counts of all files that were imported.
 void check_import(const VerifyJob& job, const ManifestProblems& problems) {
   const SourceSummary& source = job.reader.manifest().source;
   if (source.files.empty())
@@ -210,7 +210,7 @@ void check_import(const VerifyJob& job, const ManifestProblems& problems) {
   problems.compare("source.file_bytes", source.file_bytes, bytes);
 }
 
-/// As a config may say it; else the default.
+/// Returns the number of sectors that a config asks for, else the default.
 std::uint32_t wanted_sectors(const Json& config) {
   constexpr std::uint64_t kMost = 65536;
   const Json::json_pointer place("/outline/sectors");

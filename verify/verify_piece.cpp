@@ -17,7 +17,7 @@ std::set<NodeId> neighbours_of(const PublishedTile& tile) {
   return nodes;
 }
 
-/// Of one tile; returns with how many neighbours it was compared.
+/// Checks one tile; returns with how many neighbours it was compared.
 std::size_t verify_with_neighbours(const VerifyJob& job, const TileRecord& record,
                                    const PublishedTile& tile, const std::set<NodeId>& inside) {
   verify_alone(job, record, tile);

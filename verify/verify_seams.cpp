@@ -79,7 +79,7 @@ Original look_at_original(const VerifyJob& job) {
   return original;
 }
 
-/// From the original vertices to their images in a cut, one partition at a time: asked in ascending
+/// Maps the original vertices to their images in a cut, one partition at a time: asked in ascending
 /// order, it walks through the partitions once.
 class Images {
  public:
@@ -124,7 +124,7 @@ class Images {
   const exporting::NumberedCut& original_;
   const exporting::NumberedCut& shown_;
   std::uint64_t begin_ = 0;
-  std::vector<std::uint32_t> images_;  ///< of the vertices of one partition, from begin_ on
+  std::vector<std::uint32_t> images_;  ///< images of one partition's vertices, from begin_ on
 };
 
 template <class Visit>

@@ -47,7 +47,7 @@ struct TriangleKey {
   friend auto operator<=>(const TriangleKey&, const TriangleKey&) = default;
 };
 
-/// Where the least of the corners is.
+/// Returns the index of the least corner.
 std::size_t first_corner(const std::array<Vec3f, 3>& corners) {
   const auto flat = [&](std::size_t k) {
     return std::tuple(corners[k].x, corners[k].y, corners[k].z);
@@ -78,15 +78,15 @@ constexpr std::uint32_t kOfInput = UINT32_MAX;
 /// A triangle of the input, or one that a partition draws.
 struct EitherTriangle {
   TriangleKey key;
-  std::uint32_t tile = kOfInput;     ///< kOfInput: none
-  std::uint32_t number = 0;          ///< of the triangle in its tile, or of the input's material
+  std::uint32_t tile = kOfInput;  ///< kOfInput: none
+  std::uint32_t number = 0;       ///< the triangle's in its tile, or that of the input's material
   std::array<Vec2f, 3> texcoords{};  ///< from the least corner on
 };
 struct ByKey {
   auto operator()(const EitherTriangle& t) const { return std::pair(t.key.a, t.key.b); }
 };
 
-/// What a triangle of a tile should show.
+/// The picture that a triangle of a tile should show.
 struct Expected {
   std::uint32_t tile = 0, triangle = 0;
   std::uint32_t material = 0;
@@ -146,12 +146,12 @@ std::array<double, 3> weights_at(const std::array<Point, 3>& p, double area, dou
   return {1 - b - c, b, c};
 }
 
-/// What was compared.
+/// Sums of a comparison.
 struct Comparison {
   std::uint64_t texels = 0;
   std::uint64_t unequal = 0;
   std::uint64_t reduced = 0;  ///< triangles that a coarser level of their picture shows
-  double squared = 0;         ///< of all channels
+  double squared = 0;         ///< sum over all channels
 
   void add(const Comparison& other) {
     texels += other.texels;
@@ -238,7 +238,8 @@ struct TexelCheck::Impl {
     }
   }
 
-  /// Of triangles of one key that are one on each side; of others nobody can say which is which.
+  /// Joins triangles of one key, if there is one on each side; of several nobody can say which is
+  /// which.
   void join(ExpectedSort& expected) {
     triangles.sort();
     std::vector<EitherTriangle> group;
@@ -338,7 +339,7 @@ struct TexelCheck::Impl {
     }
   }
 
-  /// Of a material whose picture has that number in the store.
+  /// Returns the texels of a material whose picture has that number in the store.
   const images::MaterialTexels& shown_texels(std::uint32_t number, std::uint32_t picture) {
     const auto found = texels_of_material.find(number);
     if (found != texels_of_material.end())
@@ -379,7 +380,7 @@ struct TexelCheck::Impl {
   const images::MaterialList& materials;
   storage::ScratchFile picture_scratch;
   images::ImageStore pictures;
-  std::vector<std::optional<std::uint32_t>> store_of;  ///< of each picture its number in the store
+  std::vector<std::optional<std::uint32_t>> store_of;  ///< for each picture its number in the store
   std::map<std::uint32_t, images::MaterialTexels> texels_of_material;
   partition::ExternalSort<EitherTriangle, ByKey> triangles;
   Comparison all;

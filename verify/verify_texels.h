@@ -20,15 +20,15 @@ struct InputCorner {
   friend bool operator==(const InputCorner&, const InputCorner&) = default;
 };
 
-/// Takes the input's triangles, then compares.
+/// Takes the input's triangles, then compares their texels with those of the tiles. For one thread.
 class TexelCheck {
  public:
-  /// `input` has been imported, and outlives it.
+  /// Requires that `input` has been imported; both must outlive it.
   TexelCheck(const VerifyJob& job, const importing::MeshInput& input);
   ~TexelCheck();
 
   void add(const Triangle<InputCorner>& triangle);
-  /// Adds problems, and what was checked.
+  /// Compares, and adds problems and checks to the job's.
   void compare();
 
  private:

@@ -1,4 +1,5 @@
-// What only tiles with a picture or a normal map have: splits by texture coordinates, and that.
+// Checks the parts that only tiles with a picture or a normal map have: splits by texture
+// coordinates, and the pictures.
 #include "hierarchy/error.h"
 #include "images/formats.h"
 #include "images/image_codec.h"
@@ -18,7 +19,7 @@
 namespace meshhier::verifying {
 namespace {
 
-/// What distinguishes the vertices and splits at one vertex.
+/// The values that distinguish the vertices and splits at one vertex.
 using Look = std::pair<NormalCode, Vec2f>;
 
 Look look_of(const Shading& shading, std::size_t number) {

@@ -51,7 +51,7 @@ bool is_canonical(const WedgedTriangle& t, bool unique) {
   return corner(0) < corner(1) && corner(0) < corner(2) && corner(1) != corner(2);
 }
 
-/// As normalize_triangles() leaves them.
+/// Returns whether triangles have the order of normalize_triangles().
 bool has_order(const std::vector<TileTriangle>& triangles, const std::vector<CornerWedges>& wedges,
                bool unique) {
   WedgedTriangle last{};
