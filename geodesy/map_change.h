@@ -15,13 +15,13 @@ namespace meshhier::geodesy {
 /// An object is for one thread at a time.
 class MapChange {
  public:
-  /// As for MapProjection; also in degrees. Throws as its constructor.
+  /// Takes CRSs as MapProjection does, and also CRSs in degrees. Throws as its constructor.
   MapChange(const std::string& from, const std::string& to);
   ~MapChange();
   MapChange(MapChange&&) noexcept;
   MapChange& operator=(MapChange&&) noexcept;
 
-  /// Throws Error(usage) if the place is none of the other map.
+  /// Returns the place on the other map. Throws Error(usage) if there is none.
   Vec3d operator()(Vec3d place) const;
 
  private:

@@ -15,7 +15,7 @@ namespace proj {
 struct Axes {
   PJ_COORDINATE_SYSTEM_TYPE type = PJ_CS_TYPE_UNKNOWN;
   int count = 0;
-  double metres = 1;  ///< of the first axis' unit
+  double metres = 1;  ///< metres of the first axis' unit
 };
 
 }  // namespace proj
@@ -89,9 +89,9 @@ Object make_geodetic(PJ_CONTEXT* context) {
 struct MapProjection::Parts {
   Context context;
   Object crs;
-  Axes axes;         ///< of its horizontal part
-  Object operation;  ///< to geocentric coordinates
-  Object geodetic;   ///< from them
+  Axes axes;         ///< axes of its horizontal part
+  Object operation;  ///< the way to geocentric coordinates
+  Object geodetic;   ///< the way from these to degrees
   std::string name;
 
   /// Metres in a unit of height: without a vertical part PROJ takes metres, the map has its own

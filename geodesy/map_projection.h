@@ -1,8 +1,8 @@
 // Coordinates of a map and places on the globe, by PROJ.
 //
-// PROJ never uses the network here. What it computes depends, in the last bits, on its version and
-// on the C library; which change of datum it takes depends on its database and on the grids that
-// are installed.
+// PROJ never uses the network here. The last bits of its results depend on its version and on the C
+// library; the change of datum that it takes depends on its database and on the grids that are
+// installed.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -13,7 +13,7 @@
 
 namespace meshhier::geodesy {
 
-/// Without a vertical part heights are above this.
+/// The surface below heights of a CRS without a vertical part.
 inline constexpr std::string_view kEllipsoid = "the ellipsoid";
 
 /// A place on or above WGS 84: degrees, degrees, metres above the ellipsoid.
@@ -31,9 +31,9 @@ struct Geodetic {
 /// An object is for one thread at a time.
 class MapProjection {
  public:
-  /// `crs`: what PROJ takes: "EPSG:25832", "EPSG:32633+5773", WKT, a PROJ string; it must not name
-  /// files by a path. Throws Error(usage) saying what is wrong with it, Error(io) if PROJ's
-  /// database is not there.
+  /// `crs`: a text that PROJ takes: "EPSG:25832", "EPSG:32633+5773", WKT, a PROJ string; it must
+  /// not name files by a path. Throws Error(usage) saying what is wrong with it, Error(io) if
+  /// PROJ's database is not there.
   explicit MapProjection(const std::string& crs);
   ~MapProjection();
   MapProjection(MapProjection&&) noexcept;
@@ -43,23 +43,25 @@ class MapProjection {
   /// so that nothing jumps. Throws as to_geocentric().
   void settle_at(Vec3d map);
 
-  /// Geocentric coordinates (WGS 84, EPSG:4978), metres. Throws Error(usage) if there are none.
+  /// Returns geocentric coordinates (WGS 84, EPSG:4978), metres. Throws Error(usage) if there are
+  /// none.
   Vec3d to_geocentric(Vec3d map) const;
-  /// The inverse of PROJ's own, for people.
+  /// Converts geocentric coordinates by PROJ, for people.
   Geodetic to_geodetic(Vec3d geocentric) const;
 
-  /// Metres of one unit of easting.
+  /// Returns the metres of one unit of easting.
   double unit_metres() const;
-  /// As PROJ calls it, for people: "WGS 84 / UTM zone 33N".
+  /// Returns PROJ's name of the CRS, for people: "WGS 84 / UTM zone 33N".
   const std::string& name() const;
-  /// The surface below the map's heights, for people: kEllipsoid, or PROJ's name of the heights
-  /// ("EGM96 height"); empty if it has none, being geocentric.
+  /// Returns the surface below the map's heights, for people: kEllipsoid, or PROJ's name of the
+  /// heights ("EGM96 height"); empty if it has none, being geocentric.
   std::string heights() const;
-  /// How far off the change of datum may be, metres; 0 if there is none, below 0 if not known.
+  /// Returns how far off the change of datum may be, in metres; 0 if there is none, below 0 if not
+  /// known.
   double accuracy() const;
-  /// The datum is not known and was taken as WGS 84.
+  /// Returns whether the datum is not known and was taken as WGS 84.
   bool takes_datum_as_wgs84() const;
-  /// Whether the CRS is meant for that place; true if PROJ does not know.
+  /// Returns whether the CRS is meant for that place; true if PROJ does not know.
   bool is_meant_for(const Geodetic& place) const;
 
  private:

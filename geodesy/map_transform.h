@@ -7,27 +7,28 @@
 
 namespace meshhier::geodesy {
 
-/// A model in coordinates of a map; all of its own coordinates are z-up.
+/// A model that stands on a map; all of its own coordinates are z-up.
 struct MappedModel {
   Vec3d offset;      ///< added to the model's coordinates it makes those of the map
-  Vec3d anchor;      ///< of the model: where the transform is exact
-  double scale = 1;  ///< units of the map that one of the model's is, before the offset
+  Vec3d anchor;      ///< the place of the model where the transform is exact
+  double scale = 1;  ///< units of the map that a unit of the model is, before the offset
 
   Vec3d to_map(Vec3d p) const { return p * scale + offset; }
   Vec3d from_map(Vec3d p) const { return (p - offset) * (1 / scale); }
 };
 
-/// From the model's coordinates to geocentric ones: right at the anchor, with the derivatives that
-/// the projection has there, so that its convergence and its scale are right, too. What is far from
-/// the anchor is off by the curvature of the earth: d^2 / 12,700 km at the distance d, 8 cm at
-/// 1 km.
+/// Returns the map from the model's coordinates to geocentric ones: right at the anchor, with the
+/// derivatives that the projection has there, so that its convergence and its scale are right, too.
+/// Places far from the anchor are off by the curvature of the earth: d^2 / 12,700 km at the
+/// distance d, 8 cm at 1 km.
 ///
 /// Rounded, so that two processors, whose sines differ in the last bit, agree: the anchor's place
 /// to 2^-13 m (0.1 mm), the derivatives to 2^-27 (4 micrometres in a kilometre at most). Throws
 /// Error(usage) if the projection knows no place a kilometre from the anchor.
 Transform map_transform(const MapProjection& projection, const MappedModel& model);
 
-/// How far the transform is off at the worst corner of the box, metres. Throws as to_geocentric().
+/// Returns how far the transform is off at the worst corner of the box, in metres. Throws as
+/// to_geocentric().
 double largest_error(const MapProjection& projection, const MappedModel& model,
                      const Transform& transform, const BoundsD& box);
 

@@ -8,7 +8,7 @@
 
 #include <proj.h>
 
-/// Those that are used, without the `proj_` before them.
+/// The functions that are used, without the `proj_` before them.
 #define MESHHIER_PROJ_FUNCTIONS(FUNCTION)              \
   FUNCTION(clone)                                      \
   FUNCTION(context_create)                             \
@@ -50,8 +50,8 @@ struct Library {
 #undef MESHHIER_PROJ_FUNCTIONS
 };
 
-/// Once loaded it stays until the program ends. Thread-safe. Throws Error(io) if it is not there or
-/// has not all functions.
+/// Returns the library, loaded by the first call; it stays until the program ends. Thread-safe.
+/// Throws Error(io) if it is not there or has not all functions.
 const Library& library();
 
 }  // namespace meshhier::geodesy::proj

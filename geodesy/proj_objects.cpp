@@ -17,7 +17,7 @@ char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// In any case; `part` is in lower case.
+/// Returns whether a text has a part, in any case; `part` is in lower case.
 bool contains(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(),
                      [](char a, char b) { return lower(a) == b; }) != text.end();
@@ -30,8 +30,8 @@ bool is_path_parameter(std::string_view word) {
          word.find_first_of("/\\~", sign) != std::string_view::npos;
 }
 
-/// Whether PROJ would open a file that the text chooses. Grids by their plain names are those of
-/// PROJ's own folders.
+/// Returns whether PROJ would open a file that the text chooses. Grids by their plain names are
+/// those of PROJ's own folders.
 bool names_files(std::string_view text) {
   if (contains(text, "parameterfile") || contains(text, "init="))
     return true;

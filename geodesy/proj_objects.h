@@ -1,4 +1,4 @@
-// Objects of PROJ, made of texts from outside.
+// Makes objects of PROJ from texts of users.
 #pragma once
 
 #include "geodesy/proj_library.h"
@@ -17,20 +17,20 @@ struct Destroy {
 using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
 using Object = std::unique_ptr<PJ, Destroy>;
 
-/// A quoted text is cut off at this length.
+/// The length at which a quoted text is cut off.
 inline constexpr std::size_t kLongestQuote = 80;
 std::string in_quotes(std::string_view text);
 
 /// Throws Error(usage).
 [[noreturn]] void refuse(const std::string& what);
 
-/// Without the network. Throws Error(io) if PROJ's database is not there.
+/// Makes a context without the network. Throws Error(io) if PROJ's database is not there.
 Context make_context();
-/// Throws Error(usage) if `text` is no CRS, or names files by a path.
+/// Makes a CRS. Throws Error(usage) if `text` is no CRS, or names files by a path.
 Object make_crs(PJ_CONTEXT* context, const std::string& text);
-/// The part with easting and northing, or degrees; of one without parts itself.
+/// Returns the part with easting and northing, or degrees; the CRS itself if it has no parts.
 Object horizontal_part(PJ_CONTEXT* context, const PJ* crs);
-/// The part with heights of a compound one; else null.
+/// Returns the part with heights of a compound CRS; else null.
 Object vertical_part(PJ_CONTEXT* context, const PJ* crs);
 
 }  // namespace meshhier::geodesy::proj

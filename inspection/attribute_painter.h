@@ -1,4 +1,4 @@
-// Tiles in the colours of one of their attributes.
+// Paints tiles in the colours of one of their attributes.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -19,12 +19,14 @@ struct AttributeColours {
   std::optional<std::array<double, 2>> range{};
 };
 
+/// Gives tiles colours by an attribute. Thread-safe once constructed.
 class AttributePainter {
  public:
-  /// Throws Error(usage) if the source has no such attribute: it lists those that there are.
+  /// Throws Error(usage) if the source has no such attribute: the message lists those that there
+  /// are.
   AttributePainter(const SourceSummary& source, const AttributeColours& colours);
 
-  /// What painted tiles have.
+  /// Returns the attributes of painted tiles.
   const AttributeLayout& layout() const { return painted_; }
   /// Gives the tile's vertices colours instead of all else but normals, and takes its picture.
   /// Where there is no finite value they are grey. O(n).
@@ -36,10 +38,10 @@ class AttributePainter {
 
   AttributeLayout given_, painted_;
   ScalarAttribute attribute_;
-  std::size_t channel_ = 0;  ///< its first one
+  std::size_t channel_ = 0;  ///< the attribute's first channel
   render::ColourRamp ramp_{};
   std::array<double, 2> range_{};
-  std::map<double, std::uint64_t> labels_;  ///< their numbers
+  std::map<double, std::uint64_t> labels_;  ///< numbers of labels, by value
 };
 
 }  // namespace meshhier::inspection

@@ -1,4 +1,4 @@
-// What of a tile's picture lies in a region.
+// The part of a tile's picture that lies in a region.
 #pragma once
 
 #include "export/region.h"
@@ -6,8 +6,8 @@
 
 namespace meshhier::inspection {
 
-/// Facets cut where the region ends, with their skins; those without area, which stand for points,
-/// stay if they lie in it. O(t).
+/// Cuts facets, with their skins, where the region ends; those without area, which stand for
+/// points, stay if they lie in it. O(t).
 render::SceneTile clip_scene(render::SceneTile tile, const exporting::Region& region);
 
 }  // namespace meshhier::inspection

@@ -99,7 +99,7 @@ std::string grouped(std::uint64_t number, std::string_view plural) {
 
 /// A manifest's own words, which anyone may have written.
 std::string shown(const std::string& text) {
-  constexpr std::size_t kLongest = 255;  // as a file name
+  constexpr std::size_t kLongest = 255;  // longest, as that of a file's name
   return plain_text(text, kLongest);
 }
 
@@ -111,14 +111,14 @@ std::string vertices_text(const SourceSummary& source) {
              : fmt::format("{} at {}", vertices, grouped(source.places, "places"));
 }
 
-/// Where the tiles' normals come from.
+/// Returns where the tiles' normals come from.
 std::string_view normals_of(const storage::Manifest& manifest) {
   return manifest.source.attributes.normals ? "given"
          : manifest.computed_normals        ? "computed"
                                             : "none";
 }
 
-/// What the input has of them.
+/// Returns a text about the input's textures.
 std::string textures_text(const SourceTextures& t) {
   const std::string missing =
       t.missing_images > 0 ? fmt::format(" ({} missing)", grouped(t.missing_images)) : "";
@@ -256,8 +256,8 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
          "forced: without care for the surface, to reach the count\n";
 }
 
-/// Of a texel in the memory of a graphics device that knows blocks, with smaller and smaller
-/// copies.
+/// Returns the bytes of a texel in the memory of a graphics device that knows blocks, with smaller
+/// and smaller copies.
 template <class Format>
 double gpu_bytes(const Format& format) {
   constexpr double kCopies = 4.0 / 3;
@@ -270,7 +270,7 @@ std::string gpu_text(double texel, const storage::PictureSummary& pictures) {
       execution::rounded_size_text(static_cast<std::uint64_t>(texel * pictures.texels_mean())));
 }
 
-/// Those of all tiles.
+/// Returns a text about the pictures of all tiles.
 std::string pictures_text(const TextureFormat& format, const storage::PictureSummary& pictures) {
   const bool has_quality = !is_exact(format.format, 1);
   return fmt::format("pictures     {}{}, {}: {} of {:.0f} x {:.0f} texels on average, {}\n",
@@ -280,7 +280,7 @@ std::string pictures_text(const TextureFormat& format, const storage::PictureSum
                      pictures.height, gpu_text(gpu_bytes(format), pictures));
 }
 
-/// Of the tiles that have one.
+/// Returns a text about the normal maps of the tiles that have one.
 std::string normal_maps_text(const NormalMapFormat& format,
                              const std::vector<TileRecord>& records) {
   const storage::PictureSummary maps = storage::summarize_pictures(records);

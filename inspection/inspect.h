@@ -1,4 +1,4 @@
-// What a hierarchy is made of, told from its manifest and index alone.
+// Tells what a hierarchy is made of, from its manifest and index alone.
 #pragma once
 
 #include "hierarchy/ids.h"
@@ -12,20 +12,20 @@
 
 namespace meshhier::inspection {
 
-/// Narrows what is told. Both unset: everything.
+/// The part that is told. Both unset: everything.
 struct InspectOptions {
   std::optional<Level> level;  ///< this level, tile by tile
   std::optional<NodeId> node;  ///< the tile that stands for this node
 };
 
-/// For people: source, parameters, a table per level, compactness, outline, totals. Reads manifest
-/// and index, no tile; time and memory O(tiles). Deterministic. Throws Error(io | corrupt) if they
-/// cannot be read, Error(usage) if the tree has no such level or node.
+/// Returns a text for people: source, parameters, a table per level, compactness, outline, totals.
+/// Reads manifest and index, no tile; time and memory O(tiles). Deterministic. Throws Error(io |
+/// corrupt) if they cannot be read, Error(usage) if the tree has no such level or node.
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
                          const InspectOptions& options);
 
-/// The same for scripts: one object with source, parameters, partitions, levels, outline, totals,
-/// total_bytes; with options.level also `tiles` (an array), with options.node also `tile`.
+/// Returns the same for scripts: one object with source, parameters, partitions, levels, outline,
+/// totals, total_bytes; with options.level also `tiles` (an array), with options.node also `tile`.
 nlohmann::ordered_json inspect_json(storage::FileSystem& files,
                                     const std::filesystem::path& directory,
                                     const InspectOptions& options);

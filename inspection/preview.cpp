@@ -41,7 +41,8 @@ Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
   return direction_of(options.up.value_or(reader.manifest().up));
 }
 
-/// Of the root tile, which has the extent of the whole; its points if nothing else is there.
+/// Returns facets of the root tile, which has the extent of the whole; its points if it has no
+/// triangles.
 std::vector<render::Facet> root_facets(PublishedTile root, const HierarchyReader& reader,
                                        const std::optional<AttributePainter>& painter) {
   if (painter)
@@ -69,13 +70,13 @@ render::Look look_of(const HierarchyReader& reader, const PreviewOptions& option
           options.up.value_or(reader.manifest().up)};
 }
 
-/// What a tile draws: triangles, or points as facets without area.
+/// Returns the facets of a tile: triangles, or points as facets without area.
 render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout, bool as_points) {
   return as_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
                    : render::scene_tile(shown.tile, layout, shown.border);
 }
 
-/// Of the piece, without pictures.
+/// Adds the facets of a tile that lie in the piece, without pictures.
 void add_piece(ShownTile shown, const AttributeLayout& layout, const exporting::Region& region,
                std::vector<render::Facet>& facets) {
   drop_pictures(shown.tile);
@@ -84,8 +85,8 @@ void add_piece(ShownTile shown, const AttributeLayout& layout, const exporting::
   facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
 }
 
-/// Of the piece, from the coarsest level that shows its form: some tiles, of which it has some
-/// facets.
+/// Returns facets of the piece, from the coarsest level that shows its form: one with some tiles
+/// and facets in it.
 std::vector<render::Facet> piece_facets(const HierarchyReader& reader,
                                         const exporting::Region& region, std::uint64_t cache_bytes,
                                         const execution::CancelToken& cancel) {
@@ -140,7 +141,7 @@ Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
 /// The tiles that a picture is of.
 struct Pictured {
   ShownTiles tiles;
-  std::vector<std::size_t> positions;  ///< in their cut
+  std::vector<std::size_t> positions;  ///< positions of the tiles in their cut
 
   NodeId node(std::size_t i) const { return tiles.cut()[positions[i]]; }
 };
@@ -156,8 +157,8 @@ Pictured pictured(const HierarchyReader& reader, Cut cut,
   return shown;
 }
 
-/// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw
-/// anywhere.
+/// Returns the boxes in which tiles draw. Where levels meet, a tile reaches to the vertices of its
+/// coarser neighbour, and may draw anywhere.
 std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Pictured& shown,
                              double point_side) {
   bool is_even = true;
@@ -185,7 +186,7 @@ double point_side_of(const HierarchyReader& reader, const Pictured& shown,
   return render::point_side(camera, points);
 }
 
-/// Of a picture, its file, and what encodes it.
+/// Returns the memory of a picture, its file and its encoder.
 std::uint64_t picture_bytes(const PreviewOptions& options) {
   constexpr std::uint64_t kPixelBytes = 16;
   return kPixelBytes * options.width * options.height;
@@ -212,7 +213,7 @@ void lay_on(const std::array<std::uint8_t, 3>& ground, images::Image& picture) {
   }
 }
 
-/// For people: of what it is.
+/// Returns for people what the picture shows.
 std::string text_of(const HierarchyReader& reader, const Pictured& shown) {
   if (shown.positions.size() < shown.tiles.size())
     return fmt::format("{} of {}", shown.positions.size(), counted(shown.tiles.size(), "tiles"));

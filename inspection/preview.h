@@ -1,4 +1,4 @@
-// A picture of a hierarchy: of any level or cut, tile by tile.
+// Draws a picture of any level or cut of a hierarchy, tile by tile.
 #pragma once
 
 #include "execution/cancel.h"
@@ -21,28 +21,29 @@
 
 namespace meshhier::inspection {
 
-/// A level, the cut in a text file, or tiles by their error.
+/// The part that is drawn: a level, the cut in a text file, or tiles by their error.
 using PreviewSelection = std::variant<Level, std::filesystem::path, exporting::LargestError>;
 
-inline constexpr std::uint32_t kMostPreviewPixels = 8192;  ///< of a side
+inline constexpr std::uint32_t kMostPreviewPixels = 8192;  ///< the longest side
 
 struct PreviewOptions {
   std::filesystem::path output;
   bool replace = false;
   ImageFormat format = ImageFormat::png;      ///< png or webp
   std::uint32_t width = 1600, height = 1000;  ///< 1 to kMostPreviewPixels
-  /// None: errors of a quarter of a pixel at most.
+  /// None: a cut whose errors are a quarter of a pixel at most.
   std::optional<PreviewSelection> selection;
   std::optional<Standpoint> view;                         ///< none: the first view
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
   std::optional<AttributeColours> attribute{};  ///< none: colours and pictures of the input
-  exporting::RegionRequest region{};  ///< all else is left out, and the picture shows this piece
+  exporting::RegionRequest region{};            ///< the picture shows this piece alone
   std::uint64_t memory_budget = std::uint64_t{1} << 30;
 };
 
-/// Writes the picture and says what it shows. Throws Error(usage | exists | input | io | corrupt),
-/// and Error(budget) if the picture does not fit the memory.
+/// Writes the picture and returns a line that says what it shows. The output appears complete or
+/// not at all. Throws Error(usage | exists | input | io | corrupt), and Error(budget) if the
+/// picture does not fit the memory.
 std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                          const PreviewOptions& options, execution::Progress& progress,
                          const execution::CancelToken& cancel);

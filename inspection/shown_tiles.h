@@ -1,4 +1,4 @@
-// The surface of a cut, tile by tile, as viewers draw it.
+// Loads the surface of a cut, tile by tile, as viewers draw it.
 #pragma once
 
 #include "export/cut_mesh.h"
@@ -14,25 +14,25 @@
 
 namespace meshhier::inspection {
 
-/// A tile of a cut. Ghosts lie where the cut shows them; they keep their normals.
+/// A tile of a cut. Its ghosts are moved to where the cut shows them; they keep their normals.
 struct ShownTile {
   PublishedTile tile;
-  std::vector<std::uint32_t> border;  ///< which of tile.mesh.border it draws
+  /// Indices in tile.mesh.border of the triangles that it draws.
+  std::vector<std::uint32_t> border;
 };
 
-/// Not thread-safe.
+/// The tiles of a cut. For one thread.
 class ShownTiles {
  public:
-  /// `reader` must outlive it; `cache_bytes`: for neighbours.
+  /// `reader` must outlive it; `cache_bytes`: memory for neighbours.
   ShownTiles(const storage::HierarchyReader& reader, Cut cut,
              std::uint64_t cache_bytes = kCacheBytes);
 
-  /// How many tiles there are.
   std::size_t size() const { return numbered_.cut.size(); }
   const Cut& cut() const { return numbered_.cut; }
-  /// Which will be loaded soon, in that order: a hint.
+  /// Tells which tiles will be loaded soon, in that order: a hint.
   void will_load(std::span<const std::size_t> positions) const;
-  /// Throws Error(io | corrupt).
+  /// Reads the tile at a position of the cut. Throws Error(io | corrupt).
   ShownTile load(std::size_t position);
 
  private:
@@ -42,7 +42,8 @@ class ShownTiles {
 
   const storage::HierarchyReader& reader_;
   exporting::NumberedCut numbered_;
-  exporting::NodeCache<std::vector<Vec3f>> positions_;  ///< of places, of coarser neighbours
+  /// Positions of places of coarser neighbours.
+  exporting::NodeCache<std::vector<Vec3f>> positions_;
 };
 
 }  // namespace meshhier::inspection
