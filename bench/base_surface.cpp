@@ -159,8 +159,8 @@ std::vector<std::array<std::uint32_t, 4>> edge_ids(const QuadMesh& mesh) {
 }
 
 struct VertexStar {
-  Vec3d face_sum;  ///< of the points of the faces around
-  Vec3d edge_sum;  ///< of the midpoints of the edges around, each counted twice
+  Vec3d face_sum;  ///< sum of the points of the faces around
+  Vec3d edge_sum;  ///< sum of the midpoints of the edges around, each counted twice
   double valence = 0;
 };
 
@@ -179,8 +179,8 @@ struct Cubic {
   std::array<double, 4> slope;
 };
 
-/// Where in a control net the corner c, its neighbours along the sides c and c - 1, and its inner
-/// point lie.
+/// Indices in a control net of the corner c, its neighbours along the sides c and c - 1, and its
+/// inner point.
 struct NetCorner {
   std::size_t corner, along, before, inner;
 };

@@ -18,7 +18,7 @@ enum class Shape {
   shells   ///< two concentric spheres; the inner one, of 0.6 times the radius, faces inwards
 };
 
-/// The shape of that name; nothing if there is none.
+/// Returns the shape of that name; nothing if there is none.
 std::optional<Shape> shape_named(std::string_view name);
 std::string_view name_of(Shape shape);
 
@@ -61,7 +61,8 @@ class BaseSurface {
   /// Mean length of a patch's side, roughly.
   double patch_size() const { return patch_size_; }
 
-  /// Half of what lies between opposite parts of the surface: a relief below it does not pierce.
+  /// Returns half of the thickness between opposite parts of the surface: a relief below it does
+  /// not pierce.
   double thickness() const { return thickness_; }
 
  private:

@@ -1,4 +1,4 @@
-// Collects what a generator makes one by one into blocks for a visitor.
+// Collects the single vertices and triangles of a generator into blocks for a visitor.
 #pragma once
 
 #include "bench/generator.h"

@@ -1,6 +1,6 @@
-// Where the parts of a grid of patches lie in the pictures of a textured mesh: each patch is cut
-// into charts, squares of its cells, and these are scattered over all pictures, as photogrammetry
-// does it.
+// The places of a grid of patches in the pictures of a textured mesh: each patch is cut into
+// charts, squares of its cells, and these are scattered over all pictures, as photogrammetry does
+// it.
 #pragma once
 
 #include "bench/patch_grid.h"
@@ -13,8 +13,8 @@ namespace meshhier::bench {
 
 struct AtlasOptions {
   std::uint32_t images = 1;    ///< [1, 10000]
-  std::uint32_t side = 2048;   ///< of a picture, texels, [64, 65500]
-  std::uint32_t charts = 256;  ///< of a picture, about; [1, 65536]
+  std::uint32_t side = 2048;   ///< side of a picture, texels, [64, 65500]
+  std::uint32_t charts = 256;  ///< charts of a picture, about; [1, 65536]
   std::uint32_t gutter = 4;    ///< around a chart, texels with the colour of its border; [0, 64]
   std::uint64_t seed = 1;
 };
@@ -43,14 +43,14 @@ struct ChartPlace {
 struct PlacedChart {
   ChartCells cells;
   std::uint32_t image = 0;
-  std::uint32_t x = 0, y = 0;  ///< of its square's upper left corner, without the gutter
-  std::uint32_t side = 0;      ///< of its square, texels
+  std::uint32_t x = 0, y = 0;  ///< its square's upper left corner, without the gutter
+  std::uint32_t side = 0;      ///< side of its square, texels
   std::uint32_t turns = 0;     ///< counter-clockwise, 0 to 3
 
   TexelPlace texel_of(ChartPlace place) const;
-  /// The inverse. What is beyond the square is moved to its border.
+  /// Does the inverse. Places beyond the square are moved to its border.
   ChartPlace place_of(TexelPlace texel) const;
-  /// Whether places of a row of texels lie in a row of the chart, else in a column.
+  /// Returns whether places of a row of texels lie in a row of the chart, else in a column.
   bool rows_stay_rows() const { return turns % 2 == 0; }
 };
 
@@ -81,7 +81,7 @@ class ChartAtlas {
   std::uint32_t cells_;
   std::uint32_t charts_a_side_ = 1;
   std::uint32_t slots_a_row_ = 1;
-  std::vector<std::uint32_t> chart_in_;  ///< of each slot, picture by picture, row by row
+  std::vector<std::uint32_t> chart_in_;  ///< the chart in each slot, picture by picture, row by row
 };
 
 }  // namespace meshhier::bench

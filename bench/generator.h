@@ -40,7 +40,7 @@ class GeneratedMesh {
 
 struct SurfaceOptions {
   Shape shape = Shape::sphere;
-  /// At least so many; the next number the grid can have is taken.
+  /// At least so many triangles; the next number that the grid can have is taken.
   std::uint64_t triangles = 1'000'000;
   std::uint64_t seed = 1;
   /// The relief stays within +- this, in parts of half the shape's thickness; [0, 0.9].
@@ -61,7 +61,7 @@ struct SurfaceOptions {
 /// option that is out of range, or if 2^32 vertices are not enough.
 std::unique_ptr<GeneratedMesh> make_surface(const SurfaceOptions& options);
 
-/// A mesh in memory: the input of what follows.
+/// A mesh in memory: the input of the functions below.
 struct LoadedMesh {
   AttributeLayout attributes;
   bool double_coordinates = false;
@@ -76,20 +76,20 @@ LoadedMesh load_mesh(mesh_io::MeshSource& source);
 struct AmplifyOptions {
   int times = 1;  ///< subdivision steps, each 1:4; [0, 10]
   std::uint64_t seed = 1;
-  /// How far an edge's midpoint moves along the normal, at most, in parts of the edge's length;
+  /// The farthest that an edge's midpoint moves along the normal, in parts of the edge's length;
   /// [0, 1].
   double displacement = 0.05;
 };
 
-/// `mesh` after `times` steps: its vertices first, unchanged and in their order, then those on its
-/// edges (edges in order of appearance), then those inside its triangles. Every midpoint is shared
-/// by all triangles at its edge, so boundaries and non-manifold edges stay what they are.
+/// Returns `mesh` after `times` steps: its vertices first, unchanged and in their order, then those
+/// on its edges (edges in order of appearance), then those inside its triangles. Every midpoint is
+/// shared by all triangles at its edge, so boundaries and non-manifold edges stay what they are.
 /// Attributes are averaged; 8 and 16-bit colours rounded. Memory: that of `mesh` and 100 bytes a
 /// triangle of it. Throws Error(usage) if an option is out of range or the result has 2^32 vertices
 /// or more.
 std::unique_ptr<GeneratedMesh> amplify(LoadedMesh mesh, const AmplifyOptions& options);
 
-/// `mesh` with its vertices and its triangles in random order; corners keep their order.
+/// Returns `mesh` with its vertices and its triangles in random order; corners keep their order.
 std::unique_ptr<GeneratedMesh> shuffle(LoadedMesh mesh, std::uint64_t seed);
 
 /// Writes `mesh` as binary little endian PLY, complete or not at all; returns its bytes. Throws as

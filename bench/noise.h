@@ -39,8 +39,8 @@ struct NoiseSample {
 
 struct FractalOptions {
   std::uint64_t seed = 1;
-  double height = 1;     ///< of the first octave: its values lie in [-height, height]
-  double frequency = 1;  ///< of the first octave, in cycles per unit; doubles with every octave
+  double height = 1;     ///< height of the first octave: its values lie in [-height, height]
+  double frequency = 1;  ///< cycles per unit in the first octave; doubles with every octave
   double gain = 0.5;     ///< height of an octave relative to the one before
   int octaves = 1;       ///< 0 gives a constant 0
 };

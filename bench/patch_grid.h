@@ -35,7 +35,7 @@ class PatchGrid {
   std::uint64_t index(GridPoint point) const;
 
  private:
-  /// Which parts of a row belong to its own patch.
+  /// The parts of a row that belong to its own patch.
   struct RowParts {
     bool left = false;
     bool middle = false;

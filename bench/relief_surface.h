@@ -1,5 +1,5 @@
-// Where the vertices of a generated surface are: a base shape, cut into a grid, displaced by
-// fractal relief and by noise.
+// The vertices of a generated surface: a base shape, cut into a grid, displaced by fractal relief
+// and by noise.
 #pragma once
 
 #include "bench/base_surface.h"
@@ -25,8 +25,8 @@ struct ReliefVertex {
 /// outside.
 using CellTriangles = std::array<std::array<GridPoint, 3>, 2>;
 
-/// Whether a cell is cut from (column, row) to (column + 1, row + 1), else from (column + 1, row)
-/// to (column, row + 1). Cuts alternate, as a checkerboard: no direction is preferred.
+/// Returns whether a cell is cut from (column, row) to (column + 1, row + 1), else from (column +
+/// 1, row) to (column, row + 1). Cuts alternate, as a checkerboard: no direction is preferred.
 constexpr bool is_cut_upwards(GridPoint cell) {
   return (cell.column + cell.row) % 2 == 0;
 }

@@ -34,7 +34,7 @@ class SampleTiles {
   std::uint32_t count() const { return static_cast<std::uint32_t>(leaves_.tiles.size()); }
   const LeafTile& work(std::uint32_t partition) const { return leaves_.tiles[partition]; }
 
-  /// Where the foreign corners of a tile went: one entry per work(partition).foreign.
+  /// The places of a tile's foreign corners: one entry per work(partition).foreign.
   std::vector<GhostRef> mapped(std::uint32_t partition) const;
 
   /// The tile resolved, its ghosts filled.

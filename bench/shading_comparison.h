@@ -1,5 +1,5 @@
-// How far the shading of each level is from that of the original, in pictures (as Lindstrom & Turk,
-// Image-driven simplification, 2000, measure meshes).
+// Measures how far the shading of each level is from that of the original, in pictures (as
+// Lindstrom & Turk, Image-driven simplification, 2000, measure meshes).
 #pragma once
 
 #include "bench/level_pictures.h"
@@ -16,11 +16,11 @@ namespace meshhier::bench {
 
 struct ShadingOptions {
   std::optional<Level> level{};  ///< none: all
-  std::uint32_t size = 512;      ///< of a picture, pixels, 1 to render::kMostPixels
+  std::uint32_t size = 512;      ///< side of a picture, pixels, 1 to render::kMostPixels
   std::uint32_t views = 6;       ///< from all around, at least one
 };
 
-/// Between pictures of a level and of the original, over what both of them cover.
+/// The difference between pictures of a level and of the original, over the pixels that both cover.
 struct ShadingDifference {
   double degrees = 0;    ///< mean angle between the normals of a sample
   double luminance = 0;  ///< root mean square difference of pixels, in steps of 0 to 255
@@ -34,7 +34,7 @@ struct ShadingRow {
 };
 
 struct ShadingComparison {
-  /// Whose normals the original and the levels have: "computed", "given", or "none", facets.
+  /// The origin of normals of the original and the levels: "computed", "given", or "none", facets.
   std::string normals;
   ShadingOptions options;
   std::vector<ShadingRow> rows;

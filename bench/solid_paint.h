@@ -1,4 +1,4 @@
-// A colour for each point of space, with detail of all sizes: what pictures of generated meshes
+// A colour for each point of space, with detail of all sizes, which pictures of generated meshes
 // show.
 #pragma once
 
@@ -31,7 +31,7 @@ class SolidPaint {
   struct Wave {
     Vec3d direction;  ///< times cycles a unit
     double phase = 0;
-    std::array<float, 3> height{};  ///< of red, green and blue, in steps of 0 to 255
+    std::array<float, 3> height{};  ///< heights in red, green and blue, in steps of 0 to 255
   };
 
   std::vector<Wave> waves_;

@@ -88,7 +88,7 @@ class Splitter {
   static void add_face_colour(std::size_t triangle, std::vector<float>& channels) {
     add_colour(random_at(1, triangle), channels);
   }
-  /// By the cell of a coarse lattice that holds the triangle's first corner.
+  /// Adds a colour by the cell of a coarse lattice that holds the triangle's first corner.
   void add_patch_colour(std::size_t triangle, std::vector<float>& channels) const {
     const Vec3d p = mesh_.positions[mesh_.triangles[triangle][0]];
     std::uint64_t cell = 0;

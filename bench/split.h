@@ -16,10 +16,10 @@ struct SplitCase {
 /// In the order of the help.
 std::span<const SplitCase> split_cases();
 
-/// The same surface with its vertices split where their attributes differ, corner by corner; its
-/// own attributes go. `degrees`: of "hard_edges" and "mixed". Pure; O(t log t) in the triangles but
-/// for the triangles around a vertex, whose number counts squared. Throws Error(usage) if there is
-/// no such case.
+/// Returns the same surface with its vertices split where their attributes differ, corner by
+/// corner; its own attributes go. `degrees`: the angle of "hard_edges" and "mixed". Pure; O(t log
+/// t) in the triangles but for the triangles around a vertex, whose number counts squared. Throws
+/// Error(usage) if there is no such case.
 LoadedMesh split(const LoadedMesh& mesh, std::string_view name, double degrees);
 
 }  // namespace meshhier::bench

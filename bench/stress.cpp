@@ -25,7 +25,7 @@ std::uint32_t u32(std::uint64_t value) {
   return static_cast<std::uint32_t>(value);
 }
 
-/// In [-1, 1]^3; the item-th of the sequence that `seed` names.
+/// Returns a point in [-1, 1]^3, the item-th of the sequence that `seed` names.
 Vec3d random_point(std::uint64_t seed, std::uint64_t item) {
   const auto at = [&](std::uint64_t axis) { return signed_unit(random_at(seed, 3 * item + axis)); };
   return rounded_to_float(Vec3d{at(0), at(1), at(2)});

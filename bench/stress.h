@@ -15,15 +15,15 @@ struct StressCase {
   std::string_view what;  ///< for people
 };
 
-/// All there are.
+/// Returns all cases.
 std::span<const StressCase> stress_cases();
 
-/// The case of that name with about `size` triangles, or vertices where it has no triangles; at
-/// least the few that the case needs. A pure function of its arguments. Throws Error(usage) if
-/// there is no such case, or `size` is 2^30 or more.
+/// Returns the case of that name with about `size` triangles, or vertices where it has no
+/// triangles; at least the few that the case needs. A pure function of its arguments. Throws
+/// Error(usage) if there is no such case, or `size` is 2^30 or more.
 LoadedMesh make_stress(std::string_view name, std::uint64_t size, std::uint64_t seed = 1);
 
-/// `mesh` as it is, for write_ply().
+/// Hands out `mesh` as it is, for write_ply().
 std::unique_ptr<GeneratedMesh> as_generated(LoadedMesh mesh);
 
 }  // namespace meshhier::bench

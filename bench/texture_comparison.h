@@ -1,6 +1,6 @@
-// How far pictures of each level of a textured hierarchy are from pictures of its input, seen from
-// where the level's error is one pixel (as Lindstrom & Turk, Image-driven simplification, 2000,
-// measure meshes).
+// Measures how far pictures of each level of a textured hierarchy are from pictures of its input,
+// seen from where the level's error is one pixel (as Lindstrom & Turk, Image-driven simplification,
+// 2000, measure meshes).
 #pragma once
 
 #include "bench/level_pictures.h"
@@ -18,16 +18,16 @@ namespace meshhier::bench {
 
 struct TextureOptions {
   std::optional<Level> level{};  ///< none: all
-  std::uint32_t size = 1024;  ///< of a picture, pixels at most; of larger ones the middle is taken
-  std::uint32_t views = 6;    ///< from all around, at least one
+  std::uint32_t size = 1024;     ///< largest side of a picture, pixels; larger ones show the middle
+  std::uint32_t views = 6;       ///< from all around, at least one
 };
 
 struct TextureRow {
   Level level{};
   double error = 0;  ///< the largest of its tiles
   double texel = 0;  ///< mean side of its pictures' texels on the surface, weighted by triangles
-  double pixel = 0;  ///< what a pixel shows: the error, but no less than a texel of the input
-  std::uint32_t width = 0, height = 0;  ///< of the largest of its views
+  double pixel = 0;  ///< the length of a pixel: the error, but no less than a texel of the input
+  std::uint32_t width = 0, height = 0;  ///< size of the largest of its views
   /// Peak signal-to-noise ratio of sRGB values over all pixels that both cover whole; the least of
   /// the views, and their mean. None if they share no pixel; infinite if all are equal.
   std::optional<double> least{}, mean{};
@@ -48,8 +48,8 @@ TextureComparison compare_textures(const storage::HierarchyReader& reader,
                                    const TexturedMesh& input, const TextureOptions& options,
                                    const std::function<void(const NamedPicture&)>& sink = {});
 
-/// In decibels; none without pixels, infinite if there is no difference. Pictures of one size and 4
-/// channels.
+/// Returns decibels; none without pixels, infinite if there is no difference. Pictures of one size
+/// and 4 channels.
 std::optional<double> peak_ratio(const images::Image& a, const images::Image& b);
 
 /// A table in Markdown below a heading.

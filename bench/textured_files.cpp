@@ -125,7 +125,7 @@ class ObjFile {
   BufferedFile out_;
   const TexturedSurface& surface_;
   const Names& names_;
-  std::uint64_t material_ = 0;   ///< that is used now, plus 1
+  std::uint64_t material_ = 0;   ///< number of the material in use, plus 1
   std::uint64_t texcoords_ = 0;  ///< written before the current chart
 };
 

@@ -15,12 +15,12 @@ enum class MeshFileFormat { obj, ply };
 struct TexturedFileOptions {
   MeshFileFormat mesh = MeshFileFormat::obj;
   ImageFormat image = ImageFormat::jpeg;  ///< jpeg or png
-  int quality = 90;                       ///< of jpeg, 1 to 100
+  int quality = 90;                       ///< quality of jpeg, 1 to 100
 };
 
 struct TexturedFileSizes {
   std::uint64_t mesh_bytes = 0;
-  std::uint64_t image_bytes = 0;  ///< of all pictures
+  std::uint64_t image_bytes = 0;  ///< bytes of all pictures
 };
 
 /// Beside "NAME.obj" there are NAME.mtl and NAME_0000.jpg, NAME_0001.jpg ... The mesh comes last.

@@ -22,8 +22,8 @@ struct ShownMaterial {
 
 struct TexturedMesh {
   std::vector<Vec3f> positions;
-  std::vector<Vec2f> texcoords;            ///< of vertices, v from above
-  std::vector<std::uint32_t> material_of;  ///< of vertices; equal at the corners of a triangle
+  std::vector<Vec2f> texcoords;            ///< per vertex, v from above
+  std::vector<std::uint32_t> material_of;  ///< per vertex; equal at the corners of a triangle
   std::vector<Triangle<std::uint32_t>> triangles;
   std::vector<ShownMaterial> materials;
 

@@ -1,4 +1,4 @@
-// A generated surface with charts and pictures: what a textured scan looks like.
+// A generated surface with charts and pictures, like a textured scan.
 #pragma once
 
 #include "bench/chart_atlas.h"
