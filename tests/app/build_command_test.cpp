@@ -29,7 +29,7 @@ TEST_F(CommandLine, BuildMakesAHierarchyAndNothingElse) {
 }
 
 TEST_F(CommandLine, SLOW_ManyTilesAreInSeveralDirectories) {
-  constexpr int kVertices = 40'004;  // of a strip, four a partition
+  constexpr int kVertices = 40'004;  // vertices of a strip, four a partition
   std::string mesh =
       "ply\nformat ascii 1.0\nelement vertex 40004\nproperty float x\nproperty float y\nproperty "
       "float z\n"

@@ -1,4 +1,4 @@
-// What a build is given: meshes, configs, settings, and files that they name.
+// Inputs of a build: meshes, configs, settings, and files that they name.
 #include "tests/app/command_line.h"
 #include "tests/support/gzip.h"
 

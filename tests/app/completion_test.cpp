@@ -35,7 +35,7 @@ using ::testing::StartsWith;
 using Path = std::filesystem::path;
 using Lines = std::vector<std::string>;
 
-/// What a shell command prints.
+/// Returns the output of a shell command.
 std::string output_of(const std::string& command) {
   std::FILE* pipe = ::popen(command.c_str(), "r");
   std::string text;

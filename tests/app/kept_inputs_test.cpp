@@ -29,8 +29,8 @@ struct Argument {
   bool is_positional() const { return !name.starts_with('-'); }
 };
 
-/// What stands behind options, by whether it names a file that is read. A type that is in neither
-/// list has to be put into one, and, if it is a file, into file_use_of().
+/// Words that stand behind options, by whether they name a file that is read. A type that is in
+/// neither list has to be put into one, and, if it is a file, into file_use_of().
 const std::set<std::string> kReadTypes{"FILE", "DIR", "LINE|@FILE"};
 const std::set<std::string> kOtherTypes{"",
                                         "SIZE",

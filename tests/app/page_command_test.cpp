@@ -35,7 +35,7 @@ class CommandLinePage : public CommandLine {
     arguments.insert(arguments.end(), {"--viewer", viewer().string()});
     return run(arguments);
   }
-  /// What is in a page's script element.
+  /// Returns the JSON in a page's script element.
   static nlohmann::json embedded(const Path& file) {
     const std::string text = text_of(file);
     const std::size_t begin = text.find('{'), end = text.find("\n</script>", begin);

@@ -61,7 +61,7 @@ struct Outcome {
   std::string messages;
 };
 
-/// What it prints is kept in `folder`, or what it prints on standard output in the file `out`.
+/// Runs the program. Its output is kept in `folder`, or that on standard output in the file `out`.
 inline Outcome run_program(const Arguments& arguments, const Path& folder,
                            const std::string& out = "", const char* program = MESHHIER_BINARY) {
   const std::string out_path = out.empty() ? (folder / "out").string() : out;

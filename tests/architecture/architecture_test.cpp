@@ -532,7 +532,7 @@ const std::map<std::string, std::string>& standard_headers() {
   return headers;
 }
 
-/// What a file includes, and what the files do that it includes, by name.
+/// The files that a file includes, itself or by others, by name.
 class Reach {
  public:
   explicit Reach(const std::vector<Source>& all) {
@@ -605,7 +605,8 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// What a file declares itself: types, also within others, and parameters of templates.
+/// Returns the names that a file declares itself: types, also within others, and parameters of
+/// templates.
 std::set<std::string> types_declared_in(const Source& source) {
   std::set<std::string> types;
   for (const std::string& line : source.lines) {

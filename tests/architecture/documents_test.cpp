@@ -1,4 +1,4 @@
-// What documents name is there: files, folders and headings.
+// Tests that files, folders and headings that documents name are there.
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -14,7 +14,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-/// Of noisy tiles, so that stars are no discs, too, and normals have creases.
+/// Makes a noisy tile, so that some stars are no discs, and normals have creases.
 BuildTile rough_tile(std::size_t triangles) {
   return tests::tile_of(tests::torus(triangles, 0.6F / static_cast<float>(std::sqrt(triangles))));
 }
@@ -28,7 +28,7 @@ std::size_t allocations_of(const std::function<void()>& work) {
 /// Arrays that grow by halves or doubles are asked for some times more; nothing else may be.
 void expect_as_many(const std::function<void(const BuildTile&)>& work) {
   const BuildTile small = rough_tile(4'000), large = rough_tile(32'000);
-  work(small);  // what is made once
+  work(small);  // some memory is taken once
   const std::size_t of_small = allocations_of([&] { work(small); });
   const std::size_t of_large = allocations_of([&] { work(large); });
   EXPECT_GT(of_small, 0U);

@@ -223,7 +223,8 @@ TEST(ClusterTest, AttributesAreMeansOverTheOriginalVertices) {
   ASSERT_EQ(values.size(), expected.size());
   for (const std::size_t k : {0U, 1U, 2U, 6U, 7U, 8U})
     EXPECT_NEAR(values[k], expected[k], 1e-5) << "channel " << k;
-  for (std::size_t k = 3; k < 6; ++k) {  // of light, which is more than the mean of the numbers
+  // The mean is one of light, which is more than that of the numbers.
+  for (std::size_t k = 3; k < 6; ++k) {
     const std::span<const float> all = tile.mesh.vertices.attributes;
     const double mean = (3 * light_of(all[k] / 255.0) + light_of(all[9 + k] / 255.0)) / 4;
     EXPECT_NEAR(light_of(values[k] / 255.0), mean, 1e-6) << "channel " << k;

@@ -63,7 +63,7 @@ std::vector<std::uint32_t> turning(const Star& star, double cosine) {
 }
 
 constexpr double kLimit = 0.2;      // about 78 degrees
-constexpr double kDoubtful = 1e-4;  // of cosines: rounding may tell either way
+constexpr double kDoubtful = 1e-4;  // cosines so near each other may be told either way by rounding
 
 bool is_doubtful(const Star& star) {
   return turning(star, kLimit - kDoubtful) != turning(star, kLimit + kDoubtful);

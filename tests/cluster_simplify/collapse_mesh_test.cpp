@@ -96,7 +96,7 @@ std::vector<std::uint32_t> counts_of(const CollapseMesh& mesh) {
   return counts;
 }
 
-/// What a disc may collapse as.
+/// The ways in which stars may collapse.
 enum class Way { disc, anything };
 
 /// Collapses one edge; returns which were reported gone, in the order of the reports.
@@ -145,7 +145,8 @@ void expect_fans_gathered(CollapseMesh& mesh, const Reference& reference) {
   }
 }
 
-/// Of a triangle left, the edge from corner k to the next is what its face says.
+/// Expects of each triangle that is left that its face names the edge from corner k to the next
+/// one.
 void expect_sides_named(const CollapseMesh& mesh) {
   for (std::uint32_t t = 0; t < mesh.faces().size(); ++t) {
     const auto& [corners, edges] = mesh.faces()[t];

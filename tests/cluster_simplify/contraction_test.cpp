@@ -267,7 +267,7 @@ TEST(ContractTest, TheOrderOfTheTrianglesHardlyMovesKdCells) {
 TEST(ContractTest, CollapsesComeCloserThanCellsAtEqualCount) {
   const BuildTile tile = tests::tile_of(tests::torus(9600));
   const auto worst = [&](const ContractionOptions& options) {
-    double result = 0;  // of the triangles' centres from the torus
+    double result = 0;  // distance of the triangles' centres from the torus
     const tests::TestMesh image = tests::image_of(tile, contract(tile, 400, {}, options));
     for (const tests::MeshTriangle& t : image.triangles) {
       Vec3d c{};

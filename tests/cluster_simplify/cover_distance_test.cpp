@@ -18,9 +18,9 @@ namespace {
 using tests::Corners;
 
 constexpr int kCoverDistanceSteps = 24;
-constexpr double kCoverDistanceSlack = 1e-12;  // of sums in double precision near one
+constexpr double kCoverDistanceSlack = 1e-12;  // rounding of sums in double precision near one
 
-/// What the header promises where pieces suffice.
+/// The header's promise where pieces suffice.
 constexpr double kTight = 1.25;
 
 Vec3d random_point(std::uint64_t index, std::uint64_t stream = 1) {

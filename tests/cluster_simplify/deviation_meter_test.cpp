@@ -26,7 +26,7 @@ using tests::samples_of;
 using tests::surface_of;
 
 constexpr int kDeviationMeterSteps = 4;
-constexpr double kDeviationMeterSlack = 1e-6;  // of places in single precision near one
+constexpr double kDeviationMeterSlack = 1e-6;  // rounding of places in single precision near one
 
 /// Closed, open, folded, with pieces that meet in edges and points, without area.
 std::vector<tests::NamedMesh> metered_meshes() {

@@ -259,7 +259,7 @@ TEST(EdgeCollapseTest, ColoursOfAScreenAreMixedAsLight) {
   for (std::uint32_t v = 0; v < 40; ++v) {
     const auto colour = found.representatives.attributes_of(v);
     light += light_of(colour[0] / 255.0) / 40;
-    ASSERT_EQ(colour[1], 124);  // what is equal stays so, bit for bit
+    ASSERT_EQ(colour[1], 124);  // equal ones stay so, bit for bit
   }
   EXPECT_NEAR(light, 0.5, 0.15);  // half of the numbers' range would be 0.21
 }

@@ -108,7 +108,7 @@ void expect_at_edge(const EdgeStar& star) {
   }
 }
 
-/// What a disc promises.
+/// Checks the promises of a disc.
 void expect_disc(const CollapseMesh& mesh, const EdgeStar& star, LinkCondition& link) {
   ASSERT_EQ(link.change(mesh, star.from(), star.to(), star.around_from(), star.around_to()),
             TopologyChange::none);
@@ -239,7 +239,7 @@ TEST(EdgeStarTest, ADiscHasNoMoreTrianglesThanThereIsRoomFor) {
 }
 
 TEST(EdgeStarTest, TwoRingsAtAnEndAreNoDisc) {
-  // Of the same size, too: going around the one twice comes as far.
+  // Both may have the same size, too: going around the one twice comes as far.
   for (const std::uint32_t spokes : {3U, 4U, 5U, 8U}) {
     TestMesh mesh = bipyramid(4);
     const auto base = tests::count_of(mesh.positions);
@@ -266,7 +266,7 @@ TEST(EdgeStarTest, SheetsBackToBackAreNoDisc) {
 }
 
 TEST(EdgeStarTest, IsSeenFromItsPlace) {
-  EdgeStar star;  // what larger ones leave behind must not be seen
+  EdgeStar star;  // remains of larger ones must not be seen
   for (std::uint32_t step = 0; step < 50; ++step) {
     const std::uint32_t size = 4 + step * 11 % 25;
     const tests::Star round =

@@ -44,7 +44,7 @@ TEST(LabelBorders, AreHeldOnBothSides) {
   const BuildTile tile = labelled_grid();
   const TileWedges wedges(tile.mesh);
   const std::vector<PlaceEdge> borders = label_borders(wedges, kLabelled);
-  EXPECT_EQ(borders.size(), 40U);  // of x = 10 and of x = 11
+  EXPECT_EQ(borders.size(), 40U);  // those at x = 10 and at x = 11
   EXPECT_TRUE(std::ranges::is_sorted(borders));
   for (const auto& [a, b] : borders) {
     const float x = tile.mesh.vertices.positions[a].x;

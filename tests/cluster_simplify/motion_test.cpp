@@ -26,9 +26,10 @@ using tests::samples_of;
 using tests::surface_of;
 
 constexpr int kMotionSteps = 4;
-constexpr double kMotionSlack = 1e-6;  // of single precision, of the size of the meshes
+constexpr double kMotionSlack = 1e-6;  // rounding of single precision at the size of the meshes
 
-/// What the triangles around each representative may have deviated, as neighbours will see it.
+/// Returns how far the triangles around each representative may have deviated, as neighbours will
+/// see it.
 double deviation_of(const Contraction& contraction, const tests::MeshTriangle& t) {
   double deviation = std::numeric_limits<double>::infinity();
   for (const std::uint32_t v : t) {
@@ -232,7 +233,7 @@ TEST(LostPiecesTest, ALonePieceIsLost) {
   EXPECT_GE(found.deviation.lost, 3.5);
   EXPECT_LE(found.deviation.lost, 6.5);
   const auto count = static_cast<double>(mesh.positions.size());
-  EXPECT_GE(found.deviation.mean_square * count, 3 * 3.5 * 3.5);  // of its three vertices
+  EXPECT_GE(found.deviation.mean_square * count, 3 * 3.5 * 3.5);  // for its three vertices
   EXPECT_LE(found.deviation.mean_square * count, 3 * 6.5 * 6.5);
   expect_deviation_holds(tile, found);
 }
@@ -284,7 +285,8 @@ TEST(MotionTest, APieceInOnePlaceIsLost) {
   contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
   const Deviation deviation = motion_of(tile, contraction);
   EXPECT_FLOAT_EQ(deviation.around[4], 1);
-  EXPECT_DOUBLE_EQ(deviation.mean_square * 7, 4 + 5 + 9);  // of (3, 0, 0), (3, 1, 0), (4, 0, 0)
+  // By (3, 0, 0), (3, 1, 0), (4, 0, 0).
+  EXPECT_DOUBLE_EQ(deviation.mean_square * 7, 4 + 5 + 9);
   EXPECT_FLOAT_EQ(deviation.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
   expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }

@@ -26,7 +26,7 @@ using tests::samples_of;
 using tests::surface_of;
 
 constexpr int kSteps = 4;
-constexpr double kSlack = 1e-5;  // of single precision, meshes being about 2 in size
+constexpr double kSlack = 1e-5;  // rounding of single precision, as meshes are about 2 in size
 
 using ContractTile = std::function<Contraction(const BuildTile&, std::uint32_t tile)>;
 
@@ -182,7 +182,8 @@ bool is_lowest(const TileMesh& mesh, std::uint32_t tile, const TileTriangle& t) 
       t, [&](TileVertex v) { return mesh.is_own(v) || mesh.ghost(v).tile > tile; });
 }
 
-/// What is drawn is as near to what was there as its tile says, and the other way as all tiles say.
+/// Expects the drawn surface to be as near to the one before as its tile says, and that one to the
+/// drawn one as all tiles say.
 void expect_step_holds(const Level& level) {
   const std::vector<Corners> before = level.before();
   const std::vector<Corners> after = level.after();

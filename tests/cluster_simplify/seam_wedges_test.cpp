@@ -131,7 +131,7 @@ WedgeWorld make_world(const tests::TestMesh& mesh, bool scattered) {
   return world;
 }
 
-/// What a tile shows: its own places, [0, count) of them, and their copies.
+/// Returns the boundary that a tile shows: its own places, [0, count) of them, and their copies.
 Boundary shown(const WedgeWorld& world, std::uint32_t tile, std::uint32_t count) {
   Boundary boundary;
   boundary.vertices.channels = boundary.copies.vertices.channels = 1;
@@ -246,7 +246,7 @@ Placed placed_pair(const WedgeWorld& world, const TileMesh& mesh, std::uint32_t 
 /// `tiles`: which the tile stands for.
 void expect_copies(const Placed& placed, const std::set<std::uint32_t>& tiles) {
   const TileMesh& mesh = placed.mesh;
-  std::set<Corner> expected;  // of the world
+  std::set<Corner> expected;  // those of the world
   for (const std::uint32_t place : placed.own) {
     for (std::uint32_t k = 1; k <= WedgeWorld::copies_at(place); ++k)
       expected.insert({place, k});
@@ -392,7 +392,7 @@ std::vector<NewTriangle> normalized(std::vector<NewTriangle> triangles, bool of_
   return triangles;
 }
 
-/// Of a tile after a contraction; tiles count from 1.
+/// Returns the triangles of a tile after a contraction; tiles count from 1.
 std::vector<NewTriangle> triangles_of(const SimplifiedTile& tile,
                                       std::span<const TileTriangle> triangles,
                                       std::span<const CornerWedges> wedges) {
@@ -414,7 +414,7 @@ std::vector<NewTriangle> triangles_of(const SimplifiedTile& tile,
   return result;
 }
 
-/// What a joined tile's triangles become by the maps of its contraction.
+/// Returns the images of a joined tile's triangles by the maps of its contraction.
 std::vector<NewTriangle> images(const Placed& joined, const ContractedTile& contracted,
                                 std::span<const TileTriangle> triangles,
                                 std::span<const CornerWedges> wedges, bool of_places) {
@@ -480,7 +480,7 @@ TEST(SeamWedgesTest, AContractedTileNamesTheWedgesThatStandForTheOldOnes) {
       const TileMesh& mesh = joined.mesh;
       EXPECT_EQ(triangles_of(tile, tile.interior, tile.interior_wedges),
                 images(placed, result, mesh.interior, mesh.interior_wedges, true));
-      // Of border triangles that differ by wedges, resolve() keeps one.
+      // resolve() keeps one of border triangles that differ by wedges.
       EXPECT_EQ(triangles_of(tile, tile.border, tile.border_wedges),
                 images(placed, result, mesh.border, mesh.border_wedges, false));
     }

@@ -23,7 +23,7 @@ enum class StarShape {
 
 struct StarRelief {
   std::string name;
-  double noise = 0;   ///< of heights; rings are about 2 in radius
+  double noise = 0;   ///< noise of heights; rings are about 2 in radius
   double crease = 0;  ///< height is that times |x + y / 2|
   double bowl = 0;    ///< height is that times the squared distance from the middle
 };
@@ -95,7 +95,7 @@ struct Looseness {
   double mean = 0;
 };
 
-/// Of the stars of seeds 0, 1, ... below `seeds`, none of them deviated.
+/// Returns the looseness of the stars of seeds 0, 1, ... below `seeds`, none of them deviated.
 Looseness looseness_of(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
                        const MeasureStar& measure);
 

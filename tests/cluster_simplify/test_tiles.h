@@ -64,13 +64,13 @@ std::vector<NamedMesh> nasty_meshes();
 /// after each of many collapses.
 std::vector<NamedMesh> small_meshes();
 
-/// What a contraction makes of a tile: interior and border triangles, ghosts after the
+/// Returns what a contraction makes of a tile: interior and border triangles, ghosts after the
 /// representatives; degenerate ones are gone, of equal ones one is left.
 TestMesh image_of(const BuildTile& tile, const cluster_simplify::Contraction& contraction);
 
 double distance(Vec3f a, Vec3f b);
 
-/// Of all `points` the least distance to `p`; infinite if there are none.
+/// Returns the least distance of `points` to `p`; infinite if there are none.
 double distance_to_nearest(Vec3f p, const std::vector<Vec3f>& points);
 
 /// Its length is twice the triangle's area.

@@ -27,7 +27,7 @@ std::vector<float> attributes_of(const WedgeMesh& mesh, std::uint32_t v) {
 struct Places {
   std::vector<std::vector<std::uint32_t>> vertices;
   std::uint32_t own_count = 0;
-  std::vector<std::uint32_t> place_of, wedge_of;  ///< of each vertex
+  std::vector<std::uint32_t> place_of, wedge_of;  ///< per vertex
 };
 
 Places places_of(const WedgeMesh& mesh, float limit) {

@@ -24,7 +24,7 @@ struct WedgeMesh {
   std::uint32_t add(Vec3f position, const std::vector<float>& vertex_attributes);
 };
 
-/// What each corner of a triangle gets.
+/// Returns the attributes that each corner of a triangle gets.
 using CornerAttributes = std::function<std::vector<float>(std::uint32_t triangle, Vec3f position)>;
 
 /// Each corner its own vertex.

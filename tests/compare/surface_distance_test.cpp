@@ -210,8 +210,8 @@ Numbers sorted_numbers(const std::vector<SurfaceTriangle>& triangles) {
   return numbers;
 }
 
-/// What a cut must show: the image of every original triangle under the sample's maps, duplicates
-/// once unless they are the input's own.
+/// Returns the triangles that a cut must show: the image of every original triangle under the
+/// sample's maps, duplicates once unless they are the input's own.
 std::vector<SurfaceTriangle> image_of(tests::Sample& sample, const Cut& cut) {
   using Key = std::array<std::pair<std::size_t, std::uint32_t>, 3>;  // node in the cut, vertex
   std::set<Key> seen;

@@ -100,7 +100,7 @@ Vec3d apply(const Transform& m, Vec3d p) {
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
 }
 
-/// Of easting 500000, northing 5300000, height 300 in EPSG:32633, by cs2cs.
+/// The place of easting 500000, northing 5300000, height 300 in EPSG:32633, by cs2cs.
 constexpr Vec3d kPlace{4141912.5553, 1109822.1243, 4706171.9180};
 const std::string kCrs = R"("crs": "EPSG:32633", "offset": [500000, 5300000, 200])";
 
@@ -126,7 +126,7 @@ TEST(PlacementTransform, IsExactAtTheAnchorThatIsAskedFor) {
   EXPECT_LT(length(apply(anchored, {0, 0, 100}) - kPlace), 1e-3);
 }
 
-// What is y-up is turned first, as viewers turn it: (x, y, z) is at (x, -z, y).
+// A y-up mesh is turned first, as viewers turn it: (x, y, z) is at (x, -z, y).
 TEST(PlacementTransform, TurnsWhatIsYUp) {
   const BoundsD box = box_to({-200, 90, -100}, {200, 110, 300});
   const Config y_up = placed(kCrs + R"(, "anchor": [0, 100, 0])", R"("up": "y")");

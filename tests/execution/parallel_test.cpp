@@ -159,7 +159,7 @@ TEST(OrderedForTest, ACancelledJobStopsSoon) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::interrupted);
   }
-  EXPECT_LE(started, 10U + 2 * 4U);  // what was in flight, and what had been let in by then
+  EXPECT_LE(started, 10U + 2 * 4U);  // those in flight, and those that had been let in by then
 }
 
 struct Number {

@@ -42,8 +42,8 @@ std::vector<nlohmann::json> json_lines(const std::string& text) {
   return lines;
 }
 
-/// What a terminal shows: "\r" goes back to the start of the line, later letters replace earlier
-/// ones.
+/// Returns the lines that a terminal shows: "\r" goes back to the start of the line, later letters
+/// replace earlier ones.
 std::vector<std::string> on_terminal(const std::string& text) {
   std::vector<std::string> lines{""};
   std::size_t column = 0;

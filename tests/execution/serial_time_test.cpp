@@ -17,7 +17,7 @@ void compute(double seconds) {
   }
 }
 
-/// What a call takes of it.
+/// Returns the serial time that a call takes.
 template <class Call>
 double serial_part(const Call& call) {
   const double before = serial_seconds();

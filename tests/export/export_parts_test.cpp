@@ -287,7 +287,7 @@ TEST_F(ExportPartsTest, AnObjShowsTheSurfaceOfThePly) {
   }
 }
 
-/// What a tile of a cut of its own level shows of its interior, with texture coordinates.
+/// Returns the interior triangles of a tile of a cut of its own level, with texture coordinates.
 std::vector<Facet> textured_interior(const PublishedTile& tile) {
   std::vector<Facet> facets;
   const std::size_t vertices = tile.mesh.vertices.size() + tile.mesh.copies.size();

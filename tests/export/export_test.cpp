@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using tests::node;
 
-/// What a mesh file holds; coordinates as doubles, exact for both widths.
+/// The content of a mesh file; coordinates as doubles, exact for both widths.
 struct Loaded {
   std::vector<Vec3d> positions;
   std::vector<float> attributes;
@@ -229,8 +229,8 @@ TEST_F(ExportTest, AnErrorIsTheCutOfTheCoarsestTilesThatAllowIt) {
   EXPECT_EQ(surface(coarsest), surface(load(*files_, output())));
 }
 
-/// Of the part of a triangle that lies in a box, by its own way: the polygon's corners, one side
-/// after the other.
+/// Returns the area of the part of a triangle that lies in a box, by its own way: the polygon's
+/// corners, one side after the other.
 double area_in(std::vector<Vec3d> polygon, const BoundsD& box) {
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
@@ -348,7 +348,7 @@ TEST_F(ExportBoxTest, TheBoxOfAllIsTheMesh) {
 
 using Place = std::array<double, 3>;
 
-/// Of kSomeBox, as floats have it.
+/// Returns whether both places lie on a side of kSomeBox, as floats have it.
 bool is_on_side(const Place& a, const Place& b) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {kSomeBox.min[axis], kSomeBox.max[axis]}) {

@@ -88,7 +88,7 @@ class PageTest : public testing::Test {
     return nlohmann::json::parse(text.substr(begin, text.find("\n</script>", begin) - begin));
   }
 
-  /// What a page has, as files of a hierarchy; returns the tiles.
+  /// Writes the files in a page as those of a hierarchy; returns the tiles.
   std::vector<NodeId> unpack() {
     files_->remove_all(unpacked());
     std::vector<NodeId> tiles;

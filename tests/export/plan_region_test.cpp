@@ -29,7 +29,8 @@ double twice_area(PlanPoint a, PlanPoint b, PlanPoint c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Of the part of one triangle that lies in another one, by clipping at its sides; positive.
+/// Returns the area of the part of one triangle that lies in another one, by clipping at its sides;
+/// positive.
 double common_area(std::vector<PlanPoint> polygon, std::array<PlanPoint, 3> in) {
   if (twice_area(in[0], in[1], in[2]) < 0)
     std::swap(in[1], in[2]);
@@ -54,7 +55,8 @@ double common_area(std::vector<PlanPoint> polygon, std::array<PlanPoint, 3> in) 
   return std::abs(twice) / 2;
 }
 
-/// Of the part of a triangle in a polygon without crossings: rings as sums of signed triangles.
+/// Returns the area of the part of a triangle in a polygon without crossings: rings as sums of
+/// signed triangles.
 double area_in(const PlanPolygon& polygon, const std::array<PlanPoint, 3>& triangle) {
   double area = 0;
   for (const PlanRing& ring : polygon) {
@@ -123,7 +125,7 @@ const PlanPolygon kComb{{{0, 0},
 
 class Chance {
  public:
-  /// Of a coarse lattice, so that corners meet borders and corners, or anywhere.
+  /// Returns a coordinate on a coarse lattice, so that corners meet borders and corners, or any.
   double coordinate(bool on_lattice) {
     const double number = std::uniform_real_distribution<double>(-1, 9)(engine_);
     return on_lattice ? std::round(number * 2) / 2 : number;

@@ -53,7 +53,8 @@ void check_config(const Config& config) {
   require(config.outline.tolerance > 0 && config.outline.tolerance <= 1, "tolerance is in range");
 }
 
-/// What decides the result, written as the manifest does and read again, decides the same result.
+/// Settings that decide the result, written as the manifest does and read again, decide the same
+/// result.
 void check_resolved(const Config& config) {
   nlohmann::ordered_json resolved = config::resolved_json(config);
   nlohmann::ordered_json document = resolved;

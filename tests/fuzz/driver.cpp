@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-/// What escapes from the body ends the process, and libFuzzer keeps the input.
+/// An exception that escapes from the body ends the process, and libFuzzer keeps the input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   meshhier::tests::fuzz::MESHHIER_FUZZ_TARGET(std::as_bytes(std::span(data, size)));
   return 0;

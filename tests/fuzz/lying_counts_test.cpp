@@ -299,7 +299,7 @@ TEST(LyingCounts, OfAnArchiveTakeNoMemory) {
   }
 }
 
-/// What the others rely on.
+/// The other tests rely on this.
 TEST(LyingCounts, MemoryThatIsTakenIsCounted) {
   const std::size_t before = taken_bytes();
   const std::vector<std::byte> bytes(kBuffers);

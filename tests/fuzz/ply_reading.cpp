@@ -67,7 +67,7 @@ void check_triangles(const MeshDescription& mesh, const PlyReading& reading) {
   require(reading.triangles.size() <= mesh.file_bytes, "no triangle without a byte");
 }
 
-/// What was handed out before a refusal means nothing.
+/// Blocks that were handed out before a refusal mean nothing.
 template <class Read>
 void read_vertices(MeshSource& source, PlyReading& reading, const Read& read) {
   const MeshDescription& mesh = source.description();
@@ -102,7 +102,7 @@ void stream_triangles(MeshSource& source, PlyReading& reading) {
                  [&](const auto& visit) { reading.counts = source.read_triangles(visit); });
 }
 
-/// Of several blocks that are refused the first one is told, as the stages do.
+/// Tells of the first one of several blocks that are refused, as the stages do.
 template <class Visit>
 void block_vertices(const MeshSource& source, const Visit& visit) {
   const std::uint64_t count = source.vertex_blocks();

@@ -42,7 +42,7 @@ TEST_P(FuzzReplay, NothingEscapes) {
 INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, testing::ValuesIn(kTargets),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// What an input may hold beside what the corpora have: nothing, and nothing but zeros.
+/// Inputs that the corpora do not have: nothing, and nothing but zeros.
 TEST(FuzzReplayTest, EveryTargetTakesEmptyInputs) {
   for (const Target& target : kTargets) {
     for (const std::size_t size : {0, 1, 12, 100}) {

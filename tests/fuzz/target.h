@@ -1,4 +1,4 @@
-// What the bodies of the fuzz targets share: promises, refusals, and bytes as numbers.
+// The common parts of the fuzz targets' bodies: promises, refusals, and bytes as numbers.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -33,8 +33,8 @@ void require_message(std::string_view message, std::string_view start);
 std::string_view text_of(Bytes bytes);
 Bytes bytes_of(std::string_view text);
 
-/// What `read` refuses the input with; empty if it does not. It may throw Error with one of
-/// `codes` and a message that begins with `start`, and nothing else.
+/// Returns the message by which `read` refuses the input; empty if it does not. It may throw Error
+/// with one of `codes` and a message that begins with `start`, and nothing else.
 template <class Read>
 std::string refusal(std::initializer_list<ErrorCode> codes, std::string_view start,
                     const Read& read) {

@@ -324,7 +324,7 @@ void check_written(const PublishedTile& tile, const Place& place) {
 
 }  // namespace
 
-/// Of most types, and one that no float holds.
+/// Adds values of most types, and one that no float holds.
 void add_values(TileFormat& format) {
   format.attributes.values = {{"quality", ValueType::f32},
                               {"object", ValueType::i32, true},

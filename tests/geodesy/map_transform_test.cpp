@@ -77,7 +77,7 @@ TEST(MapTransform, TheLargestErrorIsThatOfTheWorstCorner) {
               length(apply(m, worst) - projection.to_geocentric(worst + place.map)), 1e-4);
 }
 
-// What a placement by longitude and latitude has not: at the zone's edge it is 39 m off at 1 km.
+// A placement by longitude and latitude does not turn: at the zone's edge it is 39 m off at 1 km.
 TEST(MapTransform, TurnsByTheConvergenceAndScales) {
   const Place middle = places()[0], edge = places()[4];
   const auto east_of = [](const MapProjection& projection, Vec3d map) {

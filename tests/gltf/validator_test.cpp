@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNotInstalled = 77;  // what validate.mjs exits with
-constexpr int kNoCommand = 127;    // what the shell exits with
+constexpr int kNotInstalled = 77;  // the exit status of validate.mjs
+constexpr int kNoCommand = 127;    // the exit status of the shell
 
 /// A directory of files for the scripts.
 class GltfFiles : public testing::Test {

@@ -124,7 +124,7 @@ TEST(ValueMixer, OfManyLabelsItIsTheOneOfMostWeightToo) {
 }
 
 TEST(ValueMixer, VeryManyDifferentLabelsTakeNoSquareOfThem) {
-  constexpr int kCount = 300'000;  // of which the square would take a minute
+  constexpr int kCount = 300'000;  // its square would take a minute
   std::vector<std::vector<float>> vertices;
   for (int i = 0; i < kCount; ++i)
     vertices.push_back(vertex(1, 1, kCount - i));

@@ -13,7 +13,7 @@
 namespace meshhier::tests {
 namespace {
 
-// What names a vertex of another tile is told apart by its type.
+// Names of vertices of other tiles have types of their own.
 template <class From, class To>
 constexpr bool kMixes = std::is_convertible_v<From, To> || std::is_assignable_v<To&, From>;
 static_assert(!kMixes<GhostRef, FinerGhost> && !kMixes<FinerGhost, GhostRef>);

@@ -17,7 +17,7 @@ TileCorners corners(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
 }
 
-// Of different ids they are different types.
+// Triangles of different ids are different types.
 static_assert(!std::is_convertible_v<Triangle<TileVertex>, Triangle<VertexId>>);
 static_assert(!std::is_convertible_v<Triangle<TileVertex>, Triangle<std::uint32_t>>);
 // Spools and files hold them as they are.

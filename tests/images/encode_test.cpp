@@ -1,4 +1,4 @@
-// What encode_image() makes.
+// Tests of encode_image().
 #include "images/image_codec.h"
 #include "tests/images/samples.h"
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-/// Of libwebp: which instructions a processor has, by their numbers.
+/// A function of libwebp: it tells which instructions a processor has, by their numbers.
 extern "C" int (*VP8GetCPUInfo)(int feature);
 
 namespace meshhier::images {

@@ -44,7 +44,7 @@ std::size_t size_in_jpeg(const Bytes& bytes, std::byte frame) {
   return static_cast<std::size_t>(found - bytes.begin()) + 5;
 }
 
-/// Of the bytes, as PNG has it (CRC-32).
+/// Returns the checksum of bytes, as PNG has it (CRC-32).
 std::uint32_t crc(const Bytes& bytes, std::size_t from, std::size_t count) {
   std::uint32_t sum = ~0U;
   for (std::size_t i = from; i < from + count; ++i) {

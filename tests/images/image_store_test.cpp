@@ -80,7 +80,7 @@ std::int64_t wrapped(std::int64_t x, std::int64_t side, Wrap wrap) {
   return place < side ? place : period - 1 - place;
 }
 
-/// What a rectangle shows of a picture, texel by texel.
+/// Returns the part of a picture that a rectangle shows, texel by texel.
 Image shown(const Image& image, const TexelRect& rect, std::uint32_t channels) {
   Image into(rect.width, rect.height, channels);
   for (std::uint32_t y = 0; y < rect.height; ++y) {
@@ -224,7 +224,7 @@ TEST_F(ImageStoreTest, RealPicturesAreWhatTheyAreInMemory) {
   }
 }
 
-/// Of many rectangles.
+/// Reads many rectangles.
 std::vector<Image> read_many(const ImageStore& store) {
   std::vector<Image> images;
   for (std::uint32_t i = 0; i < 300; ++i) {

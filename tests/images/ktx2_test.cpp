@@ -22,7 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of all channels of all texels.
+/// Returns the root mean square over all channels of all texels.
 double rms(const Image& a, const Image& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.texels.size(); ++i)
@@ -30,7 +30,7 @@ double rms(const Image& a, const Image& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
-/// What a photograph is like to a coder: every texel is near its neighbours.
+/// Returns a picture that is like a photograph to a coder: every texel is near its neighbours.
 Image smooth(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
   Image image(width, height, channels);
   for (std::uint32_t y = 0; y < height; ++y) {
@@ -97,7 +97,7 @@ TEST_F(Ktx2Test, AllThreadsWriteTheSameBytes) {
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < files.size(); ++i)
     threads.emplace_back([&, i] {
-      if (i % 2 == 0)  // what a coder had before decides nothing
+      if (i % 2 == 0)  // the pictures that a coder had before decide nothing
         encode_image(smooth(32, 64, 4), ImageFormat::ktx2, 30);
       files[i] = encode_image(image, ImageFormat::ktx2, 90);
     });

@@ -109,7 +109,7 @@ TEST_P(PngKindTest, PalettesWithAlphaAndWithout) {
   }
 }
 
-/// Of 16 bits all count: 0x0102 is not 0x0103.
+/// All of 16 bits count: 0x0102 is not 0x0103.
 TEST_P(PngKindTest, OneColourMayBeTransparent) {
   const std::vector<std::uint8_t> row{1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 3};
   const Image image = decoded(png_file(2, 1, {2, 16, GetParam(), {}, {1, 2, 1, 2, 1, 2}}, row));

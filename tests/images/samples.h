@@ -22,10 +22,10 @@ Image noise(std::uint32_t width, std::uint32_t height, std::uint32_t channels = 
             std::uint32_t seed = 1);
 
 struct JpegKind {
-  int components = 3;        ///< of what is stored: 1, 3 or 4
-  bool separate = false;     ///< colours as they are, without YCC
-  bool adobe = false;        ///< of 4 components: Adobe's mark, which says that values are inverted
-  int factor = 1;            ///< of luma's samples in both directions
+  int components = 3;     ///< components that are stored: 1, 3 or 4
+  bool separate = false;  ///< colours as they are, without YCC
+  bool adobe = false;     ///< with 4 components: Adobe's mark, which says that values are inverted
+  int factor = 1;         ///< luma's samples a sample of chroma, in both directions
   bool progressive = false;  ///< many scans
   bool arithmetic = false;
   int restart = 0;  ///< rows of blocks between restart marks
@@ -35,7 +35,8 @@ struct JpegKind {
 Bytes jpeg_file(const Image& image, const JpegKind& kind);
 
 struct PngKind {
-  int colour = 2;  ///< of the format: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha
+  /// The format's number: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha.
+  int colour = 2;
   int depth = 8;
   bool interlaced = false;
   std::vector<std::uint8_t> palette{};       ///< red, green, blue

@@ -98,7 +98,7 @@ class CropTest : public testing::Test {
 TEST_F(CropTest, TrianglesThatTouchTheBoxAreThere) {
   for (const char* name : {"grid.ply", "grid.obj"}) {
     const Imported mesh = import(name, {{3.4, 4.4, -1}, {5.6, 5.6, 1}});
-    // Of three squares by two, at each corner of the box two triangles.
+    // There are three squares by two, and two triangles at each corner of the box.
     EXPECT_EQ(mesh.triangles.size(), 12U) << name;
     EXPECT_EQ(mesh.positions.size(), 12U) << name;
     EXPECT_EQ(mesh.count("cropped_triangles"), 1801U - 12U) << name;

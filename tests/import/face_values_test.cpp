@@ -30,7 +30,7 @@ using tests::ImportHow;
 struct Property {
   std::string name;
   PlyType type;
-  std::vector<double> values;  ///< of each face
+  std::vector<double> values;  ///< values of each face
 };
 
 /// A fan of triangles around the first vertex.
@@ -63,7 +63,8 @@ std::string fan(PlyEncoding encoding, const std::vector<Property>& properties) {
 class FaceValuesTest : public tests::ImportTest {
  protected:
   Imported import(const ImportHow& how = {}) { return import_file("a.ply", how); }
-  /// Of each triangle the value that its three corners have; they must be the same, bit for bit.
+  /// Returns for each triangle the value that its three corners have; they must be the same, bit
+  /// for bit.
   static std::vector<double> of_triangles(const Imported& mesh, std::size_t attribute) {
     const std::vector<double> all = mesh.values(attribute);
     std::vector<double> found;

@@ -160,7 +160,8 @@ CopyRecords expected_copies(const PositionList& positions) {
 
 class FindCopiesTest : public testing::Test {
  protected:
-  /// Of a PLY that is read in place, and of one in text, which is not; in all budgets.
+  /// Expects the copies of a PLY that is read in place, and of one in text, which is not; in all
+  /// budgets.
   void expect_found(const PositionList& positions, bool as_doubles, const CopyRecords& expected) {
     write(positions, as_doubles);
     write_text(positions, as_doubles);
@@ -178,7 +179,7 @@ class FindCopiesTest : public testing::Test {
       expect_found(positions, as_doubles, expected);
     }
   }
-  /// What the map says. As floats: all positions must be.
+  /// Expects the copies that a map finds. All positions must be floats.
   void expect_as_by_map(const PositionList& positions) {
     expect_found(positions, expected_copies(positions));
   }

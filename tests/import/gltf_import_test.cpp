@@ -409,7 +409,7 @@ TEST_F(GltfImportTest, ColoursKeepTheirTypeIfAllHaveIt) {
   EXPECT_EQ(mesh.attributes[1], 128.0F / 255.0F);
   EXPECT_EQ(mesh.attributes[16], .1F);
   EXPECT_EQ(mesh.attributes[19], 1);  // alpha
-  EXPECT_EQ(mesh.attributes[32], 1);  // what glTF means by no colour
+  EXPECT_EQ(mesh.attributes[32], 1);  // glTF's value for no colour
   EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
 }
 
@@ -468,7 +468,7 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   EXPECT_THAT(mesh.companions(), ElementsAre("no w/none.png"));
 
   gltf.show(textured_square(gltf, gltf.textured_material({{"uri", "b.png"}})));
-  gltf.show(square(gltf));  // of the default material
+  gltf.show(square(gltf));  // with the default material
   put("b.png", "x");
   mesh = import(gltf);
   ASSERT_EQ(mesh.materials.materials.size(), 3U);
@@ -1175,7 +1175,7 @@ TEST_F(GltfImportTest, SLOW_JsonBeyondTheMemoryIsRefused) {
   EXPECT_THAT(failure("b.gltf"), HasSubstr("nested deeper than 64 levels"));
 }
 
-/// What a hierarchy is made of is a mesh itself.
+/// Tiles of a hierarchy are meshes themselves.
 TEST_F(GltfImportTest, TilesOfAHierarchyAreMeshes) {
   for (const storage::Compression compression :
        {storage::Compression::none, storage::Compression::meshopt}) {

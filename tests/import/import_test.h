@@ -1,4 +1,5 @@
-// What tests of imports share: files in the folder "w" of a memory, and what becomes of them.
+// The common parts of tests of imports: files in the folder "w" of a memory, and their imported
+// meshes.
 #pragma once
 
 #include "hierarchy/error.h"

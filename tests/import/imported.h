@@ -1,4 +1,4 @@
-// What files become by an import, read back as a build reads it.
+// An imported mesh, read back as a build reads it.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -24,8 +24,9 @@ struct Imported {
   std::vector<float> attributes;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  std::uint64_t count(const std::string& name) const;  ///< of the summary's; 0 if it is not there
-  /// What belongs to the meshes: "w/a.png", and "no w/b.png" for what is not there.
+  /// Returns a count of the summary; 0 if it is not there.
+  std::uint64_t count(const std::string& name) const;
+  /// Returns the files that belong to the meshes: "w/a.png", and "no w/b.png" for a missing one.
   std::vector<std::string> companions() const;
   /// The number of a triangle's material, which all of its corners must name.
   std::uint32_t material_of(std::size_t triangle) const;
@@ -37,7 +38,7 @@ struct Imported {
   Vec2f texcoord(std::size_t triangle, std::size_t corner) const;
   /// "a.png 0 1, 0.5 1, 1 0" or "#ff0000" of what it shows; "0 1, ..." if nothing is textured.
   std::string shown(std::size_t triangle) const;
-  /// Of all triangles.
+  /// Returns the pictures of all triangles.
   std::vector<std::string> all_shown() const;
 };
 

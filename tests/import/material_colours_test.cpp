@@ -55,7 +55,7 @@ class MaterialColoursTest : public testing::Test {
   tests::MemoryFiles files_;
 };
 
-/// Of each corner of a triangle, "255 0 0".
+/// Returns the colour of each corner of a triangle, "255 0 0".
 std::vector<std::string> corner_colours(const Imported& mesh, std::size_t triangle) {
   std::vector<std::string> colours;
   for (const std::uint32_t vertex : mesh.triangles[triangle]) {
@@ -241,7 +241,7 @@ TEST_F(MaterialColoursTest, ObjectsWithoutColoursOfVerticesShowTheirMaterials) {
   }
 }
 
-// What a part without a picture shows beside one that has one: its colours, whatever its material.
+// A part without a picture, beside one that has one, shows its colours, whatever its material.
 TEST_F(MaterialColoursTest, ColoursOfVerticesAreSeenBesideAPictureThatHasNone) {
   put("b.png", "a picture");
   put("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl scan\nmap_Kd b.png\n");

@@ -41,7 +41,7 @@ std::string stl_of(const std::vector<std::uint16_t>& attributes, const std::stri
   return file;
 }
 
-/// Of the first corner of each triangle; all corners have the same.
+/// Returns the colour of each triangle's first corner; all corners have the same.
 std::vector<std::string> colours(const Imported& mesh) {
   std::vector<std::string> all;
   for (const auto& triangle : mesh.triangles) {

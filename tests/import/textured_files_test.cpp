@@ -38,7 +38,7 @@ std::string facts_of(const tests::Imported& mesh) {
                      fmt::join(mesh.warnings, "; "));
 }
 
-/// What the mesh says of itself is so.
+/// Checks the mesh's facts about itself.
 void check(const tests::Imported& mesh) {
   EXPECT_EQ(mesh.layout.material, !mesh.materials.empty());
   EXPECT_EQ(mesh.layout.material, mesh.summary.textures.has_value());

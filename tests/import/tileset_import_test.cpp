@@ -557,7 +557,7 @@ TEST_F(TilesetImportTest, ContentsCountAsTilesDo) {
   }
 }
 
-/// What a tile shows lies in it, packed or as data.
+/// Contents lie in the tile, packed or as data.
 TEST_F(TilesetImportTest, ContentsInGzipAndAsDataAreReadWithTheirPictures) {
   GltfBuilder gltf = triangle();
   const std::vector<float> uv{0, 1, 1, 1, 0, 0};

@@ -29,7 +29,7 @@ MtlMaterial read_one(const std::string& lines) {
   return all.at(0);
 }
 
-/// Of materials that are a library.
+/// Returns the colours of materials that are a library.
 std::vector<std::array<float, 3>> shown(const std::vector<MtlMaterial>& all) {
   MtlColours colours;
   for (const MtlMaterial& material : all)

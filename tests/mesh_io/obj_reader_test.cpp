@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// What was taken, as short texts.
+/// Notes all that was taken, as short texts.
 class Taken final : public ObjVisitor {
  public:
   /// How the file is read: in blocks, or all of it word by word.
@@ -308,7 +308,7 @@ TEST(ObjReader, EveryLineAloneSaysWhatWordsSay) {
 
 TEST(ObjReader, ALineLongerThanABlockIsReadByWords) {
   std::string face = "f";
-  for (int i = 0; i < 30'000; ++i)  // of 300 KB
+  for (int i = 0; i < 30'000; ++i)  // 300 KB in all
     face += "  1 2 \t3 4";
   for (const std::string& line :
        {face, "g " + std::string(700'000, 'x'), "# " + std::string(700'000, 'x')}) {

@@ -86,7 +86,7 @@ TEST(PlyHeader, NamesWithSpacesAreRead) {
 }
 
 TEST(PlyHeader, DataStartsRightBehindTheLineEnd) {
-  // What follows looks like a line end in every case: it is data.
+  // The bytes behind it look like a line end in every case: they are data.
   const std::string crlf = "ply\r\nformat binary_little_endian 1.0\r\nend_header\r\n";
   EXPECT_EQ(parse_ply_header(crlf + "\n\n", "h").data_offset, crlf.size());
   const std::string lf = "ply\nformat binary_little_endian 1.0\nend_header\n";

@@ -49,7 +49,7 @@ class PlyText {
  public:
   explicit PlyText(PlyEncoding encoding, std::string line_end = "\n");
 
-  PlyText& line(const std::string& text);  ///< of the header
+  PlyText& line(const std::string& text);  ///< adds a line to the header
   PlyText& end_header();
   PlyText& value(PlyType type, double number);
   PlyText& end_row();

@@ -1,4 +1,4 @@
-// What is read: the same mesh in every encoding, type and order.
+// Tests that PLY files give the same mesh in every encoding, type and order.
 #include "mesh_io/ply_source.h"
 
 #include "hierarchy/scalar_value.h"

@@ -116,7 +116,7 @@ TEST(StlReader, ReadsTextOfSeveralSolidsInAnyCase) {
   EXPECT_TRUE(taken.counts.fits_float);
 }
 
-/// What blocks say of a text; the error if there is one.
+/// Returns what blocks read of a text; the error if there is one.
 std::string outcome(const std::string& content, bool by_words) {
   StlTaken taken;
   const std::string error = input_error_of([&] {

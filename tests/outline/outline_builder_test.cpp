@@ -198,7 +198,7 @@ TEST(OutlineBuilder, ASphereInTwoHalvesGivesOneLoop) {
   const auto points = polyline(result.outline, 0);
   EXPECT_TRUE(is_loop(points));
   EXPECT_GT(points.size(), 10u);
-  EXPECT_LT(points.size(), 200u);  // of about 400 through the triangles
+  EXPECT_LT(points.size(), 200u);  // a line through the triangles has about 400
   for (const Vec3f p : points)
     EXPECT_LT(std::abs(p.z), 0.04f);
   EXPECT_NEAR(length_of(points), 2 * 3.14159, 0.1);
@@ -362,7 +362,7 @@ TEST(OutlineBuilder, RepeatedAndMirroredBorderTrianglesMakeOneLine) {
   mesh.triangles.push_back(upper);
   mesh.triangles.push_back({lower[0], lower[2], lower[1]});
   const OutlineResult repeated = outline_of(cut(mesh, sectors_by(mesh, sector_at)), options);
-  // What the border loses: an edge of two triangles is no border any more. The line stays.
+  // The border loses an edge: one of two triangles is no border any more. The line stays.
   EXPECT_EQ(plain.outline.polyline_count(), 3u);
   EXPECT_EQ(repeated.outline.polyline_count(), 3u);
   double longest = 0;

@@ -323,7 +323,7 @@ double mean_compactness(const tests::TestMesh& mesh, std::uint32_t partitions, A
 TEST(SplitChunk, CompactnessIsBetterByTheStatedFactors) {
   struct Expectation {
     tests::TestMesh mesh;
-    double most;  // of that of the longest axis
+    double most;  // at most so much of that of the longest axis
   };
   const std::vector<Expectation> expectations{
       {tests::shuffled(tests::sphere(40000, 0.002F), 1), 0.85},

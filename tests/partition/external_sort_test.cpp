@@ -40,7 +40,7 @@ std::vector<Item> random_items(std::size_t count, std::uint32_t keys) {
   return items;
 }
 
-/// What the header promises: by key, then by bytes.
+/// The order that the header promises: by key, then by bytes.
 bool before(const Item& a, const Item& b) {
   return a.key != b.key ? a.key < b.key : std::memcmp(&a, &b, sizeof(Item)) < 0;
 }

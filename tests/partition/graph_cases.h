@@ -1,4 +1,4 @@
-// What the tests of graph partitioning count.
+// Graphs and counts for tests of graph partitioning.
 #pragma once
 
 #include "partition/graph.h"

@@ -72,7 +72,7 @@ TEST(GraphSplit, RunsOfPartsHaveShortLinesToo) {
     Numbers coarse = part_of;
     for (std::uint32_t& part : coarse)
       part /= run;
-    // Of four by four squares' six inner lines, halves share one and quarters two.
+    // Four by four squares have six inner lines: halves share one and quarters two.
     EXPECT_LT(cut_of(graph, coarse), all * (run == 8 ? 1 : 2) / 6 * 13 / 10) << run;
   }
 }

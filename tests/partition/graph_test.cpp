@@ -104,7 +104,7 @@ TEST(SurfaceGraph, RowsAscend) {
   }
 }
 
-// What makes the graph worth cutting: its cuts are the perimeter that compactness() measures.
+// The graph is worth cutting as its cuts are the perimeter that compactness() measures.
 TEST(SurfaceGraph, ACutWeighsThePerimeterOfCompactness) {
   const tests::TestMesh mesh = tests::sphere(3000, 0.02F);
   const Graph graph = graph_of(mesh);

@@ -103,7 +103,7 @@ std::vector<RankTriangle> ranks_of(const Cut& mesh, const LeafTile& tile,
   return result;
 }
 
-/// What the definitions say of one partition.
+/// One partition as the definitions say.
 struct Expected {
   std::vector<std::uint32_t> boundary, inner;  ///< ranks, ascending
   std::vector<RankTriangle> interior, border;

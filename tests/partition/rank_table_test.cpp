@@ -30,7 +30,7 @@ WedgeRank rank_of(std::uint32_t id) {
 
 class RankTableTest : public testing::Test {
  protected:
-  /// What the vertices become, by their ids; `taken`: the ranks of copies, as they were handed out.
+  /// The ranks of vertices, by their ids; `taken`: the ranks of copies, as they were handed out.
   struct Table {
     std::vector<RankedTriangle> triangles;
     std::vector<std::uint32_t> taken;

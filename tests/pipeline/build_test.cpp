@@ -136,7 +136,7 @@ class BuildTest : public testing::Test {
     }
   }
 
-  /// What an estimate says of the budget; empty if it is enough.
+  /// Returns an estimate's words against the budget; empty if it is enough.
   std::string refusal(config::Config config) {
     config.output += ".none";
     try {

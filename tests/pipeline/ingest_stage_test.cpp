@@ -316,7 +316,7 @@ TEST_F(SourceMeshTest, WhatFloatsLoseOfAnEdgeIsTold) {
 TEST_F(SourceMeshTest, BytesInAWiderTypeAreColoursOf8Bits) {
   struct Case {
     const char* type;
-    const char* colours;  // of two vertices
+    const char* colours;  // colours of two vertices
     ColourType expected;
   };
   const std::vector<Case> cases{{"ushort", "200 180 40 0 0 255", ColourType::u8},

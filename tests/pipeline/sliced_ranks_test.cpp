@@ -22,7 +22,7 @@ class SlicedRanksTest : public testing::Test {
 
   static std::uint32_t chunk_of(std::uint32_t id) { return id * 7 % 4; }
 
-  /// What a slice of so many stores.
+  /// Returns the JSON that a slice of so many stores.
   nlohmann::json slice(const Share& share) {
     SlicedRanks ranks(map_, kVertices, kBlocks, scratch_);
     std::vector<std::uint32_t> counts(map_.count());

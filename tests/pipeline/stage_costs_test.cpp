@@ -1,5 +1,5 @@
-// What stages say they take against what builds were measured to take. Memory, which needs a
-// process of its own, is in tests/properties/memory_test.cpp.
+// Compares the costs that stages tell with those that were measured of builds. Memory, which needs
+// a process of its own, is in tests/properties/memory_test.cpp.
 #include "pipeline/stage_costs.h"
 
 #include "pipeline/build.h"
@@ -51,7 +51,7 @@ class StageCostsTest : public testing::Test {
     return config;
   }
 
-  /// Of the mesh's vertices and triangles as text.
+  /// Writes the mesh's vertices and triangles as text.
   void write_text(const TestMesh& mesh) {
     std::ofstream stream(mesh_path());
     stream << "ply\nformat ascii 1.0\nelement vertex " << mesh.positions.size()

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 const std::string kOldProcessor =
     "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX,-AVX2,-AVX512F,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable ";
 
-/// What a command prints; its failure fails the test.
+/// Returns the output of a command; its failure fails the test.
 std::string output_of(const std::string& command) {
   std::string text;
   std::FILE* pipe = ::popen(command.c_str(), "r");

@@ -74,7 +74,7 @@ std::vector<DetailRun> decode(std::span<const std::byte> bytes, const AttributeL
   return runs;
 }
 
-/// What the bytes are refused with; empty if they are not.
+/// Returns the message that refuses the bytes; empty if they are not refused.
 std::string refused(std::span<const std::byte> bytes, const AttributeLayout& layout = {}) {
   try {
     decode(bytes, layout);

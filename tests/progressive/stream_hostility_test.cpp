@@ -103,7 +103,7 @@ class StreamTest : public testing::Test {
     return all;
   }
 
-  /// What is beside the stream and what it is made of.
+  /// Returns the files beside the stream and its sources.
   std::vector<std::string> litter() {
     std::vector<std::string> names;
     for (const fs::path& path : files_.children("/models")) {
@@ -495,7 +495,7 @@ class StreamFaultsTest : public StreamTest {
                              cancel);
   }
 
-  /// What jobs make: the stream and the mesh.
+  /// Returns the files that jobs make: the stream and the mesh.
   Contents made() {
     Contents all = files_.exists(kStream) ? contents(kStream) : Contents();
     if (files_.exists(kOutput))

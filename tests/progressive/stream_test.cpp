@@ -136,7 +136,7 @@ class ProgressiveTest : public testing::Test {
     return text.erase(place, text.find('\n', place) + 1 - place);
   }
 
-  /// What each file of the stream promises.
+  /// Checks the promises of each file of the stream.
   void expect_levels(const ProgressiveIndex& index) {
     for (std::uint32_t details = 0; details < index.files.size(); ++details) {
       SCOPED_TRACE("after " + std::to_string(details) + " details");
@@ -186,7 +186,7 @@ class ProgressiveTest : public testing::Test {
     return {begin, begin + end};
   }
 
-  /// What a level shows of the sector: all triangles that touch it.
+  /// Returns a level's triangles that touch the sector.
   PlaceSet touching(NodeId sector, Level level) {
     const Shown whole = exported(level);
     const auto [begin, end] = vertices_of(sector, level);
@@ -198,8 +198,8 @@ class ProgressiveTest : public testing::Test {
     return set;
   }
 
-  /// What the tiles of a level show together, border triangles and all. Requires that none is
-  /// early.
+  /// Returns the triangles that the tiles of a level show together, border triangles and all.
+  /// Requires that none is early.
   PlaceSet tiles_below(NodeId sector, Level level) {
     const int below = raw(level) - raw(sector.level);
     PlaceSet set;

@@ -259,7 +259,7 @@ TEST_F(TracedTileTest, AGhostThatIsNoVertexOfItsNeighbourIsRefused) {
   partition.mesh.ghosts.back().index = 33;
   EXPECT_THROW(trace_partition(tree_, sector_, partition, 0), Error);
 
-  Family changed = family();  // of its sibling
+  Family changed = family();  // its first ghost is its sibling's
   ASSERT_EQ(changed.left.ghosts.front().tile, 1U);
   changed.left.chains[0][0] = 40;
   EXPECT_EQ(refused(std::move(changed)), "tile 3/1: a neighbour's ghost is none of its vertices");

@@ -51,7 +51,7 @@ class PackedTest : public testing::Test {
     return pipeline::build_hierarchy(config_, {.force = force}, {files_, progress_, cancel_});
   }
 
-  /// What verify has against the archive; empty if nothing.
+  /// Returns the problems that verify finds in the archive; empty if there are none.
   std::string complaint(verifying::VerifyOptions options = {}) {
     std::string all;
     try {

@@ -1,4 +1,4 @@
-// What vertices carry besides their positions: kept in partitions, averaged in representatives.
+// Tests of vertices' attributes: kept in partitions, averaged in representatives.
 #include "hierarchy/attributes.h"
 
 #include "hierarchy/srgb.h"

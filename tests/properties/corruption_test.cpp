@@ -64,11 +64,11 @@ Victim in_double_precision() {
   return {"DoublePrecision", options};
 }
 
-/// What a command did: it told something, or failed with an Error. Anything else is a failure of
-/// the test.
+/// The outcome of a command: it told something, or failed with an Error. Anything else is a failure
+/// of the test.
 struct Outcome {
   std::optional<ErrorCode> code;
-  std::string text;  ///< what was told, or the error
+  std::string text;  ///< the output, or the error
 };
 
 Outcome outcome_of(const std::function<std::string()>& command) {
@@ -119,7 +119,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
     pipeline::build_hierarchy(config, {}, {files_, progress_, cancel_});
   }
 
-  /// What verify has against the hierarchy; empty if nothing.
+  /// Returns the problems that verify finds in the hierarchy; empty if there are none.
   std::string complaint() {
     verifying::VerifyOptions options;
     options.cuts = 0;

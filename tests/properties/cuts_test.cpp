@@ -78,7 +78,7 @@ class Built {
   /// The input's triangles, corners as numbers of the cut of all partitions.
   const std::vector<exporting::CutTriangle>& originals() const { return originals_; }
 
-  /// What the tiles of a cut draw.
+  /// Returns the triangles that the tiles of a cut draw.
   std::vector<exporting::CutTriangle> drawn(const exporting::NumberedCut& shown) const {
     std::vector<exporting::CutTriangle> all;
     for (std::size_t i = 0; i < shown.cut.size(); ++i) {
@@ -110,7 +110,7 @@ class Built {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   std::unique_ptr<storage::HierarchyReader> reader_;
   std::map<NodeId, PublishedTile> tiles_;
-  std::vector<std::pair<NodeId, std::uint32_t>> owners_;  ///< of the original vertices
+  std::vector<std::pair<NodeId, std::uint32_t>> owners_;  ///< owners of the original vertices
   std::vector<exporting::CutTriangle> originals_;
 };
 

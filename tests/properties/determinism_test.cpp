@@ -267,7 +267,7 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyPartitionCount) {
     SCOPED_TRACE(count);
     config::Config with = config();
     with.partition.count = count;
-    with.preview = false;  // of the methods and counts only the tiles differ
+    with.preview = false;  // methods and counts change the tiles only
     expect_one_result(with, {1, 5});
   }
 }

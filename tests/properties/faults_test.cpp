@@ -50,7 +50,7 @@ using Snapshot = std::map<std::string, std::uint64_t>;
 
 constexpr auto kInMemory = tests::TemporaryDirectory::Place::memory;
 
-/// Of builds that make a directory, and of such that make an archive.
+/// Tests builds that make a directory, and builds that make an archive.
 class FaultsTest : public testing::TestWithParam<config::Container> {
  protected:
   FaultsTest() {
@@ -85,7 +85,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     return tests::try_build(config_, force, {files, progress, cancel}, message_);
   }
 
-  /// What the output must be.
+  /// Returns the output that there must be.
   Snapshot expected() {
     FaultyFileSystem files;
     EXPECT_EQ(run(files), std::nullopt) << message_;
@@ -94,7 +94,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     return result;
   }
 
-  /// Of the output's files, by their paths in it.
+  /// Returns the output's files, by their paths in it.
   Snapshot output() {
     Snapshot all;
     if (!fs::exists(config_.output))

@@ -54,7 +54,7 @@ std::uint64_t peak_bytes(const rusage& usage) {
 struct Outcome {
   int code = -1;  ///< 1000 + n after death by signal n
   std::uint64_t peak_bytes = 0;
-  std::uint64_t new_page_bytes = 0;  ///< of pages that were made, again and again or once
+  std::uint64_t new_page_bytes = 0;  ///< bytes of pages that were made, again and again or once
   std::string messages;
 };
 
@@ -468,7 +468,7 @@ TEST_F(MemoryTest, SLOW_AStreamIsMadeInTheBudgetAndPutTogetherInItsArrays) {
     std::uint64_t largest = 0;
     for (const auto& file : fs::directory_iterator(path("mesh.prog")))
       largest = std::max(largest, file.file_size());
-    // Of 260,000 vertices and 520,000 triangles; the program, and a few runs.
+    // The arrays of 260,000 vertices and 520,000 triangles; the program, and a few runs.
     const std::uint64_t arrays = 260'000 * (16 + 3 * 4) + 520'000 * 12;
     EXPECT_LT(rebuilt.peak_bytes, arrays + largest + 24 * kMiB) << node;
     RecordProperty("peak_bytes_of_reconstruct", std::to_string(rebuilt.peak_bytes));

@@ -99,7 +99,7 @@ class BuiltMesh {
         .problems;
   }
 
-  /// Of what a random cut draws.
+  /// Returns the open edges of the triangles that a random cut draws.
   std::int64_t open_edges(std::uint64_t seed) const {
     const exporting::NumberedCut shown =
         exporting::number_vertices(*reader_, exporting::random_cut(reader_->tree(), seed));

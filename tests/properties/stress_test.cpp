@@ -189,7 +189,7 @@ TEST_F(StressTest, OneTwoAndThreeVerticesAreSound) {
       write(mesh);
       expect_sound();
       const auto last = static_cast<std::uint32_t>(count - 1);
-      mesh.triangles = {{0, last / 2, last}};  // of one and two vertices degenerate
+      mesh.triangles = {{0, last / 2, last}};  // degenerate with one or two vertices
       write(mesh);
       expect_sound();
     }

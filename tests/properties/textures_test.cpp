@@ -120,7 +120,7 @@ class TexturesTest : public testing::Test {
     tests::StageInterrupter progress(cancel, stage);
     EXPECT_THROW(build_hierarchy(config, {}, {*files_, progress, cancel}), Error);
   }
-  /// Of a torus whose pictures have at least so many bytes.
+  /// Returns the config of a torus whose pictures have at least so many bytes.
   config::Config stopped(const std::string& stage, std::uintmax_t bytes) {
     const config::Config job = config(write(tests::make_textured_torus(6, 3)));
     for (const char* name : {"picture_0.png", "picture_1.png"}) {
@@ -294,7 +294,7 @@ TEST_F(TexturesTest, PicturesOfAnyShapeAreExactOrTheirLossIsTold) {
 
 // Black between charts would darken their borders there.
 TEST_F(TexturesTest, SmallVersionsOfPicturesAreNoDarkerThanTheInput) {
-  constexpr std::uint8_t kDarkest = 28;  // of torus_colour()
+  constexpr std::uint8_t kDarkest = 28;  // that torus_colour() has
   TexturedTorus torus = tests::make_textured_torus(7, 3);
   for (Image& picture : torus.pictures)  // between its charts there is black
     std::ranges::replace_if(

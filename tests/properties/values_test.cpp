@@ -156,7 +156,7 @@ class ValuesTest : public testing::Test {
     build_hierarchy(config, {.force = true}, {*files_, progress, execution::CancelToken()});
   }
 
-  /// Of one attribute, all of a level.
+  /// Returns all values of one attribute on a level.
   std::vector<double> values_of(const storage::HierarchyReader& reader, std::size_t attribute,
                                 int level) const {
     const AttributeLayout& layout = reader.tile_format().attributes;

@@ -22,7 +22,7 @@ std::vector<Vec3f> corners_of(const BoundsD& box) {
   return corners;
 }
 
-/// Of the corners of a box on the grid.
+/// Returns the bounds of a box's corners on the grid.
 BoundsD shown(const Camera& camera, const BoundsD& box) {
   BoundsD bounds;
   for (const Vec3f corner : corners_of(box))
@@ -87,7 +87,7 @@ TEST(ViewsAroundTest, AreSpreadOverTheSphere) {
       for (std::size_t j = 0; j < i; ++j)
         nearest = std::min(nearest, length(views[i].direction - views[j].direction));
     }
-    // Of the distance in the best arrangement of many, sqrt(8 pi / (sqrt(3) n)), most is there.
+    // Distances reach most of those in the best arrangement of many, sqrt(8 pi / (sqrt(3) n)).
     EXPECT_GT(nearest, 0.7 * std::min(2.0, std::sqrt(14.5 / count))) << count;
   }
 }

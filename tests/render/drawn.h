@@ -25,7 +25,7 @@ inline Facet mirrored(const Facet& facet) {
   return {facet[0], facet[2], facet[1]};
 }
 
-/// Of a mesh around the origin: its normals lead away from there.
+/// Returns the facets of a mesh around the origin: its normals lead away from there.
 inline std::vector<Facet> facets_around_origin(const tests::TestMesh& mesh) {
   std::vector<Facet> facets;
   for (const tests::MeshTriangle& t : mesh.triangles) {

@@ -33,7 +33,7 @@ std::uint64_t hash_of(std::span<const std::byte> bytes) {
   return hash;
 }
 
-/// Of a soup, whose making takes no function of the C library.
+/// Draws a soup, whose making takes no function of the C library.
 Raster soup_raster(const View& view) {
   const Camera camera(view, BoundsD{{-1, -1, -1}, {1, 1, 1}}, Framing{.width = 96, .height = 64});
   return drawn(camera, facets_around_origin(tests::soup(3000)));
@@ -74,7 +74,7 @@ TEST(ShadeTest, SamplesAreAveragedAsLight) {
   EXPECT_LT(pixel(picture, 0, 0)[0], pixel(picture, 1, 0)[0]);
 }
 
-/// Of a facet across the view, but with that normal.
+/// Returns the pixel of a facet across the view, but with that normal.
 Pixel shade_of(Vec3f normal, const Lighting& lighting = {}) {
   Facet facet = flat_facet({-80, -80, 0}, {80, -80, 0}, {0, 800, 0});
   for (FacetCorner& corner : facet)
@@ -90,8 +90,8 @@ TEST(ShadeTest, LightComesFromTheUpperLeftAndNothingIsBlackOrBurnt) {
   EXPECT_GT(dark, 40);
 }
 
-/// What three (r187) shows of a ball of the plain colour in the viewer's studio, drawn without
-/// perspective, where it faces these ways.
+/// The expected values are those of three (r187) for a ball of the plain colour in the viewer's
+/// studio, drawn without perspective, where it faces these ways.
 TEST(ShadeTest, ASurfaceIsLitAsTheViewerLightsIt) {
   const std::array<std::pair<Vec3f, std::array<int, 3>>, 5> expected{{
       {{0, 0, 1}, {160, 150, 137}},

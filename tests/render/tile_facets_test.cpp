@@ -90,7 +90,7 @@ TEST(TileFacetsTest, SplitsLieWhereTheirVerticesDo) {
   PublishedTile tile = sample_tile({});
   for (std::int8_t i = 0; i < 8; ++i)
     tile.shading.normals.push_back({i, 0, 100, 0});
-  tile.shading.split_of = {2, 4};  // of place 2, and of the first copy
+  tile.shading.split_of = {2, 4};  // those of place 2, and of the first copy
   tile.shading.interior = {triangle(0, 7, 6)};
   tile.shading.border = {triangle(0, 1, 3), triangle(4, 6, 3)};
   const std::vector<std::uint32_t> border{1};

@@ -19,7 +19,7 @@ using tests::kBoundary;
 using tests::TextBody;
 using Next = MultipartReader::Next;
 
-/// What a form holds; nothing if it is refused.
+/// Returns the files of a form; nothing if it is refused.
 std::optional<FormFiles> read_form(const std::string& text, std::size_t body_piece = 1 << 20,
                                    std::size_t piece = 1 << 16) {
   TextBody body(text, {.most_at_once = body_piece});

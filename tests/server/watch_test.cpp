@@ -124,7 +124,7 @@ class WatchTest : public testing::Test {
             "bufferViews": [{"buffer": 0, "byteLength": 36}],
             "buffers": [{"uri": "t.bin", "byteLength": 36}]})");
   }
-  /// Of the pictures that it was made of.
+  /// Returns the texels of the pictures that it was made of.
   std::uint64_t texels(const std::string& name = "a.hier") const {
     const auto manifest = nlohmann::json::parse(text_of(models() / name / "hierarchy.json"));
     return manifest["source"].contains("textures")

@@ -62,16 +62,16 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
-/// What a seed decides.
+/// The decisions of a seed.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
 
-  /// Of [low, high].
+  /// Returns a number of [low, high].
   std::uint64_t from(std::uint64_t low, std::uint64_t high) {
     return low + engine_() % (high - low + 1);
   }
-  /// Of [1, most], each order of magnitude as likely.
+  /// Returns a number of [1, most], each order of magnitude as likely.
   std::uint64_t of_any_size(std::uint64_t most) {
     const double bits = std::log2(static_cast<double>(most) + 1);
     const double drawn = bits * static_cast<double>(engine_() >> 11) * 0x1p-53;
@@ -112,7 +112,7 @@ BoundsD box_of(const bench::GeneratedMesh& mesh) {
   return box;
 }
 
-/// What may change from one build to the next that goes on with it.
+/// Draws the settings that may change from one build to the next that goes on with it.
 void draw_resources(Dice& dice, config::Config& config) {
   config.threads = static_cast<std::uint32_t>(dice.from(1, 3));
   config.memory_budget = (dice.one_in(2) ? std::uint64_t{1} << 30 : dice.from(64, 256) << 20);

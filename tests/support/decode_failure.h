@@ -1,4 +1,4 @@
-// What a tile is refused with.
+// The error by which a tile is refused.
 #pragma once
 
 #include "gltf/sample_hierarchy.h"

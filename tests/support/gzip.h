@@ -8,7 +8,7 @@ namespace meshhier::tests {
 
 /// One gzip member that holds `content`.
 std::string gzip(std::string_view content);
-/// What is in one gzip member.
+/// Returns the content of one gzip member.
 std::string gunzip(const std::string& packed);
 
 }  // namespace meshhier::tests

@@ -48,7 +48,7 @@ std::optional<Share> parse_share(std::string_view text) {
   return Share{*index, *count};
 }
 
-/// Of the environment; the whole if there is none.
+/// Returns the share that the environment asks for; the whole if it asks for none.
 Share chosen_share() {
   const char* const text = std::getenv(kVariable);
   if (text == nullptr || *text == '\0')

@@ -64,7 +64,7 @@ class MemoryFiles : public storage::FileSystem {
  private:
   bool has_directory(const std::filesystem::path& path) const;
 
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::map<std::filesystem::path, std::shared_ptr<Content>> files_;
   /// Those made, and the three that are there from the start; others are there by their files.
   std::set<std::filesystem::path> directories_{"/", ".", "/models"};

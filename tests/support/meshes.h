@@ -80,7 +80,7 @@ TestMesh by_first_appearance(const TestMesh& mesh);
 /// A number in [-1, 1) that is a pure function of the two: white noise.
 float hash_noise(std::uint64_t index, std::uint64_t stream);
 
-// What is counted. Triangles with two equal corners are not expected.
+// Counts. Triangles with two equal corners are not expected.
 
 /// Ascending. Corners are vertices of a mesh that is not much larger: their numbers are counted
 /// over.

@@ -13,7 +13,7 @@
 
 namespace meshhier::tests {
 
-/// What the GLB says of itself, and its parts, to be changed and put together again.
+/// The JSON of a GLB and its parts, to be changed and put together again.
 struct OpenGlb {
   explicit OpenGlb(const std::vector<std::byte>& bytes) {
     const auto view = storage::split_glb(bytes, "open");

@@ -15,9 +15,9 @@ namespace meshhier::tests {
 /// One of 0 ... most; 0 leaves things as they usually are.
 using Draw = std::function<std::uint64_t(std::uint64_t most)>;
 
-/// What configs are drawn for.
+/// The use that configs are drawn for.
 struct DrawnFor {
-  BoundsD box{{-1, -1, -1}, {1, 1, 1}};  ///< of the mesh, for pieces of it
+  BoundsD box{{-1, -1, -1}, {1, 1, 1}};  ///< the mesh's, for pieces of it
   bool with_ktx2 = true;                 ///< pictures that other processes make, where they are
 };
 

@@ -132,7 +132,7 @@ class Splitter {
 
   void add_vertices(PublishedTile& tile, const Wedged& border) const {
     TileMesh& mesh = tile.mesh;
-    std::map<std::uint32_t, std::set<std::uint32_t>> used;  // of ghosts, copies only
+    std::map<std::uint32_t, std::set<std::uint32_t>> used;  // copies of ghosts only
     for (std::size_t t = 0; t < border.triangles.size(); ++t) {
       for (std::size_t i = 0; i < 3; ++i) {
         if (!mesh.is_own(border.triangles[t][i]) && border.wedges[t][i] > 0)

@@ -8,7 +8,7 @@
 
 namespace meshhier::tests {
 
-/// What the partitions of a sample with copies hold, as one mesh.
+/// The content of the partitions of a sample with copies, as one mesh.
 struct WedgedInput {
   TestMesh mesh;
   std::vector<float> attributes;  ///< as the sample's

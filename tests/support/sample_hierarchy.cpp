@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 /// One level of the whole mesh; vertices are numbered node by node.
 struct LevelMesh {
   VertexArray vertices;
-  std::vector<std::uint32_t> first;     ///< of every node; then the count
+  std::vector<std::uint32_t> first;     ///< first one of every node; then the count
   std::vector<MeshTriangle> triangles;  ///< smallest corner first
   std::vector<std::uint32_t> of_rank;   ///< vertex that stands for a rank
   std::vector<std::uint32_t> above;     ///< vertex of the level above that stands for a vertex

@@ -27,7 +27,7 @@ constexpr NodeId node(int level, std::uint32_t index) {
 
 struct SampleOptions {
   std::uint32_t partitions = 7;
-  std::uint32_t tile_vertices = 40;  ///< of simplified tiles
+  std::uint32_t tile_vertices = 40;  ///< vertices of simplified tiles
   bool scatter = false;              ///< merge vertices far from each other
   bool colours = false;              ///< give every vertex an 8-bit colour
   Vec3d origin{};

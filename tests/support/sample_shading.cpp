@@ -46,7 +46,7 @@ class Shader {
   }
 
  private:
-  /// Of a vertex, the same in every tile of the level.
+  /// Returns the name of a vertex, the same in every tile of the level.
   std::uint64_t name_of(std::uint32_t vertex) const {
     const Wedge at = numbers_[vertex];
     const auto place = static_cast<TileVertex>(at.place);
@@ -69,7 +69,7 @@ class Shader {
     return normal_code({part(0), part(1), part(2)});
   }
 
-  /// Of each corner which of its vertex's normals it has.
+  /// Returns for each corner which of its vertex's normals it has.
   std::array<std::uint32_t, 3> choices(const TileTriangle& t) const {
     std::uint64_t triangle = 0;  // however it is turned
     for (const TileVertex v : t)
@@ -114,7 +114,7 @@ class Shader {
   const PublishedTile& tile_;
   const TileMesh& mesh_;
   const VertexNumbers numbers_;
-  std::vector<std::uint64_t> names_;                          ///< of vertices
+  std::vector<std::uint64_t> names_;                          ///< names of vertices
   std::set<std::pair<std::uint32_t, std::uint32_t>> splits_;  ///< vertex, which of its normals
 };
 

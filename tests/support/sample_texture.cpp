@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::uint32_t kWidth = 16, kHeight = 8;
 
-// Of kWidth * kHeight texels, as libjpeg-turbo, libwebp and ktx2-encoder (ETC1S) made them.
+// Pictures of kWidth * kHeight texels, as libjpeg-turbo, libwebp and ktx2-encoder (ETC1S) made
+// them.
 constexpr std::string_view kJpeg =
     "ffd8ffe000104a46494600010100000100010000ffdb004300100b0c0e0c0a100e0d0e1211101318281a1816"
     "16183123251d283a333d3c3933383740485c4e404457453738506d51575f626768673e4d71797064785c6567"
@@ -101,7 +102,7 @@ void append_chunk(std::vector<std::byte>& png, std::string_view type,
                                               static_cast<uInt>(checked.size()))));
 }
 
-/// Of vertices and splits with their own normals and texture coordinates.
+/// Gives vertices and splits their own normals and texture coordinates.
 class Unwrapper {
  public:
   explicit Unwrapper(const PublishedTile& tile)
@@ -200,7 +201,7 @@ class Unwrapper {
 
   const Shading& shading_;
   std::size_t vertices_;
-  std::vector<std::vector<Look>> looks_;  ///< of each vertex
+  std::vector<std::vector<Look>> looks_;  ///< looks of each vertex
   std::vector<Corners> interior_, border_;
 };
 

@@ -12,8 +12,8 @@ namespace meshhier::tests {
 
 /// A PNG of 8 bits a channel, of noise.
 std::vector<std::byte> sample_png(std::uint32_t width, std::uint32_t height, bool alpha);
-/// Of one colour, 16 x 8 texels; of an alpha other than opaque half of them are transparent.
-/// Requires no alpha for jpeg.
+/// Returns a picture of one colour, 16 x 8 texels; half of them are transparent unless alpha is
+/// opaque. Requires no alpha for jpeg.
 TileImage sample_image(ImageFormat format, AlphaMode alpha = AlphaMode::opaque);
 
 /// Gives a tile that has triangles texture coordinates: each corner takes one of up to three of its

@@ -18,7 +18,7 @@ struct Share {
   bool has(std::size_t i) const { return i % count == index; }
   /// The share of a test that has so few cases that some shares would have none: one case then.
   Share of(std::size_t cases) const { return cases < count ? Share{index % cases, cases} : *this; }
-  /// Of `cases` cases, how many it does.
+  /// Returns how many of `cases` cases it does.
   std::size_t part_of(std::size_t cases) const {
     return cases / count + (index < cases % count ? 1 : 0);
   }

@@ -28,7 +28,7 @@ struct TexturedTorus {
   std::vector<images::Image> pictures;
 };
 
-/// What every picture shows at a point of the surface: red, green and blue, 0 ... 255.
+/// Returns the colour of every picture at a point of the surface: red, green and blue, 0 ... 255.
 std::array<double, 3> torus_colour(Vec3d point);
 
 /// 8 * patches_around * 8 * patches_across quads. Each patch of 8 x 8 quads is a chart, every

@@ -1,4 +1,4 @@
-// What a call is refused with.
+// The error by which a call is refused.
 #pragma once
 
 #include "hierarchy/error.h"

@@ -152,7 +152,7 @@ Mesh square(std::uint32_t side, bool up = true) {
   return mesh;
 }
 
-/// What a picture of such a square, ten squares a side, shows at a point of it.
+/// Returns the colour that a picture of such a square, ten squares a side, shows at a point of it.
 Colour shown_at(const Painted& square, double x, double y) {
   const double column = std::floor(x * 10), row = std::floor(y * 10);
   const double right = x * 10 - column, down = y * 10 - row;
@@ -289,11 +289,11 @@ TEST(Bake, SLOW_BordersOfChartsAreNotSeen) {
     count += 3;
   }
   ASSERT_GT(count, 100U);
-  EXPECT_LT(sum / double(count), 1.7);  // of 255
+  EXPECT_LT(sum / double(count), 1.7);  // in steps of 0 to 255
 }
 
-/// Of pixels as large as what a bake has lost, the mean square difference from a painted square,
-/// by the same measure as at a level's error: decibels.
+/// Returns the mean square difference from a painted square, in decibels, for pixels as large as
+/// what a bake has lost, by the same measure as at a level's error.
 double pixels_psnr(const Painted& of, const Paint& paint, double pixel) {
   constexpr int kSamples = 8;
   double squares = 0, count = 0;

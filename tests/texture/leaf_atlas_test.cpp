@@ -88,7 +88,7 @@ double texel(const MaterialTexels& of, std::uint32_t level, std::int64_t x, std:
   return static_cast<double>((mixed * 0xD6E8FEB86659FD93U) >> 56);
 }
 
-/// What a sampler sees at texel coordinates.
+/// Returns the colour that a sampler sees at texel coordinates.
 template <class At>
 double bilinear(double x, double y, const At& at) {
   const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
@@ -218,7 +218,7 @@ TEST(LeafAtlas, TrianglesThatShareAVertexOrACoordinateAreOneChart) {
   leaf.triangle(Vec2f{0.1f, 0.1f}, {0.2f, 0.1f}, {0.1f, 0.2f});
   leaf.triangle(1, leaf.vertex({0.2f, 0.2f}), 2);                   // shares vertices
   leaf.triangle(Vec2f{0.2f, 0.2f}, {0.3f, 0.2f}, {0.2f, 0.3f});     // shares a coordinate
-  leaf.triangle(Vec2f{0.2f, 0.2f}, {0.3f, 0.2f}, {0.2f, 0.3f}, 1);  // of another material
+  leaf.triangle(Vec2f{0.2f, 0.2f}, {0.3f, 0.2f}, {0.2f, 0.3f}, 1);  // with another material
   leaf.triangle(Vec2f{0.7f, 0.7f}, {0.8f, 0.7f}, {0.7f, 0.8f});
   const std::vector<MaterialTexels> materials = {picture(64, 64), picture(64, 64)};
   EXPECT_EQ(plan_leaf_atlas(leaf, materials, 4096).charts, 3U);

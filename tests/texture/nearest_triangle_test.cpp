@@ -47,7 +47,7 @@ double distance_to(const TreeCorners& t, const Vec3d& point) {
   return std::sqrt(squared_distance(point, {to_double(t[0]), to_double(t[1]), to_double(t[2])}));
 }
 
-/// Of those that face as asked within reach, else of all.
+/// Returns the least distance to triangles that face as asked within reach, else to all.
 double least_distance(const std::vector<TreeCorners>& triangles, const Vec3d& point,
                       const Vec3d& facing, double reach) {
   double alike = std::numeric_limits<double>::infinity(), any = alike;
@@ -62,7 +62,7 @@ double least_distance(const std::vector<TreeCorners>& triangles, const Vec3d& po
 
 struct Asking {
   double block = 1;  ///< side of the boxes that are asked for
-  double above = 0;  ///< of the sheet
+  double above = 0;  ///< height of the sheet
   double reach = 10;
 };
 

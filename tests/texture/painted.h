@@ -43,7 +43,7 @@ Painted painted(const Mesh& mesh, std::uint32_t side, const Paint& paint);
 Painted baked(const Mesh& mesh, const std::vector<const Painted*>& finer, std::uint32_t side,
               float least_texel = 0);
 
-/// What a surface shows at a point of a triangle, filtered in linear light.
+/// Returns the colour of a surface at a point of a triangle, filtered in linear light.
 Colour shown(const Painted& of, std::size_t triangle, double on_b, double on_c);
 Vec3d point_of(const Mesh& mesh, std::size_t triangle, double on_b, double on_c);
 

@@ -68,7 +68,7 @@ TEST(RectPacking, WhatHasNoRoomIsTold) {
   EXPECT_FALSE(pack_tightly(std::vector<RectSize>{{17, 1}}, 16));
 }
 
-// What a sort of the library makes of ties must not show.
+// The library's order of equal elements must not show.
 TEST(RectPacking, EqualRectanglesLieInTheirOrder) {
   const std::vector<RectSize> sizes(64, RectSize{2, 2});
   const std::optional<RectPacking> packing = pack_into({16, 16}, sizes);

@@ -19,7 +19,7 @@ struct Counted {
   std::vector<tests::Edge> border, unbalanced;
 };
 
-/// What the census finds in a cut, and what counting all triangles at once finds.
+/// The edges that the census finds in a cut, and those that counting all triangles at once finds.
 struct Comparison {
   Counted census, direct;
 };

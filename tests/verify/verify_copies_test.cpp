@@ -148,7 +148,7 @@ TEST_F(VerifyCopiesTest, ACopyOfAGhostWithoutABorderTriangleIsFound) {
 
 TEST_F(VerifyCopiesTest, AnotherCopyThanTheInputsIsFound) {
   EXPECT_THAT(problems_after([](tests::Sample& sample) {
-                // Of an own place that no other tile knows.
+                // A copy of an own place that no other tile knows.
                 TileMesh& mesh = sample.tile(node(2, 1)).mesh;
                 const std::size_t copy = mesh.copies.first_of(mesh.boundary_count);
                 ASSERT_LT(copy, exporting::own_copy_count(mesh));

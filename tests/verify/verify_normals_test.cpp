@@ -29,7 +29,7 @@ using tests::node;
 
 class VerifyNormalsTest : public testing::Test {
  protected:
-  /// Of a mesh with copies and splits.
+  /// Makes a sample of a mesh with copies and splits.
   tests::Sample make(const tests::TestMesh& mesh, std::uint32_t partitions) {
     tests::Sample sample = tests::make_sample(mesh, {partitions, 20, false, true, {}});
     tests::write_input(tests::add_copies(sample), sample, input());
@@ -77,7 +77,7 @@ std::uint32_t place_of(const PublishedTile& tile, std::uint32_t number) {
   return numbers[number < vertices ? number : tile.shading.split_of[number - vertices]].place;
 }
 
-/// What a border triangle has as a corner and that `fits`.
+/// Returns a corner of a border triangle that `fits`.
 template <class Fits>
 std::uint32_t border_corner(const PublishedTile& tile, Fits fits) {
   for (const TileTriangle& t : tile.shading.border) {
@@ -178,7 +178,7 @@ TEST_F(VerifyNormalsTest, AnotherNormalOfASplitIsFound) {
 }
 
 TEST_F(VerifyNormalsTest, ACornerWithAnotherNormalIsFound) {
-  // Of a vertex that has a split and is a corner itself, so that no split is without a triangle.
+  // The vertex has a split and is a corner itself, so no split is without a triangle.
   EXPECT_THAT(problems_after([](PublishedTile& tile) {
                 const std::size_t vertices = tile.mesh.vertices.size() + tile.mesh.copies.size();
                 for (TileTriangle& t : tile.shading.border) {

@@ -34,7 +34,7 @@ using tests::node;
 
 class VerifyTextureTest : public testing::Test {
  protected:
-  /// Of a mesh with colours and copies, with computed normals or without.
+  /// Makes a sample of a mesh with colours and copies, with computed normals or without.
   tests::Sample make(const TextureFormat& format = {}, AlphaMode alpha = AlphaMode::opaque,
                      bool normals = true, std::uint32_t partitions = 4) {
     tests::Sample sample =

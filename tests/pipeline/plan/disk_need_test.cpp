@@ -90,7 +90,7 @@ TEST(DiskNeedTest, AnArchiveIsThereBesideWhatItIsMadeOf) {
 }
 
 TEST(DiskNeedTest, TemporaryFilesStayBelowOneAndAHalfTimesInputAndOutput) {
-  // What the input takes: 12 bytes a vertex and 13 a triangle.
+  // The input takes 12 bytes a vertex and 13 a triangle.
   for (const std::uint64_t vertices : {7'000'000U, 28'000'000U, 250'000'000U}) {
     const JobSize job = job_of(vertices, 8192);
     const DiskNeed need = need_of(job, std::max(64 * kMiB, least_of(job)));

@@ -53,7 +53,7 @@ std::string text_of(const JobSize& job) {
          std::to_string(job.threads) + " threads";
 }
 
-/// What the refusal of a budget says, if it is refused.
+/// Returns the message that refuses a budget, if it is refused.
 std::optional<std::string> refusal(std::uint64_t budget, const JobSize& job) {
   try {
     plan_memory(budget, memory_costs(job));

@@ -141,7 +141,7 @@ class TasksTest : public testing::Test {
     return all;
   }
 
-  /// Of a build in one piece, which is gone then.
+  /// Returns the files of a build in one piece, which is gone then.
   Snapshot expected() {
     execution::NoProgress progress;
     build_hierarchy(config_, {}, {files_, progress, cancel_});
@@ -540,7 +540,7 @@ TEST_F(TasksTest, WhatIsFinishedStaysSo) {
   EXPECT_THAT(status_text(task_status(planned, work(), files_), planned, {}),
               HasSubstr("finished"));
   fs::remove_all(config_.output);
-  EXPECT_EQ(failure("finish"), ErrorCode::corrupt);  // what there was is gone
+  EXPECT_EQ(failure("finish"), ErrorCode::corrupt);  // the earlier files are gone
   EXPECT_THAT(message_, HasSubstr("plan the build again"));
 }
 
@@ -757,7 +757,8 @@ TEST_F(TasksTest, StatusComesFromTheSegmentsAlone) {
   EXPECT_EQ(status_json(status, planned, {}).at("next"), "read");
   run_until(planned, "leaves");
   run("leaves", {1, 3});
-  fs::copy_file(segment(planned, "leaves", 1), segment(planned, "leaves", 2));  // of another name
+  // Under another name.
+  fs::copy_file(segment(planned, "leaves", 1), segment(planned, "leaves", 2));
   status = task_status(planned, work(), files_);
   EXPECT_EQ(status.stages[0].done, 1);
   EXPECT_EQ(status.stages[4].done, 1);

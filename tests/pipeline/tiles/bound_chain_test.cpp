@@ -111,7 +111,7 @@ TEST_F(BoundChainTest, PointsThatMayLieInANeighbourTakeItsStep) {
   // Tile 0 of level 2 draws what was tile 2's partition (4): from under tile 0 a point may have
   // come to lie in what partition 4 belongs to.
   add(2, {{1, 0, {{4}}}, {1, 0, {}}, {5, 0, {}}, {1, 0, {}}});
-  EXPECT_FLOAT_EQ(bound(2, 0), 1);  // what lay in it took its own step
+  EXPECT_FLOAT_EQ(bound(2, 0), 1);  // nodes that lay in it took their own step
   EXPECT_FLOAT_EQ(bound(2, 1), 1);
   // It may have ended in tile 2, whose parent is tile 1: that one takes the next.
   add(1, {{1, 0, {}}, {9, 0, {}}});
@@ -148,7 +148,7 @@ TEST_F(BoundChainTest, BoundsAreNotBelowErrors) {
 }
 
 TEST_F(BoundChainTest, EarlyNodesAreTheirPartitions) {
-  make(5);  // of four nodes on level 2 three hold one partition
+  make(5);  // three of four nodes on level 2 hold one partition
   ASSERT_EQ(raw(tree_.depth()), 3);
   std::vector<Step> steps(4);
   std::uint32_t early = 0;

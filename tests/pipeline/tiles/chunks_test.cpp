@@ -128,7 +128,7 @@ TEST_F(ChunksTest, ATriangleGoesToEachChunkItTouches) {
 
 // ---- copies --------------------------------------------------------------------------------
 
-/// What a triangle's corners are: their ranks, and their wedges there.
+/// A triangle's corners: their ranks, and their wedges there.
 using Corners = std::pair<RankTriangle, CornerWedges>;
 
 TEST_F(ChunksTest, WhatSlicesHaveStoredIsOneBehindTheOther) {
@@ -153,7 +153,7 @@ TEST_F(ChunksTest, WhatSlicesHaveStoredIsOneBehindTheOther) {
   const auto empty = std::make_unique<Chunks>(tree_, 1, false, scratch_, 4096);
   ASSERT_FALSE(chunks_.has(2));
   std::uint32_t first = 0;
-  std::vector<std::unique_ptr<Chunks>> slices;  // what they have released would be used again
+  std::vector<std::unique_ptr<Chunks>> slices;  // rows that they have released would be used again
   for (const std::uint32_t end : {20'000U, 20'001U, 75'000U}) {
     ASSERT_FALSE(chunks_.is_whole(2));
     slices.push_back(slice(first, end));

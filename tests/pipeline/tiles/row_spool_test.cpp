@@ -30,7 +30,7 @@ class RowSpoolTest : public testing::Test {
     return rows;
   }
 
-  /// What is in its place, a number a row; fails if a row is there twice.
+  /// Returns a batch's rows in their places, a number a row; fails if a row is there twice.
   static std::vector<float> read(const RowSpool& spool, std::size_t batch) {
     constexpr float kNone = -1;
     std::vector<float> all(spool.size(), kNone);

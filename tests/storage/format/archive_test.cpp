@@ -59,7 +59,7 @@ class ArchiveTest : public testing::Test {
     return files_.bytes(kPath);
   }
 
-  /// What opening the archive, or checking it, has against it; empty: nothing.
+  /// Returns the error of opening the archive, or of checking it; empty if there is none.
   std::string complaint() {
     std::string all;
     try {
@@ -87,7 +87,7 @@ class ArchiveTest : public testing::Test {
   tests::MemoryFiles files_;
 };
 
-/// What an archive may be made of by somebody else: any headers, in a zip that adds up.
+/// An archive as somebody else may make it: any headers, in a zip that adds up.
 struct Forged {
   std::vector<ArchiveEntry> local;
   std::vector<ArchiveEntry> central;

@@ -151,7 +151,7 @@ TEST_F(HierarchyReaderTest, AnEarlyNodeIsItsPartition) {
   EXPECT_EQ(read.read_tile(early).node, (NodeId{Level{2}, 2}));
 }
 
-// What a viewer does: only what the files say, by the drawing rule of docs/file_format.md.
+// A viewer's way: it only knows the files, and draws by the rule of docs/file_format.md.
 
 using Cut = std::set<NodeId>;
 
@@ -271,7 +271,7 @@ TEST_F(HierarchyReaderTest, SANITIZED_DamagedFilesAreRefusedByName) {
   expect_failure(ErrorCode::corrupt, outline, "is damaged", [&] { read.read_outline(); });
 }
 
-/// What is done once, right after the manifest was opened.
+/// Replaces files once, right after the manifest was opened.
 class ReplacingFiles final : public storage::ForwardingFiles {
  public:
   ReplacingFiles(storage::FileSystem& others, std::function<void()> replace)

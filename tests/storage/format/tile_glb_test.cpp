@@ -59,7 +59,7 @@ void expect_consistent_copies(const TileMesh& mesh) {
   expect_wedges_there(mesh.border, mesh.border_wedges, copies);
 }
 
-/// What the contract of TileMesh and PublishedTile promises of any tile.
+/// Checks the promises of TileMesh and PublishedTile for any tile.
 void expect_consistent(const PublishedTile& tile, const Tree& tree) {
   const TileMesh& mesh = tile.mesh;
   ASSERT_LE(mesh.own_count, storage::kMaxOwnVertices);
@@ -729,7 +729,7 @@ TEST(TileGlb, SANITIZED_RandomFlipsInTilesWithCopiesAreRefusedOrHarmless) {
 }
 
 TEST(TileGlb, AChainThroughAnEarlyNodeKeepsTheNumber) {
-  // Of three partitions the last is the whole second half: it has no parent tile.
+  // The last one of three partitions is the whole second half: it has no parent tile.
   const SampleHierarchy sample = make_sample(torus(200), 3);
   const PublishedTile& tile = sample.tile({Level{2}, 0});
   ASSERT_EQ(tile.mesh.ghosts.back().tile, 2U);

@@ -33,7 +33,7 @@ PublishedTile read_shaded(const std::vector<std::byte>& bytes, NodeId node,
   return storage::decode_tile(bytes, node, sample.tree, sample.format, "shaded.glb");
 }
 
-/// Of any layout, tree, lattice and kind of mesh, with copies and without.
+/// Returns samples of any layout, tree, lattice and kind of mesh, with copies and without.
 std::vector<SampleHierarchy> shaded_samples() {
   std::vector<SampleHierarchy> samples;
   for (const AttributeLayout& layout : sample_layouts_without_normals()) {
@@ -57,7 +57,7 @@ SampleHierarchy full_shaded(Compression compression = Compression::none) {
       with_copies(make_sample(torus(200, 0.05F), 5, {layout, {1.5, 0, -1e7}, compression})));
 }
 
-/// What the contract of Shading promises beside a mesh.
+/// Checks the promises of Shading beside a mesh.
 void expect_shades(const Shading& shading, const TileMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size() + mesh.copies.size();
   ASSERT_EQ(shading.normals.size(), vertices + shading.split_of.size());
@@ -226,7 +226,7 @@ unsigned number_at(OpenGlb& glb, const char* key) {
 unsigned vertex_count(OpenGlb& glb) {
   return number_at(glb, "ownCount") + number_at(glb, "ghostCount") + number_at(glb, "copyCount");
 }
-/// Of which vertex the first split is.
+/// Returns the vertex of which the first split is.
 unsigned first_split(OpenGlb& glb) {
   return load_u16(glb.view("splitOf"));
 }

@@ -47,7 +47,8 @@ std::vector<PictureKind> picture_kinds() {
   return kinds;
 }
 
-/// Of any layout, picture, lattice and kind of mesh, with computed normals and copies and without.
+/// Returns samples of any layout, picture, lattice and kind of mesh, with computed normals and
+/// copies and without.
 std::vector<SampleHierarchy> textured_samples() {
   std::vector<SampleHierarchy> samples;
   for (const AttributeLayout& layout : sample_layouts_without_texcoords()) {

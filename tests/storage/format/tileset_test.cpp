@@ -215,7 +215,7 @@ TEST(Tileset, TellsErrorsTimesWhatViewersAllowFor) {
     for (const std::string& file : tileset.visited_files()) {
       visit_tiles(tileset.root(file), [&](const Json& tile) {
         const auto uri = tile["content"]["uri"].get<std::string>();
-        const auto begin = std::min(uri.find("tiles/"), uri.size());  // of tiles, not tilesets
+        const auto begin = std::min(uri.find("tiles/"), uri.size());  // tiles, not tilesets
         const auto node = storage::tile_of(std::string_view(uri).substr(begin));
         EXPECT_EQ(tile.contains("extras"), node.has_value()) << uri;
         if (!node)
@@ -290,7 +290,7 @@ TEST(Globe, PlacesTheAnchorAndStandsUp) {
   EXPECT_GT(dot(up, place) / distance, 0.99999);
   EXPECT_GT((apply(z_up, {3, 5, 5}) - place).z, 0.6);
   EXPECT_NEAR((apply(z_up, {4, 4, 5}) - place).z, 0, 1e-9);
-  // What is y-up is turned first, as viewers turn it: (x, y, z) is at (x, -z, y).
+  // A y-up mesh is turned first, as viewers turn it: (x, y, z) is at (x, -z, y).
   const Transform y_up = storage::globe_transform(10.985, 47.421, 2962, anchor, UpAxis::y);
   EXPECT_NEAR(length(apply(y_up, {3, -5, 4}) - place), 0, 1e-8);
 }

@@ -61,7 +61,7 @@ class RemoteFilesTest : public testing::Test {
     EXPECT_FALSE(local_->exists(scratch));
     return *remote_;
   }
-  /// What is said when it is opened, or read at that place.
+  /// Returns the error of opening it, or of reading at that place.
   std::string problem(RemoteFiles& remote, std::uint64_t offset = 0) {
     try {
       std::array<std::byte, 100> some{};

@@ -130,7 +130,7 @@ TEST_F(SpoolTest, APoolGivesNoMoreThanItHasToManyThreads) {
   EXPECT_EQ(pool.free_bytes(), 1U);
 }
 
-// What is read never depends on where it lies.
+// Content never depends on where it lies.
 TEST_F(SpoolTest, ContentIsTheSameForEveryBlockSizeStepAndMemory) {
   const Bytes bytes = pattern(5003);
   for (const std::size_t block : {1U, 7U, 64U, 5003U, 6000U}) {
