@@ -188,7 +188,7 @@ class Killed : public CommandLine {
     return wait_for(process) == 1000 + SIGKILL;
   }
 
-  /// Whether all triangles were distributed.
+  /// Returns whether all triangles were distributed.
   bool has_work() const {
     const Path journal = work() / ".a.hier.meshhier-work" / "journal";
     return std::filesystem::exists(journal) && text_of(journal).find("ingest") != std::string::npos;

@@ -343,7 +343,7 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Whether `word` stands in `code` as a whole word, perhaps with a namespace before it.
+/// Returns whether `word` stands in `code` as a whole word, perhaps with a namespace before it.
 bool has_word(const std::string& code, const std::string& word) {
   for (std::size_t i = code.find(word); i != std::string::npos; i = code.find(word, i + 1)) {
     const bool starts = i == 0 || (!is_word(code[i - 1]) && code[i - 1] != '.' &&

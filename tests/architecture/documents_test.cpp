@@ -73,8 +73,8 @@ bool leads_somewhere(const fs::path& document, const std::string& link) {
   return fs::exists(target) && (is_plain || has_anchor(target, link.substr(name.size() + 1)));
 }
 
-/// Whether a path that begins with a folder of the sources is there, perhaps without its ending.
-/// What a build makes is not looked for.
+/// Returns whether a path that begins with a folder of the sources is there, perhaps without its
+/// ending. What a build makes is not looked for.
 bool is_there(const std::string& path) {
   static const std::array<const char*, 5> endings{"", ".h", ".cpp", ".ts", ".mjs"};
   if (!fs::is_directory(kRoot / path.substr(0, path.find('/'))) || path.starts_with("build/") ||

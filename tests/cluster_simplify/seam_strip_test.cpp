@@ -176,7 +176,7 @@ Corners corners_of(const TileMesh& mesh, const TileTriangle& t) {
   return {at(t[0]), at(t[1]), at(t[2])};
 }
 
-/// Whether no tile before this one draws the border triangle.
+/// Returns whether no tile before this one draws the border triangle.
 bool is_lowest(const TileMesh& mesh, std::uint32_t tile, const TileTriangle& t) {
   return std::ranges::all_of(
       t, [&](TileVertex v) { return mesh.is_own(v) || mesh.ghost(v).tile > tile; });

@@ -17,7 +17,7 @@ void ply_header(std::span<const std::byte> input);
 /// The input is a PLY file; binary files are passed over by the one, text by the other.
 void ply_text(std::span<const std::byte> input);
 void ply_binary(std::span<const std::byte> input);
-/// Whether vertices are welded, then a file of any format, packed or not, to be imported.
+/// Returns whether vertices are welded, then a file of any format, packed or not, to be imported.
 void mesh(std::span<const std::byte> input);
 /// A material library, of a mesh that is always the same.
 void mtl(std::span<const std::byte> input);

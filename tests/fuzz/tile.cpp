@@ -106,7 +106,7 @@ bool bounds_in(Bytes bin, const storage::TilePlan& plan, Bounds& bounds) {
   return true;
 }
 
-/// Whether all corners of triangles are vertices or splits, as the encoder requires.
+/// Returns whether all corners of triangles are vertices or splits, as the encoder requires.
 bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
   for (const storage::Part part : {storage::Part::interior, storage::Part::border}) {
     const storage::Section& section = plan[part];

@@ -41,8 +41,8 @@ double area_of(const Polygon& p) {
   return sum;
 }
 
-/// Whether the triangles of a flat polygon all turn as it does and have its area: then they cover
-/// it, once.
+/// Returns whether the triangles of a flat polygon all turn as it does and have its area: then they
+/// cover it, once.
 void expect_covered(const Polygon& polygon) {
   PolygonCut cut;
   ASSERT_EQ(cut.cut(polygon), Kind::cut);

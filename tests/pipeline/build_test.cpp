@@ -690,7 +690,7 @@ class DiskWatch final : public execution::Progress {
 
 class DiskTest : public BuildTest {
  protected:
-  /// Whether a disk with that much room is let through.
+  /// Returns whether a disk with that much room is let through.
   bool is_accepted(const config::Config& config, std::uint64_t room) {
     execution::CancelToken cancel;
     tests::StageInterrupter progress(cancel, "ingest");  // the first one that a plan is needed for

@@ -195,7 +195,7 @@ bench::LoadedMesh two_sided_bumps(std::uint64_t seed) {
   return mesh;
 }
 
-/// Whether a tile with a map has a neighbour of its level without.
+/// Returns whether a tile with a map has a neighbour of its level without.
 bool has_mixed_neighbours(const storage::HierarchyReader& reader) {
   return std::ranges::any_of(reader.records(), [&](const TileRecord& record) {
     const std::vector<GhostRef> ghosts = reader.read_tile(record.node).mesh.ghosts;

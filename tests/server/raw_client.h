@@ -29,7 +29,7 @@ class RawClient {
   /// The next reply, whose body ends as its head says. `is_head`: it has no body.
   RawReply receive(bool is_head = false);
   RawReply get(const std::string& target, const std::string& more_headers = "");
-  /// Whether the server closes the connection before it says anything more.
+  /// Returns whether the server closes the connection before it says anything more.
   bool is_closed();
 
  private:

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
   throw Error(ErrorCode::io, std::string("cannot ") + action + " " + path.string() + ": " + cause);
 }
 
-/// Whether `path` is below `directory`.
+/// Returns whether `path` is below `directory`.
 bool is_below(const fs::path& path, const fs::path& directory) {
   return std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first ==
              directory.end() &&

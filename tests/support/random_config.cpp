@@ -61,7 +61,7 @@ class ConfigDrawer {
     return std::ranges::any_of(
         names, [&](const std::string& name) { return has(section_of(key.path) + name); });
   }
-  /// Whether a key that is there excludes this one, or the other way round.
+  /// Returns whether a key that is there excludes this one, or the other way round.
   bool is_excluded(const ConfigKey& key) const {
     const std::string section = section_of(key.path);
     return has_any(key, key.excludes) ||

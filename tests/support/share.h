@@ -14,7 +14,7 @@ struct Share {
   std::size_t index = 0;
   std::size_t count = 1;
 
-  /// Whether a test does its i-th case.
+  /// Returns whether a test does its i-th case.
   bool has(std::size_t i) const { return i % count == index; }
   /// The share of a test that has so few cases that some shares would have none: one case then.
   Share of(std::size_t cases) const { return cases < count ? Share{index % cases, cases} : *this; }
