@@ -86,6 +86,8 @@ void FarthestBound::split(std::span<const double> distances) {
 double FarthestBound::refine(const Measure& measure) {
   std::size_t points = 0;
   for (drop_settled(); !candidates_.empty(); drop_settled()) {
+    // A triangle takes three distances. Too many triangles, or too few distances left: those with
+    // the smallest bounds are given up, and the answer is no better than theirs.
     const std::size_t left = (kMostPoints - points) / 3;
     if (candidates_.size() > std::min(left, kMostCandidates))
       drop_nearest(std::min(left, kMostCandidates));

@@ -225,6 +225,8 @@ std::vector<NearestTriangle> SurfaceDistance::nearest(std::span<const Vec3d> poi
   std::vector<Query> more;
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const Candidate& candidate : near[i / kSearchedPoints]) {
+      // Candidates come by their distance from the whole block: none behind this one is nearer to
+      // the point.
       if (candidate.squared >= found[i].squared)
         break;
       if (candidate.tile != first[i].tile &&

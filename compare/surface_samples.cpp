@@ -103,6 +103,7 @@ std::vector<SurfaceSample> SurfaceSampler::draw(std::size_t position, const Tile
       continue;
     with_area = i;
     before += area;
+    // Samples whose places lie in this triangle's part of the line.
     while (sample < range.end && target(sample) - areas_[position] < before)
       place(i);
   }

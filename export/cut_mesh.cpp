@@ -83,6 +83,8 @@ std::optional<ShownGhost> find_ghost(const Tree& tree, const NumberedCut& number
   const Level level = numbered.cut[position].level;
   if (level > tile.node.level)
     return std::nullopt;
+  // The chain has the ghost's vertex in its own tile first, then in each tile above: one step a
+  // level that the cut is coarser there.
   const GhostChain chain = tile.chains[ghost];
   const std::size_t step = raw(tile.node.level) - raw(level);
   const std::uint64_t count = numbered.bases[position + 1] - numbered.bases[position];

@@ -57,6 +57,7 @@ void PyramidWriter::put_row(std::uint32_t number, const std::uint8_t* row) {
     write_strip(number, (level.rows - 1) / BlockGrid::kBlockSide);
   if (number + 1 == levels_.size())
     return;
+  // An even row waits for the next one; without a next one it stands for both.
   if (is_even && !is_last) {
     std::memcpy(level.above.data(), row, level.above.size());
     return;

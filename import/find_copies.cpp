@@ -172,6 +172,7 @@ class Buckets {
             note(copy);
           return true;
         });
+    // Buckets that did not fit beside the others come one by one, with all memory.
     for (Bucket& bucket : buckets_) {
       if (bucket.size() > 0)
         settle_sorted(bucket);
@@ -200,6 +201,8 @@ class Buckets {
     settled.read.resize(bucket.size());
     bucket.read(0, settled.read);
     bucket.clear();
+    // The bits behind those that chose the bucket choose a group of about one vertex, so that
+    // sorting costs next to nothing.
     const std::size_t groups = std::bit_ceil(settled.read.size());
     const int group_bits = std::countr_zero(groups);
     settled.grouped.fill(settled.read, groups, [&](const Vertex& vertex) {

@@ -99,8 +99,10 @@ void CornerSplitter::number(Numbering& numbering, CornerSort& corners) {
   uses_.for_each_block([&](std::span<const Use> block) {
     room_.cancel.check();
     for (const Use& use : block) {
+      // Positions without another use have the table's vertex, or one that no corner uses.
       while (at < use.shown.position)
         leave();
+      // The table's parts are not among the uses; their vertex has its place in the order of parts.
       if (has_table() && !is_done && firsts_[at] < use.shown.parts)
         take_first();
       corners.add({use.corner(), numbering.number(use.shown)});

@@ -76,6 +76,8 @@ std::uint64_t number_equals(std::uint64_t count, const BitsOf& bits_of, const Ke
                             const Take& take, const ImportRoom& room) {
   PairSort by_first(room.scratch, room.sort_bytes);
   {
+    // By bits: equal items come together. The number is the last part of an item, so the first of
+    // them comes first.
     partition::ExternalSort<Item<Words>, ItemKey> by_bits(room.scratch, room.sort_bytes);
     for (std::uint64_t i = 0; i < count; ++i) {
       ItemBits<Words> bits;
@@ -97,6 +99,7 @@ std::uint64_t number_equals(std::uint64_t count, const BitsOf& bits_of, const Ke
       }
     });
   }
+  // By the first of equal ones: those that stay come in the order in which they first appear.
   by_first.sort();
   std::uint64_t kept = 0;
   std::uint64_t last = UINT64_MAX;  // first of those before
@@ -112,6 +115,7 @@ std::uint64_t number_equals(std::uint64_t count, const BitsOf& bits_of, const Ke
       by_item.add({item, kept - 1});
     }
   });
+  // By item: numbers come in the order of the caller's items.
   by_item.sort();
   by_item.for_each_block([&](std::span<const Pair> block) {
     room.cancel.check();

@@ -65,6 +65,7 @@ std::uint64_t count_rounded(PlyType type, const std::byte* from, std::size_t str
 
 RowBlocks::RowBlocks(std::uint64_t offset, std::uint64_t stride, std::uint64_t rows)
     : offset_(offset), stride_(stride), rows_(rows), unit_(kMostUnit) {
+  // A unit of the file may begin one more row than it holds whole.
   while (unit_ / stride_ + 1 > MeshSource::kBlockSize)
     unit_ /= 2;
   start_ = offset_ / unit_ * unit_;
@@ -219,6 +220,7 @@ TriangleBlock PlyTriangleBlocks::read(const InputFile& input, std::uint64_t inde
   Triangle<VertexId>* out = memory.triangles.data();
   const auto take = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     *out = {VertexId{a}, VertexId{b}, VertexId{c}};
+    // A degenerate triangle is overwritten by the next one: no branch to mispredict.
     out += static_cast<int>(a != b) & static_cast<int>(b != c) & static_cast<int>(c != a);
   };
   TriangleBlock result;

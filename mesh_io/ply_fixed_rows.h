@@ -1,7 +1,14 @@
 // Binary rows of one size, decoded block by block, by any number of threads at once.
 //
 // Blocks are cut at multiples of a power of two in the file, so that reading them all reads whole
-// blocks of the file's checksum; a row belongs to the block that its first byte lies in.
+// blocks of the file's checksum; a row belongs to the block that its first byte lies in:
+//
+//     file      |  unit 0          |  unit 1          |  unit 2
+//     rows      header[r0][r1][r2][r3][r4][r5][r6][r7][r8][r9]...
+//     blocks          |0              |1              |2
+//
+// So any thread finds the rows of any block by arithmetic alone; reading one takes a row's end from
+// the next unit.
 #pragma once
 
 #include "mesh_io/byte_window.h"

@@ -47,6 +47,7 @@ class LineReader {
     block.first = row_;
     block.rows = std::min<std::uint64_t>(lines, rows_ - row_);
     block.position = at_;
+    // Lines behind the element's last row belong to the next element.
     const std::size_t end =
         block.rows == lines ? text.find_last_of('\n') + 1 : end_of_line(text, block.rows);
     left_.assign(text.substr(end));
@@ -269,6 +270,7 @@ class PolygonLines {
     const auto count = parser.take_count(property);
     if (!count)
       return false;
+    // Lengths are written from the first other polygon on: most files have triangles alone.
     if (*count != 3 && block.lengths.empty())
       block.lengths.assign(row, 3);
     if (*count != 3 || !block.lengths.empty())

@@ -121,6 +121,8 @@ void PolygonCut::cut_off(std::size_t place) {
   const std::size_t n = left_.size();
   triangles_.push_back({left_[(place + n - 1) % n], left_[place], left_[(place + 1) % n]});
   left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(place));
+  // Only these two have another triangle now; that others lie in one may have changed, which
+  // find_ear() looks at when it must.
   look_at((place + n - 2) % (n - 1));
   look_at(place % (n - 1));
 }
@@ -134,6 +136,7 @@ bool PolygonCut::cut_ears() {
     std::size_t place = find_ear();
     if (place == left_.size())
       place = find_flat();
+    // Without either nothing can be cut off: the polygon crosses itself.
     if (place == left_.size())
       return false;
     cut_off(place);

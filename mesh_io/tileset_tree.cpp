@@ -75,6 +75,9 @@ std::uint32_t TilesetTree::add_document(const storage::File& file) {
   return static_cast<std::uint32_t>(documents_.size() - 1);
 }
 
+/// Counts the tiles that a document shows with all that it names. They depend on the document and
+/// on whether the tile above adds: each of the two is counted once, however often it is named, so
+/// documents that name each other take no exponential time.
 TilesetTree::Size TilesetTree::size_of(std::uint32_t document, bool parent_adds,
                                        std::size_t level) {
   const fs::path path = documents_[document].document.path;

@@ -53,6 +53,8 @@ class CopyClaims::Judge {
   }
 
   void judge(const Claim& claim) {
+    // The tile's claims must come in the owner's order, so the search goes on behind the last
+    // match.
     const auto from = owned_.begin() + static_cast<std::ptrdiff_t>(next_);
     const auto found = std::find_if(from, owned_.end(),
                                     [&](const Claim& owned) { return owned.agrees_with(claim); });
