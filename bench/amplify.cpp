@@ -77,7 +77,7 @@ EdgeTable edge_table(const std::vector<MeshTriangle>& triangles) {
   return table;
 }
 
-/// Unit vectors, area-weighted; zero where no triangle is.
+/// Returns unit vectors, area-weighted; zero where no triangle is.
 std::vector<Vec3d> vertex_normals(const LoadedMesh& mesh) {
   std::vector<Vec3d> normals(mesh.positions.size());
   for (const MeshTriangle& t : mesh.triangles) {

@@ -32,7 +32,8 @@ constexpr std::array<std::string_view, 7> kFiveHoles{"#######",  //
 
 constexpr double kInnerShellRadius = 0.6;
 
-/// Half the height of a storey, after fit_unit_cube; for the shells half the gap between them.
+/// Returns half the height of a storey, after fit_unit_cube; for the shells half the gap between
+/// them.
 double thickness_of(Shape shape) {
   switch (shape) {
     case Shape::torus:

@@ -34,11 +34,12 @@ struct Side {
   std::uint32_t side = 0;
 };
 
-/// For every side of every face, the same edge as a side of the other face. Requires a closed mesh.
+/// Returns for every side of every face the same edge as a side of the other face. Requires a
+/// closed mesh.
 std::vector<std::array<Side, 4>> opposite_sides(const QuadMesh& mesh);
 
-/// One step of Catmull & Clark, Recursively generated B-spline surfaces, 1978. Face f becomes the
-/// faces 4f .. 4f + 3.
+/// Does one step of Catmull & Clark, Recursively generated B-spline surfaces, 1978. Face f becomes
+/// the faces 4f .. 4f + 3.
 QuadMesh subdivided(const QuadMesh& mesh);
 
 struct SurfacePoint {
@@ -58,7 +59,7 @@ class BaseSurface {
   /// 1), (0, 1). Neighbouring patches agree along their common side up to rounding.
   SurfacePoint at(std::uint32_t face, double u, double v) const;
 
-  /// Mean length of a patch's side, roughly.
+  /// Returns the mean length of a patch's side, roughly.
   double patch_size() const { return patch_size_; }
 
   /// Returns half of the thickness between opposite parts of the surface: a relief below it does

@@ -34,7 +34,7 @@ class BufferedFile {
     written_ += buffer_.size();
     buffer_.clear();
   }
-  /// Flushed so far.
+  /// Returns the bytes that were flushed so far.
   std::uint64_t size() const { return written_; }
 
  private:

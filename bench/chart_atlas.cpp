@@ -38,7 +38,8 @@ std::uint32_t root_above(std::uint32_t square) {
   return root;
 }
 
-/// 0 ... count - 1 in random order (Fisher & Yates; Durstenfeld, Algorithm 235, 1964).
+/// Returns 0 ... count - 1 in random order (Fisher & Yates; Durstenfeld, Algorithm 235,
+/// 1964).
 std::vector<std::uint32_t> shuffled(std::uint32_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);

@@ -134,7 +134,7 @@ BENCHMARK_CAPTURE(split_chunk, longest, partition::Axis::longest)->Unit(benchmar
 BENCHMARK_CAPTURE(split_chunk, compactness, partition::Axis::compactness)
     ->Unit(benchmark::kMillisecond);
 
-/// One quadric a vertex, from all triangles around it.
+/// Makes one quadric a vertex, from all triangles around it.
 void build_quadrics(benchmark::State& state) {
   const TileMesh& mesh = joined_tile().mesh;
   std::vector<cluster_simplify::Quadric> quadrics;

@@ -21,7 +21,7 @@ std::uint64_t lattice_hash(std::uint64_t seed, std::int64_t x, std::int64_t y, s
              static_cast<std::uint64_t>(z) * 0x165667b19e3779f9u);
 }
 
-/// Random values at the integer lattice, blended between.
+/// Returns random values at the integer lattice, blended between.
 NoiseSample value_noise(std::uint64_t seed, Vec3d p) {
   const Vec3d base{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
   const auto x = static_cast<std::int64_t>(base.x);

@@ -51,7 +51,7 @@ class FractalNoise {
  public:
   explicit FractalNoise(const FractalOptions& options);
 
-  /// Value and gradient at `p`. Requires |p| * frequency * 2^octaves < 2^53.
+  /// Returns value and gradient at `p`. Requires |p| * frequency * 2^octaves < 2^53.
   NoiseSample at(Vec3d p) const;
 
  private:

@@ -45,13 +45,13 @@ class ReliefSurface {
 
   const BaseSurface& base() const { return base_; }
   const PatchGrid& grid() const { return grid_; }
-  /// Mean distance of neighbouring grid points, roughly.
+  /// Returns the mean distance of neighbouring grid points, roughly.
   double step() const { return step_; }
 
   ReliefVertex vertex(GridPoint at) const { return vertex(at, grid_.index(at)); }
   /// Returns its position as a file holds it.
   Vec3d stored(const ReliefVertex& vertex) const;
-  /// Every vertex once, by ascending number.
+  /// Visits every vertex once, by ascending number.
   void visit_vertices(const std::function<void(const ReliefVertex&)>& visit) const;
 
  private:

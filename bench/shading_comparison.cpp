@@ -62,7 +62,7 @@ class DifferenceSum {
     pixels_ += other.pixels_;
   }
 
-  /// 0 if there is nothing to compare.
+  /// Returns 0 if there is nothing to compare.
   ShadingDifference mean() const {
     ShadingDifference result;
     if (samples_ > 0)

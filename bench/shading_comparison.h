@@ -50,7 +50,7 @@ ShadingComparison compare_shading(const storage::HierarchyReader& reader,
 
 /// A table in Markdown below a heading.
 std::string markdown(const std::string& name, const ShadingComparison& comparison);
-/// One object, for programs.
+/// Returns one object, for programs.
 std::string json_text(const std::string& name, const ShadingComparison& comparison);
 
 }  // namespace meshhier::bench

@@ -31,7 +31,7 @@ Vec3d direction_at(std::uint64_t seed, std::uint64_t item) {
   }
 }
 
-/// Nearly sin(2 pi t), of t >= 0, from parabolas.
+/// Returns nearly sin(2 pi t), for t >= 0, from parabolas.
 float wave_at(double t) {
   const auto whole = static_cast<std::int32_t>(t);
   const auto f = static_cast<float>(t - whole) - 0.5F;

@@ -23,7 +23,7 @@ class SolidPaint {
   };
   explicit SolidPaint(const Options& options);
 
-  /// Red, green and blue of each point, 3 bytes each, sRGB. Requires points in [-4, 4]^3 and
+  /// Paints red, green and blue of each point, 3 bytes each, sRGB. Requires points in [-4, 4]^3 and
   /// colours of 3 * points.size().
   void paint(std::span<const Vec3d> points, std::span<std::uint8_t> colours) const;
 

@@ -13,7 +13,7 @@ struct SplitCase {
   std::string_view what;  ///< for people
 };
 
-/// In the order of the help.
+/// Returns the cases in the order of the help.
 std::span<const SplitCase> split_cases();
 
 /// Returns the same surface with its vertices split where their attributes differ, corner by

@@ -73,7 +73,7 @@ LoadedMesh points(const StressOptions& options) {
   return mesh;
 }
 
-/// Point i of `count` on a circle that is no circle.
+/// Returns point i of `count` on a circle that is no circle.
 Vec3d ring_point(std::uint64_t i, std::uint64_t count) {
   const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
   return rounded_to_float(Vec3d{std::cos(angle), std::sin(angle), 0.2 * std::sin(7 * angle)});
@@ -131,7 +131,7 @@ LoadedMesh degenerate(const StressOptions& options) {
   return mesh;
 }
 
-/// Tetrahedra, each alone.
+/// Makes tetrahedra, each alone.
 LoadedMesh pieces(const StressOptions& options) {
   LoadedMesh mesh;
   for (std::uint64_t i = 0; i < std::max<std::uint64_t>(options.size / 4, 1); ++i) {
@@ -156,7 +156,8 @@ LoadedMesh soup(const StressOptions& options) {
   return mesh;
 }
 
-/// Twice as many triangles as vertices, each between any three: nothing is near its neighbours.
+/// Makes twice as many triangles as vertices, each between any three: nothing is near its
+/// neighbours.
 LoadedMesh tangle(const StressOptions& options) {
   LoadedMesh mesh = points({std::max<std::uint64_t>(options.size / 2, 4), options.seed});
   const std::uint64_t count = mesh.positions.size();
@@ -225,7 +226,7 @@ LoadedMesh utm(const StressOptions& options) {
   return mesh;
 }
 
-/// Every vertex of the surface in a size of its own: 10^30, 1, 10^-30 or 10^-40.
+/// Makes a surface with every vertex in a size of its own: 10^30, 1, 10^-30 or 10^-40.
 LoadedMesh mixed(const StressOptions& options) {
   constexpr std::array kFactors = {1e30, 1.0, 1e-30, 1e-40};
   return moved_surface(options, [&](Vec3d p, std::size_t i) {

@@ -54,7 +54,7 @@ std::optional<double> peak_ratio(const images::Image& a, const images::Image& b)
 
 /// A table in Markdown below a heading.
 std::string markdown(const std::string& name, const TextureComparison& comparison);
-/// One object, for programs; a ratio that is none or infinite is null.
+/// Returns one object, for programs; a ratio that is none or infinite is null.
 std::string json_text(const std::string& name, const TextureComparison& comparison);
 
 }  // namespace meshhier::bench

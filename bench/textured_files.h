@@ -23,11 +23,11 @@ struct TexturedFileSizes {
   std::uint64_t image_bytes = 0;  ///< bytes of all pictures
 };
 
-/// Beside "NAME.obj" there are NAME.mtl and NAME_0000.jpg, NAME_0001.jpg ... The mesh comes last.
-/// Pictures are made in parallel, each in O(side) memory. An OBJ has texture coordinates of its own
-/// for each chart; a PLY has them in its faces, as MeshLab and VCG write it (`texcoord`,
-/// `texnumber`, `comment TextureFile`). Throws Error(usage) if the output is no file, or if an
-/// option is out of range, Error(exists | io).
+/// Writes the files. Beside "NAME.obj" there are NAME.mtl and NAME_0000.jpg, NAME_0001.jpg ... The
+/// mesh comes last. Pictures are made in parallel, each in O(side) memory. An OBJ has texture
+/// coordinates of its own for each chart; a PLY has them in its faces, as MeshLab and VCG write it
+/// (`texcoord`, `texnumber`, `comment TextureFile`). Throws Error(usage) if the output is no file,
+/// or if an option is out of range, Error(exists | io).
 TexturedFileSizes write_textured(storage::FileSystem& files, const storage::OutputRequest& request,
                                  const TexturedSurface& surface,
                                  const TexturedFileOptions& options);

@@ -28,7 +28,7 @@ struct TexturedMesh {
   std::vector<ShownMaterial> materials;
 
   void draw(render::Raster& raster) const;
-  /// Mean side of a texel on the surface; 0 without textures.
+  /// Returns the mean side of a texel on the surface; 0 without textures.
   double texel() const;
 };
 

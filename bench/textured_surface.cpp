@@ -54,7 +54,7 @@ class ChartPainter {
     return {column, row, place.column - column, place.row - row};
   }
 
-  /// On the triangles of the mesh.
+  /// Returns a point on the triangles of the mesh.
   Vec3d point_at(ChartPlace place) {
     const CellPlace at = cell_of(place);
     load_lines(chart_.rows_stay_rows() ? at.row : at.column);

@@ -30,7 +30,7 @@ class TexturedSurface {
   const ChartAtlas& atlas() const { return atlas_; }
   const SolidPaint& paint() const { return paint_; }
 
-  /// Each chart, picture by picture.
+  /// Visits each chart, picture by picture.
   void visit_charts(const std::function<void(const PlacedChart&)>& visit) const;
 
   /// Rows of a picture from its top, each of 3 * side bytes: red, green, blue.

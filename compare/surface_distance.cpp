@@ -17,7 +17,7 @@ double square(double x) {
   return x * x;
 }
 
-/// Square of the largest distance between a point of one box and a point of the other.
+/// Returns the square of the largest distance between a point of one box and a point of the other.
 double squared_reach(const BoundsD& a, const Bounds& b) {
   return square(std::max(b.max.x - a.min.x, a.max.x - b.min.x)) +
          square(std::max(b.max.y - a.min.y, a.max.y - b.min.y)) +

@@ -46,7 +46,7 @@ void move(std::vector<PlanPolygon>& polygons, const HierarchyReader& reader,
   }
 }
 
-/// Between two heights.
+/// Returns the part of space between two heights.
 ConvexRegion layer_of(const BoundsD& box, const storage::Manifest& manifest) {
   const Vec3d up = direction_of(manifest.up);
   const double below = dot(up, manifest.origin);

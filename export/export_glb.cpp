@@ -66,8 +66,8 @@ class GlbLayout {
  public:
   explicit GlbLayout(const storage::TileFormat& format) : format_(format) {}
 
-  /// Positions, normals, colours, texture coordinates, indices, picture; those that are not there
-  /// have no bytes.
+  /// Returns positions, normals, colours, texture coordinates, indices, picture; those that are not
+  /// there have no bytes.
   std::array<GlbSection, 6> sections(const PartFacts& part) const {
     const AttributeLayout& layout = format_.attributes;
     const std::uint64_t n = part.vertices;

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "02_000017"
+/// Returns "02_000017".
 std::string file_name_of(NodeId node) {
   return fmt::format("{:02}_{:06}", raw(node.level), node.index);
 }
@@ -103,7 +103,7 @@ class ObjPictures {
   }
 
  private:
-  /// Nothing lies where the pictures go, or they may replace it: a folder of such pictures.
+  /// Requires that nothing lies where the pictures go, or that they may replace it: a folder of such pictures.
   void require_free() {
     if (!files_.exists(folder_) && !files_.is_link(folder_))
       return;
@@ -152,7 +152,7 @@ class ObjWriter {
 
   void line(const std::string& text) { out_.put(text + '\n'); }
 
-  /// One for each place.
+  /// Writes a line for each place.
   void write_places(const VertexArray& vertices) {
     const std::vector<float> shown = storage::showable_attributes(layout_, vertices);
     for (std::size_t v = 0; v < vertices.size(); ++v)

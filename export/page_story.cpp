@@ -24,7 +24,8 @@ constexpr int kDeepestStory = 64;
 /// The longest address in a message.
 constexpr std::size_t kMostShown = 120;
 
-/// Without what may be secret: user and password, and what stands behind a '?'.
+/// Returns an address without parts that may be secret: user and password, and the text behind a
+/// '?'.
 std::string shown_address(const std::string& address) {
   std::string shown = address.substr(0, address.find_first_of("?#"));
   const std::size_t host = shown.find("//");
@@ -37,7 +38,7 @@ std::string shown_address(const std::string& address) {
   return plain_text(shown, kMostShown);
 }
 
-/// "it is no JPEG, PNG or GIF".
+/// Returns "it is no JPEG, PNG or GIF".
 std::string no_browser_picture() {
   std::string text = "it is no ";
   for (std::size_t i = 0; i < kBrowserPictures.size(); ++i) {
@@ -51,7 +52,7 @@ class Embedding {
  public:
   Embedding(std::uint64_t most_bytes, const OpenPicture& open) : room_(most_bytes), open_(open) {}
 
-  /// False: it is to be removed from what has it.
+  /// Returns false if a value is to be removed from the object or list that has it.
   bool keeps(Json& value, bool is_in_body) {
     if (value.is_object() && is_in_body && is_image(value))
       return embeds(value["id"].get_ref<std::string&>());

@@ -29,8 +29,8 @@ constexpr std::uint64_t kPageRecords = 545;
 /// The largest file of a hierarchy: the largest length that a GLB can have.
 constexpr std::uint64_t kMostFile = std::numeric_limits<std::uint32_t>::max();
 
-/// One for all levels, over the boxes of all tiles, which coarse ones may leave a little. Nothing
-/// if the positions lie on one already that is no finer.
+/// Returns a lattice for all levels, over the boxes of all tiles, which coarse ones may leave a
+/// little. Nothing if the positions lie on one already that is no finer.
 std::optional<Lattice> short_lattice(const storage::HierarchyReader& reader) {
   const auto& quantization = reader.manifest().quantization;
   if (quantization && quantization->lattice.is_short())

@@ -53,7 +53,7 @@ RtreeBox box_of(const std::array<PlanPoint, 3>& corners) {
   return box;
 }
 
-/// Exact, then rounded: the same for all who compute the same number, whatever the way.
+/// Rounds an exact number: the result is the same whatever the way to the number.
 double rounded(const Exact::FT& number) {
   return CGAL::to_double(CGAL::exact(number));
 }

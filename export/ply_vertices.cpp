@@ -13,7 +13,7 @@ bool has_origin(const storage::HierarchyReader& reader) {
   return reader.manifest().origin != Vec3d{};
 }
 
-/// Light as PLY has colours: those of a screen.
+/// Returns attributes with colours as PLY has them: sRGB instead of light.
 std::vector<float> screen_attributes(const AttributeLayout& layout, std::span<const float> given) {
   const auto channels = static_cast<std::size_t>(layout.channels());
   std::vector<float> attributes(given.begin(), given.end());

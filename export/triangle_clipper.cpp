@@ -10,7 +10,7 @@
 namespace meshhier::exporting {
 namespace {
 
-/// On the side of a box exactly.
+/// Returns the point moved exactly onto the side of a box.
 Vec3f on_side(Vec3f p, const HalfSpace& half) {
   const Vec3d& n = half.normal;
   const auto is_axis = [](double a, double b, double c) {
@@ -98,7 +98,7 @@ void TriangleClipper::add_within_plan(const std::array<const ClippedCorner*, 3>&
     pieces.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
 }
 
-/// On an edge the same from both sides.
+/// Makes the corner of a cut's vertex. On an edge it is the same from both sides.
 ClippedCorner TriangleClipper::corner_of(const std::array<const ClippedCorner*, 3>& triangle,
                                          const TriangleCut::Vertex& vertex) const {
   if (vertex.edge < 0) {

@@ -23,7 +23,7 @@ bool contains(std::string_view text, std::string_view part) {
                      [](char a, char b) { return lower(a) == b; }) != text.end();
 }
 
-/// "+geoidgrids=/tmp/x.gtx".
+/// Returns whether a word is like "+geoidgrids=/tmp/x.gtx".
 bool is_path_parameter(std::string_view word) {
   const std::size_t sign = word.find('=');
   return sign != std::string_view::npos &&

@@ -27,7 +27,7 @@ std::string read_mark(const ByteSource& source) {
   return {reinterpret_cast<const char*>(mark.data()), count};
 }
 
-/// "neither JPEG nor PNG".
+/// Returns "neither JPEG nor PNG".
 std::string none_of_these() {
   std::string text;
   for (const ImageFormatRow& row : kImageFormats)

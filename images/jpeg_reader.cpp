@@ -176,7 +176,7 @@ void JpegReader::choose_output() {
   jpeg_.do_block_smoothing = FALSE;
 }
 
-/// 0 if rows are decoded one by one.
+/// Returns 0 if rows are decoded one by one.
 std::uint64_t JpegReader::coefficient_bytes() const {
   jpeg_decompress_struct& jpeg = const_cast<jpeg_decompress_struct&>(jpeg_);
   if (jpeg_has_multiple_scans(&jpeg) == FALSE)

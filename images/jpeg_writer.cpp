@@ -116,7 +116,7 @@ void JpegWriter::set_parameters(const WrittenImage& image, JpegCodes codes, Jpeg
     keep_directions(image.quality);
 }
 
-/// Red, green and blue as they are (the Adobe marker says so), by the table of luminance.
+/// Keeps red, green and blue as they are (the Adobe marker says so), by the table of luminance.
 void JpegWriter::keep_directions(int quality) {
   jpeg_set_colorspace(&jpeg_, JCS_RGB);
   jpeg_set_quality(&jpeg_, std::min(quality, kBlueQuality), TRUE);

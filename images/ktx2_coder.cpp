@@ -69,7 +69,7 @@ std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Red, green, blue, alpha.
+/// Returns texels as red, green, blue, alpha.
 std::vector<std::byte> with_alpha(const Image& image) {
   const std::size_t texels = std::size_t{image.width} * image.height;
   std::vector<std::byte> all(4 * texels, std::byte{255});

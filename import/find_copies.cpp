@@ -142,7 +142,7 @@ class Buckets {
         settling_bytes_ / (2 * settling_bytes(vertices / count + 1)), 1, room.blocks_in_flight);
   }
 
-  /// Thread-safe for different results.
+  /// Groups vertices by buckets. Thread-safe for different results.
   void spread(std::span<const Vertex> vertices, Grouped<Words>& result) const {
     result.fill(vertices, buckets_.size(),
                 [&](const Vertex& vertex) { return hash_bits(vertex.hash(), 0, bits_); });
@@ -188,7 +188,7 @@ class Buckets {
     std::vector<CopyVertex> copies;
   };
 
-  /// Memory for a bucket of so many vertices.
+  /// Returns the memory for a bucket of so many vertices.
   static std::uint64_t settling_bytes(std::uint64_t vertices) {
     return vertices * (2 * sizeof(Vertex) + 2 * sizeof(std::uint32_t) + sizeof(CopyVertex)) +
            sizeof(Settled);

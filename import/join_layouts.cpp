@@ -101,7 +101,7 @@ bool may_tint(std::span<const JoinedFile> files) {
   });
 }
 
-/// None if the layout has not that value.
+/// Returns none if the layout has not that value.
 std::optional<PlacedValue> place_of(const ScalarAttribute& value, const AttributeLayout& layout) {
   const auto found = std::ranges::find(layout.values, value);
   if (found == layout.values.end())
@@ -205,7 +205,7 @@ class RowJoin {
   std::vector<PlacedValue> values_;  ///< places in the file's vertices
 };
 
-/// So many channels from `first` on.
+/// Copies so many channels from `first` on.
 void copy(const storage::RecordSpool<float>& from, std::uint64_t first, std::uint64_t count,
           storage::RecordSpool<float>& to, const ImportRoom& room) {
   std::vector<float> block;

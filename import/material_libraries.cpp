@@ -19,7 +19,7 @@ constexpr std::string_view kTileMark = "<UDIM>";
 /// A library of 100,000 materials has less than half of it.
 constexpr std::uint64_t kMostLibraryBytes = std::uint64_t{1} << 26;
 
-/// Without what follows " #", which may be a comment or belong to the name.
+/// Returns a name without the text behind " #", which may be a comment or belong to the name.
 std::string without_comment(const std::string& name) {
   std::string cut = name.substr(0, name.find(" #"));
   cut.resize(cut.find_last_not_of(' ') + 1);
@@ -106,7 +106,7 @@ class LibraryReader {
     }
   }
 
-  /// NAME.mtl beside NAME.obj.
+  /// Reads NAME.mtl beside NAME.obj.
   void read_namesake() {
     const std::string name = names_.obj().stem().string() + ".mtl";
     if (const auto file = files_.find(folder_, name))
@@ -116,7 +116,7 @@ class LibraryReader {
     use_other_cases();
   }
 
-  /// Only those that are no name of their own.
+  /// Adds names without comments, unless they are names of their own.
   void add_names_without_comments() {
     std::map<std::string, std::vector<std::size_t>> more;
     for (const auto& [name, numbers] : wanted_) {
@@ -127,7 +127,7 @@ class LibraryReader {
     wanted_.merge(more);
   }
 
-  /// One name with spaces, or several names, which may have some too.
+  /// Reads a statement: one name with spaces, or several names, which may have some too.
   void read_statement(const std::string& statement) {
     if (const auto whole = files_.find(folder_, statement))
       return read_file(*whole);
@@ -186,7 +186,7 @@ class LibraryReader {
     mesh_io::read_mtl(*stream, path, visit);
   }
 
-  /// Least for the definition that a use means.
+  /// Returns a rank that is least for the definition that a use means.
   std::uint64_t rank_of(const MaterialNames::Use& use) const {
     const std::uint64_t libraries = names_.libraries().size();
     const bool is_before =

@@ -18,7 +18,7 @@ std::string named(const std::string& name, const std::string& place) {
   return plain_text(name, kLongestName) + " of " + plain_text(place, kLongestName);
 }
 
-/// Empty if none is missing.
+/// Returns an empty text if none is missing.
 std::string missing_text(std::uint64_t count, std::string_view what, const std::string& first,
                          std::string_view consequence) {
   if (count == 0)

@@ -29,7 +29,7 @@ using mesh_io::ObjTriangle;
 using Texcoord = std::array<float, 2>;
 
 constexpr ObjColour kWhite{1, 1, 1};
-/// In a spool: of a position that has none. No file has such a colour.
+/// The colour in a spool of a position that has none. No file has such a colour.
 constexpr ObjColour kNoColour{std::numeric_limits<float>::infinity()};
 
 bool is_colour(const ObjColour& colour) {
@@ -77,7 +77,8 @@ class ObjParts final : public mesh_io::ObjVisitor {
     if (!has_colours_)
       colours.append(colour);
   }
-  /// Once all is there: colours of ZBrush are those of all vertices, or of none.
+  /// Returns whether colours of ZBrush count: they are those of all vertices, or of none. Asked
+  /// once all is there.
   bool has_polypaint() {
     if (has_colours_ || colours.size() == 0)
       return false;
@@ -317,7 +318,7 @@ class ObjPaint {
   bool is_seen() const { return all_.are_seen(); }
   std::size_t count() const { return all_.count(); }
 
-  /// CornerParts::kMaterial of a triangle of that name; 0 if nobody says its colour.
+  /// Returns CornerParts::kMaterial of a triangle of that name; 0 if nobody says its colour.
   std::uint32_t part(std::uint32_t name) const {
     return of_names_[name].is_defined ? of_names_[name].colour.number() + 1 : 0;
   }

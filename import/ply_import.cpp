@@ -215,7 +215,7 @@ class PlyImporter {
     });
   }
 
-  /// Part by part, as AttributeLayout has them.
+  /// Appends attributes part by part, as AttributeLayout has them.
   void append_attributes(std::span<const float> given, const CornerParts::Parts& parts) {
     const auto colours = static_cast<std::size_t>(given_.colour_offset());
     const auto texcoords = static_cast<std::size_t>(given_.texcoord_offset());

@@ -84,7 +84,7 @@ std::uint64_t bytes_on_disk(const storage::HierarchyFiles& place, const Hierarch
 
 // As text.
 
-/// "1,234,567"
+/// Returns "1,234,567".
 std::string grouped(std::uint64_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t i = digits.size(); i > 3; i -= 3)
@@ -92,7 +92,7 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
-/// "1,234 vertices", "1 vertex"
+/// Returns "1,234 vertices", "1 vertex".
 std::string grouped(std::uint64_t number, std::string_view plural) {
   return grouped(number) + ' ' + (number == 1 ? singular(plural) : std::string(plural));
 }
@@ -103,7 +103,7 @@ std::string shown(const std::string& text) {
   return plain_text(text, kLongest);
 }
 
-/// "1,234 vertices", "1,234 vertices at 1,000 places" if some lie where others do.
+/// Returns "1,234 vertices", "1,234 vertices at 1,000 places" if some lie where others do.
 std::string vertices_text(const SourceSummary& source) {
   const std::string vertices = grouped(source.vertices, "vertices");
   return source.places == source.vertices
@@ -141,7 +141,7 @@ std::string names_text(const std::vector<ValueStatistics::LabelCount>& labels) {
   return names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", "));
 }
 
-/// One of the values that vertices have.
+/// Returns a text about one of the values that vertices have.
 std::string value_text(const ScalarAttribute& attribute, const ValueStatistics& values) {
   std::string text =
       fmt::format("  {:<10} {} {}, {} to {}", shown(attribute.name), name_of(attribute.type),
@@ -188,7 +188,7 @@ std::string source_text(const storage::Manifest& manifest) {
   return text;
 }
 
-/// {"a": {"b": 1}} as "a.b 1".
+/// Adds {"a": {"b": 1}} as "a.b 1".
 void add_parameters(const std::string& prefix, const Json& value, std::string& text) {
   if (!value.is_object()) {
     text += fmt::format(

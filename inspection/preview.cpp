@@ -62,7 +62,7 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
   return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
 }
 
-/// Without what the root tells.
+/// Returns the look as far as the manifest tells it, not the root tile.
 render::Look look_of(const HierarchyReader& reader, const PreviewOptions& options) {
   const auto& textures = reader.manifest().textures;
   const bool is_shown = textures && !options.attribute;
@@ -175,7 +175,7 @@ std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Pictured& show
   return boxes;
 }
 
-/// 0: triangles are drawn.
+/// Returns 0 if triangles are drawn.
 double point_side_of(const HierarchyReader& reader, const Pictured& shown,
                      const render::Camera& camera) {
   if (reader.record(NodeId{}).interior_count > 0)

@@ -37,7 +37,8 @@ class ByteWindow {
         buffer_(std::make_unique_for_overwrite<std::byte[]>(
             static_cast<std::size_t>(std::min<std::uint64_t>(kCapacity, input.bytes)))) {}
 
-  /// Offset in the file of begin(), and what follows from there.
+  /// Return the offset in the file of begin(), and the number of bytes from there to the file's
+  /// end.
   std::uint64_t offset() const { return base_ + begin_; }
   std::uint64_t remaining() const { return input_.bytes - offset(); }
   const storage::File& file() const { return input_.file; }

@@ -141,7 +141,7 @@ std::string stl_hint(const MeshContent& content) {
       bytes < *expected ? "truncated?" : "its count of facets is wrong, or more follows");
 }
 
-/// "a, b or c".
+/// Returns "a, b or c".
 std::string alternatives(const std::vector<std::string_view>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -161,7 +161,7 @@ std::vector<std::string_view> column(std::string_view FormatRow::*member) {
   return all;
 }
 
-/// 0 if it is no mesh's name.
+/// Returns 0 if it is no mesh's name.
 std::size_t stem_length(std::string_view name) {
   std::string small = small_letters(name);
   if (small.ends_with(".gz"))

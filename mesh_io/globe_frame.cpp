@@ -11,7 +11,7 @@ namespace {
 using wgs84::kEquator;
 using wgs84::kPole;
 
-/// Away from the ellipsoid.
+/// Returns the direction away from the ellipsoid.
 Vec3d up_at(Vec3d p) {
   const Vec3d normal{p.x / (kEquator * kEquator), p.y / (kEquator * kEquator),
                      p.z / (kPole * kPole)};

@@ -23,7 +23,7 @@ unsigned base64_digit(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : 64;
 }
 
-/// 16 if it is none.
+/// Returns 16 if it is none.
 unsigned hex_digit(char c) {
   if (c >= '0' && c <= '9')
     return static_cast<unsigned>(c - '0');

@@ -42,7 +42,7 @@ class GzipStream final : public InputStream {
   bool in_member_ = true;  ///< the first one is there, or there would be no stream
 };
 
-/// False at the end of the file.
+/// Returns false at the end of the file.
 bool GzipStream::have_input() {
   if (state_.avail_in > 0)
     return true;
@@ -65,7 +65,7 @@ void GzipStream::inflate_some() {
   }
 }
 
-/// False if the file ends here.
+/// Returns false if the file ends here.
 bool GzipStream::to_next_member() {
   bool padded = false;
   for (; have_input() && *state_.next_in == 0; ++state_.next_in, --state_.avail_in)

@@ -35,7 +35,7 @@ std::size_t whole_lines(std::string_view text) {
 /// The text that was read, then the stream.
 class LineBlocks::Rest final : public InputStream {
  public:
-  /// No stream: nothing follows.
+  /// Without a stream nothing follows the text.
   Rest(std::vector<char> text, InputStream* stream) : text_(std::move(text)), stream_(stream) {}
 
   std::size_t read(std::span<std::byte> to) override {

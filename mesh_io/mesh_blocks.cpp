@@ -15,8 +15,8 @@
 namespace meshhier::mesh_io {
 namespace {
 
-/// True if no size is above `most`. Infinity's bits and those of what is no number are above all
-/// others as integers. Without branches, so that it vectorizes.
+/// Returns whether no size is above `most`. Infinity's bits and those of NaN are above all others
+/// as integers. Without branches, so that it vectorizes.
 bool all_up_to(float most, const float* values, std::size_t count) {
   constexpr std::uint32_t kSign = 0x80000000;
   const auto limit = std::bit_cast<std::uint32_t>(most);

@@ -169,7 +169,7 @@ class MtlReader {
       map = std::move(read);
   }
 
-  /// False if there is none; what looks like one and is not begins the file's name.
+  /// Returns false if there is none; a word that looks like one and is not begins the file's name.
   bool read_option(std::string_view& rest, MtlMap& map) {
     const std::string name = small_letters(head_of(rest));
     const auto option = std::ranges::find(kMapOptions, std::string_view(name), &MapOption::name);
@@ -187,8 +187,8 @@ class MtlReader {
     return true;
   }
 
-  /// One to three, of which two are kept. The last word of the line is the file's name, even if it
-  /// is a number.
+  /// Reads one to three numbers, and keeps two. The last word of the line is the file's name, even
+  /// if it is a number.
   void read_numbers(std::string_view& rest, const std::string& option,
                     std::array<double, 2>* numbers) {
     std::size_t count = 0;

@@ -17,8 +17,8 @@ std::string_view without_plus(std::string_view word) {
   return plus ? word.substr(1) : word;
 }
 
-/// True if the decimal number `word`, beyond the range of its type, is large (else it is tiny): the
-/// power of ten of its first digit that is not zero.
+/// Returns true if the decimal number `word`, beyond the range of its type, is large (else it is
+/// tiny): the power of ten of its first digit that is not zero.
 bool is_large(std::string_view word) {
   const std::size_t exponent_at = std::min(word.find_first_of("eE"), word.size());
   const std::string_view mantissa = word.substr(0, exponent_at);

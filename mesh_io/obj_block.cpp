@@ -53,7 +53,7 @@ class BlockParser {
     return line.at();
   }
 
-  /// Over what a backslash before a line's end may join.
+  /// Skips a line, with those that a backslash before a line's end may join.
   static void skip_joined_lines(LineParser& line, ObjRun& run) {
     bool is_joined = true;
     for (; is_joined && line.has_more(); ++run.lines) {

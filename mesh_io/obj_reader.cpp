@@ -30,7 +30,8 @@ constexpr std::string_view kIgnored[] = {
 
 constexpr std::uint64_t kMostElements = UINT32_MAX;  // the last value means none
 
-/// Text from the line `lines` behind the one at its start; each ends with LF, CRLF or CR.
+/// Returns the text from the line `lines` behind the one at its start; each ends with LF, CRLF or
+/// CR.
 std::string_view behind_lines(std::string_view text, std::uint64_t lines) {
   for (; lines > 0; --lines) {
     const std::size_t end = text.find_first_of("\r\n");
@@ -173,7 +174,7 @@ class ObjReader::Impl {
     }
   }
 
-  /// False if one of them refers to nothing.
+  /// Returns false if one of them refers to nothing.
   bool take_corners(const ObjRun& run, const std::int32_t* index, std::uint64_t line) {
     corners_.clear();
     for (std::uint8_t i = 0; i < run.corners; ++i) {

@@ -51,7 +51,7 @@ Keyword parse_capitals(std::string_view word) {
   return keyword;
 }
 
-/// Also in other letters, but for "noff", which may be NOFF or nOFF.
+/// Reads a keyword, also in other letters, but for "noff", which may be NOFF or nOFF.
 Keyword parse_keyword(std::string_view word) {
   const Keyword given = parse_capitals(word);
   std::string capitals(word);
@@ -138,7 +138,7 @@ class OffReader {
   }
 
  private:
-  /// Two blocks: words look ahead of what they take.
+  /// Begins with two blocks: words look ahead.
   InputStream& begin() {
     std::vector<char> block;
     for (int i = 0; i < 2 && lines_.next(block); ++i)
@@ -219,7 +219,7 @@ class OffReader {
     return number.is_integer && number.value >= 0 && number.value <= 255;
   }
 
-  /// Likewise.
+  /// Takes a face, likewise.
   bool take_face(std::span<const OffNumber> numbers, TriangleBlocks& blocks,
                  const OffFaceVisitor& visit) {
     const OffNumber& length = numbers[0];

@@ -150,7 +150,7 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-/// Three numbers or more, and nothing else in the first line.
+/// Returns whether the first line has three numbers or more, and nothing else.
 bool is_row_of_numbers(std::string_view text) {
   const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
   if (line.find_first_not_of("0123456789+-.eE,; \t") != std::string_view::npos)

@@ -57,7 +57,7 @@ PlyElementPlan* find_element(PlyPlan& plan, std::string_view name) {
   return found == plan.elements.end() || found->element.count == 0 ? nullptr : &*found;
 }
 
-/// Artec Studio's: each corner of a face names a texture vertex.
+/// Plans Artec Studio's texture faces: each corner of a face names a texture vertex.
 bool plan_texture_faces(PlyPlan& plan, const std::filesystem::path& path) {
   PlyElementPlan* const vertices = find_element(plan, "multi_texture_vertex");
   PlyElementPlan* const faces = find_element(plan, "multi_texture_face");

@@ -119,7 +119,7 @@ PlyVertexBlocks::PlyVertexBlocks(const PlyPlan& plan, const MeshDescription& mes
   first_gathered_ = has_plain_positions() ? 3 : 0;
 }
 
-/// x, y and z are three floats as they are kept.
+/// Returns whether x, y and z are three floats as they are kept.
 bool PlyVertexBlocks::has_plain_positions() const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Field& field = fields_[axis];

@@ -61,7 +61,8 @@ class PlyVertexBlocks {
   PlyVertexBlocks(const PlyPlan& plan, const MeshDescription& mesh, std::uint64_t offset);
 
   std::uint64_t count() const { return blocks_.count(); }
-  /// Thread-safe for different `memory`. Throws Error(input) for the block's first defect.
+  /// Reads a block. Thread-safe for different `memory`. Throws Error(input) for the block's first
+  /// defect.
   VertexBlock read(const InputFile& input, std::uint64_t index, BlockMemory& memory) const;
   /// Returns any rows, unchecked. Throws Error(input) if the file ends before, Error(io).
   VertexBlock rows(const InputFile& input, std::uint64_t first, std::size_t count,
@@ -93,8 +94,8 @@ class PlyTriangleBlocks {
 
   std::uint64_t count() const { return blocks_.count(); }
   std::uint64_t offset_of(std::uint64_t row) const { return blocks_.offset_of(row); }
-  /// Thread-safe for different `memory`. The first row that is no triangle ends the block; its
-  /// errors are told by a reader of rows.
+  /// Reads a block. Thread-safe for different `memory`. The first row that is no triangle ends the
+  /// block; its errors are told by a reader of rows.
   TriangleBlock read(const InputFile& input, std::uint64_t index, BlockMemory& memory) const;
 
  private:

@@ -86,8 +86,9 @@ class HeaderParser {
   PlyHeader header_;
 };
 
-/// Also finds out how lines end: a CR alone ends them only if it ends the first one, so the data
-/// behind "end_header" CR LF starts after the LF, and behind a lone CR right away, even with a LF.
+/// Checks the first word, and finds out how lines end: a CR alone ends them only if it ends the
+/// first one, so the data behind "end_header" CR LF starts after the LF, and behind a lone CR right
+/// away, even with a LF.
 void HeaderParser::check_magic() {
   if (start_.empty())
     fail_file(path_, "expected a PLY file, found an empty file");
@@ -108,7 +109,7 @@ void HeaderParser::check_magic() {
   next_line();
 }
 
-/// Over a byte order mark, blanks and blank lines.
+/// Skips a byte order mark, blanks and blank lines.
 void HeaderParser::skip_to_magic() {
   const std::size_t begin = start_.size() - without_mark(start_).size();
   position_ = std::min(start_.find_first_not_of(kHeaderBlanks, begin), start_.size());
@@ -142,7 +143,7 @@ std::string HeaderParser::keyword_of(std::string_view word) {
   return small;
 }
 
-/// True for the last line of the header.
+/// Returns true for the last line of the header.
 bool HeaderParser::parse_line(std::string_view line) {
   std::string_view rest = line;
   const std::string keyword = keyword_of(take_word(rest));

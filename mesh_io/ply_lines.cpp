@@ -32,7 +32,7 @@ class LineReader {
   LineReader(const InputFile& input, PlyPosition start, std::uint64_t rows)
       : input_(input), at_(start), read_to_(start.offset / kUnit * kUnit), rows_(rows) {}
 
-  /// False if no row or no whole line is left.
+  /// Returns false if no row or no whole line is left.
   bool next(Lines& block) {
     if (row_ == rows_)
       return false;
@@ -72,7 +72,7 @@ class LineReader {
     return end;
   }
 
-  /// False at the end of the file.
+  /// Returns false at the end of the file.
   bool read_unit(std::vector<char>& text) {
     if (read_to_ >= input_.bytes)
       return false;
@@ -86,7 +86,7 @@ class LineReader {
     return true;
   }
 
-  /// Over what is left of the line before and blank lines.
+  /// Skips the rest of the line before, and blank lines.
   void skip_to_row(std::vector<char>& text, std::size_t begin) {
     const std::size_t given = begin;
     for (; begin < text.size() && (is_blank(text[begin]) || is_line_end(text[begin])); ++begin) {
@@ -138,7 +138,7 @@ class RowParser {
     const auto word = take_word();
     return word ? number_of(type, *word) : std::nullopt;
   }
-  /// At most as many as a line of sense has.
+  /// Takes the length of a list, at most as many as a line of sense has.
   std::optional<std::size_t> take_count(const PlyProperty& list) {
     constexpr std::int64_t kMost = 1 << 16;
     if (!list.count_type)

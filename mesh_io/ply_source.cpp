@@ -140,7 +140,8 @@ void PlyFileSource::expect_end(PlyBody& body) {
   odd_.back() = body.take_odd();
 }
 
-/// No overflow: make_ply_plan has checked that the rows fit the file.
+/// Locates elements as far as rows have fixed sizes. Nothing overflows: make_ply_plan has checked
+/// that the rows fit the file.
 void PlyFileSource::locate_fixed_elements() {
   for (std::size_t i = 0; i < plan_.elements.size() && starts_[i]; ++i) {
     const PlyElementPlan& element = plan_.elements[i];

@@ -110,7 +110,7 @@ void TextBody::end_row(const Row& row) {
                   row_name(row.plan, row.number), in_quotes(cursor_.take_word())));
 }
 
-/// At the row's first break.
+/// Fails at the row's first break.
 void TextBody::fail_short(const Row& row) const {
   fail_at_line(cursor_.file().path(), break_->line,
                fmt::format("expected a number for {} in {}, found the end of the {} (the row has "

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint16_t kValid = 0x8000;
 
-/// Five bits of a number as eight.
+/// Returns five bits of a number as eight.
 std::uint8_t part_of(std::uint16_t attributes, int shift) {
   const int bits = attributes >> shift & 31;
   return static_cast<std::uint8_t>(bits << 3 | bits >> 2);

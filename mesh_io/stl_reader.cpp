@@ -197,7 +197,7 @@ class StlTextReader::Impl {
     in_solid_ = true;
   }
 
-  /// False at the end of the solid.
+  /// Returns false at the end of the solid.
   bool read_facet() {
     const std::string word(words_.take_word());
     if (is_stl_keyword(word, "solid")) {

@@ -28,7 +28,7 @@ std::size_t UnpaddedStream::read(std::span<std::byte> to) {
   return done;
 }
 
-/// False at the end.
+/// Returns false at the end.
 bool UnpaddedStream::refill() {
   while (!has_ended_) {
     const std::size_t count = stream_.read(buffer_);

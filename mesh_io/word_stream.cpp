@@ -84,7 +84,7 @@ bool WordStream::to_word() {
   return is_one_line_ ? to_row() : to_word_of_line();
 }
 
-/// Over the rest of a line, and blank lines and comments behind it.
+/// Returns the place behind the rest of a line, and behind blank lines and comments that follow.
 std::size_t WordStream::row_behind(std::size_t at) const {
   for (bool in_comment = false, in_row = true; at != end_; ++at) {
     const char c = buffer_[at];

@@ -135,7 +135,7 @@ void BorderPairs::add_ghosts(const PublishedTile& tile, SumsByOther& sums) const
   }
 }
 
-/// None if one of both tiles has texture coordinates.
+/// Returns none if one of both tiles has texture coordinates.
 std::span<const NormalCode> BorderPairs::common_normal(const PublishedTile& tile,
                                                        std::size_t vertex, NodeId other) const {
   if (tree_.is_early(other) || has_texcoords_(other))

@@ -136,7 +136,7 @@ void CopyClaims::add_splits(const PublishedTile& tile) {
   }
 }
 
-/// Unlike that of any copy.
+/// Returns a hash unlike that of any copy.
 std::uint64_t CopyClaims::split_hash(const PublishedTile& tile, std::uint32_t vertex) {
   constexpr std::array<std::uint16_t, 1> kNoChain{};
   const TileMesh& mesh = tile.mesh;

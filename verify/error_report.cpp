@@ -13,7 +13,7 @@ Json to_json(const DistanceSummary& summary) {
   return {{"mean", summary.mean}, {"rms", summary.rms}, {"max", summary.max}};
 }
 
-/// Ten thousandths of the diagonal, the unit that simplifiers are compared in.
+/// Returns ten thousandths of the diagonal, the unit that simplifiers are compared in.
 double in_parts(double distance, double diagonal) {
   return diagonal > 0 ? distance / diagonal * 1e4 : 0;
 }

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Unlike that of another run of verify. Nothing else depends on chance.
+/// Returns a path unlike that of another run of verify. Nothing else depends on chance.
 fs::path scratch_path(storage::FileSystem& files, const fs::path& directory,
                       const VerifyOptions& options) {
   std::random_device chance;
@@ -30,7 +30,7 @@ fs::path scratch_path(storage::FileSystem& files, const fs::path& directory,
                                       chance());
 }
 
-/// Nothing if it is an archive of which the list of files is broken.
+/// Returns nothing if it is an archive with a broken list of files.
 std::optional<storage::HierarchyFiles> open_place(storage::FileSystem& files,
                                                   const fs::path& directory,
                                                   ProblemList& problems) {
@@ -61,7 +61,7 @@ void verify_archive(const storage::Archive& archive, ProblemList& problems,
                                counted(archive.entry_count(), "files")));
 }
 
-/// Nothing if manifest or index are broken: no more can be said of the rest then.
+/// Returns nothing if manifest or index are broken: no more can be said of the rest then.
 std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& files,
                                                        const fs::path& directory,
                                                        ProblemList& problems) {
@@ -75,7 +75,7 @@ std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& file
   }
 }
 
-/// Seconds, as a scan of 54 partitions took.
+/// Returns seconds, as measured for a scan of 54 partitions.
 std::vector<execution::ExpectedStage> expected_times(const VerifyJob& job) {
   const auto tiles = static_cast<double>(job.reader.records().size());
   const auto partitions = static_cast<double>(job.tree().partition_count());

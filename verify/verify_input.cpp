@@ -169,7 +169,7 @@ class PlaceCount {
     for (const Vec3f& p : block.positions)
       coordinates_.add(to_double(p));
   }
-  /// Call it once, after all vertices.
+  /// Called once, after all vertices.
   std::uint64_t finish() {
     std::uint64_t places = 0;
     Vec3d last;

@@ -48,7 +48,8 @@ class ManifestProblems {
   std::filesystem::path path_;
 };
 
-/// Written again it is the same text: nothing has been added, renamed, or is of another type.
+/// Checks that the manifest, written again, is the same text: nothing has been added, renamed, or
+/// is of another type.
 void check_form(const VerifyJob& job, const ManifestProblems& problems) {
   const auto file = job.files.open(problems.path());
   problems.require(storage::read_sealed_text(*file) == storage::to_json_text(job.reader.manifest()),

@@ -133,7 +133,7 @@ std::array<Point, 3> in_texels(const std::array<Vec2f, 3>& texcoords, std::uint3
   return points;
 }
 
-/// Twice its area, with its orientation.
+/// Returns twice the area of a triangle, with its orientation.
 double area_of(const std::array<Point, 3>& p) {
   return (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
 }
@@ -159,7 +159,7 @@ struct Comparison {
     reduced += other.reduced;
     squared += other.squared;
   }
-  /// Root mean square, of 255.
+  /// Returns the root mean square, in steps of 0 to 255.
   double difference() const {
     return texels > 0 ? std::sqrt(squared / (3 * static_cast<double>(texels))) : 0;
   }
@@ -293,7 +293,7 @@ struct TexelCheck::Impl {
     finish();
   }
 
-  /// Empty if it cannot be; that is told where tiles are verified.
+  /// Returns an empty picture if it cannot be decoded; that is told where tiles are verified.
   Image decoded(const PublishedTile& tile) const {
     try {
       return images::decode_image(tile.image.bytes, "", kMostTexels);

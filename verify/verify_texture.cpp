@@ -27,7 +27,7 @@ Look look_of(const Shading& shading, std::size_t number) {
           shading.texcoords[number]};
 }
 
-/// Each split is a corner of a triangle.
+/// Returns whether each split is a corner of a triangle.
 bool uses_splits(const PublishedTile& tile) {
   const Shading& shading = tile.shading;
   std::vector<bool> used(shading.texcoords.size());
@@ -42,7 +42,8 @@ bool uses_splits(const PublishedTile& tile) {
          used.end();
 }
 
-/// Each split differs from its vertex and from the other splits of that. O(splits log splits).
+/// Returns whether each split differs from its vertex and from the other splits of that. O(splits
+/// log splits).
 bool has_different_splits(const Shading& shading) {
   const std::size_t first = shading.texcoords.size() - shading.split_of.size();
   const auto bits = [](const Look& look) {

@@ -43,7 +43,8 @@ struct WedgedTriangle {
   friend auto operator<=>(const WedgedTriangle&, const WedgedTriangle&) = default;
 };
 
-/// No corner twice, the smallest first. `unique`: a place is a corner.
+/// Returns whether no corner comes twice, and the smallest comes first. `unique`: a place is a
+/// corner.
 bool is_canonical(const WedgedTriangle& t, bool unique) {
   const auto corner = [&](std::size_t i) {
     return std::pair(t.places[i], unique ? 0 : t.wedges[i]);
@@ -82,7 +83,7 @@ std::uint64_t count_unused(const std::vector<bool>& used, std::size_t first, std
       std::count(begin, begin + static_cast<std::ptrdiff_t>(count), false));
 }
 
-/// A tile has no more of its neighbours' copies than its border triangles need.
+/// Returns whether a tile has no more of its neighbours' copies than its border triangles need.
 bool uses_ghost_copies(const TileMesh& mesh) {
   std::vector<bool> used;
   mark_used(mesh, mesh.border, mesh.border_wedges, used);
@@ -90,7 +91,7 @@ bool uses_ghost_copies(const TileMesh& mesh) {
   return count_unused(used, mesh.vertices.size() + own, mesh.copies.size() - own) == 0;
 }
 
-/// Nor more of their splits.
+/// Returns whether a tile has no more of its neighbours' splits than its border triangles need.
 bool uses_ghost_splits(const PublishedTile& tile) {
   const Shading& shading = tile.shading;
   const TileMesh& mesh = tile.mesh;
@@ -174,7 +175,7 @@ void check_compactness(const TileMesh& mesh, const TileRecord& record,
                    record.compactness);
 }
 
-/// Own vertices, copies too, that are corners of no triangle.
+/// Counts own vertices, copies too, that are corners of no triangle.
 std::uint64_t unreferenced_count(const TileMesh& mesh) {
   std::vector<bool> used;
   mark_used(mesh, mesh.interior, mesh.interior_wedges, used);
