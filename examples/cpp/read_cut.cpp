@@ -5,8 +5,8 @@
 //   read_cut scan.hier 0.5 cut.ply      the coarsest tiles that are no farther than 0.5 from the
 //   original
 //
-// Needs nothing but nlohmann-json. Of hierarchies with "storage.compression": "none"; little-endian
-// machines.
+// Needs nothing but nlohmann-json. Reads hierarchies with "storage.compression": "none", on
+// little-endian machines.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -88,18 +88,18 @@ struct Tree {
 struct Neighbour {
   std::uint32_t index;
   std::vector<Node> nodes;   // it, and its ancestors below the common one
-  std::size_t entry;         // of its first ghost in the chains
+  std::size_t entry;         // its first ghost's, in the chains
   std::uint32_t first, end;  // its ghosts, as vertices
 };
 
 struct Tile {
   std::uint32_t own, ghosts;
   std::vector<Point> positions;       // relative to the origin
-  std::vector<std::uint32_t> places;  // of each vertex: the own vertex or ghost where it lies
+  std::vector<std::uint32_t> places;  // per vertex: the own vertex or ghost where it lies
   std::vector<std::uint16_t> chains;
   std::vector<std::uint32_t> interior, border;  // three vertices a triangle
   std::vector<Neighbour> neighbours;
-  std::uint32_t base = 0;  // of its own vertices in the cut
+  std::uint32_t base = 0;  // number of its first own vertex in the cut
 };
 
 std::string path_of(Node node) {
@@ -196,8 +196,8 @@ using Cut = std::map<Node, Tile>;
 /// The triangles that a tile draws in a cut, by the numbers of its places there.
 void draw(Node node, const Tile& tile, const Cut& cut,
           std::vector<std::array<std::uint32_t, 3>>& drawn) {
-  std::vector<bool> is_ours(tile.own + tile.ghosts,
-                            true);  // whether we draw triangles that touch a place
+  // We draw triangles that touch these places.
+  std::vector<bool> is_ours(tile.own + tile.ghosts, true);
   std::vector<std::uint32_t> at(tile.own + tile.ghosts);
   for (std::uint32_t v = 0; v < tile.own; ++v)
     at[v] = tile.base + v;

@@ -40,7 +40,7 @@ void list(const mh::Hierarchy& hierarchy) {
 
 /// One mesh of all parts: vertices are the places of the surface.
 void write(mh::Cut cut, const std::string& name) {
-  std::map<std::uint32_t, std::uint32_t> numbers;  // of places
+  std::map<std::uint32_t, std::uint32_t> numbers;  // new numbers of places
   std::vector<mh::Point> positions;
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < cut.size(); ++i) {
