@@ -13,8 +13,8 @@
 //             / \                bound:   max(da, db, dc) + e / sqrt(3)
 //            /   \               enough:  max(1.01 known, largest bound of settled triangles)
 //          ca-----bc             bound <= enough:  settled
-//          / \   / \             else:    four triangles with half of e, whose bounds are smaller
-//         /   \ /   \
+//          / \   / \             else:    four triangles with half of e, whose
+//         /   \ /   \                     bounds are smaller
 //        a-----ab----b
 //
 // Invariant. No point of all triangles ever added is farther than max(enough, bounds of

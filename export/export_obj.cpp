@@ -103,7 +103,8 @@ class ObjPictures {
   }
 
  private:
-  /// Requires that nothing lies where the pictures go, or that they may replace it: a folder of such pictures.
+  /// Requires that nothing lies where the pictures go, or that they may replace it: a folder of
+  /// such pictures.
   void require_free() {
     if (!files_.exists(folder_) && !files_.is_link(folder_))
       return;

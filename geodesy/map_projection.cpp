@@ -52,8 +52,8 @@ void check_axes(const Axes& axes, const std::string& text) {
   }
 }
 
-/// Returns null if PROJ has no change. `ballpark`: also changes that leave out a part that PROJ does not
-/// know.
+/// Returns null if PROJ has no change. `ballpark`: also changes that leave out a part that PROJ
+/// does not know.
 Object to_wgs84(PJ_CONTEXT* context, const PJ* crs, bool ballpark) {
   const Object target(library().create(context, "EPSG:4978"));
   const char* options[] = {ballpark ? "ALLOW_BALLPARK=YES" : "ALLOW_BALLPARK=NO", nullptr};
