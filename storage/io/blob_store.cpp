@@ -38,7 +38,7 @@ bool BlobStore::restore(std::size_t index, const StoredBlob& stored) {
   return true;
 }
 
-/// Reads the blob into `bytes`, as many as it has.
+/// Reads the blob into `bytes`, which has its size, and compares the checksum.
 bool BlobStore::is_as_put(const StoredBlob& stored, std::span<std::byte> bytes) const {
   if (bytes.empty())
     return true;

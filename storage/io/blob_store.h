@@ -13,8 +13,8 @@
 
 namespace meshhier::storage {
 
-/// A blob's bytes: in place if the store holds them in memory, else read from disk. Not valid
-/// longer than the store keeps the blob.
+/// A blob's bytes: in place if the store holds them in memory, else read from disk. A view is valid
+/// as long as the store keeps the blob.
 class BlobView {
  public:
   explicit BlobView(std::span<const std::byte> in_place) : bytes_(in_place) {}
@@ -28,7 +28,7 @@ class BlobView {
   std::unique_ptr<std::byte[]> read_;
 };
 
-/// Where a scratch file holds a blob.
+/// The place of a blob in a scratch file.
 struct StoredBlob {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
@@ -36,7 +36,8 @@ struct StoredBlob {
 };
 
 /// Each blob is put once, or restored, and read any number of times. Threads may put and read
-/// different blobs at once; a blob may be read once its put() has returned.
+/// different blobs at once; a blob may be read once its put() has returned. Failures of the scratch
+/// file throw Error(io). Indices are below count().
 class BlobStore {
  public:
   BlobStore(ScratchFile& scratch, std::size_t count) : scratch_(&scratch), blobs_(count) {}
@@ -45,28 +46,29 @@ class BlobStore {
   ~BlobStore() { clear(); }
 
   std::size_t count() const { return blobs_.size(); }
+  /// Writes a blob to disk, and keeps a copy in memory if the pool has room for it.
   void put(std::size_t index, std::span<const std::byte> bytes);
   std::uint64_t size(std::size_t index) const { return blobs_[index].stored.bytes; }
 
-  /// For restore(), in another process even.
+  /// The place of a blob: for restore(), in another process even.
   const StoredBlob& stored(std::size_t index) const { return blobs_[index].stored; }
-  /// Takes a blob that is in the scratch file already; false, and nothing happens, if what is there
-  /// is not what was put. Of a mounted file only whether it is long enough is looked at: such a
-  /// blob is checked when it is viewed.
+  /// Takes a blob that is in the scratch file already. Returns false, and nothing happens, if what
+  /// is there is not what was put. In a mounted file only the length is looked at: such a blob is
+  /// checked when it is viewed.
   bool restore(std::size_t index, const StoredBlob& stored);
 
   /// Copies bytes.size() bytes from `offset`, without a check; requires them to be there.
   void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
-  /// Copies as many bytes as there is room for, from the first on. Of a mounted file the whole blob
-  /// is checked the first time: throws as view().
+  /// Copies as many bytes as there is room for, from the first on. A blob of a mounted file is
+  /// checked as a whole the first time: throws as view().
   void copy(std::size_t index, std::span<std::byte> bytes) const;
-  /// A whole blob, without a copy if it is in memory. Throws
-  /// ScratchFile::changed() if the disk has changed it.
+  /// Returns a whole blob, without a copy if it is in memory. Throws ScratchFile::changed() if the
+  /// disk has changed it.
   BlobView view(std::size_t index) const;
 
-  /// Gives the memory back; all stays on disk. While there is no view.
+  /// Gives the memory back; all stays on disk. There must be no view.
   void drop_copies();
-  /// Forgets everything and gives its memory back.
+  /// Forgets everything and gives its memory back. There must be no view.
   void clear();
 
  private:

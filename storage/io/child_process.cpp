@@ -51,14 +51,16 @@ Pipe make_sockets() {
   return {ends[0], ends[1]};
 }
 
-/// Between fork and exec: only what may be called there. Ends the process if it fails. `errors`: -1
-/// if they are dropped; `socket`: -1 if it is not spoken with.
+/// Turns the forked process into the program, or ends it. Between fork and exec only calls that are
+/// safe in a signal handler are allowed: other threads may have held locks, of malloc for one.
+/// `errors`: -1 if they are dropped; `socket`: -1 if it is not spoken with.
 [[noreturn]] void become(char* const* words, int errors, int socket, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = ::open("/dev/null", O_RDWR);
   const int said = errors < 0 ? nothing : errors;
   const int spoken = socket < 0 ? nothing : socket;
+  // The parent may have died before prctl(): then nobody would kill this process.
   const bool is_ready = ::getppid() == parent && nothing >= 0 &&
                         ::dup2(spoken, STDIN_FILENO) >= 0 && ::dup2(spoken, STDOUT_FILENO) >= 0 &&
                         ::dup2(said, STDERR_FILENO) >= 0 &&

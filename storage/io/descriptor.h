@@ -7,7 +7,7 @@
 
 namespace meshhier::storage {
 
-/// A descriptor that is closed with its object; below 0: none.
+/// A descriptor that is closed with its object. A number below 0 means that there is none.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}

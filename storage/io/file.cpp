@@ -55,8 +55,8 @@ class PosixLock final : public FileLock {
   int descriptor_;
 };
 
-/// Whether a file system or kernel lacks what was asked for.
-/// What replaces a regular file gets its mode; where that fails, it has its own.
+/// Gives `by` the mode of the regular file that it will replace; where that fails, it keeps its
+/// own.
 void keep_mode(const std::filesystem::path& by, const std::filesystem::path& replaced) {
   struct stat before {};
   struct stat after {};
@@ -67,6 +67,7 @@ void keep_mode(const std::filesystem::path& by, const std::filesystem::path& rep
   }
 }
 
+/// Whether a file system or kernel lacks what was asked for.
 bool is_inability(int error) {
   return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP;
 }
@@ -282,7 +283,7 @@ class PosixFileSystem : public FileSystem {
   }
 
  protected:
-  /// Of a file that was opened for reading.
+  /// Wraps a file that was opened for reading; refuses what is not regular.
   std::unique_ptr<File> take(Descriptor file, const std::filesystem::path& path) {
     struct stat status {};
     if (::fstat(file.number(), &status) == 0 && !S_ISREG(status.st_mode)) {

@@ -33,16 +33,17 @@ class FileChecksum {
   /// Thread-safe.
   void add(std::uint64_t offset, std::span<const std::byte> bytes);
 
-  /// All that are known, ascending; for add(), in another process even. Not together with add().
+  /// Returns all blocks that are known, in ascending runs; for add(), in another process even. No
+  /// thread may add meanwhile.
   std::vector<BlockSums> known() const;
-  /// False if the file has no such blocks.
+  /// Takes what known() returned. Returns false, and takes nothing, if the file has no such blocks.
   bool add(const BlockSums& sums);
 
-  /// Reads the blocks that are not known yet; then the checksum. `check` is called before each read
-  /// and may throw. Throws Error(io). Not together with add().
+  /// Reads the blocks that are not known yet and returns the checksum. `check` is called before
+  /// each read and may throw. Throws Error(io). No thread may add meanwhile.
   std::uint64_t complete(const File& file, const std::function<void()>& check);
 
-  /// Blocks not known yet.
+  /// Returns the number of blocks that are not known yet.
   std::uint64_t missing() const;
 
  private:

@@ -15,7 +15,7 @@
 namespace meshhier::storage {
 namespace {
 
-/// What opening a name fails with if there is simply nothing of that name and kind.
+/// Whether a failure to open a name means that there is nothing of that name and kind.
 bool is_absence(int error) {
   return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENAMETOOLONG ||
          error == ENXIO;
@@ -72,7 +72,7 @@ class PosixFolder final : public Folder {
     return opened;
   }
 
-  /// Part by part, no link followed; none if there is nothing.
+  /// Opens a name part by part and follows no link; no descriptor if there is nothing.
   Descriptor walk(std::string_view name, int flags) const {
     if (!is_folder_name(name))
       return Descriptor(-1);

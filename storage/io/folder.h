@@ -1,4 +1,4 @@
-// A directory to read from that nothing leads out of: what a server shows.
+// A directory to read from that no path leads out of. A server shows its files by it.
 #pragma once
 
 #include "storage/io/file.h"
@@ -29,11 +29,12 @@ class Folder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Null if there is no regular file of that name. Throws Error(io).
+  /// Opens a file for reading; null if there is no regular file of that name, or the name is not
+  /// allowed. The file may outlive the folder. Throws Error(io).
   virtual std::unique_ptr<File> open(std::string_view name) const = 0;
-  /// Regular files and directories directly in the directory of that name ("": this one),
-  /// ascending; all else, links too, is left out. None if there is no such directory. Throws
-  /// Error(io).
+  /// Returns the regular files and directories directly in the directory of that name ("": this
+  /// one), ascending by name; all else, links too, is left out. Empty if there is no such
+  /// directory. Throws Error(io).
   virtual std::vector<FolderEntry> entries(std::string_view name) const = 0;
 
  protected:
@@ -43,7 +44,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// `path` itself may be a link. Throws Error(io) if it is no directory.
+/// Opens a directory; `path` itself may be a link. Throws Error(io) if it is no directory.
 std::unique_ptr<Folder> open_folder(const std::filesystem::path& path);
 
 }  // namespace meshhier::storage

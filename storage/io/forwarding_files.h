@@ -1,4 +1,5 @@
-// A file system that does all as another one does: for those that differ in a few things.
+// A file system that passes every call on to another one: the base of those that differ in a few
+// things.
 #pragma once
 
 #include "storage/io/file.h"

@@ -10,13 +10,13 @@
 
 namespace meshhier::storage {
 
-/// XXH3-64 of `bytes`.
+/// Returns the XXH3-64 of `bytes`.
 std::uint64_t checksum(std::span<const std::byte> bytes);
-/// The same, of `bytes` behind something whose checksum is `before`: what a chain of them is made
-/// of.
+/// Returns the XXH3-64 of `bytes` seeded with `before`, the checksum of what stands before them: a
+/// link of a chain. It is not the checksum of both joined.
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before);
 
-/// XXH3-64 of a sequence of blocks: equal to checksum() of them joined.
+/// Takes the XXH3-64 of a sequence of blocks: value() is checksum() of all that was added, joined.
 class Checksum {
  public:
   Checksum();
@@ -29,7 +29,7 @@ class Checksum {
   std::unique_ptr<State> state_;
 };
 
-/// MD5 (RFC 1321) of `text`.
+/// Returns the MD5 (RFC 1321) of `text`.
 std::array<std::byte, 16> md5(std::string_view text);
 
 }  // namespace meshhier::storage

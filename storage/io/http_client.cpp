@@ -27,9 +27,9 @@ constexpr long kMostRedirects = 10;
 constexpr int kMostTries = 5;
 constexpr std::chrono::milliseconds kMostWait = 60s;  ///< however long the host asks for
 
-/// Of one answer's header; those of hosts of files have some hundred bytes.
+/// The most bytes of one answer's header; those of hosts of files have some hundred.
 constexpr std::size_t kMostHead = std::size_t{64} << 10;
-/// What libcurl fails with where a line of it has more than 100 kB: it has said so since 8.6.
+/// libcurl fails with this where a line of a header has more than 100 kB (since 8.6).
 constexpr auto kLineTooLong = static_cast<CURLcode>(100);
 
 constexpr long kWhole = 200, kPart = 206, kNotSatisfiable = 416;
@@ -71,7 +71,7 @@ std::optional<std::uint64_t> number(std::string_view text) {
   return value;
 }
 
-/// A length in bytes as files have them.
+/// Parses a length in bytes; nothing if no file can be so long.
 std::optional<std::uint64_t> file_length(std::string_view text) {
   const std::optional<std::uint64_t> value = number(text);
   return value && *value <= static_cast<std::uint64_t>(INT64_MAX) ? value : std::nullopt;
@@ -81,15 +81,15 @@ bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// What one answer says of itself, of the last of several that redirects make.
+/// The header of an answer, the last one where redirects make several.
 struct Head {
   std::string etag;
   std::string modified;
-  std::optional<std::uint64_t> first;  ///< of Content-Range
+  std::optional<std::uint64_t> first;  ///< offset in Content-Range
   std::optional<std::uint64_t> total;
   std::optional<std::uint64_t> length;
   std::string impossible;    ///< a length that no file has
-  std::size_t bytes = 0;     ///< of the header so far
+  std::size_t bytes = 0;     ///< that have come of the header so far
   bool is_complete = false;  ///< all of it has come
 
   void add(std::string_view line) {
@@ -122,7 +122,7 @@ struct Head {
     return found;
   }
 
-  /// "bytes 0-99/1234", or "bytes */1234" of what there is none of.
+  /// Takes "bytes 0-99/1234", or "bytes */1234" where the file ends before the part.
   void add_range(std::string_view value) {
     constexpr std::string_view kUnit = "bytes ";
     const std::size_t slash = value.find('/');
@@ -156,7 +156,8 @@ std::size_t take_header(char* data, std::size_t size, std::size_t count, void* t
   return head.bytes > kMostHead ? 0 : line.size();
 }
 
-/// Whether that is why there is no answer. Of one long line libcurl gives nothing.
+/// Whether the header is too large to be taken. For one long line libcurl hands over nothing and
+/// only fails.
 bool is_head_too_large(const Head& head, CURLcode code) {
   return head.bytes > kMostHead ||
          (!head.is_complete && (code == CURLE_OUT_OF_MEMORY || code == kLineTooLong));
@@ -173,7 +174,7 @@ std::size_t take_body(char* data, std::size_t size, std::size_t count, void* to)
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size * count));
   const long status = status_of(transfer.handle);
   if (status != kWhole && status != kPart)
-    return bytes.size();  // what a host says to people
+    return bytes.size();  // a page for people about an error: passed over
   HttpAnswer& answer = transfer.answer;
   if (status == kWhole && !answer.is_whole) {
     answer.bytes.clear();
@@ -272,8 +273,8 @@ class HttpClient::Connection {
   Connection& operator=(const Connection&) = delete;
   ~Connection() { curl_easy_cleanup(handle_); }
 
-  /// Adds to `answer` what is missing of the part, or fills it with the whole. False: there is no
-  /// such file.
+  /// Adds to `answer` what is missing of the part, or fills it with the whole. Returns false if
+  /// there is no such file.
   bool get(const HttpAddress& address, std::uint64_t first, std::uint64_t count,
            HttpAnswer& answer) {
     bool is_there = true;
@@ -314,7 +315,8 @@ class HttpClient::Connection {
     return code;
   }
 
-  /// What may pass, or nothing if all is there.
+  /// Returns a failure that may pass, in words, or nothing if all is there; throws what will not
+  /// pass.
   std::string settle(const HttpAddress& address, Transfer& transfer, CURLcode code) {
     HttpAnswer& answer = transfer.answer;
     const long status = status_of(handle_);
@@ -372,7 +374,7 @@ class HttpClient::Connection {
     return refusal(status);
   }
 
-  /// `attempt` returns what may pass, nothing if all is well.
+  /// Calls `attempt` until it returns no failure, waiting longer each time.
   void persist(const HttpAddress& address, const std::function<std::string()>& attempt) {
     std::chrono::milliseconds pause = first_wait_;
     for (int tries = 1;; ++tries, pause *= 2) {

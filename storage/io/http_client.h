@@ -21,7 +21,7 @@ struct HttpOptions {
   std::chrono::seconds silence{30};  ///< without a byte: then a try is over, answered or not
 };
 
-/// Where something is.
+/// The address of a file on the web.
 struct HttpAddress {
   std::string url;    ///< as it is asked for, perhaps with secrets
   std::string shown;  ///< in messages
@@ -29,37 +29,38 @@ struct HttpAddress {
 
 struct HttpAnswer {
   std::vector<std::byte> bytes;
-  bool is_whole = false;                 ///< all of the file: the host knows no ranges
+  bool is_whole = false;                 ///< `bytes` are all of the file: the host knows no ranges
   std::optional<std::uint64_t> total{};  ///< bytes of the file
-  std::string version;                   ///< its ETag or when it was modified; empty: not known
+  std::string version;                   ///< the file's ETag or Last-Modified; empty: not known
 };
 
-/// Bytes and requests so far, all of them.
+/// Bytes and requests so far, of all threads, failed tries included.
 struct HttpCounters {
   std::atomic<std::uint64_t> bytes{0};
   std::atomic<std::uint64_t> requests{0};
 };
 
-/// What fails by the line or by a busy host is tried again, up to five times with growing waits;
-/// what has come by then counts. Credentials come from ~/.netrc, too. Thread-safe: each thread that
-/// asks has a connection, which stays open. Failures throw Error(io) naming the address as it is
-/// shown.
+/// A request that fails by the line or by a busy host is tried again, up to five times in all with
+/// growing waits (at most 60 s); bytes that have come by then are not asked for again. Credentials
+/// come from ~/.netrc, too. Thread-safe: each thread that asks has a connection for the time, which
+/// stays open for the next; with a limit of bytes per second they take turns. Failures throw
+/// Error(io) naming the address as it is shown.
 class HttpClient {
  public:
-  /// A file of which the host sends no part is taken whole up to this.
+  /// If a host sends no parts, a file is taken whole up to so many bytes.
   static constexpr std::uint64_t kMostWhole = std::uint64_t{64} << 20;
 
   /// `check` is called some times a second, by any thread that waits, and may throw.
   HttpClient(HttpOptions options, std::function<void()> check);
   ~HttpClient();
 
-  /// Bytes [first, first + count) of a file, fewer only at its end, or all of it. Requires count >
-  /// 0.
+  /// Returns the bytes [first, first + count) of a file, fewer only at its end, or all of it.
+  /// Requires count > 0. Throws Error(io), also if there is no such file, and what `check` throws.
   HttpAnswer get(const HttpAddress& address, std::uint64_t first, std::uint64_t count);
-  /// The same; nothing if there is no such file (404, 410).
+  /// Does the same, but returns nothing if there is no such file (404, 410).
   std::optional<HttpAnswer> find(const HttpAddress& address, std::uint64_t first,
                                  std::uint64_t count);
-  /// All that is under way fails, and all that is asked for from now on.
+  /// Lets all that is under way, and all that is asked for from now on, throw Error(interrupted).
   void stop() { is_over_ = true; }
 
   const HttpCounters& counters() const { return counters_; }

@@ -38,14 +38,14 @@ Journal::Journal(FileSystem& files, const std::filesystem::path& path, ScratchUs
   }
 }
 
-/// False if there are not so many bytes.
+/// Returns false if there are not so many bytes.
 bool Journal::read_all(std::uint64_t offset, std::span<std::byte> bytes) {
   const std::size_t count = file_->read_at(offset, bytes);
   use_.add_read(count);
   return count == bytes.size();
 }
 
-/// At the end.
+/// Writes at the end of what counts; what an interrupted run left there is overwritten.
 void Journal::write(std::span<const std::byte> bytes) {
   file_->write_at(end_, bytes);
   end_ += bytes.size();

@@ -37,10 +37,11 @@ nlohmann::ordered_json parse_ordered_json_text(
     std::string_view text, const nlohmann::ordered_json::parser_callback_t& watch = nullptr,
     JsonReading reading = {});
 
-/// Whether a text is one value, without keeping any of it.
+/// Whether a text is one JSON value; keeps none of it in memory.
 bool is_json(std::string_view text);
 
-/// Passes over all that a parser tells. A mistake ends it, and so do values nested too deeply.
+/// Passes over all that a parser tells; a subclass overrides what it wants to see. A mistake ends
+/// the parse, and so do values nested more than 1000 deep.
 class JsonVisitor : public nlohmann::json_sax<nlohmann::json> {
  public:
   bool null() override { return true; }
@@ -77,10 +78,10 @@ class JsonVisitor : public nlohmann::json_sax<nlohmann::json> {
 /// Returns false if `visitor` ended it, or was told of a mistake.
 bool visit_json(const std::function<int()>& next, JsonVisitor& visitor);
 
-/// The bytes of a value as CBOR (RFC 8949).
+/// Returns a value as CBOR (RFC 8949).
 std::vector<std::uint8_t> cbor_of(const nlohmann::json& value);
 
-/// Parses CBOR; a discarded value if it is none, or if more follows.
+/// Parses CBOR; returns a discarded value if it is none, or if more follows. Never throws.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);
 
 }  // namespace meshhier::storage

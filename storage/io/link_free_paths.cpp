@@ -30,13 +30,14 @@ bool is_link(const Descriptor& file) {
   return ::fstat(file.number(), &status) == 0 && S_ISLNK(status.st_mode);
 }
 
-/// Without a slash at its end, which would be a part of its own.
+/// Returns the absolute path without dots and without a slash at its end, which would be a part of
+/// its own.
 fs::path tidy(const fs::path& path) {
   const fs::path normal = fs::absolute(path).lexically_normal();
   return without_last_slash(normal);
 }
 
-/// The first part of the path that is one now; empty if none is any more.
+/// Returns the path up to its first part that is a link now; empty if none is any more.
 fs::path first_link(const fs::path& path) {
   fs::path start;
   for (const fs::path& part : path.lexically_normal()) {
@@ -100,7 +101,7 @@ Descriptor LinkFreePaths::open(const fs::path& path, int flags) const {
       errno = EXDEV;
       return file;
     }
-    // Not held, as a network's folder may go and come back.
+    // The folder is opened each time, as a network's folder may go and come back.
     const Descriptor folder(::open(within_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (folder.is_open())
       file = open_parts(folder.number(), name, flags);

@@ -15,16 +15,17 @@ namespace meshhier::storage {
 /// it is the last and `flags` have O_PATH.
 Descriptor open_parts(int start, const std::filesystem::path& name, int flags);
 
-/// Names in a directory that was opened for reading, in no order; without "." and "..". Throws
-/// Error(io), which names `path`.
+/// Returns the names in a directory that was opened for reading, in no order; without "." and "..".
+/// Throws Error(io), which names `path`.
 std::vector<std::string> names_in(Descriptor directory, const std::filesystem::path& path);
 
-/// Paths as InputRule has them; ".." takes back the part before it. Thread-safe.
+/// Opens paths by the rule of InputRule; ".." takes back the part before it. Thread-safe.
 class LinkFreePaths {
  public:
   explicit LinkFreePaths(const std::optional<std::filesystem::path>& within);
 
-  /// As open_parts(), EXDEV for what lies elsewhere. Of a link there is no descriptor.
+  /// Opens as open_parts() does; errno is EXDEV for what lies elsewhere. A link gets no descriptor,
+  /// whatever `flags` are.
   Descriptor open(const std::filesystem::path& path, int flags) const;
   /// Throws Error(io) for a path that open() has failed for with `error`.
   [[noreturn]] void fail(const char* action, const std::filesystem::path& path, int error) const;

@@ -29,7 +29,7 @@ constexpr void store_little(T value, std::byte* to) {
   }
 }
 
-/// The inverse of store_little.
+/// Returns the value that store_little() has written.
 template <Scalar T>
 constexpr T load_little(const std::byte* from) {
   if constexpr (std::same_as<T, float>) {

@@ -32,7 +32,7 @@ void require_parent(FileSystem& files, const OutputRequest& request, const fs::p
   }
 }
 
-/// Files beside it have longer names.
+/// The files beside the target have longer names than it, and they must be possible, too.
 void require_short_name(const OutputRequest& request, const fs::path& target) {
   constexpr std::size_t kLongestName = 255;  // of Linux's file systems
   const std::size_t length = scratch_path(target).filename().native().size();
@@ -47,14 +47,14 @@ void require_short_name(const OutputRequest& request, const fs::path& target) {
                                             request.path.string(), what));
 }
 
-/// Of the system, for what is open as this process's standard output.
+/// The system's path for what is open as this process's standard output.
 constexpr const char* kSystemsStandardOutput = "/dev/stdout";
 
 Error already_there(const fs::path& path, const char* state) {
   return {ErrorCode::exists, fmt::format("{} {}; --force replaces it", path.string(), state)};
 }
 
-/// Where a path leads to, and where its name is, if that is a link.
+/// Returns where a path leads to and, if its name is a link, where that link is.
 std::vector<fs::path> places_of(FileSystem& files, const fs::path& path) {
   const fs::path name = without_last_slash(path);
   std::vector<fs::path> places{files.canonical(name)};
@@ -65,7 +65,8 @@ std::vector<fs::path> places_of(FileSystem& files, const fs::path& path) {
   return places;
 }
 
-/// Files have several names by hard links, directories by mounts.
+/// Paths may differ and be one place: files have several names by hard links, directories by
+/// mounts.
 bool is_one_place(const fs::path& a, const fs::path& b) {
   std::error_code ignored;
   return a == b || fs::equivalent(a, b, ignored);

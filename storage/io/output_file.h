@@ -1,4 +1,4 @@
-// Where a command puts the one file it makes.
+// The one file that a command makes.
 #pragma once
 
 #include "storage/io/file.h"
@@ -12,7 +12,7 @@
 
 namespace meshhier::storage {
 
-/// What stands for standard output on the command line.
+/// Stands for standard output on the command line.
 inline constexpr const char* kStandardOutput = "-";
 
 struct OutputRequest {
@@ -30,20 +30,21 @@ bool is_standard_output(FileSystem& files, const std::filesystem::path& path);
 void require_apart(FileSystem& files, const std::filesystem::path& output,
                    std::span<const std::filesystem::path> inputs);
 
-/// Beside `file`: its name until it is whole, what is needed to make it, and who makes it.
+/// These return paths beside `file`: its name until it is whole, scratch to make it with, and the
+/// lock of the process that makes it.
 std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path scratch_path(const std::filesystem::path& file);
 std::filesystem::path output_lock_path(const std::filesystem::path& file);
 
 /// A regular file is there complete or not at all: it gets its name when it is published. A FIFO or
 /// a character device, such as standard output, takes the bytes as they come. Nothing else is
-/// written to.
+/// written to. One thread at a time may use an OutputFile; `files` must outlive it.
 class OutputFile {
  public:
-  /// Refuses what can be refused: Error(usage) if the path is no file's, and as require_apart();
-  /// Error(exists) if there is a file that is not to be replaced, or if
-  /// another process is writing it; Error(io) if it cannot be written. `check` is called now and
-  /// then while a reader is waited for, and may throw.
+  /// Refuses now what can be refused before the work: throws Error(usage) if the path is no file's,
+  /// and as require_apart(); Error(exists) if there is a file that is not to be replaced, or if
+  /// another process is writing it; Error(io) if it cannot be written. `check` is called every 50
+  /// ms while a stream's reader is waited for, in writes too, and in publish(); it may throw.
   OutputFile(
       FileSystem& files, const OutputRequest& request, const std::function<void()>& check = [] {});
   OutputFile(const OutputFile&) = delete;
@@ -51,15 +52,16 @@ class OutputFile {
   /// Removes what was not published.
   ~OutputFile();
 
-  /// Takes bytes from the first to the last.
+  /// The file to write, from the first byte to the last. Null once it is published.
   const std::shared_ptr<File>& file() const { return file_; }
-  /// For a temporary file of whoever writes: beside a regular file, else in the system's directory.
+  /// A path for a temporary file of whoever writes: beside a regular file, else in the system's
+  /// directory for temporary files. Who makes a file there removes it.
   const std::filesystem::path& scratch() const { return scratch_; }
 
-  /// Forces the file to the disk and gives it its name. Throws Error(io), and Error(exists) if a
-  /// file that is not to be replaced has appeared.
+  /// Forces the file to the disk and gives it its name; closes a stream. Throws Error(io), and
+  /// Error(exists) if a file that is not to be replaced has appeared.
   void publish();
-  /// Writes `bytes`, which are all, before that.
+  /// Writes `bytes`, which are the whole file, and publishes it.
   void publish(std::span<const std::byte> bytes);
 
  private:

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOwnProgram = "/proc/self/exe";
 
-/// By which the system has started the process, without links. Where there is no /proc.
+/// Returns the path by which the system has started the process, without links: for systems without
+/// /proc.
 const fs::path& started() {
   static const fs::path path = [] {
     const auto* const given = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
@@ -25,7 +26,8 @@ const fs::path& started() {
   return path;
 }
 
-/// What /proc/self/exe names; of a file which was replaced it ends with a remark that it was.
+/// Returns what /proc/self/exe names; if the file was replaced, that ends with a remark which says
+/// so.
 fs::path running(std::error_code& error) {
   const fs::path path = fs::read_symlink(kOwnProgram, error);
   if (!error || started().empty())
@@ -34,7 +36,7 @@ fs::path running(std::error_code& error) {
   return started();
 }
 
-/// The file that runs: as it is in memory, even if its name is another one's by now.
+/// Returns a path of the file that runs, even if its name is another file's by now.
 std::string running_file() {
   std::error_code error;
   return fs::exists(kOwnProgram, error) || started().empty() ? kOwnProgram : started().string();
@@ -44,8 +46,8 @@ fs::path libraries_of(const fs::path& launcher) {
   return launcher.parent_path().parent_path() / "lib/meshhier";
 }
 
-/// The launcher that started it; empty if none did. The variable may be that of a parent which is
-/// another program.
+/// Returns the launcher that started the program; empty if none did. The variable may have been set
+/// for a parent which is another program.
 fs::path launcher() {
   const char* const given = std::getenv("MESHHIER_PROGRAM");
   std::error_code error;

@@ -11,18 +11,18 @@
 
 namespace meshhier::storage {
 
-/// As a path that starts it again, even if its file is not there any more.
+/// Returns a path that starts the program again, even if its file is not there any more.
 std::string own_program();
-/// Where its file lies. Throws Error(io).
+/// Returns the directory that its file lies in. Throws Error(io) if that cannot be known.
 std::string own_directory();
-/// The file with its code, which tells one version from another: for reading.
+/// Returns the path of the file with its code, for reading: it differs between versions.
 std::string own_code();
 
 /// A folder with files that come with the program.
 class CompanionFolder {
  public:
-  /// The one that the environment variable names, else the first of `places`, seen from
-  /// own_directory(), that has `file`, else the last of them.
+  /// Takes the folder that the environment variable names, else the first of `places`, seen from
+  /// own_directory(), that has `file`, else the last of them. Throws as own_directory().
   CompanionFolder(const char* variable, std::span<const char* const> places, const char* file);
 
   const std::filesystem::path& path() const { return path_; }

@@ -1,4 +1,4 @@
-// Arithmetic of paths; looks at no file.
+// Arithmetic of paths: no function here looks at a file.
 #pragma once
 
 #include "hierarchy/small_letters.h"
@@ -14,12 +14,12 @@ inline bool is_within(const std::filesystem::path& path, const std::filesystem::
   return std::mismatch(place.begin(), place.end(), path.begin(), path.end()).first == place.end();
 }
 
-/// ".glb" of "a.GLB": the ending of its name, with letters of ASCII small.
+/// Returns the ending of a path's name, with letters of ASCII small: ".glb" for "a.GLB".
 inline std::string lower_extension(const std::filesystem::path& path) {
   return small_letters(path.extension().string());
 }
 
-/// "a/b" of "a/b/": both name one place.
+/// Returns "a/b" for "a/b/", which names the same place.
 inline std::filesystem::path without_last_slash(const std::filesystem::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }

@@ -1,4 +1,4 @@
-// This process: what it has used of the machine so far, and a place of its own.
+// This process: its use of the machine so far, and a place for its temporary files.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace meshhier::storage {
 
-/// All threads together, since the process began.
+/// The use by all threads together, since the process began.
 struct ProcessUsage {
   double user_seconds = 0;
   double system_seconds = 0;
@@ -16,27 +16,29 @@ struct ProcessUsage {
                                           ///< as exact as the system counts: some 100 KiB
 };
 
-/// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
+/// Returns the use so far. Thread-safe; takes some 20 microseconds. A figure that the system does
+/// not tell is 0.
 ProcessUsage process_usage();
 
-/// Memory that is resident now. Thread-safe; some 20 microseconds. 0 if the system does not tell.
+/// Returns the memory that is resident now; 0 if the system does not tell. Thread-safe; takes some
+/// 20 microseconds.
 std::uint64_t resident_bytes();
 
-/// From now on the process may have as many files open as the system lets it.
+/// Raises the number of files that the process may have open to as many as the system allows.
 void allow_many_open_files();
 
-/// A name that no other process has used or will use, on any machine: for a file until it is whole.
-/// Letters, digits and dashes.
+/// Returns a name that no other call in any process on any machine returns: for a file until it is
+/// whole. Lower-case letters, digits and dashes. Thread-safe.
 std::string unique_name();
-/// Whether it looks like one.
+/// Whether a name has the form of those that unique_name() returns.
 bool is_unique_name(std::string_view name);
 
-/// The system's for temporary files: TMPDIR, else /tmp. Throws Error(io), which names it, if it is
-/// no directory.
+/// Returns the system's directory for temporary files: TMPDIR, else /tmp. Throws Error(io), which
+/// names it, if it is no directory.
 std::filesystem::path temporary_folder();
 
-/// Makes a directory that only this user can enter, in the system's for temporary files. Throws
-/// Error(io).
+/// Makes a new directory that only this user can enter, in temporary_folder(), and returns its
+/// path. The caller removes it. Throws Error(io).
 std::filesystem::path make_temporary_directory();
 
 }  // namespace meshhier::storage

@@ -1,4 +1,5 @@
-// What will be asked for soon, fetched by threads of its own before it is: for what comes from far.
+// Values that will be asked for soon, loaded by threads of its own before they are: for what comes
+// from far.
 #pragma once
 
 #include <algorithm>
@@ -18,15 +19,17 @@
 
 namespace meshhier::storage {
 
-/// Values by key, in the order in which they are announced. Thread-safe.
+/// Loads values by key, in the order in which they are announced. Thread-safe. The destructor waits
+/// for loads that are under way.
 template <class Key, class Value>
 class ReadAhead {
  public:
   using Load = std::function<Value(const Key&)>;
   using Cost = std::function<std::uint64_t(const Value&)>;
 
-  /// `load` is called by up to `threads` threads at once; what they have loaded and nobody has
-  /// taken costs `most` and what they are at. No thread before something is announced.
+  /// `load` is called by up to `threads` threads at once. They begin no load while what they have
+  /// loaded and nobody has taken costs `most` or more. No thread runs before something is
+  /// announced.
   ReadAhead(std::size_t threads, std::uint64_t most, Load load, Cost cost)
       : threads_(threads), most_(most), load_(std::move(load)), cost_(std::move(cost)) {}
   ReadAhead(const ReadAhead&) = delete;
@@ -40,7 +43,7 @@ class ReadAhead {
     changed_.notify_all();
   }
 
-  /// They replace those that were announced before and are not begun.
+  /// Announces keys; they replace those that were announced before and are not begun.
   void announce(std::vector<Key> keys) {
     const std::lock_guard lock(mutex_);
     std::erase_if(items_, [](const Item& item) { return item.state == State::waiting; });
@@ -50,8 +53,9 @@ class ReadAhead {
     changed_.notify_all();
   }
 
-  /// What was announced under a key for which `is_it(key)`, once it is loaded: here if it was not
-  /// begun. Nothing if there is none. What `load` has thrown is thrown.
+  /// Returns the value of the first announced key for which `is_it(key)`, once it is loaded; loads
+  /// it in this thread if nobody has begun. Returns nothing if no such key is announced. Throws
+  /// what `load` has thrown.
   template <class IsIt>
   std::optional<Value> take(const IsIt& is_it) {
     std::unique_lock lock(mutex_);
@@ -88,7 +92,8 @@ class ReadAhead {
   };
   using Items = std::list<Item>;
 
-  /// What others have passed over will not be asked for; several may be asked for at once.
+  /// Keys that takers have passed over will not be asked for: all but so many are dropped. Some are
+  /// kept, as several threads take at once.
   static constexpr std::ptrdiff_t kSlack = 64;
 
   void drop_before(typename Items::iterator place) {
@@ -122,7 +127,8 @@ class ReadAhead {
     changed_.notify_all();
   }
 
-  /// As many as are of use, and to be had: who asks for what nobody has begun loads it.
+  /// Starts as many threads as are of use and to be had. Fewer do no harm: who takes what nobody
+  /// has begun loads it.
   void add_workers() {
     try {
       while (workers_.size() < std::min(threads_, items_.size()))

@@ -13,10 +13,10 @@
 namespace meshhier::storage {
 namespace {
 
-/// Fetched at once for a small read, so that many of them are few requests.
+/// Bytes that are fetched at once for a small read, so that many of them are few requests.
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
 
-/// All blocks that a small range lies in.
+/// Returns all blocks that a small range lies in, or a large range itself.
 File::Range fetched_for(const File::Range& range, std::uint64_t size) {
   if (range.bytes >= kBlock)
     return range;

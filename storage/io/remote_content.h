@@ -1,4 +1,4 @@
-// What has come of a file on the web: each byte is fetched once.
+// A file on the web of which parts have come: each byte is fetched once.
 #pragma once
 
 #include "storage/io/file.h"
@@ -16,7 +16,8 @@
 
 namespace meshhier::storage {
 
-/// Fetched at the same time, and in bytes before it is asked for.
+/// The most requests at the same time, and the most bytes that are fetched before they are asked
+/// for.
 inline constexpr std::size_t kFetchedAtOnce = 6;
 inline constexpr std::uint64_t kFetchedAhead = std::uint64_t{16} << 20;
 
@@ -26,7 +27,7 @@ class FetchedParts {
   /// `file` is empty.
   explicit FetchedParts(std::unique_ptr<File> file) : file_(std::move(file)) {}
 
-  /// Returns where they are.
+  /// Returns the place to read them from.
   std::uint64_t append(std::span<const std::byte> bytes);
   void read(std::uint64_t place, std::span<std::byte> bytes) const {
     file_->read_exact(place, bytes);
@@ -47,10 +48,10 @@ class RemoteContent {
 
   std::uint64_t size() const { return size_; }
   const std::string& version() const { return version_; }
-  /// Up to bytes.size() of them; fewer at the end. Where they are not there yet they are fetched,
-  /// few with those around them.
+  /// Reads up to bytes.size() bytes and returns how many, fewer only at the end. Fetches what is
+  /// not there yet; a small read fetches whole blocks of 64 KiB.
   std::size_t read(std::uint64_t offset, std::span<std::byte> bytes);
-  /// Ranges that will be read so: fetched ahead, several at a time.
+  /// Fetches ranges that will be read so ahead, several at a time.
   void will_read(std::span<const File::Range> ranges);
 
  private:
@@ -60,7 +61,7 @@ class RemoteContent {
   };
 
   [[noreturn]] void fail(const char* what) const;
-  /// From the first byte that is not there on.
+  /// Returns the range from its first byte that is not there on.
   File::Range missing_of(const File::Range& range) const;
   bool read_if_there(std::uint64_t offset, std::span<std::byte> bytes) const;
   std::uint64_t fetch(const File::Range& range);

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Asked for when a file is opened: all of most tiles; of an archive, which is read in parts, less.
+/// Bytes that are asked for when a file is opened: most tiles have fewer. An archive is read in
+/// parts, so that less is asked for.
 constexpr std::uint64_t kStart = std::uint64_t{1} << 20;
 constexpr std::uint64_t kArchiveStart = std::uint64_t{1} << 16;
 
@@ -52,14 +53,14 @@ std::unique_ptr<File> make_temporary(FileSystem& files, const fs::path& path) {
   return file;
 }
 
-/// Of names that hierarchies have.
+/// Whether it is a file's among the names that hierarchies have; all others are directories'.
 bool is_name_of_file(const fs::path& path) {
   const std::string ending = path.extension().string();
   constexpr std::array<std::string_view, 4> kEndings{".bin", ".glb", ".json", ".webp"};
   return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 
-/// A text that tells what the other files are: who opens it again asks what it says by then.
+/// JSON says what the other files are: who opens it again wants what it says by then.
 bool may_change(const fs::path& path) {
   return path.extension() == ".json";
 }

@@ -18,26 +18,27 @@
 
 namespace meshhier::storage {
 
-/// A file system in which what is below one address of the web can be read. The path of that is the
+/// A file system in which the files below one address of the web can be read. Its path is the
 /// address without user and query, "https://host/david.3tz", so that no message has secrets; files
-/// below it are asked for with the same user and query. All else is done by the other one.
-/// Nothing can be listed. Archives are taken to be there, until they are opened; what has no ending
-/// of a file is taken for a directory. What is fetched is
-/// kept in a temporary file, and is not fetched again.
+/// below it are asked for with the same user and query. Paths elsewhere are the other file
+/// system's. Nothing can be listed. Archives are taken to be there, until they are opened; a name
+/// without a file's ending is taken for a directory. Fetched bytes are kept in a temporary file and
+/// are not fetched again, but for JSON, which is asked for at each open().
 class RemoteFiles final : public ForwardingFiles {
  public:
-  /// `others` must outlive this, and this the files that it opens. `scratch`: of the temporary
-  /// file, which is removed at once, and goes when this does.
+  /// `others` must outlive this, and this the files that it opens. `scratch`: a path for the
+  /// temporary file, whose name is removed at once and whose space comes back with this object.
+  /// `check` is as HttpClient's. Throws Error(io) if the temporary file cannot be made.
   RemoteFiles(FileSystem& others, const std::string& address, const std::filesystem::path& scratch,
               HttpOptions options, std::function<void()> check);
   ~RemoteFiles() override;
 
-  /// What the address is called here.
+  /// The path that stands for the address.
   const std::filesystem::path& root() const { return root_; }
   const HttpCounters& counters() const { return client_->counters(); }
 
-  /// One request, or none of what was announced; Error(io) if it has become another file by the
-  /// time a part of it is read.
+  /// Makes one request, or none for what was announced by will_read() or has been fetched. Reads of
+  /// the file throw Error(io) if the host has another version of it by then.
   std::unique_ptr<File> open(const std::filesystem::path& path) override;
   FileIdentity identity(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
@@ -54,7 +55,7 @@ class RemoteFiles final : public ForwardingFiles {
 
   bool is_remote(const std::filesystem::path& path) const;
   HttpAddress address_of(const std::filesystem::path& path) const;
-  /// These two: null if there is no such file.
+  /// Both return null if there is no such file.
   Content load(const std::filesystem::path& path);
   Content find(const std::filesystem::path& path);
   bool is_there(const std::filesystem::path& path);

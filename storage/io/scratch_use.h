@@ -1,4 +1,4 @@
-// What scratch files moved and what they hold on disk.
+// Counters of the bytes that scratch files moved and hold on disk.
 #pragma once
 
 #include <atomic>
@@ -6,7 +6,7 @@
 
 namespace meshhier::storage {
 
-/// Thread-safe. A byte is on disk from its write until its file is gone.
+/// Counts bytes; thread-safe. A byte is on disk from its write until its file is gone.
 class ScratchUse {
  public:
   void add_written(std::uint64_t bytes) { bytes_written_ += bytes; }

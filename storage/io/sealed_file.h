@@ -1,4 +1,4 @@
-// A file whose size and checksum another file tells.
+// A file whose size and checksum stand in another file.
 #pragma once
 
 #include "storage/io/file.h"
@@ -10,13 +10,15 @@
 
 namespace meshhier::storage {
 
+/// The size and checksum that a file must have.
 struct Seal {
   std::uint64_t bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64
 };
 
-/// All of the file. `limit_bytes`: more than any such file has; guards what is allocated where the
-/// seal lies as well. Throws Error(io), or Error(corrupt) if it is not the file that was sealed.
+/// Returns the whole file. `limit_bytes`: more than any such file has; guards what is allocated
+/// where the seal is wrong as well. Throws Error(io), or Error(corrupt) if it is not the file that
+/// was sealed.
 std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
                                    const Seal& seal, std::uint64_t limit_bytes);
 

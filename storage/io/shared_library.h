@@ -6,14 +6,15 @@
 
 namespace meshhier::storage {
 
-/// Loaded while the object lives; its names are no one else's. Thread-safe.
+/// A library is loaded while its object lives, and its names are seen by nobody else. Thread-safe.
 class SharedLibrary {
  public:
-  /// `file`: its name in the folders of the system, "libproj.so.25". `remedy`: what to do if it
+  /// Loads `file`, a name in the folders of the system, "libproj.so.25". `remedy`: what to do if it
   /// cannot be used: "install the package libproj25". Throws Error(io) with both.
   SharedLibrary(std::string file, std::string remedy);
 
-  /// `Function`: a pointer of its type. Throws Error(io) if the library has none of that name.
+  /// Returns the function of that name. `Function`: a pointer of its type, which is not checked.
+  /// Throws Error(io) if the library has none.
   template <class Function>
   Function function(const char* name) const {
     return reinterpret_cast<Function>(address(name));

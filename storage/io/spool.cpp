@@ -156,7 +156,7 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
   return offset;
 }
 
-/// Of a file that has grown.
+/// Throws Error(io) if a file that has grown is larger than offsets can tell.
 void ScratchFile::require_room(std::size_t own) const {
   const int bits = own_.size() == 1 ? kPlaceBits : kFileBits;
   if (own_[own].size > std::uint64_t{1} << bits) {
@@ -194,7 +194,8 @@ void Spool::append_to_blocks(std::span<const std::byte> bytes) {
   }
 }
 
-/// Begins a block; the full one before goes into the pool, or to disk and leaves its memory.
+/// Begins a block. The full one before is counted in the pool from now on; if that has no room, it
+/// goes to disk, and the new block takes over its memory.
 void Spool::open_block() {
   if (size_ > 0)
     checksum_ = checksum({blocks_.back().memory(), block_bytes_}, checksum_);

@@ -28,15 +28,16 @@ class MemoryPool {
  public:
   explicit MemoryPool(std::uint64_t capacity_bytes)
       : free_(static_cast<std::int64_t>(capacity_bytes)) {}
-  /// While nothing is taken.
+  /// May be called only while nothing is taken.
   void set_capacity(std::uint64_t capacity_bytes) {
     free_ = static_cast<std::int64_t>(capacity_bytes);
   }
+  /// Takes `bytes`, or returns false and takes none if fewer are free.
   bool try_take(std::uint64_t bytes);
   void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
   std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }
 
-  /// Of all scratch files that take what the pool does not hold.
+  /// Counts for all scratch files that take what the pool does not hold.
   ScratchUse& scratch_use() { return scratch_use_; }
   const ScratchUse& scratch_use() const { return scratch_use_; }
 
@@ -47,7 +48,9 @@ class MemoryPool {
 
 /// A temporary file shared by many spools; made when the first block must leave memory, removed at
 /// the end. It may be several files, PATH, PATH.1, ...: threads that write to one file wait for
-/// each other in the system, whatever they write.
+/// each other in the system, whatever they write. Failures throw Error(io). Threads may append,
+/// release, read and sync at once; all else needs the file for itself. `files` and `pool` must
+/// outlive it.
 class ScratchFile {
  public:
   /// Whether the file is there when its object is gone.
@@ -56,7 +59,7 @@ class ScratchFile {
     yes  ///< for a later process; one that an earlier process left is gone on with
   };
 
-  /// How many files it may be.
+  /// The number of files that it may be.
   enum class Files { one, one_a_thread };
 
   ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
@@ -65,46 +68,48 @@ class ScratchFile {
   ScratchFile& operator=(const ScratchFile&) = delete;
   ~ScratchFile();
 
-  /// Another file, `name`, beside this one and of the same pool: for what is needed for a while
-  /// only, as disk space comes back with a whole file.
+  /// Returns another file, `name`, beside this one and of the same pool: for what is needed for a
+  /// while only, as disk space comes back with a whole file.
   ScratchFile beside(const char* name) const {
     return {files_, path_.parent_path() / name, pool_, Stays::no,
             own_.size() == 1 ? Files::one : Files::one_a_thread};
   }
-  /// Of the one file, or of the first.
+  /// The path of the one file, or of the first.
   const std::filesystem::path& path() const { return path_; }
 
-  /// Bytes on disk.
+  /// Returns the bytes on disk. Thread-safe.
   std::uint64_t size() const;
   MemoryPool& pool() { return pool_; }
 
   /// Writes `bytes` to where as many were released, or else to the end; returns where.
   /// Thread-safe.
   std::uint64_t append(std::span<const std::byte> bytes);
-  /// Bytes that were appended so are not needed any more. Thread-safe.
+  /// Says that bytes which were appended so are not needed any more: later ones take their place.
+  /// Thread-safe.
   void release(std::uint64_t offset, std::uint64_t bytes);
-  /// Says that bytes an earlier process appended are still needed; false if there are not so many.
-  /// Before the first append().
+  /// Says that bytes which an earlier process appended are still needed; returns false if there are
+  /// not so many. Must come before the first append().
   bool claim(std::uint64_t offset, std::uint64_t bytes);
 
-  /// Another file's bytes, which stay as they are, behind this one's own: what is said to lie at
-  /// `offset` of that file lies at placed(offset) here, until the next mount(). Each stays open.
-  /// Throws Error(io) if there are too many.
+  /// Makes another file's bytes, which stay as they are, readable here: what is said to lie at
+  /// `offset` of that file lies at placed(offset) here, until the next mount(). The file stays
+  /// open. Throws Error(io) if there are too many.
   void mount(std::unique_ptr<File> file);
-  /// claim() refuses what no file can have.
+  /// Returns where that is; for an offset that no file can have, a place that claim() refuses.
   std::uint64_t placed(std::uint64_t offset) const {
     return offset <= kOffsetMask ? (mounted_.size() << kPlaceBits) + offset : kNowhere;
   }
-  /// Whether it lies in a file that was mounted.
+  /// Whether an offset lies in a file that was mounted.
   static bool is_mounted(std::uint64_t offset) { return offset >> kPlaceBits > 0; }
-  /// What lies at `offset` is not what was written there: Error(io), or Error(corrupt) of a mounted
-  /// file.
+  /// Returns the error to throw if the bytes at `offset` are not those that were written there:
+  /// Error(io), or Error(corrupt) for a mounted file.
   Error changed(std::uint64_t offset) const;
-  /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
-  /// was there before.
+  /// Forces what was appended before the call to the disk; `check` is as File::sync()'s.
+  /// Thread-safe.
   void sync(const std::function<void()>& check);
   /// Removes the file; nothing is left of what was appended.
   void remove();
+  /// Reads bytes that were appended or claimed. Thread-safe.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
     file_at(offset).read_exact(is_mounted(offset) ? offset & kOffsetMask : place_of(offset).offset,
                                bytes);
@@ -125,7 +130,7 @@ class ScratchFile {
     std::unique_ptr<File> file;
     std::uint64_t size = 0;
   };
-  /// Where bytes are: in which of the own files, if they are not in a mounted one, and where there.
+  /// The place of bytes that are in no mounted file: which of the own files, and the offset there.
   struct Place {
     std::size_t own;
     std::uint64_t offset;
@@ -154,18 +159,20 @@ class ScratchFile {
   std::vector<std::unique_ptr<File>> mounted_;
 };
 
-/// Where a scratch file holds a spool's bytes.
+/// The places in a scratch file that hold a spool's bytes.
 struct StoredSpool {
   std::uint64_t bytes = 0;
   std::uint64_t checksum = 0;
   std::uint64_t block_bytes = 0;
-  std::vector<std::uint64_t> blocks;  ///< their offsets
+  std::vector<std::uint64_t> blocks;  ///< offsets
 };
 
-/// A sequence of bytes. One writer; after the last append() any number of readers.
+/// A sequence of bytes. One thread appends; after the last append() any threads may read at once.
+/// Failures of the scratch file throw Error(io).
 class Spool {
  public:
-  /// `block_bytes`: held while writing, the grain of what moves to disk; > 0.
+  /// `block_bytes`: size of the blocks that move to disk, one of which is held in memory while
+  /// writing, whatever the pool has; > 0.
   Spool(ScratchFile& scratch, std::size_t block_bytes)
       : scratch_(&scratch), block_bytes_(block_bytes) {}
   Spool(Spool&& other) noexcept;
@@ -183,23 +190,24 @@ class Spool {
   /// Copies bytes.size() bytes from `offset`. Requires offset + bytes.size() <= size().
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
-  /// Forgets the content and gives its memory back.
+  /// Forgets the content; gives its memory back to the pool and its disk space to the scratch file.
   void clear();
 
-  /// Puts all that is in memory on disk: for restore(), in another process even. Nothing can be
-  /// appended any more.
+  /// Puts all that is in memory on disk, and returns where it is: for restore(), in another process
+  /// even. Nothing can be appended any more.
   StoredSpool store();
-  /// Takes what should be in the scratch file already; false if `stored` contradicts itself. On an
-  /// empty spool.
+  /// Takes what should be in the scratch file already, without looking; returns false if `stored`
+  /// contradicts itself. The spool must be empty.
   bool restore(const StoredSpool& stored);
-  /// Of a restored spool: whether the scratch file holds what was stored; reads it all. Before
-  /// anything is appended there.
+  /// Whether the scratch file holds what was stored; reads it all. For a restored spool, before
+  /// anything is appended to the scratch file.
   bool is_as_stored() const;
-  /// Of a restored spool that is not as it was stored: ScratchFile::changed().
+  /// Returns ScratchFile::changed() for a restored spool that is not as it was stored.
   Error changed() const { return scratch_->changed(blocks_.empty() ? 0 : blocks_[0].offset()); }
 
  private:
-  /// Where a block's bytes are, in 8 bytes, as large meshes have many blocks. Owns nothing.
+  /// The place of a block's bytes, in memory or on disk. It takes 8 bytes, as large meshes have
+  /// many blocks, and owns nothing.
   class Block {
    public:
     static Block in_memory(std::byte* memory) {
@@ -222,7 +230,7 @@ class Spool {
     room_ -= bytes;
     size_ += bytes;
   }
-  /// Of a block, the last one included.
+  /// Returns the bytes that a block holds; all but the last one are full.
   std::size_t used_bytes(std::size_t block) const;
 
   ScratchFile* scratch_;

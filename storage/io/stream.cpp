@@ -18,7 +18,7 @@
 namespace meshhier::storage {
 namespace {
 
-/// How long one waits before looking whether the job is cancelled.
+/// The longest wait before looking whether the job is cancelled.
 constexpr int kPatienceMilliseconds = 50;
 
 class PosixStream final : public File {
@@ -43,7 +43,8 @@ class PosixStream final : public File {
   std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
     if (offset != written_)
       fail_system("write", path(), ESPIPE);
-    // So many bytes a pipe that is ready takes at once, whether its descriptor may block or not.
+    // A pipe that is ready takes so many bytes at once, so the call cannot block, whether or not
+    // its descriptor may.
     const std::size_t most = std::min<std::size_t>(bytes.size(), PIPE_BUF);
     for (;;) {
       wait_until_ready();

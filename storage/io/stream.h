@@ -9,7 +9,7 @@
 
 namespace meshhier::storage {
 
-/// As FileSystem::open_stream(); what is written is counted in `counters`.
+/// Does what FileSystem::open_stream() promises; counts what is written in `counters`.
 std::unique_ptr<File> open_posix_stream(const std::filesystem::path& path,
                                         std::shared_ptr<IoCounters> counters,
                                         const std::function<void()>& check);

@@ -15,7 +15,7 @@ class Busy final : public Error {
   explicit Busy(const std::string& message) : Error(ErrorCode::io, message) {}
 };
 
-/// Throws Error(io): "cannot ACTION PATH: CAUSE", of an errno; Busy if that passes.
+/// Throws Error(io), "cannot ACTION PATH: CAUSE", for an errno; Busy if that may pass.
 [[noreturn]] void fail_system(const char* action, const std::filesystem::path& path, int error);
 
 }  // namespace meshhier::storage

@@ -27,14 +27,15 @@ std::uint64_t address_space() {
   return is_limited ? limit.rlim_cur : UINT64_MAX;
 }
 
-/// The number in a file; none if there is another word ("max") or no file.
+/// Returns the number in a file; UINT64_MAX if there is another word ("max") or no file.
 std::uint64_t limit_in(const fs::path& file) {
   std::ifstream stream(file);
   std::uint64_t limit = 0;
   return stream >> limit ? limit : UINT64_MAX;
 }
 
-/// Of a group and of all above it. `top`: where they lie; `group`: its path from there.
+/// Returns the least limit of a group and all above it. `top`: the folder of all groups; `group`:
+/// the group's path from there.
 std::uint64_t limit_of(const fs::path& top, const fs::path& group, const char* file) {
   std::uint64_t least = limit_in(top / file);
   fs::path folder = top;
@@ -56,7 +57,7 @@ bool has_memory(std::string_view controllers) {
   return false;
 }
 
-/// Lines of /proc/self/cgroup: "0::/group" of version 2, "4:memory,cpu:/group" of version 1.
+/// /proc/self/cgroup has lines as "0::/group" in version 2, "4:memory,cpu:/group" in version 1.
 std::uint64_t group_limit(const fs::path& root) {
   const fs::path groups = root / "sys/fs/cgroup";
   std::ifstream stream(root / "proc/self/cgroup");

@@ -13,13 +13,13 @@ class WorkerPool::Worker {
   explicit Worker(const std::vector<std::string>& words)
       : process_(words, ChildProcess::Errors::dropped, ChildProcess::Speech::socket) {}
 
-  /// Waits until it says so.
+  /// Waits for its greeting; returns false if that is another one, or the process ended.
   bool is_ready(std::uint32_t protocol) {
     std::uint32_t said = 0;
     return process_.receive(std::as_writable_bytes(std::span(&said, 1))) && said == protocol;
   }
 
-  /// Nothing if the process has ended.
+  /// Returns nothing if the process has ended.
   std::optional<Answer> ask(std::span<const std::uint32_t> numbers,
                             std::span<const std::byte> bytes) {
     std::array<std::uint32_t, 2> head{};  // status, bytes

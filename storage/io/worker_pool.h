@@ -21,24 +21,27 @@
 
 namespace meshhier::storage {
 
-/// Thread-safe. A process ends with the thread that started it.
+/// A pool grows to as many processes as threads ask at once, and keeps them for later questions.
+/// Thread-safe: each question has a process for itself. A process ends with the thread that started
+/// it, so threads that end cost no more than a new process.
 class WorkerPool {
  public:
   struct Answer {
     bool is_good = false;
-    std::vector<std::byte> bytes;  ///< else why not
+    std::vector<std::byte> bytes;  ///< the answer, or in UTF-8 why there is none
   };
 
-  /// `name`: the program's, in errors. `words`: what starts it, as ChildProcess has them; may
-  /// throw.
+  /// Starts no process yet. `name`: the program's, in errors. `protocol`: the number that it greets
+  /// with. `words`: returns the words that start it, as ChildProcess takes them; may throw.
   WorkerPool(std::string name, std::uint32_t protocol,
              std::function<std::vector<std::string>()> words);
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
   ~WorkerPool();
 
-  /// Asks a process that waits, else a new one. Nothing if new ones end at this question, too.
-  /// Throws Error(io) if none can be started, and what `words` throws.
+  /// Asks a process that waits, else a new one, and waits for the answer. Returns nothing if two
+  /// new ones have ended at this question. Throws Error(io) if none can be started, and what
+  /// `words` throws. `numbers`: the last one is bytes.size().
   std::optional<Answer> ask(std::span<const std::uint32_t> numbers,
                             std::span<const std::byte> bytes);
   /// Ends the processes that wait.
