@@ -58,7 +58,7 @@ class DirectoryWalk {
     offset_ = header.entry.end();
     return std::move(header.entry);
   }
-  /// Where the last entry ended.
+  /// The end of the last entry, where the next one must begin.
   std::uint64_t offset() const { return offset_; }
 
  private:
@@ -83,7 +83,7 @@ class DirectoryWalk {
   throw Error(ErrorCode::corrupt, fmt::format("{}: {}", file.path().string(), what));
 }
 
-/// The name of the index is no name of anything else, and it has a place for each other file.
+/// Throws Error(corrupt) unless the last file is the index and has a place for each other file.
 void check_last(const File& file, const ArchiveEnd& end, const ArchiveEntry& last) {
   if (last.name != kArchiveIndexName)
     refuse_archive(file, fmt::format("its last file is not {}", kArchiveIndexName));

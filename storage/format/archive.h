@@ -1,4 +1,4 @@
-// Read access to a 3TZ archive (storage/format/archive_format.h), nobody vouching for its bytes.
+// Read access to a 3TZ archive (storage/format/archive_format.h). Nobody vouches for its bytes.
 #pragma once
 
 #include "storage/format/archive_format.h"
@@ -13,25 +13,28 @@
 
 namespace meshhier::storage {
 
-/// Thread-safe once constructed.
 /// Whether a file means to be an archive, whatever is in it. Throws Error(io).
 bool is_archive(const File& file);
 
+/// An archive whose directory is known. Thread-safe once constructed, as far as its file is.
 class Archive {
  public:
   /// Reads the directory, and checks that it is what ArchiveWriter makes: stored files, one behind
-  /// the other, each name once, the index last. Holds 32 bytes a file. Throws Error(corrupt) naming
-  /// the archive, Error(io).
+  /// the other, each name once, the index last. Contents are not read. Holds 32 bytes a file.
+  /// Throws Error(corrupt) naming the archive, Error(io) if it cannot be read or is no archive at
+  /// all.
   explicit Archive(std::unique_ptr<File> file);
 
-  /// Where a file's content is.
+  /// The place of a file's content in the archive; it lies within it.
   struct Place {
     std::uint64_t offset = 0;
     std::uint32_t bytes = 0;
   };
+  /// Returns nothing if there is no file of that name. O(log n).
   std::optional<Place> find(std::string_view name) const;
 
-  /// Visits all files in their order, the index last; reads the directory again.
+  /// Visits all files in their order, the index last; reads the directory again. Throws as the
+  /// constructor, and what `visit` throws.
   void for_each(const std::function<void(const ArchiveEntry&)>& visit) const;
 
   const File& file() const { return *file_; }
@@ -49,8 +52,8 @@ class Archive {
   std::vector<Slot> slots_;  ///< by name's MD5
 };
 
-/// Whether what lies there, a directory perhaps, begins as the archive of a hierarchy does: with a
-/// manifest. Throws Error(io).
+/// Whether the path is a file that begins as the archive of a hierarchy does, with a manifest;
+/// false for a directory and for nothing. Throws Error(io).
 bool is_hierarchy_archive(FileSystem& files, const std::filesystem::path& path);
 
 }  // namespace meshhier::storage

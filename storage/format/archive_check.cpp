@@ -47,7 +47,7 @@ void check_content(CheckJob& job, const ArchiveEntry& entry) {
     job.add(entry.name, fmt::format("CRC-32 is {:08x}, expected {:08x}", crc, entry.crc));
 }
 
-/// The name that a header in the archive has; nothing if there is none.
+/// Returns the name that a header at an offset of the archive has; nothing if there is no header.
 std::optional<std::string> name_at(const CheckJob& job, std::uint64_t offset, std::uint64_t end) {
   std::vector<std::byte> header(std::min<std::uint64_t>(kLocalHeaderBytes + kLongestArchiveName,
                                                         end - std::min(offset, end)));
@@ -68,8 +68,8 @@ bool leads_to(const CheckJob& job, const IndexPlace& place, std::uint64_t offset
   return listed && listed->offset == offset + kLocalHeaderBytes + name->size();
 }
 
-/// Each place leads to a header of the name it is of, and no place comes twice: so there is one for
-/// each file.
+/// Checks that each place leads to a header with its name, and that places ascend: as there are as
+/// many as files, each file has one.
 void check_index(CheckJob& job, const ArchiveEntry& index) {
   std::optional<IndexPlace> last;
   for (std::uint64_t at = index.content(); at < index.end(); at += sizeof(IndexPlace)) {
@@ -85,7 +85,7 @@ void check_index(CheckJob& job, const ArchiveEntry& index) {
   }
 }
 
-/// What will be read.
+/// Announces what will be read.
 void announce(const Archive& archive) {
   std::vector<File::Range> ranges;
   archive.for_each([&](const ArchiveEntry& entry) {

@@ -14,14 +14,15 @@
 
 namespace meshhier::storage {
 
-/// A file of an archive, as a file of its own; its version is the archive's. `path`: for messages.
-/// Requires that `place` lies in the archive, as Archive::find() tells it.
+/// Returns a file of an archive as a file of its own, for reading; its version is the archive's.
+/// `path`: for messages. Requires that `place` lies in the archive, as Archive::find() tells it. It
+/// keeps the archive open.
 std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<const File> archive,
                                     Archive::Place place);
 
-/// Another file system, in which an archive is a directory as well: what is in it can be opened,
-/// looked at and listed. All else is done by the other one, which refuses to change what is below a
-/// file. Thread-safe as far as the other one is.
+/// A file system in which an archive is a directory as well: its files can be opened, looked at and
+/// listed. The other one does all else, and refuses to change what is below a file. Thread-safe as
+/// far as the other one is.
 class ArchiveFiles final : public ForwardingFiles {
  public:
   /// Opens the archive; throws as Archive does. `others` must outlive this.
@@ -37,17 +38,18 @@ class ArchiveFiles final : public ForwardingFiles {
   void will_read(std::span<const std::filesystem::path> files) override;
 
  private:
-  /// The name in the archive; nothing if the path leads elsewhere.
+  /// Returns the name in the archive; nothing if the path leads elsewhere.
   std::optional<std::string> name_of(const std::filesystem::path& path) const;
 
   Archive archive_;
   std::string root_;  ///< with a slash at its end
 };
 
-/// The file system to read a hierarchy with, by what lies there: a file is taken for an archive.
+/// The file system to read a hierarchy with: ArchiveFiles if its path is a file's, else the one
+/// that is given.
 class HierarchyFiles {
  public:
-  /// Throws as Archive does if there is a file that is no archive. `files` must outlive this.
+  /// Throws as Archive if there is a file that is no archive. `files` must outlive this.
   HierarchyFiles(FileSystem& files, const std::filesystem::path& hierarchy);
 
   FileSystem& files() const { return inside_ ? *inside_ : others_; }

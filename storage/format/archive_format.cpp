@@ -26,7 +26,7 @@ constexpr std::uint16_t kPlainVersion = 10;  // stored files
 constexpr std::uint16_t kZip64Version = 45;
 constexpr std::uint16_t kFirstDay = 0x21;  // 1980-01-01, the first that DOS knows
 
-// What does not fit is written as all ones, and once more in zip64's records.
+// A number that does not fit is written as all ones, and once more in zip64's records.
 constexpr std::uint64_t kTooMany = 0xffff;
 constexpr std::uint64_t kTooLong = 0xffffffff;
 constexpr std::uint16_t kZip64Extra = 1;
@@ -35,7 +35,7 @@ bool is_far(const ArchiveEntry& entry) {
   return entry.offset >= kTooLong;
 }
 
-/// Version needed to bytes, alike in both headers.
+/// Appends the fields from the version needed to the bytes, which both headers have alike.
 void append_common(std::vector<std::byte>& bytes, const ArchiveEntry& entry) {
   append_little(bytes, is_far(entry) ? kZip64Version : kPlainVersion);
   append_little<std::uint16_t>(bytes, 0);  // flags
@@ -85,7 +85,7 @@ bool needs_zip64(const ArchiveEnd& end) {
   return end.entries >= kTooMany || end.directory >= kTooLong || end.directory_bytes >= kTooLong;
 }
 
-/// What the records say; `last` is long enough for them.
+/// Returns what the records at the end of `last` say; it must be long enough for them.
 ArchiveEnd load_end(std::span<const std::byte> last) {
   const std::byte* at = last.data() + last.size() - kEndBytes;
   const ArchiveEnd end{load_little<std::uint16_t>(at + 10), load_little<std::uint32_t>(at + 16),

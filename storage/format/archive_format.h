@@ -17,7 +17,7 @@
 // clang-format on
 //
 // Nothing is left open: these bytes follow from the names, sizes and CRC-32s of the files in their
-// order. What reads an archive makes them again and compares.
+// order. A reader makes them again and compares.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ namespace meshhier::storage {
 /// A file in an archive.
 struct ArchiveEntry {
   std::string name;
-  std::uint64_t offset = 0;  ///< of its local header
+  std::uint64_t offset = 0;  ///< where its local header begins
   std::uint32_t bytes = 0;
   std::uint32_t crc = 0;
 
@@ -46,54 +46,56 @@ inline constexpr std::string_view kArchiveIndexName = "@3dtilesIndex1@";
 
 inline constexpr std::size_t kLocalHeaderBytes = 30;
 inline constexpr std::size_t kCentralHeaderBytes = 46;
-/// Of the names that are written and read; those of a hierarchy have 30 at most.
+/// The most bytes of a name that is written or read; those of a hierarchy have 30 at most.
 inline constexpr std::size_t kLongestArchiveName = 255;
 inline constexpr std::size_t kLongestCentralHeader = kCentralHeaderBytes + kLongestArchiveName + 12;
 inline constexpr std::size_t kLongestArchiveEnd = 98;
 /// Sizes in local headers have 32 bits, of which all ones say something else.
 inline constexpr std::uint64_t kMostFileBytes = 0xfffffffe;
 
-/// A relative path of printable ASCII that leads nowhere but below: "a/b.c", not "/a", "../a",
-/// "a//b" or "a\b".
+/// Whether it is a relative path of printable ASCII that leads nowhere but below: "a/b.c", not
+/// "/a", "../a", "a//b" or "a\b".
 bool is_archive_name(std::string_view name);
 
 void append_local_header(std::vector<std::byte>& bytes, const ArchiveEntry& entry);
 void append_central_header(std::vector<std::byte>& bytes, const ArchiveEntry& entry);
 
-/// The entry of a local header, which is not checked any further; `bytes` begin with it and end
-/// with its name or later. Throws Error(corrupt) that starts with `name`.
+/// Returns the entry of a local header, which is not checked any further; `bytes` begin with it and
+/// end with its name or later. Throws Error(corrupt) that starts with `name`.
 ArchiveEntry parse_local_header(std::span<const std::byte> bytes, std::uint64_t offset,
                                 const std::string& name);
 
-/// The entry at `offset` of a central header that `bytes` begin with, and the header's size.
-/// `offset`: where the last entry ended. Throws Error(corrupt) that starts with `name` if it is not
-/// what append_central_header() makes.
+/// An entry out of the directory.
 struct CentralHeader {
   ArchiveEntry entry;
-  std::size_t bytes = 0;
+  std::size_t bytes = 0;  ///< size of the header
 };
+/// Parses the central header that `bytes` begin with, of the entry at `offset`, which is where the
+/// entry before ended. Throws Error(corrupt) that starts with `name` if it is not what
+/// append_central_header() makes.
 CentralHeader parse_central_header(std::span<const std::byte> bytes, std::uint64_t offset,
                                    const std::string& name);
 
 struct ArchiveEnd {
   std::uint64_t entries = 0;          ///< the index among them
   std::uint64_t directory = 0;        ///< offset of the first central header
-  std::uint64_t directory_bytes = 0;  ///< of all central headers
+  std::uint64_t directory_bytes = 0;  ///< bytes of all central headers
 };
 std::vector<std::byte> encode_archive_end(const ArchiveEnd& end);
-/// `last`: the last kLongestArchiveEnd bytes of a file of `file_bytes`, or all of it. Throws
-/// Error(corrupt) that starts with `name` if they do not end with what encode_archive_end() makes,
-/// or what it tells does not fit the file's size.
+/// Parses the end of an archive. `last`: the last kLongestArchiveEnd bytes of a file of
+/// `file_bytes`, or all of it. Throws Error(corrupt) that starts with `name` if they do not end
+/// with what encode_archive_end() makes, or do not fit the file's size.
 ArchiveEnd parse_archive_end(std::span<const std::byte> last, std::uint64_t file_bytes,
                              const std::string& name);
 
 /// Whether a file that begins with `first` and ends with `last` means to be a zip file.
 bool looks_like_archive(std::span<const std::byte> first, std::span<const std::byte> last);
 
-/// A place in the index: the MD5 of a name, then the u64 offset of its local header.
+/// A place in the index is the MD5 of a name, then the u64 offset of its local header.
 using IndexPlace = std::array<std::byte, 24>;
 IndexPlace index_place(std::string_view name, std::uint64_t offset);
-/// Of two places with different names; the order of the index: of the MD5s as two u64 each.
+/// Whether `a` stands before `b` in the index, which ascends by the MD5s as two u64 each. Requires
+/// different names.
 bool comes_before(const IndexPlace& a, const IndexPlace& b);
 
 }  // namespace meshhier::storage

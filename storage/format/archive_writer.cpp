@@ -11,7 +11,7 @@
 namespace meshhier::storage {
 namespace {
 
-/// Most tiles are one block.
+/// Bytes that are copied at once; most tiles have fewer.
 constexpr std::size_t kCopiedBlock = std::size_t{1} << 20;
 
 }  // namespace
@@ -54,7 +54,7 @@ void ArchiveWriter::finish() {
   write_directory();
 }
 
-/// What the directory says, the local headers have said already.
+/// Makes the directory from the local headers in the file, so that no names are kept in memory.
 void ArchiveWriter::write_directory() {
   ArchiveEnd end{index_.size() + 1, end_, 0};
   block_.clear();

@@ -12,11 +12,13 @@
 
 namespace meshhier::storage {
 
-/// A file in an archive beside its content: two headers with its name, and its place in the index.
+/// Bytes that a file in an archive takes beside its content: two headers with its name, and its
+/// place in the index.
 inline constexpr double kArchivedFileOverhead = 138;
 
-/// Holds 24 bytes a file, and a block. Deterministic: the archive follows from names and contents
-/// in their order. Failures throw Error(io); what was written is then of no use.
+/// Writes files one behind the other. It holds 24 bytes a file, and a block of 1 MiB.
+/// Deterministic: the archive follows from names and contents in their order. One thread at a time
+/// may use it. Failures throw Error(io); what was written is then of no use.
 class ArchiveWriter {
  public:
   /// Memory for a file's place in the index, twice while the list grows.
@@ -27,14 +29,14 @@ class ArchiveWriter {
   ArchiveWriter(File& archive, std::function<void()> check)
       : archive_(archive), check_(std::move(check)) {}
 
-  /// Appends a file. Requires is_archive_name(name), and no two of a name. Throws Error(usage) if
-  /// it is too large for an archive.
+  /// Appends a file. Requires is_archive_name(name), and that no other file has the name. Throws
+  /// Error(usage) if it is larger than kMostFileBytes.
   void add(std::string_view name, const File& content);
 
-  /// Appends index, directory and end: the archive is whole.
+  /// Appends index, directory and end: the archive is whole then, but not synced.
   void finish();
 
-  /// Written so far.
+  /// Bytes written so far.
   std::uint64_t bytes() const { return end_; }
 
  private:

@@ -13,11 +13,11 @@
 namespace meshhier::storage {
 namespace {
 
-/// Behind the digits, at the end of a sealed text.
+/// The end of a sealed text, behind the digits.
 constexpr std::string_view kBehindName = "\"\n}\n";
 constexpr std::size_t kNameDigits = 16;
 
-/// Null if there is none that can be read.
+/// Returns the manifest that is there now; nothing if none can be read.
 std::optional<Manifest> manifest_now(FileSystem& files, const std::filesystem::path& hierarchy) {
   try {
     const auto path = manifest_path(hierarchy);

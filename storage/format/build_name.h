@@ -1,5 +1,5 @@
-// Which build of a hierarchy its files are of: the manifest's checksum names it. It covers that of
-// the index, which covers those of all tiles.
+// The name of a build tells the files of one build of a hierarchy from those of another: it is the
+// manifest's checksum, which covers that of the index, which covers those of all tiles.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -11,12 +11,13 @@
 
 namespace meshhier::storage {
 
-/// The name of the build of a manifest's text that parse_manifest() has taken: sixteen digits.
+/// Returns the name of a build, sixteen digits. `manifest_text`: one that parse_manifest() has
+/// taken.
 std::string build_name(const std::string& manifest_text);
 
-/// Throws Error(io) if the manifest that is there now is of another build than `opened`, which was
-/// read there before: what was read of the two does not fit together. Returns if it is the same, or
-/// if none can be read: then it was not another build that did the harm.
+/// Throws Error(io) if the manifest that is there now belongs to another build than `opened`, which
+/// was read there before: files of the two do not fit together. Returns if it is the same, or if
+/// none can be read: then it was not another build that did the harm.
 void require_same_build(FileSystem& files, const std::filesystem::path& hierarchy,
                         const Manifest& opened);
 

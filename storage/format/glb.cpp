@@ -50,14 +50,14 @@ constexpr std::size_t kMaxJsonKeys = 4096;
 /// The parser's messages begin with the place and the cause; what they quote may be the whole file.
 constexpr std::size_t kMaxParserMessage = 200;
 
-/// In the extras of the root tile and of the outline.
+/// A key in the extras of the root tile and of the outline.
 constexpr const char* kFirstView = "firstView";
 
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::corrupt, name + ": " + what);
 }
 
-/// JSON for a message, cut to a length that fits a line.
+/// Returns JSON for a message, cut to a length that fits a line.
 std::string brief(const Json& value) {
   constexpr std::size_t kLength = 40;
   std::string text = json_text(value, {.only_ascii = true});
@@ -66,7 +66,8 @@ std::string brief(const Json& value) {
   return text;
 }
 
-/// Where and how `found` first differs; depth is bounded by that of `expected`.
+/// Returns where and how `found` first differs; nothing if it does not. The recursion is as deep as
+/// `expected`.
 std::optional<std::string> first_difference(const Json& expected, const Json& found,
                                             const std::string& path) {
   if (expected.is_object() && found.is_object()) {
@@ -94,7 +95,7 @@ std::optional<std::string> first_difference(const Json& expected, const Json& fo
   return fmt::format("{} is {}, expected {}", path, brief(found), brief(expected));
 }
 
-/// So many finite ones. Throws Error(corrupt).
+/// Returns an array of `count` finite numbers. Throws Error(corrupt) if it is none.
 std::vector<double> require_numbers(const Json& document, const Json::json_pointer& place,
                                     std::size_t count, const std::string& name) {
   const Json found = document.contains(place) ? document[place] : Json();
@@ -112,7 +113,8 @@ void append_chunk_header(std::vector<std::byte>& bytes, std::uint64_t length, st
   append_little(bytes, type);
 }
 
-/// The data of the chunk whose header is at `offset`; it must end within the file.
+/// Returns the data of the chunk whose header is at `offset`. Throws Error(corrupt) if it does not
+/// end within the file.
 std::span<const std::byte> read_chunk(std::span<const std::byte> bytes, std::size_t offset,
                                       std::uint32_t type, const std::string& name) {
   const char* word = type == kJsonChunk ? "JSON" : "BIN";

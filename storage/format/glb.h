@@ -1,5 +1,5 @@
-// What the published files are made of: little endian numbers, bounded JSON, the GLB container
-// (Khronos, glTF 2.0 specification, section 4.4; docs/file_format.md).
+// The parts that published files have in common: little endian numbers, bounded JSON, the GLB
+// container (Khronos, glTF 2.0 specification, section 4.4; docs/file_format.md).
 #pragma once
 
 #include "hierarchy/frame.h"
@@ -28,15 +28,15 @@ inline constexpr unsigned kF32 = 5126;
 inline constexpr unsigned kVertexTarget = 34962;
 inline constexpr unsigned kIndexTarget = 34963;
 
-/// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
+/// The most vertices whose indices take 16 bits: 65535 is no index, it restarts primitives.
 inline constexpr std::uint64_t kMaxShortVertices = 65535;
 
-/// The next multiple of 4, the alignment of everything in a GLB.
+/// Returns the next multiple of 4, the alignment of everything in a GLB.
 constexpr std::uint64_t aligned4(std::uint64_t bytes) {
   return (bytes + 3) / 4 * 4;
 }
 
-/// JSON from bytes nobody vouches for. Throws Error(corrupt) that starts with `name` if it is not
+/// Parses JSON that nobody vouches for. Throws Error(corrupt) that starts with `name` if it is not
 /// JSON, or is nested deeper or has more keys than any published file.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
@@ -45,30 +45,31 @@ nlohmann::ordered_json parse_json(std::string_view text, const std::string& name
 void require_same_json(const nlohmann::ordered_json& expected, const nlohmann::ordered_json& found,
                        const std::string& name);
 
-/// The unsigned integer `object[key]`. Throws Error(corrupt) if it is missing or not one of 0 ..
-/// max.
+/// Returns the unsigned integer `object[key]`. Throws Error(corrupt) that starts with `name` if it
+/// is missing or not in 0 .. max.
 std::uint64_t require_count(const nlohmann::ordered_json& object, const char* key,
                             std::uint64_t max, const std::string& name);
 
-/// The document's extension of that name, its version checked. Throws Error(corrupt) if there is
-/// none, or its version is not `version`.
+/// Returns the document's extension of that name. Throws Error(corrupt) that starts with `name` if
+/// there is none, or its version is not `version`.
 const nlohmann::ordered_json& require_extension(const nlohmann::ordered_json& document,
                                                 const char* extension, unsigned version,
                                                 const std::string& name);
 
-/// `{"mesh": 0}`, with a translation if the origin is not zero and a scale of all axes if it is not
-/// 1; or with the matrix that also turns z-up positions.
+/// Returns `{"mesh": 0}`, with a translation if the origin is not zero and a scale of all axes if
+/// it is not 1; or with the matrix that also turns z-up positions.
 nlohmann::ordered_json mesh_node(const Frame& frame, double scale = 1);
 
-/// The frame that node 0 of a document has; that of no node if there is none. Throws Error(corrupt)
-/// that starts with `name` if it has none that mesh_node() writes.
+/// Returns the frame that node 0 of a document has; the default one if there is no node. Throws
+/// Error(corrupt) that starts with `name` if its numbers are missing or not finite; whether it is a
+/// node that mesh_node() writes, the caller finds by writing it again.
 Frame read_frame(const nlohmann::ordered_json& document, const std::string& name);
 
-/// `{"firstView": [azimuth, elevation]}`, the extras of a document that has one.
+/// Returns `{"firstView": [azimuth, elevation]}`, the extras of a document with a first view.
 nlohmann::ordered_json first_view_extras(const Standpoint& view);
 
-/// The first view that a document has; none if it has no extras. Throws Error(corrupt) that starts
-/// with `name` if it has none that first_view_extras() writes.
+/// Returns the first view that a document has; nothing if it has no extras. Throws Error(corrupt)
+/// that starts with `name` if first_view_extras() does not write such extras.
 std::optional<Standpoint> read_first_view(const nlohmann::ordered_json& document,
                                           const std::string& name);
 
@@ -78,23 +79,23 @@ struct GlbView {
   std::span<const std::byte> bin;  ///< empty if there is no BIN chunk
 };
 
-/// A GLB of a JSON chunk, padded with spaces to at least `json_bytes`, and a BIN chunk, left out if
-/// `bin` is empty. Requires bin.size() to be a multiple of 4.
+/// Returns a GLB of a JSON chunk, padded with spaces to at least `json_bytes`, and a BIN chunk,
+/// which is left out if `bin` is empty. Requires bin.size() to be a multiple of 4.
 std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
                                 std::size_t json_bytes = 0);
 
-/// The same with the BIN chunk's `bin_bytes` zeros at the end, to be filled in. Requires bin_bytes
-/// to be a multiple of 4.
+/// Returns the same with `bin_bytes` zeros as BIN chunk at its end, to be filled in. Requires
+/// bin_bytes to be a multiple of 4.
 std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,
                                  std::size_t json_bytes = 0);
 
-/// Bytes of the GLB that join_glb makes of chunks of these sizes.
+/// Returns the bytes of the GLB that join_glb() makes of chunks of these sizes.
 constexpr std::uint64_t glb_bytes(std::uint64_t json_bytes, std::uint64_t bin_bytes) {
   return 12 + 8 + aligned4(json_bytes) + (bin_bytes > 0 ? 8 + aligned4(bin_bytes) : 0);
 }
 
-/// The inverse of join_glb, on bytes nobody vouches for; the JSON chunk may not exceed 64 KiB.
-/// Throws Error(corrupt) that starts with `name` and says at which byte what was expected.
+/// Finds the chunks in a GLB that nobody vouches for; the JSON chunk may not exceed 64 KiB. Throws
+/// Error(corrupt) that starts with `name` and says at which byte what was expected.
 GlbView split_glb(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace meshhier::storage

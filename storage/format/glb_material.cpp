@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// In the order of AlphaMode.
+/// glTF's names, in the order of AlphaMode.
 constexpr std::array<const char*, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
 
 // Filters and wrap modes of the glTF 2.0 specification.

@@ -10,27 +10,30 @@
 
 namespace meshhier::storage {
 
-/// What colours of vertices are called. Viewers multiply pictures by `COLOR_0`, and pass over the
-/// other one.
+/// Returns the attribute's name for colours of vertices. Viewers multiply pictures by `COLOR_0`,
+/// and pass over the other one.
 constexpr const char* colour_attribute(const AttributeLayout& layout, bool is_textured) {
   return is_textured && !layout.tints ? "_COLOR_0" : "COLOR_0";
 }
 
 inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";
 
-/// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
+/// Returns a material that is neither metal, which is black without surroundings to mirror, nor
+/// one-sided, as scans are open.
 nlohmann::ordered_json material_json();
-/// The same with a texture, by its number; if `unlit`, the document uses kUnlitExtension.
+/// Returns the same with a texture, by its number; if `unlit`, the document uses kUnlitExtension.
 nlohmann::ordered_json material_json(std::size_t texture, AlphaMode alpha, bool unlit);
 
-/// Of a texture that is a normal map, by its number, with the coordinates of that set.
+/// Returns a material's reference to a texture that is a normal map, by the texture's number, with
+/// the coordinates of that set.
 nlohmann::ordered_json normal_texture_json(std::size_t texture, unsigned texcoord_set);
 
-/// Of an image, by its number, with the sampler 0; the document has the format's extension.
+/// Returns the texture of an image, by its number, with the sampler 0; the document has the
+/// format's extension.
 nlohmann::ordered_json texture_json(std::size_t image, ImageFormat format);
-/// Linear, with mipmaps, without repeats.
+/// Returns a sampler: linear, with mipmaps, without repeats.
 nlohmann::ordered_json sampler_json();
-/// In the buffer view of that number.
+/// Returns the image in the buffer view of that number.
 nlohmann::ordered_json image_json(std::size_t view, ImageFormat format);
 
 }  // namespace meshhier::storage

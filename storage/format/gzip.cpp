@@ -16,7 +16,7 @@ constexpr int kGzipWindow = 15 + 16;  // the largest window, in a gzip member
 constexpr int kMemoryLevel = 9;       // 256 kiB: 0.3 % smaller than with the usual 8
 constexpr int kUnknownSystem = 255;
 
-/// A byte of deflate stands for at most 1032 (zlib's technical description).
+/// One byte of deflate stands for so many bytes at most (zlib's technical description).
 constexpr std::uint64_t kMostInflation = 1032;
 
 constexpr std::size_t kGlbHeadBytes = 12;
@@ -42,7 +42,7 @@ class Inflater {
     throw Error(ErrorCode::corrupt, name_ + ": " + what);
   }
 
-  /// Fills `to`.
+  /// Fills `to`; throws if there is less.
   void read(std::span<std::byte> to) {
     inflate_into(to);
     if (stream_.avail_out > 0) {

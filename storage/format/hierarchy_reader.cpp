@@ -19,7 +19,7 @@
 namespace meshhier::storage {
 namespace {
 
-/// What a GLB can say of its length: a larger file is not worth the memory.
+/// The largest length that a GLB can state: a larger file is not worth the memory.
 constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
 
 Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
@@ -27,7 +27,7 @@ Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory
   return parse_manifest(read_sealed_text(*files.open(path)), path.string());
 }
 
-/// That the records have splits and pictures only where the manifest says so.
+/// Checks that the records have splits and pictures only where the manifest says so.
 void check_shading(std::span<const TileRecord> records, const Manifest& manifest,
                    const std::string& name) {
   const auto has_splits = [](const TileRecord& record) { return record.split_count > 0; };
@@ -67,7 +67,7 @@ std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::pat
   return records;
 }
 
-/// The name of the first count in which tile and record differ; null if they agree.
+/// Returns the name of the first count in which tile and record differ; null if they agree.
 const char* difference(const PublishedTile& tile, const TileRecord& record) {
   const TileMesh& mesh = tile.mesh;
   if (mesh.own_count != record.own_count)

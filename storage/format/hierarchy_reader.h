@@ -14,12 +14,14 @@
 
 namespace meshhier::storage {
 
-/// Every failure throws Error: io if a file is missing or unreadable, corrupt if its size, checksum
-/// or content is wrong; the message names the file. Thread-safe once constructed, as far as `files`
-/// is, which must outlive it.
+/// Reads the files of one hierarchy, all of the build that it was opened with. Every failure throws
+/// Error: io if a file is missing or unreadable, or if another build has taken the hierarchy's
+/// place meanwhile; corrupt if a size, checksum or content is wrong; the message names the file.
+/// Thread-safe once constructed, as far as `files` is, which must outlive it.
 class HierarchyReader {
  public:
-  /// Reads manifest and index.
+  /// Reads manifest and index. `directory` may be an archive's path if `files` reads it so
+  /// (HierarchyFiles). Holds the records: O(tiles) memory.
   HierarchyReader(FileSystem& files, std::filesystem::path directory);
 
   const std::filesystem::path& directory() const { return directory_; }
@@ -27,16 +29,19 @@ class HierarchyReader {
   const Tree& tree() const { return tree_; }
   const TileFormat& tile_format() const { return format_; }
 
-  /// Ascending by node.
+  /// All records, ascending by node.
   const std::vector<TileRecord>& records() const { return records_; }
-  /// Of the tile that stands for the node (Tree::tile_node). Requires tree().contains(node).
+  /// Returns the record of the tile that stands for the node (Tree::tile_node). Requires
+  /// tree().contains(node). O(log n).
   const TileRecord& record(NodeId node) const;
 
-  /// These tiles will be read soon, in that order: a hint.
+  /// A hint: these tiles will be read soon, in that order.
   void will_read(std::span<const NodeId> nodes) const;
-  /// Reads one tile, checks its size and checksum, and that its counts are those of the index.
+  /// Reads the tile that stands for the node, checks its size and checksum, that its content is
+  /// sound (decode_tile()), and that its counts are those of the index. Requires
+  /// tree().contains(node).
   PublishedTile read_tile(NodeId node) const;
-  /// Reads the outline, checks its size and checksum.
+  /// Reads the outline, checks its size, checksum and content.
   Outline read_outline() const;
   /// Reads the preview, checks its size and checksum; does not decode it. Requires that the
   /// manifest names one.

@@ -43,7 +43,7 @@ namespace {
 //                                                 104      8  bytes of the file
 //                                                 112      8  XXH3-64 of the file
 constexpr std::string_view kIndexMagic = "MHTILES\n";
-/// Of hierarchies with normal maps, and of others.
+/// The versions for hierarchies with normal maps, and for others.
 constexpr std::uint32_t kIndexVersion = 5;
 constexpr std::uint32_t kNoMapsIndexVersion = 4;
 constexpr std::size_t kIndexHeaderBytes = 32;
@@ -79,7 +79,7 @@ std::uint64_t index_checksum(std::span<const std::byte> bytes) {
   return sum.value();
 }
 
-/// `from`: kRecordBytes bytes whose level was checked to be below 256.
+/// Parses a record. `from`: kRecordBytes bytes whose level was checked to be below 256.
 TileRecord load_record(const std::byte* from) {
   const auto count = [&](std::size_t offset) { return load_little<std::uint32_t>(from + offset); };
   const auto real = [&](std::size_t offset) { return load_little<float>(from + offset); };
@@ -113,7 +113,7 @@ bool is_measure(float value) {
   return std::isfinite(value) && value >= 0;
 }
 
-/// What is wrong with what a record says of the tile's picture; null if nothing is.
+/// Returns a flaw in what a record says of the tile's picture; null if there is none.
 const char* image_flaw_of(const TileRecord& record) {
   const auto [least, most] = std::minmax({record.image_width, record.image_height});
   if (most > kMaxImageSide || (least == 0 && most > 0))
@@ -127,7 +127,7 @@ const char* image_flaw_of(const TileRecord& record) {
   return nullptr;
 }
 
-/// What is wrong with the values of a record; null if nothing is.
+/// Returns a flaw in the values of a record; null if there is none.
 const char* flaw_of(const TileRecord& record, const Tree& tree) {
   const Bounds& box = record.bounds;
   const bool finite = std::isfinite(box.min.x) && std::isfinite(box.min.y) &&

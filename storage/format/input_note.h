@@ -1,4 +1,5 @@
-// Which files a hierarchy was made of, for whoever watches them: beside it, as input_note_path().
+// A note beside a hierarchy, at input_note_path(), names the files that it was made of, for whoever
+// watches them.
 #pragma once
 
 #include "storage/io/file.h"
@@ -19,13 +20,13 @@ struct NotedFile {
 struct InputNote {
   std::uint64_t content = 0;                   ///< `source.checksum` of the hierarchy's manifest
   std::vector<NotedFile> files;                ///< the mesh, and what belongs to it
-  std::vector<std::filesystem::path> awaited;  ///< what was looked for there, and was not there
-  std::vector<std::string> warnings{};         ///< of the build, a line each
+  std::vector<std::filesystem::path> awaited;  ///< files that were looked for and were not there
+  std::vector<std::string> warnings{};         ///< the build's, a line each
 };
 
-/// JSON that carries its own checksum.
+/// Returns JSON that carries its own checksum.
 std::string to_json_text(const InputNote& note);
-/// All of such a file. Throws Error(io), Error(corrupt) that starts with `name`.
+/// Reads such a file. Throws Error(io), Error(corrupt) that starts with `name`.
 InputNote read_input_note(const File& file, const std::string& name);
 
 }  // namespace meshhier::storage

@@ -11,13 +11,13 @@ namespace meshhier::storage {
 namespace {
 
 constexpr std::string_view kMark = ".meshhier-";
-constexpr std::size_t kMostDigits = 10;    // of an index below 2^32
+constexpr std::size_t kMostDigits = 10;    // an index is below 2^32
 constexpr std::uint32_t kMostLevel = 255;  // a Level has no more; trees have 33
 constexpr std::string_view kVerify = "verify-";
 constexpr std::string_view kStoryEnding = ".story.json";
 
-/// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
-/// begin with 0.
+/// Takes `least` digits or more off the front; returns false if there are not so many, or if there
+/// are more and the first is 0.
 bool take_digits(std::string_view& text, std::size_t least) {
   std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
   const bool is_padded = count > least && text.front() == '0';
@@ -32,7 +32,7 @@ bool take(std::string_view& text, std::string_view start) {
   return is_there;
 }
 
-/// "LL/NNNNNN.json".
+/// Whether it is "tilesets/LL/NNNNNN.json".
 bool is_tileset_file(std::string_view name) {
   return take(name, "tilesets/") && take_digits(name, 2) && take(name, "/") &&
          take_digits(name, 6) && name == ".json";
@@ -48,7 +48,7 @@ std::optional<std::uint32_t> take_number(std::string_view& text) {
   return number;
 }
 
-/// Of tiles from `first` on.
+/// Returns the directory for tiles from `first` on.
 std::filesystem::path tile_directory(const std::filesystem::path& hierarchy, Level level,
                                      std::uint32_t first) {
   const std::filesystem::path directory = level_directory(hierarchy, level);

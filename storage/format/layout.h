@@ -55,30 +55,31 @@ std::filesystem::path index_path(const std::filesystem::path& hierarchy);
 std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
 std::filesystem::path preview_path(const std::filesystem::path& hierarchy);
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
-/// The file that tells of `node` and what is below it. Requires node.level > 0.
+/// Returns the file with `node` and the nodes below it. Requires node.level > 0.
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
-/// All that tile_path() names on a level of `nodes` nodes, level_directory() first.
+/// Returns all directories of the paths that tile_path() names on a level of `nodes` nodes,
+/// level_directory() first.
 std::vector<std::filesystem::path> tile_directories(const std::filesystem::path& hierarchy,
                                                     Level level, std::uint32_t nodes);
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
 
-/// Beside a hierarchy, if somebody has written one.
+/// Returns the path beside a hierarchy where its story is, if somebody has written one.
 std::filesystem::path story_path(const std::filesystem::path& hierarchy);
-/// The hierarchy, a path too, whose story_path() it is.
+/// Returns the hierarchy whose story_path() a path is; nothing if it is none.
 std::optional<std::string_view> told_of(std::string_view story);
-/// More is no story.
+/// A story has at most so many bytes.
 inline constexpr std::uint64_t kMostStoryBytes = std::uint64_t{16} << 20;
 
 std::filesystem::path progressive_index_path(const std::filesystem::path& stream);
 /// Step 0 is the base.
 std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step);
 
-/// Whether a published hierarchy, or a stream, may have a file of that relative name: "tiles.bin",
-/// "tiles/00/000000.glb".
+/// Whether a published hierarchy may have a file of that relative name ("tiles.bin",
+/// "tiles/00/000000.glb"), and whether a stream may.
 bool is_hierarchy_file(std::string_view name);
 bool is_stream_file(std::string_view name);
-/// The node whose tile_path({}, node) it is.
+/// Returns the node whose tile_path({}, node) it is; nothing if it is none.
 std::optional<NodeId> tile_of(std::string_view name);
 
 std::filesystem::path work_path(const std::filesystem::path& output);
@@ -89,7 +90,7 @@ std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy
                                           std::uint32_t run);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
-/// `checksum`: of the manifest of the hierarchy that the journal tells of.
+/// `checksum`: that of the manifest of the hierarchy that the journal belongs to.
 std::filesystem::path set_aside_path(const std::filesystem::path& work, std::uint64_t checksum);
 std::filesystem::path built_path(const std::filesystem::path& work);
 std::filesystem::path packed_path(const std::filesystem::path& work);
@@ -98,7 +99,7 @@ std::filesystem::path task_plan_path(const std::filesystem::path& work);
 std::filesystem::path segments_path(const std::filesystem::path& work);
 std::filesystem::path attempts_path(const std::filesystem::path& work);
 
-/// What the names above that begin with a dot stand for.
+/// The meaning of the names above that begin with a dot.
 enum class Leftover {
   build,       ///< work_path: a build that was stopped
   replaced,    ///< replaced_path
@@ -110,7 +111,7 @@ struct LeftoverName {
   Leftover kind;
   std::string output;  ///< the name of the file or hierarchy it belongs to
 };
-/// Nothing if `name`, that of a file or directory, is none of them.
+/// Returns the meaning of the name of a file or directory; nothing if it is none of them.
 std::optional<LeftoverName> leftover_name(std::string_view name);
 
 }  // namespace meshhier::storage

@@ -12,7 +12,8 @@
 namespace meshhier::storage {
 namespace {
 
-/// Of one count a record. Two passes: the squares of large counts would not fit.
+/// Returns the range of one count of each record. It makes two passes, as the squares of large
+/// counts would not fit.
 template <class Count>
 CountRange range_of(std::span<const TileRecord> records, const Count& count) {
   if (records.empty())
@@ -55,7 +56,7 @@ std::uint64_t texel_count(const TileRecord& record) {
   return std::uint64_t{record.image_width} * record.image_height;
 }
 
-/// 0 of nothing.
+/// Returns a / b; 0 if b is 0.
 double quotient(std::uint64_t a, std::uint64_t b) {
   return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
@@ -90,7 +91,7 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
   return summary;
 }
 
-/// Some partitions are part of what the level above the last shows.
+/// Adds to the level above the last the partitions that it shows, too.
 void add_partitions(const Tree& tree, std::span<const TileRecord> partitions, LevelSummary& above) {
   for (const TileRecord& record : partitions) {
     if (!tree.stands_for_parent(record.node))
@@ -102,7 +103,7 @@ void add_partitions(const Tree& tree, std::span<const TileRecord> partitions, Le
   }
 }
 
-/// The value that a share of the ascending values does not exceed (nearest rank).
+/// Returns the value that a share of the ascending values does not exceed (nearest rank).
 double quantile(std::span<const float> ascending, double share) {
   const auto rank =
       static_cast<std::size_t>(std::ceil(share * static_cast<double>(ascending.size())));

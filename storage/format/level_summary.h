@@ -1,4 +1,4 @@
-// What the index says of a hierarchy as a whole: how uniform its levels are.
+// Summaries of a hierarchy from its index: how uniform and how large its levels are.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -30,7 +30,7 @@ struct CountRange {
 /// The pictures of tiles.
 struct PictureSummary {
   std::uint32_t tiles = 0;       ///< that have one
-  std::uint64_t texels = 0;      ///< of them together
+  std::uint64_t texels = 0;      ///< all pictures together
   double width = 0, height = 0;  ///< mean
   double texel = 0;  ///< mean size of their texels on the surface, input units, of those with area
 
@@ -41,9 +41,9 @@ struct PictureSummary {
 struct LevelSummary {
   Level level{};
   std::uint32_t tiles = 0;
-  CountRange vertices;   ///< own; of those at one place one
+  CountRange vertices;   ///< own ones; those at one place count once
   CountRange triangles;  ///< interior and border
-  CountRange bytes;      ///< of the files
+  CountRange bytes;      ///< sizes of the files
   std::uint64_t vertices_total = 0;
   std::uint64_t copies_total = 0;  ///< further vertices at places, those of ghosts included
   std::uint64_t splits_total = 0;  ///< further normals and texture coordinates of vertices, those
@@ -58,21 +58,22 @@ struct LevelSummary {
   std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
   PictureSummary pictures;
 
-  // What the cut of this level shows (Cut::of_level).
+  // The cut of this level (Cut::of_level) shows so many.
   std::uint32_t shown_tiles = 0;
   std::uint64_t shown_triangles = 0;
-  /// False: an upper bound. What a partition among coarser tiles draws is not in the index.
+  /// If not, shown_triangles is an upper bound: the index does not say how many triangles a
+  /// partition draws among coarser tiles.
   bool shown_exact = true;
 };
 
-/// One summary per level, from level 0 on. `records`: all tiles of `tree` (storage/format/index.h).
-/// O(tiles).
+/// Returns one summary per level, from level 0 on. `records`: all tiles of `tree`
+/// (storage/format/index.h). O(tiles).
 std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const TileRecord> records);
 
-/// What tiles take, against floats and indices as they are.
+/// The bytes of tiles, beside those of floats and indices as they are.
 struct SizeSummary {
-  std::uint64_t bytes = 0;      ///< of the files
-  CountRange tile_bytes;        ///< of one
+  std::uint64_t bytes = 0;      ///< all files together
+  CountRange tile_bytes;        ///< sizes of the files
   std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, computed normals, texture
                                 ///< coordinates, indices of 16 or 32 bits, pictures of 24 bits a
                                 ///< texel, plain
@@ -84,14 +85,14 @@ struct SizeSummary {
   double raw_ratio() const;  ///< bytes / raw_bytes
 };
 
-/// Of these tiles together. Ghosts, and border triangles that other tiles draw, are in both numbers
-/// of bytes. O(tiles).
+/// Sums up the sizes of these tiles. Ghosts, and border triangles that other tiles draw, are in
+/// both numbers of bytes. O(tiles).
 SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format);
 
-/// Of these tiles together. O(tiles).
+/// Sums up the pictures of these tiles. O(tiles).
 PictureSummary summarize_pictures(std::span<const TileRecord> records);
 
-/// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
+/// The compactness of partitions: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
 struct CompactnessSummary {
   std::uint32_t count = 0;  ///< partitions that have an area; the others have no compactness
   double mean = 0;
@@ -101,11 +102,11 @@ struct CompactnessSummary {
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records);
 
-/// How many vertices went, on all levels together, by changing the surface's topology or beyond any
+/// The vertices that went, on all levels together, by changing the surface's topology or beyond any
 /// error limit, because their tiles would not have reached their targets otherwise.
 struct ForcedCollapses {
   std::uint64_t vertices = 0;
-  double share = 0;  ///< of the places where the input has vertices
+  double share = 0;  ///< vertices / places where the input has any
 
   /// Coarse levels show little of the input. Raw range images come to half of this.
   bool is_many() const { return share > 0.01; }
@@ -114,10 +115,11 @@ struct ForcedCollapses {
 ForcedCollapses summarize_forced_collapses(std::span<const TileRecord> records,
                                            std::uint64_t source_places);
 
-/// For people: a warning line if is_many(), "" otherwise.
+/// Returns a warning line for people if is_many(), "" otherwise.
 std::string forced_collapses_text(const ForcedCollapses& forced);
 
-/// One object per level; the keys are those of `inspect --json` (docs/command_line.md).
+/// Returns the object of a level; the keys here are those of `inspect --json`
+/// (docs/command_line.md).
 nlohmann::ordered_json to_json(const LevelSummary& summary);
 
 nlohmann::ordered_json to_json(const SizeSummary& summary);
@@ -126,7 +128,7 @@ nlohmann::ordered_json to_json(const PictureSummary& summary);
 
 nlohmann::ordered_json to_json(const ForcedCollapses& forced);
 
-/// One object per tile.
+/// Returns the object of a tile.
 nlohmann::ordered_json to_json(const TileRecord& record);
 
 }  // namespace meshhier::storage

@@ -143,7 +143,7 @@ Json manifest_json(const Manifest& manifest) {
 
 // ---- reading -------------------------------------------------------------------------------
 
-/// The value of a table that is named.
+/// Returns the value of a table whose name stands at `key`.
 template <class Table>
 auto read_named(const JsonObject& object, const char* key, const Table& table) {
   const auto value = value_named(table, object.text(key));
@@ -168,7 +168,7 @@ std::optional<Quantization> read_quantization(const JsonObject& object) {
   return quantization;
 }
 
-/// `source`: what the input has.
+/// `source`: attributes of the input.
 bool read_computed_normals(const JsonObject& object, const AttributeLayout& source) {
   if (!object.has("normals"))
     return false;
@@ -179,7 +179,7 @@ bool read_computed_normals(const JsonObject& object, const AttributeLayout& sour
   return true;
 }
 
-/// How pictures or normal maps are stored.
+/// Reads how pictures or normal maps are stored.
 template <class Format>
 Format read_picture_format(const JsonObject& object) {
   Format format;
@@ -190,7 +190,7 @@ Format read_picture_format(const JsonObject& object) {
   return format;
 }
 
-/// `source`: what the input has.
+/// Reads the format of pictures, which must be there if and only if the source has textures.
 std::optional<TextureFormat> read_textures(const JsonObject& object, const SourceSummary& source) {
   if (object.has("texture") != source.textures.has_value())
     object.wrong("texture", "to be there if and only if \"source.textures\" is");
@@ -312,7 +312,7 @@ void read_tileset(const JsonObject& object, std::uint64_t version, Manifest& man
     object.wrong("pixels", fmt::format("{} to {}", kFewestTilesetPixels, kMostTilesetPixels));
 }
 
-/// Until 11, what tiles have decided the version.
+/// Throws if the version does not follow from the content, as it did until 11.
 void check_version(std::uint64_t version, const Manifest& manifest, const JsonObject& object) {
   if (version > kTrueErrorsFormatVersion)
     return;

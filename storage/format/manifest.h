@@ -17,24 +17,26 @@
 
 namespace meshhier::storage {
 
+// The versions that are read. Manifest::format_version() tells by the content which one a manifest
+// has.
 inline constexpr int kFormatVersion = 12;
-/// Without Manifest::tileset_pixels, of pictures or normal maps in KTX2.
+/// No Manifest::tileset_pixels; pictures or normal maps in KTX2.
 inline constexpr int kTrueErrorsFormatVersion = 11;
-/// The same without pictures or normal maps in KTX2, of tiles with normal maps.
+/// No KTX2 either; tiles with normal maps.
 inline constexpr int kNoKtx2FormatVersion = 10;
-/// The same without normal maps, of tiles with values.
+/// No normal maps either; tiles with values.
 inline constexpr int kNoMapsFormatVersion = 9;
-/// The same with tiles that have no values either.
+/// No values either.
 inline constexpr int kNoValuesFormatVersion = 8;
-/// The one before: with tiles that hold colours as screens have them.
+/// Tiles hold colours as screens have them.
 inline constexpr int kScreenColoursFormatVersion = 7;
-/// The oldest that is read: that without a first view.
+/// No first view either; the oldest that is read.
 inline constexpr int kOldestFormatVersion = 6;
 
-/// Of Manifest::tileset_pixels.
+/// The range of Manifest::tileset_pixels.
 inline constexpr double kFewestTilesetPixels = 1, kMostTilesetPixels = 1000;
 
-/// What rounding to a lattice did.
+/// The lattice that positions were rounded to, and the effect.
 struct Quantization {
   Lattice lattice;
   double worst_rounding =
@@ -52,28 +54,32 @@ inline constexpr std::uint32_t kMostPreviewSide = 512;
 /// A gallery of a hundred models is loaded in a few seconds.
 inline constexpr std::uint64_t kMostPreviewBytes = 40000;
 
+/// The facts of a hierarchy that all its tiles share.
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
   Vec3d origin;               ///< add to every stored position
-  UpAxis up = UpAxis::y;      ///< of the input
-  std::optional<Unit> units;  ///< of the input's coordinates, if they are known
-  /// From where the model is looked at first; none: of format version 6, with screen_colours.
+  UpAxis up = UpAxis::y;      ///< the input's
+  std::optional<Unit> units;  ///< unit of the input's coordinates, if it is known
+  /// The view that the model is shown with first. None only in format version 6, with
+  /// screen_colours.
   std::optional<Standpoint> first_view;
-  /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
+  /// The transform of the tileset's root, for instance to the globe; from z-up coordinates, as 3D
+  /// Tiles has them.
   std::optional<Transform> transform;
   std::string licence;  ///< may be empty
   std::uint32_t partition_count = 0;
   Compression compression = Compression::none;
   std::optional<Quantization> quantization;  ///< none: positions are exact
   bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
-  std::optional<TextureFormat> textures;  ///< of tiles' pictures; if and only if the source has any
-  bool screen_colours = false;            ///< as TileFormat's; of format versions up to 7
+  std::optional<TextureFormat> textures;  ///< tiles' pictures; if and only if the source has any
+  bool screen_colours = false;            ///< as TileFormat's; only in format versions up to 7
   std::optional<NormalMapFormat> normal_maps{};  ///< some tiles have one
-  /// The tileset's geometric errors are the tiles' errors times this, at least 1. None: of format
+  /// The tileset's geometric errors are the tiles' errors times this, at least 1. None in format
   /// versions up to 11, whose nodes hold the origin; later it is in the tileset's root.
   std::optional<double> tileset_pixels{};
-  /// An object: the resolved config, what decides the result (not budget, threads, paths).
+  /// An object: the keys of the resolved config that decide the result (not budget, threads,
+  /// paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
   std::uint64_t index_checksum = 0;  ///< XXH3-64 of tiles.bin
@@ -84,18 +90,19 @@ struct Manifest {
   /// An array: the level table, for people and scripts; derived from tiles.bin.
   nlohmann::ordered_json levels;
   std::uint64_t tileset_files = 0;
-  std::uint64_t tileset_bytes = 0;     ///< of all of them
+  std::uint64_t tileset_bytes = 0;     ///< all of them together
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
-  std::uint64_t total_bytes = 0;       ///< of all files but this one
+  std::uint64_t total_bytes = 0;       ///< all files but this one
 
-  /// Of the tileset's root: its coordinates become metres, those of the nodes (tile_frame()) the
-  /// input's. None: they are, or are not known.
+  /// Returns the transform of the tileset's root, from the coordinates of nodes (tile_frame()):
+  /// `transform`, else the scale to metres, with the origin where nodes do not hold it. Nothing if
+  /// that changes nothing, as with metres or an unknown unit at the origin 0.
   std::optional<Transform> root_transform() const;
 
-  /// Of the nodes of tiles and of the outline.
+  /// The frame of the nodes of tiles and of the outline.
   Frame tile_frame() const { return {tileset_pixels ? Vec3d{} : origin, up}; }
 
-  /// Of pictures or normal maps: there are never both.
+  /// The format of pictures or normal maps: there are never both.
   std::optional<ImageFormat> image_format() const {
     return textures      ? std::optional(textures->format)
            : normal_maps ? std::optional(normal_maps->format)
@@ -114,19 +121,19 @@ struct Manifest {
   }
 };
 
-/// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.
+/// Returns the manifest's object on the input. File names keep their bytes, UTF-8 or not.
 nlohmann::ordered_json source_json(const SourceSummary& source);
-/// The inverse. Throws Error(corrupt) that starts with `name`, and says which key is missing or
-/// wrong.
+/// Parses such an object. Throws Error(corrupt) that starts with `name`, and says which key is
+/// missing or wrong.
 SourceSummary parse_source(const nlohmann::ordered_json& source, const std::string& name);
 
-/// Deterministic; ends with a checksum of the text. What is no UTF-8 in texts becomes U+FFFD.
-/// Requires finite numbers.
+/// Returns the file's text, which ends with a checksum of itself. Deterministic. Bytes in texts
+/// that are no UTF-8 become U+FFFD. Requires finite numbers.
 std::string to_json_text(const Manifest& manifest);
 
-/// The inverse of to_json_text, on text nobody vouches for. Throws Error(corrupt) that starts with
-/// `name`, and says which key is missing or wrong, or that the text was changed; other format
-/// versions are refused by their number, with what to do.
+/// Parses a text that nobody vouches for. Throws Error(corrupt) that starts with `name`, and says
+/// which key is missing or wrong, or that the text was changed; other format versions are refused
+/// by their number, with what to do.
 Manifest parse_manifest(const std::string& text, const std::string& name);
 
 }  // namespace meshhier::storage

@@ -19,8 +19,8 @@ namespace {
 constexpr int kExponentLimit = 100;             // of the extension's specification
 constexpr std::int32_t kMantissaEnd = 1 << 23;  // 24 bits, signed
 
-// Of steps_by_score() a corner: 6 of scans, and 128 still take a million triangles 2 s. A few
-// vertices with many triangles, or with copies of a few, would take the square of their number.
+// The most steps_by_score() a corner. Scans have 6; with 128 a million triangles still take 2 s. A
+// few vertices with many triangles, or with copies of a few, would take the square of their number.
 constexpr std::uint64_t kMostSteps = 128;
 constexpr unsigned kCachedVertices = 16;
 
@@ -42,7 +42,7 @@ const unsigned char* bytes_of(std::span<const std::byte> bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-/// The exponent of the lowest bit that is set; nothing for 0.
+/// Returns the exponent of the lowest bit that is set; nothing for 0.
 std::optional<int> lowest_bit(float value) {
   if (value == 0)
     return std::nullopt;
@@ -52,7 +52,8 @@ std::optional<int> lowest_bit(float value) {
   return exponent - std::numeric_limits<float>::digits + std::countr_zero(mantissa);
 }
 
-/// An exponent that all coordinates of an axis are whole multiples of, by mantissas that fit.
+/// Returns an exponent that all coordinates of an axis are whole multiples of, by mantissas that
+/// fit.
 std::optional<int> common_exponent(std::span<const std::byte> positions, std::size_t axis) {
   int least = kExponentLimit;
   float largest = 0;
@@ -67,10 +68,10 @@ std::optional<int> common_exponent(std::span<const std::byte> positions, std::si
   return fits ? std::optional(least) : std::nullopt;
 }
 
-/// Triangles as the vertices that complete them come, those behind the boundary in the order of
-/// their numbers, a vertex of the boundary with the first triangle that has another beside it. Of
-/// the triangles that a vertex completes, those at the youngest others first: 1.64 bytes a triangle
-/// of the dragon's partitions; oldest first 2.01.
+/// Returns triangles in the order of the vertices that complete them. Vertices behind the boundary
+/// come in the order of their numbers, a vertex of the boundary with the first triangle that has
+/// another beside it. Among the triangles that a vertex completes, those at the youngest others
+/// come first: 1.64 bytes a triangle of the dragon's partitions; oldest first, 2.01.
 std::vector<std::uint32_t> completion_order(std::span<const std::uint32_t> corners,
                                             const VertexCounts& counts) {
   const auto youngest = [&](std::size_t t, const auto& age_of) {
@@ -102,8 +103,9 @@ std::vector<std::uint32_t> completion_order(std::span<const std::uint32_t> corne
   return ordered;
 }
 
-/// The order by scores looks at all triangles around each of the vertices in its cache, for every
-/// triangle: about so many steps, a part of them.
+/// Returns the sum of squares of the vertices' triangle counts. For every triangle the order by
+/// scores looks at all triangles around each vertex in its cache: its steps are about a multiple of
+/// this.
 std::uint64_t steps_by_score(std::span<const std::uint32_t> corners, std::size_t vertex_count) {
   std::vector<std::uint64_t> valences(vertex_count);
   for (const std::uint32_t v : corners)
@@ -111,8 +113,9 @@ std::uint64_t steps_by_score(std::span<const std::uint32_t> corners, std::size_t
   return std::inner_product(valences.begin(), valences.end(), valences.begin(), std::uint64_t{0});
 }
 
-/// Packs best of all, and takes ten times as long as vertex_cache_order(), or quadratic time where
-/// vertices have many triangles: then it is that order.
+/// Returns the order by scores. It packs best of all and takes ten times as long as
+/// vertex_cache_order(), or quadratic time where vertices have many triangles: then that order is
+/// taken.
 std::vector<std::uint32_t> order_by_score(std::span<const std::uint32_t> corners,
                                           std::size_t vertex_count) {
   if (steps_by_score(corners, vertex_count) > kMostSteps * corners.size())
@@ -172,7 +175,7 @@ std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> cor
 
 std::vector<std::byte> encode_indices(std::span<const std::uint32_t> numbers) {
   use_extension_versions();
-  // The bound asks for the count of vertices: all 32 bits.
+  // The bound depends on the count of vertices: any numbers of 32 bits are allowed here.
   std::vector<std::byte> packed(meshopt_encodeIndexSequenceBound(numbers.size(), UINT32_MAX));
   packed.resize(meshopt_encodeIndexSequence(bytes_of(std::span(packed)), packed.size(),
                                             numbers.data(), numbers.size()));

@@ -1,7 +1,8 @@
 // The codecs of EXT_meshopt_compression (Khronos, ratified 2021), which are meshoptimizer's.
 //
-// All are deterministic for one version of the library, and thread-safe. Decoding is of bytes
-// nobody vouches for: false if they are no stream of that length, never a wrong access.
+// All are deterministic for one version of the library, and thread-safe. Decoders take bytes that
+// nobody vouches for: they return false if these are no stream of that length, and never access
+// anything else.
 #pragma once
 
 #include <cstddef>
@@ -15,42 +16,44 @@ namespace meshhier::storage {
 /// of them.
 inline constexpr std::uint64_t kMostAttributeBytes = 64;
 
-/// Mode ATTRIBUTES. Requires `plain` to be a positive number of elements of `stride` bytes, a
-/// multiple of 4 up to 256.
+/// Encodes in mode ATTRIBUTES. Requires `plain` to be a positive number of elements of `stride`
+/// bytes, a multiple of 4 up to 256.
 std::vector<std::byte> encode_attributes(std::span<const std::byte> plain, std::size_t stride);
 bool decode_attributes(std::span<const std::byte> packed, std::size_t stride,
                        std::span<std::byte> plain);
 
-/// Which vertices triangles have: those behind the boundary are numbered as they are first used, if
-/// the tile is made so (pipeline/tiles/vertex_order.h).
+/// The vertices that triangles have. Those behind the boundary are numbered as they are first used,
+/// if the tile is made so (pipeline/tiles/vertex_order.h).
 struct VertexCounts {
   std::size_t all = 0;
   std::size_t boundary = 0;
 };
 
-/// Mode TRIANGLES: decoding gives the same triangles in another order, turned. Of two orders that
-/// are good for the GPU's vertex cache, one by scores (meshoptimizer's variant of Forsyth 2006) and
-/// the one in which vertices are numbered, it takes the one that packs better. `corners`: 3 a
-/// triangle, each below `counts.all`; not empty.
+/// Encodes in mode TRIANGLES: decoding gives the same triangles in another order, turned. It takes
+/// the one that packs better of two orders that are good for the GPU's vertex cache: one by scores
+/// (meshoptimizer's variant of Forsyth 2006) and the one in which vertices are numbered. `corners`:
+/// 3 a triangle, each below `counts.all`; not empty.
 std::vector<std::byte> encode_triangles(std::span<const std::uint32_t> corners,
                                         const VertexCounts& counts);
-/// Corners may be any numbers.
+/// Decodes triangles, 3 corners each. Corners may be any numbers: the caller checks them.
 bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t> corners);
 
-/// The triangles in an order for the GPU's vertex cache, by fans (Sander, Nehab & Barczak 2007).
-/// Requires corners below `vertex_count`. Deterministic for one version of the library. O(n).
+/// Returns the triangles in an order for the GPU's vertex cache, by fans (Sander, Nehab & Barczak
+/// 2007). Requires corners below `vertex_count`. Deterministic for one version of the library.
+/// O(n).
 std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
                                               std::size_t vertex_count);
 
-/// Mode INDICES: any numbers, near each other at best.
+/// Encodes in mode INDICES: any numbers; those near each other take less.
 std::vector<std::byte> encode_indices(std::span<const std::uint32_t> numbers);
 bool decode_indices(std::span<const std::byte> packed, std::span<std::uint32_t> numbers);
 
-/// Filter EXPONENTIAL: floats as 8 bits of exponent and 24 of mantissa, both signed, here one
-/// exponent for each of three axes. Turns the little endian floats of `positions`, 3 a vertex, into
-/// such words; false, and nothing changed, if any would not come back bit for bit.
+/// The filter EXPONENTIAL has floats as 8 bits of exponent and 24 of mantissa, both signed, here
+/// one exponent for each of three axes. Turns the little endian floats of `positions`, 3 a vertex,
+/// into such words; returns false, and changes nothing, if any would not come back bit for bit.
 bool try_filter_positions(std::span<std::byte> positions);
-/// Its inverse, on any words; exponents outside -100 to 100 give false: decoders differ on them.
+/// Turns such words, which may be any, into floats; returns false for exponents outside -100 to
+/// 100, on which decoders differ.
 bool unfilter_positions(std::span<std::byte> positions);
 
 }  // namespace meshhier::storage

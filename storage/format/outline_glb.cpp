@@ -96,13 +96,13 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame,
   return document;
 }
 
-/// In the last so many polylines.
+/// Returns the number of segments in the last `lines` polylines.
 std::size_t segments_of_last(const Outline& outline, std::size_t lines) {
   const std::size_t first = outline.polyline_count() - lines;
   return outline.vertices.size() - outline.starts[first] - lines;
 }
 
-/// The last polylines that have so many segments together.
+/// Returns how many of the last polylines have `segments` segments together.
 std::size_t last_lines(const Outline& outline, std::size_t segments, const std::string& name) {
   std::size_t lines = 0;
   while (lines < outline.polyline_count() && segments_of_last(outline, lines) < segments)
@@ -218,7 +218,7 @@ Outline decode_outline(std::span<const std::byte> bytes, const std::string& name
   outline.vertices = read_vertices(glb.bin, sizes.vertices, name);
   outline.starts = read_starts(glb.bin, sizes, name);
   outline.form_lines = last_lines(outline, sizes.form_segments, name);
-  // The frame is the manifest's business: any will do.
+  // Any frame will do here: the reader of the hierarchy takes the manifest's.
   const Frame frame = read_frame(document, name);
   outline.first_view = read_first_view(document, name);
   require_same_json(document_json(sizes, bounds_of(outline.vertices), frame, outline.first_view),

@@ -34,7 +34,8 @@ std::optional<double> finite(const Json& value) {
   return value.get<double>();
 }
 
-/// Told before anything else is asked of the document: a newer format may differ in all the rest.
+/// Must come before anything else is asked of the document: a newer format may differ in all the
+/// rest.
 void check_version(const JsonObject& object, const SealedFormat& format) {
   if (object.text("format") != format.name)
     object.wrong("format", fmt::format("\"{}\"", format.name));
@@ -77,7 +78,7 @@ std::string sealed_text(const SealedFormat& format, const Json& document) {
   sealed["format_version"] = format.version;
   sealed.update(document);
   sealed["checksum"] = kZeros;
-  // A file name need not be UTF-8, JSON must be.
+  // A file name need not be UTF-8, but JSON must be: the writer replaces the rest by U+FFFD.
   std::string text = json_text(sealed, {.indent = 2});
   text += '\n';
   const std::uint64_t sum = text_checksum(text);

@@ -21,32 +21,33 @@ namespace meshhier::storage {
 
 class File;
 
-/// About 40 levels of 300 bytes, a config and 30 more lines make 20 kB.
+/// A manifest has about 20 kB: 40 levels of 300 bytes, a config and 30 more lines.
 inline constexpr std::size_t kMostSealedBytes = std::size_t{1024} * 1024;
 
-/// What a file says that it is.
+/// The format and version that a file names.
 struct SealedFormat {
   std::string_view name;                       ///< `format`
   int version = 0;                             ///< `format_version`, the newest that is read
-  std::string_view way_out = "make it again";  ///< from an older version: what to do
+  std::string_view way_out = "make it again";  ///< advice if a version is too old
   std::size_t most_bytes = kMostSealedBytes;
   int older_versions = 0;  ///< so many before it are read, too
 };
 
-/// `document`, an object without these keys, between `format` and `checksum`. Deterministic; what
-/// is no UTF-8 in texts becomes U+FFFD. Requires finite numbers.
+/// Returns the text of `document`, an object, between `format` and `checksum`, which are not its
+/// own keys. Deterministic; bytes in texts that are no UTF-8 become U+FFFD. Requires finite
+/// numbers.
 std::string sealed_text(const SealedFormat& format, const nlohmann::ordered_json& document);
 
-/// All of such a file. Throws Error(io), or Error(corrupt) if it is longer than `most_bytes`.
+/// Reads such a file. Throws Error(io), or Error(corrupt) if it is longer than `most_bytes`.
 std::string read_sealed_text(const File& file, std::size_t most_bytes = kMostSealedBytes);
 
-/// The document of a text nobody vouches for. Throws Error(corrupt) that starts with `name`: it is
-/// too long, no JSON, of another format or version (a newer one is refused by its number), or was
-/// changed.
+/// Returns the document of a text nobody vouches for. Throws Error(corrupt) that starts with `name`
+/// if it is too long, no JSON, of another format or version (a newer one is refused by its number),
+/// or was changed.
 nlohmann::ordered_json parse_sealed(const std::string& text, const SealedFormat& format,
                                     const std::string& name);
 
-/// An object of a document, asked for its values by key. Whatever is missing or wrong throws
+/// An object of a document, asked for its values by key. A value that is missing or wrong throws
 /// Error(corrupt) that starts with the document's name, which must outlive the object, as the JSON
 /// must.
 class JsonObject {
@@ -81,7 +82,7 @@ class JsonObject {
   const std::string& name_;
 };
 
-/// 16 lower case hexadecimal digits.
+/// Returns 16 lower case hexadecimal digits.
 std::string hex_digits(std::uint64_t value);
 nlohmann::ordered_json point_json(Vec3d point);
 nlohmann::ordered_json attributes_json(const AttributeLayout& attributes);

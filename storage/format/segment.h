@@ -1,4 +1,4 @@
-// What one task of a build on many machines has made, as one sealed file.
+// The result of one task of a build on many machines is one sealed file, a segment.
 //
 // clang-format off
 //   offset    bytes
@@ -24,17 +24,17 @@
 
 namespace meshhier::storage {
 
-/// Which segment it is.
+/// Identifies a segment.
 struct SegmentName {
-  std::uint64_t plan = 0;  ///< fingerprint
+  std::uint64_t plan = 0;  ///< the plan's fingerprint
   std::string stage;
   std::uint32_t index = 0;
 };
 
-/// In the directory `work`: segments/STAGE-NNNNN.
+/// Returns WORK/segments/STAGE-NNNNN.
 std::filesystem::path segment_path(const std::filesystem::path& work, const SegmentName& name);
 
-/// Collects entries until all data is there.
+/// Collects entries until all data is there. One thread at a time may use it.
 class SegmentWriter final : public EntrySink {
  public:
   explicit SegmentWriter(SegmentName name) : name_(std::move(name)) {}
@@ -51,21 +51,24 @@ class SegmentWriter final : public EntrySink {
   std::vector<std::byte> entries_;
 };
 
+/// A segment whose seal and entries are as they were written; its data is not looked at.
 class Segment {
  public:
-  /// Null if there is none. Throws Error(corrupt) if it is not sealed, damaged or of another plan,
-  /// Error(io).
+  /// Opens a segment; null if there is none. Throws Error(corrupt) if it is not sealed, damaged or
+  /// of another plan, Error(io).
   static std::unique_ptr<Segment> open(FileSystem& files, const std::filesystem::path& work,
                                        const SegmentName& name);
 
-  /// Whether it is there and sealed; false also if what is there is damaged. Throws Error(io).
+  /// Whether it is there and sealed; false also if it is damaged or of another plan. Throws
+  /// Error(io).
   static bool is_whole(FileSystem& files, const std::filesystem::path& work,
                        const SegmentName& name);
 
-  /// Calls visit(entry) for each, in order. Throws Error(corrupt) if it is false for one.
+  /// Calls visit(entry) for each entry, in order. Throws Error(corrupt) if it returns false for
+  /// one.
   void for_each(const std::function<bool(const EntrySink::Entry&)>& visit) const;
 
-  /// The file; its first data_bytes() are the data. Once.
+  /// Hands over the file, whose first data_bytes() are the data. May be called once.
   std::unique_ptr<File> take_file() { return std::move(file_); }
   std::uint64_t data_bytes() const { return data_bytes_; }
 

@@ -22,11 +22,11 @@ float showable_colour(float value, ColourType type) {
     return 0;
   if (type == ColourType::f32)
     return std::clamp(value, 0.0F, 1.0F);
-  // A number of the type has no -0.
+  // Adding 0 makes +0 of -0, which integer types do not have.
   return std::clamp(std::round(value), 0.0F, full_number(type)) + 0.0F;
 }
 
-/// One vertex's attributes as the standard glTF accessors hold them.
+/// Turns one vertex's attributes into what the standard glTF accessors hold.
 void make_showable(const AttributeLayout& layout, std::span<float> channels) {
   if (layout.normals) {
     float* n = channels.data() + layout.normal_offset();

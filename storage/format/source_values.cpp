@@ -61,7 +61,7 @@ std::vector<std::uint64_t> counts_of(const JsonObject& object, const char* key, 
   return list.get<std::vector<std::uint64_t>>();
 }
 
-/// Empty ones if there are none.
+/// Returns the names of labels; empty ones if there are none.
 std::vector<std::string> names_of(const JsonObject& object, std::size_t count) {
   if (!object.has("label_names"))
     return std::vector<std::string>(count);

@@ -1,4 +1,4 @@
-// What the manifest says of the values of vertices (docs/file_format.md, section 2).
+// The manifest's array on the values of vertices (docs/file_format.md, section 2).
 #pragma once
 
 #include "hierarchy/published.h"
@@ -8,10 +8,11 @@
 
 namespace meshhier::storage {
 
-/// An array, one object for each of source.attributes.values.
+/// Returns an array with one object for each of source.attributes.values.
 nlohmann::ordered_json source_values_json(const SourceSummary& source);
 
-/// The inverse: `object` has the array as "values". Fills attributes.values and values.
+/// Reads that array, which `object` has as "values"; fills attributes.values and values. Throws as
+/// JsonObject.
 void read_source_values(const JsonObject& object, SourceSummary& source);
 
 }  // namespace meshhier::storage

@@ -15,10 +15,10 @@
 namespace meshhier::storage {
 namespace {
 
-/// A manifest's picture is some twenty deep.
+/// JSON that is nested deeper is no story; the pictures of IIIF manifests are some twenty deep.
 constexpr int kDeepestStory = 64;
 
-/// A part of an address as a file's name; nothing if it cannot be one.
+/// Returns a part of an address as a file's name; nothing if it cannot be one.
 std::optional<std::string> part_name(std::string_view part) {
   std::optional<std::string> name = percent_decoded(part);
   const auto is_none = [](char c) {
@@ -27,7 +27,7 @@ std::optional<std::string> part_name(std::string_view part) {
   return name && std::ranges::none_of(*name, is_none) ? std::move(name) : std::nullopt;
 }
 
-/// Takes a step; false if it leads nowhere that is beside the story.
+/// Takes a step along a path; returns false if it does not stay beside the story.
 bool take_step(std::vector<std::string>& path, std::string_view part) {
   const std::optional<std::string> name = part_name(part);
   if (!name || name->empty())
@@ -44,7 +44,8 @@ bool take_step(std::vector<std::string>& path, std::string_view part) {
   return name->front() != '.';
 }
 
-/// As browsers resolve an address; nothing if it does not lead downwards from the story's folder.
+/// Resolves an address as browsers do; returns nothing if it does not lead downwards from the
+/// story's folder.
 std::optional<std::string> path_beside(std::string_view address) {
   address = address.substr(0, address.find_first_of("?#"));
   const std::size_t slash = address.find('/');

@@ -7,13 +7,14 @@
 
 namespace meshhier::storage {
 
-/// Whether a file of that name is a picture that pages show in stories. Drawings that may hold
-/// scripts (SVG) are none.
+/// Whether pages show a file of that name in stories. Drawings that may hold scripts (SVG) are not
+/// shown.
 bool is_picture_name(std::string_view name);
 
-/// What a story's file (JSON, of any length) names as pictures and has beside it: paths downwards
-/// from its folder, "pictures/1.jpg", ascending, each once. Left out are pictures within it, on
-/// other hosts, above it, in hidden folders, and of other names; of what is no JSON, all.
+/// Returns the pictures that a story's file (JSON, of any length) names and has beside it: paths
+/// downwards from its folder, "pictures/1.jpg", ascending, each once. Pictures within it, on other
+/// hosts, above it, in hidden folders, and of other names are left out. A text that is no JSON
+/// names none.
 std::vector<std::string> pictures_beside(std::string_view story);
 
 }  // namespace meshhier::storage

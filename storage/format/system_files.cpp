@@ -17,7 +17,7 @@ bool is_one_of(const std::array<std::string_view, N>& names, std::string_view na
   return std::ranges::find(names, name) != names.end();
 }
 
-/// A file that was removed while another machine had it open.
+/// Whether it is a file that was removed while another machine had it open.
 bool is_of_nfs(std::string_view name) {
   constexpr std::string_view kStart = ".nfs";
   return name.starts_with(kStart) && name.size() > kStart.size() &&

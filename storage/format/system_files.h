@@ -1,4 +1,5 @@
-// What operating systems and unpackers leave in folders: no files of a hierarchy, and no harm.
+// Files that operating systems and unpackers leave in folders: they do not belong to a hierarchy,
+// and do no harm.
 #pragma once
 
 #include <string_view>

@@ -9,7 +9,7 @@
 
 namespace meshhier::storage {
 
-/// What COLOR_0 has of the numbers that the pipeline has.
+/// Turns the pipeline's numbers of colours into those of COLOR_0, and back.
 ///
 ///   input            COLOR_0
 ///   sRGB of 8 bits   light of 16 bits; alpha times 257
@@ -24,19 +24,19 @@ class TileColours {
   /// are.
   TileColours(const AttributeLayout& layout, bool screen_colours);
 
-  /// Of COLOR_0; none without colours.
+  /// Returns the type of COLOR_0; none without colours.
   ColourType stored_type() const;
-  /// Its glTF component type.
+  /// Returns its glTF component type.
   unsigned component() const;
 
-  /// Of channel 0 to 3, of a number that showable_attributes() lets stand.
+  /// Returns COLOR_0's number in a channel, 0 to 3, for one that showable_attributes() lets stand.
   float stored(float number, std::size_t channel) const;
-  /// The inverse, as far as there is one.
+  /// Returns the number that stored() was given, as far as it is known.
   float number(float stored, std::size_t channel) const;
   /// Whether `stored` is what stored() makes of some number.
   bool is_sound(float stored, std::size_t channel) const;
 
-  /// All colours of vertices whose attributes lie one after another.
+  /// These change all colours of vertices whose attributes lie one after another.
   std::vector<float> all_stored(std::vector<float> attributes) const;
   std::vector<float> all_numbers(std::vector<float> attributes) const;
 

@@ -1,4 +1,4 @@
-// How tiles are packed. No way loses anything.
+// The ways to pack tiles, a row each. None loses anything.
 #pragma once
 
 #include "hierarchy/named_value.h"
@@ -19,16 +19,16 @@ struct CompressionRow {
   Compression value;
   std::string_view name;  ///< in configs and manifests
   bool packs_sections;    ///< by EXT_meshopt_compression
-  /// What is done to the file as a whole; null: nothing.
+  /// Packs the file as a whole; null: it stays as it is.
   std::vector<std::byte> (*pack_file)(std::span<const std::byte> glb);
-  /// The inverse, on bytes nobody vouches for. Throws Error(corrupt) that starts with `name`.
+  /// Unpacks bytes that nobody vouches for. Throws Error(corrupt) that starts with `name`.
   std::vector<std::byte> (*unpack_file)(std::span<const std::byte> bytes, const std::string& name);
-  /// What tiles take of plain ones, about: the most that was seen with exact scans of more than
-  /// 20,000 vertices (docs/performance.md). Quantized ones take less.
+  /// Bytes of tiles as a part of those of plain ones: the most that was seen with exact scans of
+  /// more than 20,000 vertices (docs/performance.md). Quantized ones take less.
   double expected_ratio;
 };
 
-/// As gunzip_glb() reads it.
+/// Packs a GLB; gunzip_glb() unpacks it.
 inline std::vector<std::byte> gzip_glb(std::span<const std::byte> glb) {
   return gzip(glb);
 }

@@ -110,7 +110,7 @@ class Writer {
     std::ranges::copy(std::as_bytes(tangents), at(plan_[Part::tangent]));
   }
 
-  /// In the tile's picture, or in its normal map.
+  /// Writes coordinates in the tile's picture, or in its normal map.
   void put_texcoords(std::span<const Vec2f> texcoords) {
     if (plan_.shape().has_normal_map())
       return put_map_texcoords(texcoords);
@@ -136,7 +136,7 @@ class Writer {
     store_all_little(values, at(plan_[part]));
   }
 
-  /// Numbers of vertices, in as many bytes as they need.
+  /// Writes numbers of vertices, in as many bytes as the section's type has.
   void put_vertices(Part part, std::span<const std::uint32_t> vertices) {
     if (plan_[part].component == kU32)
       return put_list(part, vertices);
@@ -199,7 +199,7 @@ class Writer {
   std::span<std::byte> bin_;
 };
 
-/// All of a tile, in the order of its file.
+/// Returns all vertices of a tile, in the order of its file.
 VertexArray with_copies(const TileMesh& mesh, const Shading& shading) {
   VertexArray vertices = mesh.vertices;
   vertices.append(mesh.copies.vertices, 0, mesh.copies.size());
@@ -228,7 +228,7 @@ bool has_map(const TileImage* normal_map) {
   return format.textures && !(mesh.interior.empty() && mesh.border.empty());
 }
 
-/// What Shading promises of its sizes.
+/// Whether the sizes are as Shading promises.
 [[maybe_unused]] bool has_sound_size(const Shading& shading, const TileMesh& mesh,
                                      const TileFormat& format, bool has_map) {
   const std::size_t splits = shading.split_of.size();
@@ -292,12 +292,12 @@ AlphaMode read_alpha(const Json& document) {
   return mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-/// Of the keys of a picture in the extension.
+/// The keys of a picture in the extension.
 struct ImageKeys {
   const char *view, *width, *height;
 };
 
-/// Of a tile that has one.
+/// Reads the shape of a picture or normal map, which the tile must have.
 ImageShape read_image_shape(const Json& document, const Json& extension, const ImageKeys& keys,
                             const std::string& name) {
   const auto count = [&](const Json& object, const char* key, std::uint64_t max) {
@@ -451,7 +451,8 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   }
   const TilePlan plan(shape, format.attributes, format.lattice);
 
-  // A GLB if it may stay as it is, else the BIN chunk alone.
+  // Sections that will be compressed are written into a BIN chunk alone, others into the file
+  // itself.
   const bool packed = row_of(format.compression).packs_sections;
   std::vector<std::byte> bytes =
       packed ? std::vector<std::byte>(plan.bytes())

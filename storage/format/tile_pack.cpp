@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
   throw Error(ErrorCode::corrupt, name + ": " + what);
 }
 
-/// The u16s or u32s of a section.
+/// Returns the u16s or u32s of a section.
 std::vector<std::uint32_t> numbers_in(const Section& section, std::span<const std::byte> bytes) {
   std::vector<std::uint32_t> numbers(section.count);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> numbers_in(const Section& section, std::span<const st
   return numbers;
 }
 
-/// The inverse; false if a number does not fit.
+/// Writes such numbers; returns false if one does not fit.
 bool put_numbers(const Section& section, std::span<const std::uint32_t> numbers,
                  std::span<std::byte> bytes) {
   const bool is_short = section.component == kU16;
@@ -71,7 +71,7 @@ std::vector<std::byte> pack_section(const TilePlan& plan, Part part,
   return {plain.begin(), plain.end()};
 }
 
-/// What a section decoded from so many bytes can have at most.
+/// Returns the most bytes that a section can have which was decoded from so many.
 std::uint64_t most_bytes(const Section& section, Part part, std::uint64_t packed_bytes) {
   switch (mode_of(part)) {
     case ViewMode::attributes:
@@ -105,7 +105,7 @@ bool unpack_section(const Section& section, Part part, std::span<const std::byte
   return true;
 }
 
-/// The extension of a compressed view; an empty object if there is none.
+/// Returns the extension of a compressed view; an empty object if there is none.
 Json extension_of(const Json& document, int view) {
   const Json::json_pointer place("/bufferViews/" + std::to_string(view) + "/extensions/" +
                                  kMeshoptExtension);

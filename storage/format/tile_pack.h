@@ -18,19 +18,19 @@ struct PackedBin {
   std::vector<std::byte> bin;
 };
 
-/// `plain`: the BIN chunk of `plan`. Deterministic for one version of meshoptimizer.
+/// Compresses `plain`, the BIN chunk of `plan`. Deterministic for one version of meshoptimizer.
 PackedBin pack_bin(const TilePlan& plan, std::span<const std::byte> plain);
 
-/// What the JSON of a tile says of its compressed sections, as far as it does not follow from the
-/// plan. On a document nobody vouches for: the sections' bytes are those of `bin`, and no section
-/// asks for more memory than its codec can have made of so many bytes. Throws Error(corrupt) that
-/// starts with `name`.
+/// Reads what the JSON of a tile says of its compressed sections, as far as it does not follow from
+/// the plan. Nobody vouches for the document: checks that the sections' bytes are those of `bin`,
+/// and that no section asks for more memory than its codec can have made of so many bytes. Throws
+/// Error(corrupt) that starts with `name`.
 Packing read_packing(const nlohmann::ordered_json& document, const TilePlan& plan,
                      std::span<const std::byte> bin, const std::string& name);
 
-/// The inverse of pack_bin, but for the order and the first corners of triangles, and that corners
-/// may be any numbers. Requires a packing from read_packing. Throws Error(corrupt) that starts with
-/// `name`.
+/// Returns the plain BIN chunk. Triangles come in another order than pack_bin() was given, turned;
+/// corners may be any numbers. Requires a packing from read_packing(). Throws Error(corrupt) that
+/// starts with `name`.
 std::vector<std::byte> unpack_bin(const TilePlan& plan, const Packing& packing,
                                   std::span<const std::byte> bin, const std::string& name);
 

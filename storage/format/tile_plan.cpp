@@ -16,12 +16,12 @@ using Json = nlohmann::ordered_json;
 constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
-/// What of a part is the same in all tiles.
+/// The facts on a part that are the same in all tiles.
 struct PartRow {
   Part part;
   const char* key;
   ViewMode mode;
-  unsigned target = 0;  ///< of its buffer view; 0: none
+  unsigned target = 0;  ///< the buffer view's; 0: none
 };
 constexpr std::array<PartRow, kPartCount> kParts{{
     {Part::position, "POSITION", ViewMode::attributes, kVertexTarget},
@@ -56,12 +56,12 @@ std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
 }
 
-/// As EXT_meshopt_compression calls them.
+/// The names that EXT_meshopt_compression has for modes.
 constexpr std::array kModes{NamedValue{"ATTRIBUTES", ViewMode::attributes},
                             NamedValue{"TRIANGLES", ViewMode::triangles},
                             NamedValue{"INDICES", ViewMode::indices}};
 
-// Buffers: the BIN chunk, and what compressed views are decoded to, which no file holds.
+// Buffers are the BIN chunk, and the one that compressed views are decoded to, which no file holds.
 constexpr int kBin = 0;
 constexpr int kDecoded = 1;
 
@@ -94,13 +94,13 @@ Json view_json(const Section& section, Part part, const Packing* packing) {
   return view;
 }
 
-/// The smallest or largest values of the accessor of positions.
+/// Returns the smallest or largest values of the accessor of positions.
 Json corner_json(const TilePlan& plan, Vec3f corner) {
   if (plan.has_short_positions()) {
     const Vec3<std::uint32_t> n = plan.lattice()->numbers_of(corner);
     return Json::array({n.x, n.y, n.z});
   }
-  // As doubles: their shortest decimal form is read back as the same float.
+  // They are written as doubles: the shortest decimal form of those is read back as the same float.
   const Vec3d wide = to_double(corner);
   return Json::array({wide.x, wide.y, wide.z});
 }
@@ -122,7 +122,7 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
   return accessor;
 }
 
-/// The input's own coordinates come first.
+/// Returns the number of the set of coordinates in a normal map; the input's own come first.
 unsigned map_texcoord_set(const TilePlan& plan) {
   return plan.layout().texcoords ? 1 : 0;
 }
@@ -133,7 +133,7 @@ const char* attribute_name(const TilePlan& plan, Part part) {
   return part == Part::map_texcoord && map_texcoord_set(plan) == 1 ? "TEXCOORD_1" : key_of(part);
 }
 
-/// Of one value: all lie in one view.
+/// Returns the accessor of one value. All values lie in one view.
 Json value_accessor_json(const TilePlan& plan, std::size_t value) {
   const Section& section = plan[Part::values];
   return {{"bufferView", section.view},
@@ -189,7 +189,7 @@ Json material_of(const TilePlan& plan) {
   return material;
 }
 
-/// What leads from the material to the picture, or the normal map.
+/// Adds all that leads from the material to the picture, or the normal map.
 void add_image(const TilePlan& plan, Json& document) {
   const bool is_map = plan.shape().has_normal_map();
   const ImageFormat format = is_map ? plan.shape().normal_maps->format : image_format(plan.shape());
@@ -246,7 +246,7 @@ Json extension_json(const TilePlan& plan) {
   return extension;
 }
 
-/// The node's way from stored numbers to the input's coordinates.
+/// Returns the node, which leads from stored numbers to the input's coordinates.
 Json node_json(const TilePlan& plan, const Frame& frame) {
   if (!plan.has_short_positions())
     return mesh_node(frame);
@@ -261,7 +261,7 @@ Json buffers_json(const TilePlan& plan, const Packing* packing) {
   return Json::array({Json::object({{"byteLength", packing->total()}}), decoded});
 }
 
-/// Those without which a viewer cannot show the tile.
+/// Returns the extensions without which a viewer cannot show the tile.
 Json required_extensions(const TilePlan& plan, const Packing* packing) {
   Json names = Json::array();
   if (packing != nullptr)
@@ -416,7 +416,7 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
   const std::uint64_t component = component_bytes(TileColours(layout, false).component());
   const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
-  // Of wide types both what viewers see and what there is.
+  // Wide types are stored twice: as viewers see them, and as they are.
   std::uint64_t values = 0;
   for (const ScalarAttribute& value : layout.values)
     values += takes_two_channels(value.type) && !is_integer(value.type) ? 12 : kValueStride;

@@ -1,4 +1,5 @@
-// Where everything lies in a tile's GLB: a function of a few counts, for the writer and the reader.
+// The places of everything in a tile's GLB: a function of a few counts, for the writer and the
+// reader.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -21,13 +22,13 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-/// Of hierarchies with normal maps.
+/// Hierarchies with normal maps.
 inline constexpr unsigned kTileExtensionVersion = 6;
-/// The same without, of tiles with values.
+/// No normal maps; tiles with values.
 inline constexpr unsigned kNoMapsVersion = 5;
-/// The same without values.
+/// No values either.
 inline constexpr unsigned kNoValuesVersion = 4;
-/// The one before: the same with colours as screens have them.
+/// No values either, and colours as screens have them.
 inline constexpr unsigned kScreenColoursVersion = 3;
 inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours, bool has_maps) {
   return has_maps                ? kTileExtensionVersion
@@ -91,7 +92,7 @@ enum class Part : std::size_t {
 };
 inline constexpr std::size_t kPartCount = 21;
 
-/// What 1 is as a coordinate in a normal map.
+/// A coordinate of 1 in a normal map is stored as this.
 inline constexpr float kMaxMapTexcoord = 65535;
 
 /// The key of a part in the extension (from values on), or the name of its attribute (up to
@@ -106,7 +107,7 @@ struct ChannelGroup {
   std::size_t channels;
 };
 
-/// How a part is stored in a tile of compressed sections: as it is, or in a mode of
+/// A part of a tile of compressed sections is stored as it is, or in a mode of
 /// EXT_meshopt_compression. The raw ones have a few bytes, or are compressed already.
 enum class ViewMode { raw, attributes, triangles, indices };
 ViewMode mode_of(Part part);
@@ -114,15 +115,15 @@ ViewMode mode_of(Part part);
 /// The BIN chunk of a tile of compressed sections: these, each at the next multiple of 4, in the
 /// order of the parts.
 struct Packing {
-  std::array<std::uint64_t, kPartCount> bytes{};  ///< of each section in the file
+  std::array<std::uint64_t, kPartCount> bytes{};  ///< that each section has in the file
   bool exponential = false;                       ///< positions went through the filter EXPONENTIAL
 
   std::uint64_t offset(Part part) const;
-  /// Of the BIN chunk.
+  /// Returns the bytes of the BIN chunk.
   std::uint64_t total() const;
 };
 
-/// Normals, colours, texture coordinates; those the layout lacks have no channels.
+/// Returns normals, colours, texture coordinates; those the layout lacks have no channels.
 std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 
 /// The picture of a textured tile that has triangles, or a normal map.
@@ -141,10 +142,10 @@ struct TileShape {
   std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
   bool raw_values = false;
   bool computed_normals = false;
-  std::optional<TextureFormat> textures{};  ///< of the hierarchy
+  std::optional<TextureFormat> textures{};  ///< the hierarchy's
   ImageShape image{};
-  std::optional<Standpoint> first_view{};        ///< of the root
-  bool screen_colours = false;                   ///< of the hierarchy, see TileFormat
+  std::optional<Standpoint> first_view{};        ///< only in the root
+  bool screen_colours = false;                   ///< the hierarchy's, see TileFormat
   std::optional<NormalMapFormat> normal_maps{};  ///< likewise
   ImageShape normal_map{};
 
@@ -154,7 +155,7 @@ struct TileShape {
   bool has_normal_map() const { return normal_map.bytes > 0; }
   std::uint64_t places() const { return own + ghosts; }
   std::uint64_t vertices() const { return places() + copies; }
-  /// What corners of triangles are numbers of.
+  /// Corners of triangles are numbers below this.
   std::uint64_t with_splits() const { return vertices() + splits; }
 };
 
@@ -171,7 +172,7 @@ struct Section {
 
 class TilePlan {
  public:
-  /// `lattice`: what all positions lie on, if there is one.
+  /// `lattice`: all positions lie on it, if there is one.
   TilePlan(const TileShape& shape, const AttributeLayout& layout,
            const std::optional<Lattice>& lattice = std::nullopt);
 
@@ -182,10 +183,11 @@ class TilePlan {
   /// Whether positions are the lattice's numbers in 16 bits.
   bool has_short_positions() const { return lattice_ && lattice_->is_short(); }
   const Section& operator[](Part part) const { return sections_[static_cast<std::size_t>(part)]; }
-  /// Of the BIN chunk if nothing is compressed.
+  /// Bytes of the BIN chunk if nothing is compressed.
   std::uint64_t bytes() const { return bytes_; }
 
-  /// The file's JSON. `bounds`: of the positions. `packing`: of compressed sections, else null.
+  /// Returns the file's JSON. `bounds`: the box of the positions. `packing`: null unless sections
+  /// are compressed.
   nlohmann::ordered_json document(const Bounds& bounds, const Frame& frame,
                                   const Packing* packing = nullptr) const;
 
@@ -201,7 +203,7 @@ class TilePlan {
   int views_ = 0;
 };
 
-/// A coordinate in a normal map as a file has it, of 0 ... 1, and the inverse.
+/// These turn a coordinate in a normal map, in 0 ... 1, into the number in a file, and back.
 inline std::uint16_t map_texcoord_number(float texcoord) {
   return static_cast<std::uint16_t>(texcoord * kMaxMapTexcoord + 0.5f);
 }
@@ -209,12 +211,12 @@ inline float map_texcoord(std::uint16_t number) {
   return static_cast<float>(number) / kMaxMapTexcoord;
 }
 
-/// Of a vertex in a tile's file, beside its position.
+/// Returns the bytes of a vertex in a tile's file, beside its position.
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout);
-/// Bytes of the tiles' files, not compressed. `attribute_bytes`: published_attribute_bytes().
-/// Attributes that glTF cannot hold as they are count once.
+/// Returns the bytes of the tiles' files, not compressed. `attribute_bytes`:
+/// published_attribute_bytes(). Attributes that glTF cannot hold as they are count once.
 double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes);
-/// Likewise of a split.
+/// Returns the bytes of a split.
 double expected_split_bytes(std::uint64_t attribute_bytes);
 
 }  // namespace meshhier::storage

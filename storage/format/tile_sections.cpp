@@ -28,8 +28,8 @@ Copies take_copies(VertexArray& vertices, std::vector<std::uint32_t> places) {
   return copies;
 }
 
-/// Triangles one for one: their places, the wedges there if there are copies, and themselves with
-/// splits if there are any.
+/// Three lists with an element for each triangle: its places, the wedges there if there are copies,
+/// and its corners with splits if there are any.
 struct TriangleLists {
   std::vector<TileTriangle>& places;
   std::vector<CornerWedges>& wedges;
@@ -44,7 +44,7 @@ struct TriangleLists {
   }
 };
 
-/// One of them.
+/// The elements of one triangle.
 struct ShadedTriangle {
   TileTriangle places;
   CornerWedges wedges;
@@ -52,7 +52,8 @@ struct ShadedTriangle {
   friend auto operator<=>(const ShadedTriangle&, const ShadedTriangle&) = default;
 };
 
-/// Beginning with the smallest corner. Requires that no vertex is there twice.
+/// Returns a triangle turned so that the smallest corner comes first. Requires that no vertex is
+/// there twice.
 ShadedTriangle smallest_first(const TriangleLists& lists, std::size_t t) {
   Triangle<std::uint64_t> corners;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -64,7 +65,7 @@ ShadedTriangle smallest_first(const TriangleLists& lists, std::size_t t) {
           turned(lists.shaded[t], first)};
 }
 
-/// normalize_triangles(), which turns and moves all lists alike.
+/// Does what normalize_triangles() does, and turns and moves all lists alike.
 void normalize(const TriangleLists& lists) {
   if (lists.shaded.empty())
     return normalize_triangles(lists.places, lists.wedges, false);
@@ -205,7 +206,8 @@ class Reader {
     return stored;
   }
 
-  /// The vertices that the elements of a section repeat, below `limit`, ascending.
+  /// Returns the vertices that the elements of a section repeat; checks that they are below `limit`
+  /// and ascend.
   std::vector<std::uint32_t> repeated_vertices(Part part, std::uint64_t limit,
                                                const char* what) const {
     const Section& section = plan_[part];
@@ -220,7 +222,7 @@ class Reader {
     return vertices;
   }
 
-  /// Where the copies lie. `positions`: of all vertices.
+  /// Returns the places of the copies. `positions`: those of all vertices.
   std::vector<std::uint32_t> copy_places(std::span<const Vec3f> positions) const {
     const std::uint64_t place_count = plan_.shape().places();
     std::vector<std::uint32_t> places = repeated_vertices(Part::copy_of, place_count, "copy");
@@ -231,7 +233,7 @@ class Reader {
     return places;
   }
 
-  /// Computed ones, of vertices and splits.
+  /// Returns the computed normals of vertices and splits.
   std::vector<NormalCode> normals() const {
     const Section& section = plan_[Part::normal];
     std::vector<NormalCode> normals(plan_.shape().computed_normals ? section.count : 0);
@@ -246,7 +248,7 @@ class Reader {
     return normals;
   }
 
-  /// In the tile's picture, of vertices and splits.
+  /// Returns the coordinates in the tile's picture, of vertices and splits.
   std::vector<Vec2f> texcoords() const {
     const Section& section = plan_[Part::texcoord];
     std::vector<Vec2f> texcoords(plan_.shape().has_image() ? section.count : 0);
@@ -261,7 +263,7 @@ class Reader {
     return texcoords;
   }
 
-  /// For the normal map, of vertices and splits.
+  /// Returns the tangents for the normal map, of vertices and splits.
   std::vector<TangentCode> tangents() const {
     const Section& section = plan_[Part::tangent];
     std::vector<TangentCode> tangents(section.count);
@@ -277,7 +279,7 @@ class Reader {
     return tangents;
   }
 
-  /// In the tile's normal map, likewise.
+  /// Returns the coordinates in the tile's normal map, of vertices and splits.
   std::vector<Vec2f> map_texcoords() const {
     const Section& section = plan_[Part::map_texcoord];
     std::vector<Vec2f> texcoords(section.count);
@@ -305,7 +307,7 @@ class Reader {
     return {format, shape.alpha, shape.width, shape.height, {bytes.begin(), bytes.end()}};
   }
 
-  /// What a split has as its vertex has it.
+  /// Returns the parts in which a split must be equal to its vertex.
   std::vector<Part> common_parts() const {
     std::vector<Part> parts{Part::position, Part::colour};
     if (!plan_.shape().computed_normals)
@@ -315,7 +317,7 @@ class Reader {
     return parts;
   }
 
-  /// Of which vertices they are; all but what was computed is the same.
+  /// Returns the vertex of each split; checks that all but what was computed is the same there.
   std::vector<std::uint32_t> splits() const {
     const std::uint64_t vertex_count = plan_.shape().vertices();
     const auto vertices = repeated_vertices(Part::split_of, vertex_count, "split");
@@ -329,7 +331,7 @@ class Reader {
     return vertices;
   }
 
-  /// Its bytes; none if the section is not there.
+  /// Returns the bytes of an element; none if the section is not there.
   std::span<const std::byte> element(Part part, std::uint64_t number) const {
     const Section& section = plan_[part];
     return section.count == 0
@@ -337,8 +339,8 @@ class Reader {
                : bin_.subspan(section.offset + number * section.stride, section.stride);
   }
 
-  /// Triangles begin with their smallest corner and ascend, by place and wedge. They must be so in
-  /// the file, unless it is packed.
+  /// Reads triangles into `lists`, where they begin with their smallest corner and ascend, by place
+  /// and wedge. They must be so in the file, unless it is packed.
   void read_triangles(Part part, const VertexNumbers& numbers,
                       std::span<const std::uint32_t> split_of, const TriangleLists& lists) const {
     lists.shaded = numbered_triangles(part);
@@ -422,7 +424,8 @@ class Reader {
                                    get<std::uint16_t>(section, v, 2)});
   }
 
-  /// `require_finite`: of what viewers read; raw values may be anything.
+  /// Reads one attribute of all vertices. `require_finite`: for what viewers read; raw values may
+  /// be anything.
   void read_group(const ChannelGroup& group, Part part, bool require_finite,
                   std::span<float> attributes) const {
     const Section& section = plan_[part];
@@ -443,7 +446,7 @@ class Reader {
     }
   }
 
-  /// As the input had it.
+  /// Returns a colour's number as the input had it.
   float colour(float stored, std::size_t vertex, std::size_t channel) const {
     if (!colours_.is_sound(stored, channel))
       fail(fmt::format("a colour of vertex {} is {}, which no 8-bit colour becomes", vertex,
@@ -456,7 +459,7 @@ class Reader {
                                      : get<std::uint32_t>(section, element);
   }
 
-  /// Of vertices and splits.
+  /// Returns triangles whose corners are numbers of vertices and splits.
   std::vector<TileTriangle> numbered_triangles(Part part) const {
     const Section& section = plan_[part];
     std::vector<TileTriangle> triangles(section.count / 3);
@@ -473,7 +476,7 @@ class Reader {
     return triangles;
   }
 
-  /// Of three different vertices each.
+  /// Returns the triangles with the vertices of splits; checks that each has three different ones.
   std::vector<TileTriangle> without_splits(Part part, std::vector<TileTriangle> triangles,
                                            std::span<const std::uint32_t> split_of) const {
     const std::uint64_t vertex_count = plan_.shape().vertices();

@@ -1,4 +1,4 @@
-// A tile out of the bytes of its sections.
+// Reads a tile from the bytes of its sections.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -13,7 +13,7 @@
 
 namespace meshhier::storage {
 
-/// Bytes nobody vouches for, as many as the plan says.
+/// The sections of a tile: bytes that nobody vouches for, as many as the plan says.
 struct TileSections {
   const TilePlan& plan;
   std::span<const std::byte> bin;
@@ -22,10 +22,11 @@ struct TileSections {
 
 // Both throw Error(corrupt) that starts with `name`.
 
-/// Of all vertices, copies last, without splits: finite, and on the lattice if there is one.
+/// Returns the positions of all vertices, copies last, without splits: finite, and on the lattice
+/// if there is one.
 std::vector<Vec3f> read_positions(const TileSections& sections, const Tree& tree,
                                   const std::string& name);
-/// All of the tile. `positions`: read_positions().
+/// Returns the whole tile. `positions`: from read_positions().
 PublishedTile read_tile(const TileSections& sections, std::vector<Vec3f> positions,
                         const Tree& tree, const std::string& name);
 

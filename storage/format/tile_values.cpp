@@ -20,14 +20,14 @@ bool is_alphanumeric(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/// Letters, digits and underscores.
+/// Returns a name of letters, digits and underscores.
 std::string as_word(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return !is_alphanumeric(c); }, '_');
   return name;
 }
 
-/// A name that is there already gets a number behind it.
+/// Adds a name; if it is there already, it gets a number behind it.
 void add_unique(std::vector<std::string>& names, const std::string& name) {
   std::string unique = name;
   for (int number = 2; std::ranges::find(names, unique) != names.end(); ++number)

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Viewers divide by the lengths of a box's axes: none is shorter than this part of the model.
+/// No axis of a box is shorter than this part of the model, as viewers divide by their lengths.
 constexpr double kThinnest = 1e-6;
 
 /// The boxes that hold a node's tile and all below it, relative to the origin.
@@ -48,8 +48,8 @@ class Boxes {
   std::vector<std::vector<Bounds>> levels_;
 };
 
-/// How much longer a transform makes a line at most, of those along the axes; what a map or the
-/// rounding of a turn does to it is not looked at.
+/// Returns how many times longer a transform makes a line along an axis, at most; 1 if it is nearly
+/// that, as it is with maps and rounded turns.
 double largest_scale(const Transform& m) {
   constexpr double kNearlyOne = 0.01;
   double largest = 0;
@@ -81,13 +81,13 @@ class TilesetWriter {
   }
 
  private:
-  /// Nodes with a file of their own.
+  /// Whether a node has a file of its own.
   bool is_page(NodeId node) const {
     return raw(node.level) > 0 && raw(node.level) % levels_per_file_ == 0 &&
            !tree_.is_partition(tree_.tile_node(node));
   }
 
-  /// What viewers allow for by default; errors are told times that.
+  /// The pixels of error that viewers allow by default; geometric errors are multiplied by them.
   double pixels() const { return manifest_.tileset_pixels.value_or(1); }
 
   const TileRecord& record(NodeId node) const { return record_of(records_, node); }
@@ -100,7 +100,7 @@ class TilesetWriter {
       document["asset"]["extras"] = {{"generator", manifest_.generator}};
       describe_source(document);
     }
-    // What is missing while nothing is drawn, in metres: no transform is above.
+    // The error while nothing is drawn. It is in metres, as no transform is above it.
     const std::optional<Transform> transform = manifest_.root_transform();
     const double error = std::max(diagonal(boxes_[root]), 2.0 * record(root).error);
     document["geometricError"] = pixels() * error * (transform ? largest_scale(*transform) : 1);
@@ -128,7 +128,7 @@ class TilesetWriter {
     document["metadata"] = {{"class", "source"}, {"properties", std::move(values)}};
   }
 
-  /// The class that tiles have of their vertices, and what the input's values are.
+  /// Adds the class of the tiles' vertices, and the ranges of the input's values.
   void describe_values(Json& document) const {
     const SourceSummary& source = manifest_.source;
     const std::vector<std::string> ids = value_ids(source.attributes);
@@ -148,14 +148,14 @@ class TilesetWriter {
     }
   }
 
-  /// `root`: of the file it is written into.
+  /// Returns a node's object with those below it. `root`: the root of the file it is written into.
   Json tile_json(NodeId node, NodeId root) const {
     const bool is_root = node == tree_.root();
     const std::string up = root == tree_.root() ? "" : "../../";
     Json tile;
     tile["boundingVolume"] = {{"box", box_json(boxes_[node])}};
     if (node != root && is_page(node)) {
-      // Shown never; between the errors of its parent and of the tile it leads to.
+      // This tile is never shown. Errors must decrease strictly on the way to the one it leads to.
       const double above = record(tree_.parent_tile(node)).error;
       tile["geometricError"] = pixels() * ((above + record(node).error) / 2);
       tile["content"] = {{"uri", up + tileset_path({}, node).generic_string()}};

@@ -21,7 +21,7 @@
 
 namespace meshhier::storage {
 
-/// Levels of one file, at most: 127 nodes and 128 references, some 300 bytes each.
+/// The most levels in one file: 127 nodes and 128 references, some 300 bytes each.
 inline constexpr int kTilesetLevels = 7;
 
 struct TilesetFile {
@@ -29,21 +29,21 @@ struct TilesetFile {
   std::string text;
 };
 
-/// Visits every file, tileset.json first. Uses of the manifest: generator, source, origin, up,
-/// transform, units, licence, tileset_pixels. Deterministic, O(tiles). `records`: ascending by
-/// node, all of the tree's.
+/// Visits every file, tileset.json first. Of the manifest it needs generator, source, origin, up,
+/// transform, units, licence and tileset_pixels. Deterministic, O(tiles). `records`: all of the
+/// tree's, ascending by node.
 void for_each_tileset(const Manifest& manifest, const Tree& tree,
                       std::span<const TileRecord> records,
                       const std::function<void(const TilesetFile&)>& visit);
 
-/// Writes them all below `directory` and tells the manifest how many bytes they have; its
-/// total_bytes grows by these.
+/// Writes them all below `directory`, and their count, bytes and checksum into the manifest, whose
+/// total_bytes grows by these bytes. Throws Error(io).
 void write_tilesets(FileSystem& files, const std::filesystem::path& directory, const Tree& tree,
                     std::span<const TileRecord> records, Manifest& manifest);
 
-/// The transform that puts a model on the globe (WGS 84): its point `anchor`, in input coordinates,
-/// to longitude and latitude, in degrees, and height above the ellipsoid, in metres; its up axis
-/// up, its x axis east.
+/// Returns the transform that puts a model on the globe (WGS 84): its point `anchor`, in input
+/// coordinates, to longitude and latitude, in degrees, and height above the ellipsoid, in metres;
+/// its up axis points up, its x axis east.
 Transform globe_transform(double longitude, double latitude, double height, Vec3d anchor,
                           UpAxis up);
 

@@ -44,7 +44,7 @@ class Unpacker {
       std::memcpy(values.data(), from, count * sizeof(T));
     return values;
   }
-  /// Where the next `count` values lie, whatever their alignment.
+  /// Returns where the next `count` values lie, whatever their alignment, and passes over them.
   template <class T>
   const std::byte* skip(std::size_t count) {
     if (count > bytes_.size() / sizeof(T))

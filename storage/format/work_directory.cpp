@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file in the directory that no hierarchy, or stream, has, and no system leaves in folders;
-/// empty if there is none.
+/// Returns a file in the directory that no hierarchy, or stream, has, and no system leaves in
+/// folders; empty if there is none.
 std::string foreign_file(FileSystem& files, const Output& output) {
   const auto is_own =
       output.content == Content::progressive_stream ? is_stream_file : is_hierarchy_file;
@@ -34,7 +34,7 @@ std::string foreign_file(FileSystem& files, const Output& output) {
   return "";
 }
 
-/// Why what lies there is not replaced; empty if it is.
+/// Returns why the output that lies there is not replaced; empty if it is.
 std::string objection(FileSystem& files, const Output& output) {
   const bool is_directory = files.is_directory(output.path);
   if (output.container == Container::archive) {
@@ -121,8 +121,8 @@ std::uint64_t manifest_checksum(FileSystem& files, const fs::path& hierarchy) {
   return checksum(read_file(*manifest, manifest->size()));
 }
 
-/// Makes the directory and locks it; nothing if it is locked, or if another build that has just
-/// ended takes it away.
+/// Makes the directory and locks it; returns nothing if it is locked, or if another build that has
+/// just ended takes it away.
 std::unique_ptr<FileLock> try_to_take(FileSystem& files, const fs::path& work) {
   files.make_directories(work);
   try {
@@ -134,7 +134,8 @@ std::unique_ptr<FileLock> try_to_take(FileSystem& files, const fs::path& work) {
   }
 }
 
-/// A process that was killed holds its lock until the disk has done what it was asked for.
+/// Locks the directory, waiting a while: a process that was killed holds its lock until the disk
+/// has done what it was asked for.
 std::unique_ptr<FileLock> take_patiently(FileSystem& files, const Output& output, bool replace) {
   constexpr int kTries = 60;
   constexpr std::chrono::milliseconds kPause(50);
@@ -211,7 +212,7 @@ void WorkDirectory::clear() {
   files_.remove_all(built());
 }
 
-/// Of an archive, without the files that were packed into it.
+/// Syncs what gets the name: an archive without the files that were packed into it.
 void WorkDirectory::sync_result() {
   if (output_.container == Container::archive)
     files_.open(packed())->sync();
@@ -303,7 +304,7 @@ void WorkDirectory::replace(const fs::path& from) {
 
 void WorkDirectory::sync_names() {
   if (output_.container == Container::archive)
-    files_.remove_all(built());  // or the disk takes them too, for nothing
+    files_.remove_all(built());  // so that the disk need not take them, too
   files_.sync_tree(path_);       // which is on the output's file system
 }
 

@@ -10,16 +10,16 @@
 
 namespace meshhier::storage {
 
-/// What a hierarchy becomes.
+/// The form of an output.
 enum class Container {
   files,    ///< a directory
   archive,  ///< one file (storage/format/archive_format.h)
 };
 
-/// What is made: only its own kind is replaced.
+/// The kind of an output: only its own kind is replaced.
 enum class Content { hierarchy, progressive_stream };
 
-/// Where it goes.
+/// The place and kind of an output.
 struct Output {
   // NOLINTNEXTLINE(google-explicit-constructor): a path is a directory unless more is said
   Output(std::filesystem::path where, Container in = Container::files,
@@ -31,17 +31,17 @@ struct Output {
   Content content;
 };
 
-/// Where a link of that name leads to; the name itself if it is none.
+/// Returns the path that a link of that name leads to; the name itself if it is no link.
 std::filesystem::path followed(FileSystem& files, const std::filesystem::path& output);
 
-/// The directory nearest above `output` that is there.
+/// Returns the directory nearest above `output` that is there.
 std::filesystem::path existing_directory(FileSystem& files, const std::filesystem::path& output);
 
 /// Throws Error(io) if it is clear already that nothing can be made where `output` is to be.
 void check_place(FileSystem& files, const std::filesystem::path& output);
 
 /// Throws Error(usage) if the output lies in a hierarchy: it would be damage to that, and go when
-/// it is replaced. Not for standard output.
+/// it is replaced. `output` must not be standard output.
 void require_outside(FileSystem& files, const std::filesystem::path& output);
 
 /// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
@@ -49,14 +49,17 @@ void require_outside(FileSystem& files, const std::filesystem::path& output);
 bool check_output(FileSystem& files, const Output& output, bool replace,
                   const char* state = "is already there");
 
+/// A locked work directory: no other process builds the output meanwhile. One thread at a time may
+/// use it; `files` must outlive it.
 class WorkDirectory {
  public:
-  /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
-  /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
-  /// cannot be written.
+  /// Takes the directory as an earlier build left it, or makes it; waits up to 3 s for a process
+  /// that is just ending. Throws Error(exists) if `output` is there and `replace` is false, or if
+  /// another build is at work here; Error(io) if its parent cannot be written.
   WorkDirectory(FileSystem& files, Output output, bool replace);
-  /// One of that name, on the output's file system, in which several processes have built: it stays
-  /// when it is published, but for the hierarchy. Throws Error(io) if another process has it.
+  /// Takes the directory `shared`, on the output's file system, in which several processes have
+  /// built: it stays when it is published, but for the hierarchy. Throws Error(io) if another
+  /// process has it.
   WorkDirectory(FileSystem& files, Output output, bool replace, std::filesystem::path shared);
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
@@ -70,24 +73,26 @@ class WorkDirectory {
   std::filesystem::path built() const;   ///< the hierarchy to be, in path()
   std::filesystem::path packed() const;  ///< its archive to be, in path()
 
-  /// Removes all that is in it, but for an imported mesh.
+  /// Removes all that is in it, but for an imported mesh and the lock.
   void clear();
-  /// Whether what is in it stays, unless it is published.
+  /// Says whether its content stays when the object goes without having been published.
   void keep(bool kept) { kept_ = kept; }
   bool is_kept() const { return kept_; }
 
-  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest. What is
-  /// replaced has that name until then, without a gap where the system can exchange two names.
+  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest. A replaced
+  /// output has that name until then, without a gap where the system can exchange two names. Throws
+  /// Error(io), and Error(exists) if an output appeared that is not to be replaced; all names are
+  /// then as they were before.
   void publish();
 
  private:
   void sync_result();
-  /// Three ways for what was made to get its name: undone if they fail.
+  // Three ways to give the result its name; each is undone if it fails.
   void give_name(const std::filesystem::path& from);
   bool exchange(const std::filesystem::path& from);  ///< false if the system cannot
   void replace(const std::filesystem::path& from);
-  std::filesystem::path set_aside();  ///< of the journal, while names are exchanged
-  void restore_journal();             ///< of a build that was killed then, if it tells the truth
+  std::filesystem::path set_aside();  ///< renames the journal while names are exchanged
+  void restore_journal();             ///< if a build was killed then, and the journal is still true
   void sync_names();
 
   FileSystem& files_;

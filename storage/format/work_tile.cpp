@@ -37,8 +37,8 @@ struct WorkTileCounts {
   bool has_wedges() const { return copies > 0 || foreign_wedges > 0; }
 };
 
-// Of a seam strip, per vertex of the boundary: 76 to 89 bytes were measured, with 1.8 foreign
-// corners; up to 130 after clustering where it leaves long boundaries.
+// A seam strip takes so much per vertex of the boundary: 76 to 89 bytes were measured, with 1.8
+// foreign corners; up to 130 after clustering where it leaves long boundaries.
 constexpr double kStripBytes = 90;
 constexpr double kStripForeign = 1.8;
 
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> get_as(Unpacker& unpacker, std::size_t count) {
   return {narrowed.begin(), narrowed.end()};
 }
 
-/// In as few bytes each as the largest needs.
+/// Puts numbers in as few bytes each as the largest needs.
 void put_numbers(Packer& packer, std::span<const std::uint32_t> numbers) {
   const std::uint32_t largest = numbers.empty() ? 0 : *std::ranges::max_element(numbers);
   const std::uint8_t width = largest <= UINT8_MAX ? 1 : largest <= UINT16_MAX ? 2 : 4;
@@ -89,7 +89,7 @@ VertexArray get_vertices(Unpacker& unpacker, std::size_t count, int channels) {
   return vertices;
 }
 
-/// The first `count` of them.
+/// Puts the first `count` copies.
 void put_copies(Packer& packer, const Copies& copies, std::size_t count) {
   if (count == 0)
     return;
@@ -127,7 +127,8 @@ std::vector<Wedge> get_wedges(Unpacker& unpacker, std::size_t count) {
   return result;
 }
 
-/// The wedges of foreign corners that border triangles have, beside the first of each place.
+/// Returns the wedges of foreign corners that border triangles have, beside the first of each
+/// place.
 template <class Corner>
 std::vector<Wedge> foreign_wedges(const WorkTile<Corner>& tile) {
   std::vector<Wedge> wedges;
@@ -143,7 +144,7 @@ std::vector<Wedge> foreign_wedges(const WorkTile<Corner>& tile) {
   return wedges;
 }
 
-/// Those of the tile's own places, then of its foreign corners.
+/// Numbers the corners: the tile's own places, then its foreign corners, and the wedges of both.
 VertexNumbers numbers_of(const WorkTileCounts& counts, const Copies& copies,
                          std::span<const Wedge> foreign) {
   std::vector<Wedge> wedges = wedges_of(copies.places);
@@ -494,7 +495,7 @@ double expected_shading_bytes(const TileSums& tiles) {
 }
 
 double expected_seam_strip_bytes(const TileSums& tiles) {
-  // No more than the whole tile.
+  // A strip has no more than the whole tile.
   constexpr double kVertex = 20, kTriangle = 12;
   return std::min(tiles.boundary * kStripBytes,
                   tiles.vertices * kVertex + tiles.triangles * kTriangle);

@@ -12,19 +12,20 @@
 
 namespace meshhier::storage {
 
-/// The first bytes of an encoded tile: they tell what is in it.
+/// An encoded tile begins with so many bytes of counts, its head.
 constexpr std::size_t kWorkTileHeadBytes = 28;
-/// What the triangles, their wedges and foreign corners take once a tile is decoded. `head`: the
-/// first kWorkTileHeadBytes.
+/// Returns the memory that triangles, their wedges and foreign corners take once a tile is decoded.
+/// `head`: the first kWorkTileHeadBytes.
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head);
-/// Likewise what the copies of its own places take.
+/// Returns the memory that the copies of its own places take.
 std::uint64_t work_copy_bytes(std::span<const std::byte> head, int channels);
 
 /// Adds a tile to `sums`; published it has as many ghosts as foreign corners.
 void add_work_tile(std::span<const std::byte> head, TileSums& sums);
 
-// `Corner`: ChunkVertex or FinerGhost. The bytes do not tell which. Triangles come back with wedges
-// if the tile has copies or any wedge is not 0, and without any otherwise.
+// `Corner` is ChunkVertex or FinerGhost; the bytes do not tell which. Triangles come back with
+// wedges if the tile has copies or any wedge is not 0, and without any otherwise. Decoders require
+// bytes of their encoder, and throw Error(internal) otherwise. All are thread-safe.
 template <class Corner>
 std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
@@ -37,28 +38,29 @@ Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
 
 std::vector<std::byte> encode_own_shading(const OwnShading& shading);
 OwnShading decode_own_shading(std::span<const std::byte> bytes);
-/// The first bytes of an encoded shading, and how many splits they tell.
+/// An encoded shading begins with so many bytes, which tell the number of splits.
 constexpr std::size_t kShadingHeadBytes = 8;
 std::uint32_t encoded_split_count(std::span<const std::byte> head);
 std::vector<std::byte> encode_boundary_shading(const BoundaryShading& boundary);
 BoundaryShading decode_boundary_shading(std::span<const std::byte> bytes);
 
-/// No bytes if the map is empty.
+/// Returns no bytes if the map is empty.
 std::vector<std::byte> encode_wedge_map(const WedgeMap& map);
 WedgeMap decode_wedge_map(std::span<const std::byte> bytes);
 
 std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);
 SeamStrip decode_seam_strip(std::span<const std::byte> bytes);
 
-/// Bytes of the encoded tiles, and of their boundaries, which are encoded once more.
-/// `vertex_bytes`: of a position and its attributes.
+/// Returns the bytes of the encoded tiles, and of their boundaries, which are encoded once more.
+/// `vertex_bytes`: a position and its attributes.
 double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_bytes);
-/// Bytes of the encoded shadings of the tiles and of their boundaries, on a surface without
-/// creases.
+/// Returns the bytes of the encoded shadings of the tiles and of their boundaries, on a surface
+/// without creases.
 double expected_shading_bytes(const TileSums& tiles);
-/// Bytes of the encoded seam strips of simplified tiles, as surfaces have them.
+/// Returns the bytes of the encoded seam strips of simplified tiles, with borders as surfaces have
+/// them.
 double expected_seam_strip_bytes(const TileSums& tiles);
-/// Likewise where borders are far longer: foreign corners outweigh the tile.
+/// Returns the same where borders are far longer: foreign corners outweigh the tile.
 double long_seam_strip_bytes(const TileSums& tiles);
 
 }  // namespace meshhier::storage
