@@ -21,22 +21,22 @@ namespace {
 
 // From the whole to its parts: the definitions follow in this order.
 
-/// All stages but import, then the hierarchy gets its name.
+/// Does all stages but import, then gives the hierarchy its name.
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
                        storage::MemoryPool& pool, StageMeter& meter, const StageContext& context);
 
-/// All rows of the table (stages.cpp) between reading the input and packing the output, as far as
-/// the journal does not have their work: all files of the hierarchy in `directory`. Returns how
-/// much disk they need, as it is known after leaves and simplify, and throws Error(budget) then if
-/// there is less.
+/// Makes all files of the hierarchy in `directory`: does all rows of the table (stages.cpp) between
+/// reading the input and packing the output, as far as the journal does not have their work.
+/// Returns how much disk they need, as it is known after leaves and simplify, and throws
+/// Error(budget) then if there is less.
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context);
 
-/// A failure that leaves work to go on with says so.
+/// Returns the failure with a sentence that says where the work lies that can be gone on with.
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
                        const std::filesystem::path& output);
 
-/// What was imported goes while the work directory is locked.
+/// Removes the imported mesh while the work directory is still locked.
 struct DropAtEnd {
   importing::MeshInput& input;
   ~DropAtEnd() { input.drop(); }

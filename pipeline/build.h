@@ -17,14 +17,18 @@ struct BuildOptions {
   bool leaves_work = true;  ///< a stopped build leaves what the next one goes on with
 };
 
-/// Builds config.output from config.input. An existing output is Error(exists), unless it is to be
-/// replaced, and then as it was until the new one is complete. It is Error(usage) if a file of the
-/// input would be replaced, by the output or by one of the others.
+/// Builds config.output from config.input and returns when the hierarchy is on disk under its name.
+/// The result is the same bytes for any threads, memory budget and interruption. It runs on TBB's
+/// threads; `environment` must outlive the call. An existing output is Error(exists), unless it is
+/// to be replaced; then it stays as it was until the new one is complete. It is Error(usage) if a
+/// file of the input would be replaced, by the output or by one of the others. Throws Error(input)
+/// for a mesh that is broken or unsupported, Error(budget) if memory or disk are too small,
+/// Error(io), and Error(interrupted) if it is cancelled.
 ///
-/// What is done is noted on disk, beside the output, as soon as the triangles are distributed. If a
-/// build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays there, and the
-/// next build of the same input with a config of the same result goes on with it; with another
-/// result it is refused with Error(exists). Else nothing is left behind.
+/// As soon as the triangles are distributed, the work that is done is noted on disk, beside the
+/// output. If a build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays
+/// there, and the next build of the same input with a config of the same result goes on with it;
+/// with another result it is refused with Error(exists). Else nothing is left behind.
 BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
                             BuildEnvironment environment);
 

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kLongestFileName = 255;
 constexpr std::size_t kLongestPath = 4096;
 
-/// What `config` became, with what does not decide the result.
+/// Returns the resolved config, with the keys that do not decide the result.
 nlohmann::ordered_json whole_config(const config::Config& config) {
   nlohmann::ordered_json whole{{"input", config::find_config_key("input")->show(config)},
                                {"output", config.output.string()},
@@ -77,7 +77,8 @@ constexpr std::array kCountWarnings{
         " have pictures by KHR_techniques_webgl of which none is known to be their colour: "
         "they are not shown"}};
 
-/// Where positions are rounded, the mesh may have one.
+/// Returns the warning that nothing has an area. If positions are rounded, the mesh itself may have
+/// one.
 const char* no_area_text(const SourceSummary& source, bool is_rounded) {
   if (is_rounded)
     return "no triangle has an area once positions are rounded to so few bits "
@@ -88,7 +89,8 @@ const char* no_area_text(const SourceSummary& source, bool is_rounded) {
   return "no triangle of the mesh has an area, their corners lie on lines: viewers show nothing";
 }
 
-/// What makes a hierarchy of which a viewer shows nothing, or less than its maker may think.
+/// Returns warnings of a hierarchy of which a viewer shows nothing, or less than its maker may
+/// think.
 std::string warning_text(const SourceSummary& source, bool has_area, bool is_rounded) {
   std::string text;
   const auto warn = [&](const std::string& what) { text += "warning: " + what + '\n'; };
@@ -112,7 +114,7 @@ std::string warning_text(const SourceSummary& source, bool has_area, bool is_rou
   return text;
 }
 
-/// Of each coordinate by itself.
+/// Returns the absolute value of each coordinate.
 Vec3d absolute(Vec3d p) {
   return {std::abs(p.x), std::abs(p.y), std::abs(p.z)};
 }
@@ -159,7 +161,8 @@ std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   return text + stats_text(stats);
 }
 
-/// Paths from the folder of the first mesh: the folder may move.
+/// Returns the note on an input. Its paths start at the folder of the first mesh, as the folder may
+/// move.
 storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t content) {
   const std::filesystem::path folder = input.files[0].path.parent_path();
   const auto from_folder = [&](const std::filesystem::path& path) {

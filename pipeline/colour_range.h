@@ -1,4 +1,5 @@
-// Which numbers the colours of a mesh have: some programs write bytes in a wider type.
+// The range of the numbers that the colours of a mesh have: some programs write bytes in a wider
+// type.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -12,7 +13,7 @@ namespace meshhier::pipeline {
 
 class ColourRange {
  public:
-  /// `attributes`: of vertices one after another.
+  /// `attributes`: the channels of vertices, one vertex after another.
   void add(std::span<const float> attributes, const AttributeLayout& layout) {
     const auto vertex = static_cast<std::size_t>(layout.channels());
     const auto first = static_cast<std::size_t>(layout.colour_offset());

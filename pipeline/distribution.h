@@ -1,4 +1,4 @@
-// How vertices and triangles go to the chunks, of a whole mesh and of slices of it.
+// Distributes vertices and triangles to the chunks, those of a whole mesh or of a slice of it.
 #pragma once
 
 #include "execution/parallel.h"
@@ -19,7 +19,7 @@
 
 namespace meshhier::pipeline {
 
-/// Under which progress tells of it.
+/// The name that progress has for it.
 inline constexpr const char* kPartitionStage = "partition";
 
 /// Hands a share of the vertices to parallel work(block, slot), a serial sink(slot) in the order of
@@ -56,7 +56,7 @@ struct BlockPlaces {
   std::vector<CopyVertex> memory;
   std::span<const CopyVertex> copies;
 
-  /// False, and nothing picked, if all vertices of the block are.
+  /// Picks them from a block. Returns false, and picks nothing, if there are no copies in it.
   bool pick(const SourceVertices& block, const importing::CopyList& list) {
     copies = list.read(block.first, block.positions.size(), memory);
     if (copies.empty())
@@ -154,7 +154,7 @@ struct TrianglesByRank {
   void sort(const partition::ChunkMap& map) { chunked.sort(renumbered.finished, map); }
 };
 
-/// Likewise of a mesh with copies.
+/// The same for a mesh with copies.
 struct TrianglesByWedge {
   std::size_t read = 0;
   partition::Renumbered<partition::WedgeRank> renumbered;
@@ -185,7 +185,7 @@ class TriangleDistribution {
                        const StageContext& context)
       : mesh_(mesh), renumberer_(std::move(renumberer)), chunks_(chunks), context_(context) {}
 
-  /// As SourceMesh::read_triangle_blocks().
+  /// Distributes what SourceMesh::read_triangle_blocks() reads.
   FaceBlocks take_blocks(const Share& share) {
     return mesh_.read_triangle_blocks<Slot>(
         share, in_flight(), context_.cancel,
@@ -193,7 +193,7 @@ class TriangleDistribution {
         [&](const Slot& slot) { context_.progress.advance(slot.read); },
         [&](const Slot& slot) { keep(slot); });
   }
-  /// As SourceMesh::read_triangles_from().
+  /// Distributes what SourceMesh::read_triangles_from() reads.
   mesh_io::FaceCounts take_from(std::uint64_t face) {
     return mesh_.read_triangles_from<Slot>(
         face, in_flight(), context_.cancel,
@@ -201,7 +201,7 @@ class TriangleDistribution {
         [&](const Slot& slot) { context_.progress.advance(slot.read); },
         [&](const Slot& slot) { keep(slot); });
   }
-  /// Those that wait for a part of the table. Call once, at the end.
+  /// Distributes the triangles that wait for a part of the table. Call once, at the end.
   void finish() {
     while (renumberer_.next_round()) {
       execution::ordered_blocks<Slot>(

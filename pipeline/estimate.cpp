@@ -68,8 +68,8 @@ Json memory_json(const BuildEstimate& e) {
 
 namespace {
 
-/// What is in text or packed, or is to be welded, must be read to be counted: it is imported beside
-/// the output, which leaves nothing behind. Places are counted likewise.
+/// Imports an input that is text or packed, or is to be welded, beside the output to count it, and
+/// counts places; leaves nothing behind.
 void count_by_reading(const config::Config& config, importing::MeshInput& input,
                       storage::FileSystem& files, storage::MemoryPool& pool,
                       const execution::CancelToken& cancel) {
@@ -95,7 +95,7 @@ void describe_import(const importing::InputFiles& input, const importing::Import
   temporary = std::max(temporary, importing::predict_import(input, memory));
 }
 
-/// Reads the vertices if the config gives the model a place.
+/// Returns where the config puts the model, for people; reads the vertices if it does.
 std::string placement_of(const config::Config& config, importing::MeshInput& input,
                          const execution::CancelToken& cancel) {
   if (!config.placement.longitude && !config.placement.crs)

@@ -1,4 +1,4 @@
-// What a build will be like, told before it: from the config and the header of the input alone.
+// An estimate of a build before it, from the config and the header of the input alone.
 #pragma once
 
 #include "config/config.h"
@@ -24,7 +24,7 @@ struct TimeEstimate {
 
 TimeEstimate estimate_time(const BuildPlan& plan, std::uint64_t input_bytes);
 
-/// The machine the rates are of, for people.
+/// The machine that the rates were measured on, for people.
 inline constexpr std::string_view kRateMachine =
     "x86-64 server cores of about 3 GHz and a disk of 500 MB/s";
 
@@ -42,17 +42,17 @@ struct BuildEstimate {
   std::string placement;  ///< as config::placement_text() has it
 };
 
-/// Refuses what build_hierarchy() refuses before its work, with the same Error; leaves nothing
-/// behind. Input that must be imported is imported to count it, into temporary files beside the
-/// output, which takes as long as in a build; of all else only the header is read, and the vertices
-/// where places are counted or the config puts the model on the globe.
+/// Estimates a build. Refuses what build_hierarchy() refuses before its work, with the same Error;
+/// leaves nothing behind. Input that must be imported is imported to count it, into temporary files
+/// beside the output, which takes as long as in a build. Otherwise only the header is read, and the
+/// vertices where places are counted or the config puts the model on the globe.
 BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
                              const execution::CancelToken& cancel = execution::CancelToken());
 
-/// For people, a few lines.
+/// Returns a few lines for people.
 std::string estimate_text(const BuildEstimate& estimate);
 
-/// One object; docs/command_line.md lists its keys.
+/// Returns one object; docs/command_line.md lists its keys.
 nlohmann::ordered_json to_json(const BuildEstimate& estimate);
 
 }  // namespace meshhier::pipeline

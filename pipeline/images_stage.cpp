@@ -14,7 +14,8 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// A picture of one texel in the place of one that is broken: numbers stay what they are.
+/// A picture of one texel in the place of one that is broken, so that the others keep their
+/// numbers.
 class NoPicture final : public images::ImageReader {
  public:
   const images::ImageInfo& info() const override { return info_; }
@@ -26,7 +27,7 @@ class NoPicture final : public images::ImageReader {
   images::ImageInfo info_{ImageFormat::png, 1, 1, 3, 0};
 };
 
-/// A picture on its way, of which it looks for texels that are not opaque.
+/// Passes a picture on and looks for texels that are not opaque.
 class AlphaWatch final : public images::ImageReader {
  public:
   explicit AlphaWatch(images::ImageReader& from) : from_(from) {}
@@ -50,14 +51,14 @@ class AlphaWatch final : public images::ImageReader {
   bool is_any_ = false;
 };
 
-/// Whether nobody says what the alpha of a picture is.
+/// Whether a material that shows the picture leaves the meaning of its alpha open.
 bool is_alpha_unsaid(std::uint32_t image, const images::MaterialList& materials) {
   return std::ranges::any_of(materials.materials, [&](const images::Material& material) {
     return material.image == image && material.is_alpha_unsaid;
   });
 }
 
-/// In one line. `names`: of pictures.
+/// Warns in one line. `names`: the pictures'.
 void warn_of_alpha(const std::vector<std::string>& names, execution::Progress& progress) {
   constexpr std::size_t kMostBytes = 255;
   if (names.empty())
@@ -71,7 +72,7 @@ void warn_of_alpha(const std::vector<std::string>& names, execution::Progress& p
       is_one ? "" : "the first: ", first, first, is_one ? "it" : "them"));
 }
 
-/// In one line.
+/// Warns in one line.
 void warn_of_broken(const std::vector<std::string>& why, execution::Progress& progress) {
   if (why.empty())
     return;
@@ -95,7 +96,7 @@ namespace {
 /// A picture on its way into the store.
 struct Decoded {
   images::StoredImage stored;
-  std::string broken;  ///< why it is; empty: it is not
+  std::string broken;  ///< why it could not be decoded; empty: it is sound
   bool has_unsaid_alpha = false;
 };
 

@@ -12,22 +12,22 @@
 
 namespace meshhier::pipeline {
 
-/// Items are pictures. Requires a textured mesh, as all that is told of the stage.
+/// The stage's memory; items are pictures. It and all below require a textured mesh.
 StageMemory images_memory(const JobSize& job);
 StageTimes images_time(const JobSize& job, const TilePopulation& tiles);
-/// Decoded pictures, until the partitions have theirs.
+/// The stage's disk: decoded pictures, until the partitions have theirs.
 DiskVolumes images_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 
-/// Why pictures are left out that are there, a sentence each; each once.
+/// Returns why pictures that are there are left out, a sentence each; each once.
 std::vector<std::string> broken_pictures(const TexturePlan& plan, const BuildJournal& journal);
 
-/// Decodes all pictures that the journal does not have; throws Error(input) if one is not what it
-/// was when the input was read. With `missing_images` ignore, the journal has of those that turn
-/// out to be broken why they are; else throws Error(input) that names one.
+/// Decodes all pictures that the journal does not have, and notes them; throws Error(input) if one
+/// is not what it was when the input was read. Of a picture that turns out to be broken the journal
+/// notes why, if `missing_images` is ignore; else throws Error(input) that names one.
 void decode_images(images::ImageStore& pictures, BuildJournal& journal,
                    const StageContext& context);
 
-/// The materials with the pictures that are there, when all are decoded.
+/// Returns the materials with the pictures that are there, when all are decoded.
 images::MaterialList shown_materials(const TexturePlan& plan, const BuildJournal& journal);
 
 }  // namespace meshhier::pipeline

@@ -88,7 +88,7 @@ bool is_read_before_plan(const importing::MeshInput& input, const config::Config
 
 namespace {
 
-/// Names that nothing has are mistyped.
+/// Throws if the config names an attribute that the input does not have: it is mistyped.
 void require_attributes(const config::Config& config, const importing::MeshInput& input) {
   const AttributeLayout& layout = input.description().attributes;
   const auto require = [&](std::string_view key, const std::vector<std::string>& names) {

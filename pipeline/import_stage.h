@@ -14,44 +14,45 @@
 
 namespace meshhier::pipeline {
 
-/// The meshes of a config, as a build of it reads them. Throws as MeshInput.
+/// Opens the meshes of a config as a build of it reads them. Throws as MeshInput.
 importing::MeshInput open_input(const config::Config& config, storage::FileSystem& files);
 
-/// About what the stage has in temporary files at most, before it is known what is in the input.
+/// Returns about how many bytes the stage has in temporary files at most, before it is known what
+/// is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
 
-/// What stays of it: the PLY, until the triangles are distributed.
+/// The disk that stays taken: the PLY, until the triangles are distributed.
 DiskVolumes imported_disk(const JobSize& job, const TilePopulation& tiles,
                           const MemoryPlan& memory);
 
-/// Of the import and of all that follows, from the files' sizes alone.
+/// Returns the times of the import and of all that follows, from the files' sizes alone.
 std::vector<StageTime> import_time(const importing::MeshInput& input, const config::Config& config);
 
-/// Whether only reading the input tells what there is to do: it is to be imported, or places are to
-/// be found.
+/// Whether the input must be read before the build can be planned: it is to be imported, or places
+/// are to be found.
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config);
 
 /// Imports what needs it, and finds places if topology is by place.
 void read_once(importing::MeshInput& input, const config::Config& config,
                const importing::MeshInput::Place& place);
 
-/// Imports the input and finds places in `directory`; then it is known what there is to do. Throws
-/// as importing::import_input, importing::find_copies and plan_build.
+/// Imports the input and finds places in `directory`, then plans the build. Throws as
+/// importing::import_input, importing::find_copies and plan_build.
 BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
                         storage::MemoryPool& pool, const config::Config& config,
                         const BuildEnvironment& environment);
 
-/// The same, and checks the disk, unless an earlier build did whose work is still there.
-/// Keeps the work directory if there is earlier work. Throws also as check_disk.
+/// Does the same and checks the disk, unless an earlier build did whose work is still there. Keeps
+/// the work directory if there is earlier work. Throws also as check_disk.
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
                           storage::MemoryPool& pool, const config::Config& config,
                           const BuildEnvironment& environment);
 
-/// Whether it was read so far as the stages from `ingest` on need it.
+/// Whether enough of the input was read for the stages from `ingest` on.
 bool can_be_read(const importing::MeshInput& input, const config::Config& config);
 
-/// The same although an earlier build did it, because its work is of no use. Throws Error(input) if
-/// the input is not what it was.
+/// Imports the input although an earlier build did, because its work is of no use. Throws
+/// Error(input) if the input is not what it was.
 void import_again(importing::MeshInput& input, const storage::WorkDirectory& work,
                   storage::MemoryPool& pool, const StageContext& context);
 

@@ -33,7 +33,7 @@ std::vector<LabelGuess> guesses_of(const AttributeLayout& layout) {
   return {layout.values.begin(), layout.values.end()};
 }
 
-/// `attributes`: of vertices one after another.
+/// Adds the values of vertices. `attributes`: their channels, one vertex after another.
 void add_values(std::span<const float> attributes, const AttributeLayout& layout,
                 std::span<ValueTally> tallies, std::span<LabelGuess> guesses) {
   if (tallies.empty())
@@ -47,12 +47,12 @@ void add_values(std::span<const float> attributes, const AttributeLayout& layout
   }
 }
 
-/// What is learnt of one block of vertices.
+/// The facts that one block of vertices tells.
 struct BlockScan {
   std::size_t count = 0;
   BoundsD bounds;
   bool float_exact = true;
-  std::vector<Vec3d> sample;  ///< those that `ids` name
+  std::vector<Vec3d> sample;  ///< the vertices that SampleIds names
   mesh_io::ZeroedCounts zeroed;
   ColourRange colours;
   std::vector<ValueTally> values;
@@ -86,7 +86,7 @@ struct BlockScan {
   }
 };
 
-/// An empty box is beyond nothing.
+/// Whether a box reaches out of `limit`; an empty one never does.
 bool is_beyond(const BoundsD& box, const BoundsD& limit) {
   BoundsD both = limit;
   both.add(box);
@@ -105,7 +105,7 @@ void warn_of_far(const FarVertices& far, execution::Progress& progress) {
       p.x, p.y, p.z, others));
 }
 
-/// More than a thousandth of an edge shows where light falls flat.
+/// Warns if rounding is more than a thousandth of an edge: that shows where light falls flat.
 void warn_of_rounding(double rounding, double median_edge, execution::Progress& progress) {
   constexpr double kMost = 1e-3;
   if (median_edge == 0 || rounding <= kMost * median_edge)
@@ -338,12 +338,12 @@ SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
 }
 
 std::uint64_t input_block_bytes(const JobSize& job) {
-  // A block with its copy, its sorted copy and its ranks.
+  // A block has a copy, a sorted copy and ranks.
   return kBlock * (2 * job.vertex_bytes() + 32);
 }
 
 std::uint64_t sample_bytes(const JobSize& job) {
-  // While the sample is sorted: its points, as they were and in order, and their keys.
+  // While the sample is sorted there are its points, as they were and in order, and their keys.
   return std::min(job.vertex_count, partition::kSampleVertices) * (16 + 16 + 16);
 }
 

@@ -25,15 +25,16 @@
 
 namespace meshhier::pipeline {
 
-/// Of a block of input, here and in `partition`.
+/// The memory of a block of input, here and in `partition`.
 std::uint64_t input_block_bytes(const JobSize& job);
-/// Of the sample, here and in `partition`.
+/// The memory of the sample, here and in `partition`.
 std::uint64_t sample_bytes(const JobSize& job);
 
-/// Items are blocks of input.
+/// The stage's memory; items are blocks of input.
 StageMemory ingest_memory(const JobSize& job);
 StageTimes ingest_time(const JobSize& job, const TilePopulation& tiles);
-/// The vertices once more, if they cannot be read in place, until the triangles are distributed.
+/// The stage's disk: the vertices once more, if they cannot be read in place, until the triangles
+/// are distributed.
 DiskVolumes ingest_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 
 /// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
@@ -48,13 +49,15 @@ struct SourceVertices {
   }
 };
 
-/// What reading faces block by block came to.
+/// The result of reading faces block by block.
 struct FaceBlocks {
   mesh_io::FaceCounts counts;
   bool whole = true;  ///< else it ended at a face that is no sound triangle, which is not counted
 };
 
-/// A mesh that was read once: all vertices are sound.
+/// A mesh that was read once: all vertices are sound. Methods that are const may be called by
+/// several threads. Reading throws as mesh_io::MeshSource does, and Error(interrupted) if it is
+/// cancelled.
 class SourceMesh {
  public:
   /// Counts of faces and triangles, checksum and unreferenced_vertices are not known here.
@@ -62,67 +65,70 @@ class SourceMesh {
   std::uint64_t declared_faces() const { return source_->description().face_count; }
   bool vertices_in_place() const { return source_->description().vertices_in_place; }
 
-  /// As SourceSummary has them.
+  /// Notes `units` and `unused` in the summary.
   void note(std::optional<Unit> units, std::vector<std::string> unused) {
     summary_.units = units;
     summary_.unused = std::move(unused);
   }
 
-  /// Where the config leaves it to types which attributes are labels: those are none any more of
-  /// which LabelGuess says so, and a warning names what may be one. `is_sure(name)`: of labels that
-  /// stay. Once, behind ingest().
+  /// Corrects which attributes are labels where the config leaves that to their types: labels that
+  /// LabelGuess takes for quantities are none any more, and a warning names quantities that may be
+  /// labels. `is_sure(name)`: whether a label stays one. Call once, after ingest().
   void guess_labels(const std::function<bool(const std::string&)>& is_sure,
                     execution::Progress& progress);
 
   /// Add to positions to get input coordinates: choose_origin() of the vertices that triangles use.
   Vec3d origin() const { return origin_; }
 
-  /// Of the positions, relative to the origin.
+  /// Returns the box of the positions, relative to the origin.
   Bounds stored_bounds() const {
     return {to_float(summary_.bounds.min - origin_), to_float(summary_.bounds.max - origin_)};
   }
 
-  /// The vertices that partition::SampleIds names, but for copies. Once: what ingest kept of them
-  /// goes.
+  /// Returns the vertices that partition::SampleIds names, but for copies, and forgets them. Call
+  /// once.
   std::vector<partition::IdPoint> take_sample(const importing::CopyList& copies);
 
-  /// All vertices in blocks of at most MeshSource::kBlockSize, in the order of ids.
+  /// Returns the number of blocks that all vertices make, at most MeshSource::kBlockSize each, in
+  /// the order of ids.
   std::uint64_t vertex_blocks() const;
-  /// Thread-safe for different `memory`.
+  /// Reads a block. Thread-safe for different `memory`.
   SourceVertices read_vertex_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
 
-  /// visit(id, position) for the vertices of a block, in input coordinates. As read_vertex_block().
+  /// Calls visit(id, position) for the vertices of a block, in input coordinates. Thread-safe for
+  /// different `memory`.
   template <class Visit>
   void visit_input_block(std::uint64_t index, mesh_io::BlockMemory& memory,
                          const Visit& visit) const;
 
   /// Reads all triangles once and counts them. work(triangles, slot) runs in parallel, each with
-  /// one of `in_flight` slots; sink(slot) follows in file order. As ordered_blocks.
+  /// one of `in_flight` slots; sink(slot) follows in file order, by execution::ordered_blocks().
   template <class Slot, class Work, class Sink>
   mesh_io::FaceCounts read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
                                      const Work& work, const Sink& sink);
-  /// The first part of it: a share of the faces that can be read in blocks as triangles, up to the
-  /// first that is none. Means nothing unless those before it are triangles. What work() is given
-  /// may turn out to be none of the file's triangles: then no sink() follows. after(slot) follows a
-  /// sink() in parallel.
+  /// Does the first part of it: reads a share of the faces that can be read in blocks as triangles,
+  /// up to the first that is none. The result means nothing unless the faces before the share are
+  /// triangles. Triangles that work() is given may turn out to be none of the file's: then no
+  /// sink() follows. after(slot) follows a sink() in parallel.
   template <class Slot, class Work, class Sink>
   FaceBlocks read_triangle_blocks(const Share& share, std::size_t in_flight,
                                   const execution::CancelToken& cancel, const Work& work,
                                   const Sink& sink, const std::function<void(Slot&)>& after = {});
-  /// The rest: all faces from that one on, those before being sound triangles. Counts only these.
+  /// Does the rest: reads all faces from that one on, those before being sound triangles. Counts
+  /// only these.
   template <class Slot, class Work, class Sink>
   mesh_io::FaceCounts read_triangles_from(std::uint64_t face, std::size_t in_flight,
                                           const execution::CancelToken& cancel, const Work& work,
                                           const Sink& sink,
                                           const std::function<void(Slot&)>& after = {});
 
-  /// As MeshSource.
   mesh_io::OddSyntax odd_syntax() const { return source_->odd_syntax(); }
-  /// The input's storage::FileChecksum; cheap when all has been read.
+  /// Returns the input's storage::FileChecksum; cheap when all has been read.
   std::uint64_t checksum(const execution::CancelToken& cancel) {
     return source_->checksum([&] { cancel.check(); });
   }
-  /// What of it is known, and what other processes have read of the file: as MeshSource.
+  /// The parts of it that are known, and those that other processes have read, as MeshSource has
+  /// them.
   std::vector<storage::BlockSums> known_sums() const { return source_->known_sums(); }
   bool add_sums(const storage::BlockSums& sums) { return source_->add_sums(sums); }
 
@@ -146,19 +152,19 @@ class SourceMesh {
   SourceSummary summary_;
   Vec3d origin_;
   bool float_exact_ = true;
-  std::vector<LabelGuess> guesses_;  ///< of each value
+  std::vector<LabelGuess> guesses_;  ///< one for each value
   ColourRange colours_;
   std::vector<Vec3d> sample_positions_;
 };
 
-/// Reads all vertices: checks them, bounds them, picks the sample. A file whose vertices cannot be
-/// read again in place is spooled to `scratch` meanwhile, which must outlive the result. Throws as
-/// mesh_io::MeshSource does. `file_name`: for the summary. Requires a vertex.
+/// Reads all vertices: checks them, bounds them, picks the sample. Vertices of a file that cannot
+/// be read again in place are spooled to `scratch` meanwhile, which must outlive the result. Throws
+/// as mesh_io::MeshSource does. `file_name`: for the summary. Requires a vertex.
 SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                   storage::ScratchFile& scratch, const StageContext& context);
 
-/// The same mesh in another process, which has read nothing: `summary` and `origin` are those of
-/// ingest(). Requires vertices in place.
+/// Returns the same mesh in another process, which reads nothing now: `summary` and `origin` are
+/// those of ingest(). Requires vertices in place.
 SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source, const SourceSummary& summary,
                     Vec3d origin, storage::ScratchFile& scratch);
 

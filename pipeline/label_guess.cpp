@@ -19,7 +19,7 @@ void LabelGuess::add(const float* channels, std::size_t stride, std::size_t vert
   }
 }
 
-/// What is no number is no value.
+/// Adds a value; NaN and infinities are passed over.
 void LabelGuess::add_value(double value) {
   if (!std::isfinite(value))
     return;
@@ -38,7 +38,7 @@ void LabelGuess::add(const LabelGuess& next) {
     add_value(value);
 }
 
-// Integers of 64 bits are kept as doubles.
+// Integers of 64 bits are kept as doubles, so the type f64 may be an integer's.
 bool LabelGuess::is_quantity() const {
   constexpr std::uint64_t kOf = 10, kMost = 9;
   const bool is_whole = is_integer(attribute_.type) || attribute_.type == ValueType::f64;

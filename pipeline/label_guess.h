@@ -1,5 +1,5 @@
-// Whether the numbers of an attribute name something, by what they are: where types and names do
-// not say it.
+// A guess whether the numbers of an attribute name something, from the numbers alone: for
+// attributes whose type and name do not say it.
 #pragma once
 
 #include "hierarchy/scalar_value.h"
@@ -16,26 +16,26 @@ namespace meshhier::pipeline {
 /// looked at apart and added in their order.
 class LabelGuess {
  public:
-  /// So many different ones are few.
+  /// Up to so many different values are few.
   static constexpr std::size_t kMostClasses = 64;
   static constexpr double kMostClass = 4095;
-  /// A label may have more: what has not is none that a viewer could list.
+  /// Up to so many different values a viewer can list: then labels stay labels.
   static constexpr std::size_t kManyValues = 256;
-  /// Of fewer vertices nothing is said.
+  /// With fewer vertices no guess is made.
   static constexpr std::uint64_t kLeastSteps = 4000;
 
   explicit LabelGuess(const ScalarAttribute& attribute) : attribute_(attribute) {}
 
-  /// Of vertices whose channels lie `stride` floats apart, the first ones at `channels`.
+  /// Adds vertices whose channels lie `stride` floats apart, the first ones at `channels`.
   void add(const float* channels, std::size_t stride, std::size_t vertices);
-  /// Of the vertices behind.
+  /// Adds the vertices behind.
   void add(const LabelGuess& next);
 
-  /// Whether integers that are taken for labels are none: there are more than kManyValues, and of
-  /// ten vertices nine have another one than the vertex before. Objects and classes lie together.
+  /// Whether integers that are taken for labels are none: there are more than kManyValues, and nine
+  /// vertices of ten have another one than the vertex before. Objects and classes lie together.
   bool is_quantity() const;
-  /// Of a quantity in floats that may be a label: its values, if they are two or more but few, and
-  /// whole numbers from 0 to kMostClass; else none.
+  /// Returns the values of a quantity in floats that may be a label: they are two or more but few,
+  /// and whole numbers from 0 to kMostClass. Else returns none.
   std::vector<double> classes() const;
 
  private:
@@ -48,7 +48,7 @@ class LabelGuess {
   std::uint64_t changes_ = 0;  ///< those to another value
 };
 
-/// The line of the config that makes labels of attributes: `"labels": ["class", "object"]`.
+/// Returns the line of the config that makes labels of attributes: `"labels": ["class", "object"]`.
 std::string labels_line(const std::vector<std::string>& names);
 
 }  // namespace meshhier::pipeline

@@ -20,15 +20,15 @@
 namespace meshhier::pipeline {
 namespace {
 
-// What chunks leave behind between the blobs that stay adds up over thousands of them, and so do
-// the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
+// Each chunk leaves some 3 MiB of free memory behind, between the blobs that stay and where spooled
+// blocks were, too small for the tiles that they turn into. Over thousands of chunks that adds up.
 constexpr std::size_t kChunksBetweenReleases = 8;
 
 bool fits(std::uint64_t chunk_bytes, const MemoryPlan& plan) {
   return chunk_bytes <= plan.work_bytes + plan.pool_bytes / 2;
 }
 
-/// The least budget, in whole MiB, in which a chunk of so many bytes fits.
+/// Returns the least budget, in whole MiB, in which a chunk of so many bytes fits.
 std::uint64_t budget_for(std::uint64_t chunk_bytes, const StageContext& context) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   const MemoryCosts costs = memory_costs(context.plan.job);
@@ -124,8 +124,8 @@ void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Sh
 }
 
 StageMemory leaves_memory(const JobSize& job) {
-  // A chunk read, split and turned into tiles: vertices twice, keys and numbers; triangles as read,
-  // as split, as tiles and as bytes.
+  // A chunk is read, split and turned into tiles: vertices are there twice, with keys and numbers;
+  // triangles as read, as split, as tiles and as bytes.
   const std::uint64_t vertices = std::min(job.place_count, partition::kChunkVertices);
   const std::uint64_t triangles = job.part_triangles(vertices);
   const std::uint64_t usual = vertices * (3 * job.vertex_bytes() + 60) + triangles * 40;
@@ -133,7 +133,8 @@ StageMemory leaves_memory(const JobSize& job) {
   // counts for more: 500 bytes a vertex at most.
   const bool is_dense = 2 * job.face_count > 5 * job.place_count;
   const std::uint64_t dense = vertices * (job.vertex_bytes() + 500) + triangles * 12;
-  // Copies twice, with their places and order; the wedges of triangles as read and in tiles.
+  // Copies are there twice, with their places and order; the wedges of triangles as read and in
+  // tiles.
   const std::uint64_t copies = job.part_copies(vertices) * (2 * job.vertex_bytes() + 24) +
                                std::min(triangles, 6 * job.part_copies(vertices)) * 24;
   const std::uint64_t chunk = (is_dense ? std::max(usual, dense) : usual) + copies;

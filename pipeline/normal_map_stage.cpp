@@ -20,9 +20,9 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// How many texels of a map an original vertex gets, unless that is more than a map may have. The
-/// most are for originals of few triangles and sharp edges: of a map that is off by more than
-/// `kGoodDegrees` with fewer.
+/// An original vertex gets so many texels of a map, unless that is more than a map may have. The
+/// most are for originals of few triangles and sharp edges, whose maps are off by more than
+/// kGoodDegrees with fewer.
 constexpr double kFewTexelsAVertex = 3;
 constexpr double kMostTexelsAVertex = 12;
 constexpr double kGoodDegrees = 0.5;
@@ -32,7 +32,7 @@ constexpr double kGoodDegrees = 0.5;
 constexpr double kLeastDegrees = 1;
 constexpr double kMostOfTriangles = 0.75;
 
-/// The normals of all corners, interior triangles first, as the file has them.
+/// Holds the normals of all corners, interior triangles first, as the file has them.
 class CornerShading {
  public:
   CornerShading(const Forest& forest, NodeId node, const TileMesh& mesh)
@@ -89,14 +89,14 @@ double area_of(const BakeSource& source) {
   return area;
 }
 
-/// Of a triangle at work: as the stage `texture` has it, and its frames.
+/// Memory of a triangle at work: as in the stage `texture`, and its frames.
 constexpr std::uint64_t kFramedTriangleBytes = 600;
 
-/// A map at work, and the directions that it is made of.
+/// Returns the memory of a map at work, and of the directions that it is made of.
 std::uint64_t map_bytes(ImageFormat format, std::uint32_t side) {
   constexpr double kTexelBytes = 70;
   constexpr double kSources = 16;
-  constexpr double kShown = 0.45;  // of a picture's texels
+  constexpr double kShown = 0.45;  // so much of a picture's texels is covered
   const std::uint64_t texels = std::uint64_t{side} * side;
   constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
   return images::coder_bytes(format, texels) +
@@ -152,7 +152,7 @@ class MapStage {
     });
   }
 
-  /// Sizes of a texel, if a vertex of the original gets few or as many as it may.
+  /// The sizes of a texel if a vertex of the original gets few of them, or as many as it may.
   struct LeastTexels {
     float of_few = 0, of_most = 0;
   };
@@ -166,7 +166,8 @@ class MapStage {
     return {texel(kFewTexelsAVertex), texel(kMostTexelsAVertex)};
   }
 
-  /// With more texels if a map of few is not good. Differences shrink as texels do, about.
+  /// Bakes a map of few texels, and with more if that is not good. Differences shrink about as
+  /// texels do.
   static texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least) {
     texture::BakedNormalMap baked = baker.bake(least.of_few);
     const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
@@ -176,7 +177,7 @@ class MapStage {
     return baker.bake(std::max(wanted, least.of_most));
   }
 
-  /// What a map is good for, and the splits that it takes.
+  /// The effect of a map, and the splits that it takes.
   struct Gain {
     double own_degrees = 0, map_degrees = 0;
     std::size_t splits = 0;
@@ -225,8 +226,8 @@ class MapStage {
   execution::MemoryGate gate_;
 };
 
-/// Texels of all maps: three levels above the partitions have as many as the original's vertices
-/// ask for, about, the others as many as a map may have.
+/// Returns the texels of all maps: three levels above the partitions have about as many as the
+/// original's vertices ask for, the others as many as a map may have.
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
   const double side = job.normal_map_side;
   const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);

@@ -30,9 +30,10 @@ double longest_of(const std::array<Side, 3>& sides) {
   return std::max({sides[0].length(), sides[1].length(), sides[2].length()});
 }
 
-/// The multiple of a power of two that is nearest to the middle. The power is about a thousandth of
-/// the length that matters, so that what is left of the coordinates is small; or a float's last
-/// digit, so that a coordinate of 0 stays exact, too, unless that is more than a quarter of it.
+/// Returns the multiple of a power of two that is nearest to the middle. The power is about a
+/// thousandth of the length that matters, so that differences to it are small; or a float's last
+/// digit, so that a coordinate of 0 stays exact, too, unless that is more than a quarter of the
+/// length.
 double origin_along(const Side& side, double longest) {
   double length = std::max(side.length(), longest / 1024);
   if (length == 0)
@@ -44,14 +45,14 @@ double origin_along(const Side& side, double longest) {
   return std::isfinite(origin) ? origin : 0;
 }
 
-/// How many points of a sample are beyond its core at each end.
+/// Returns how many points of a sample are beyond its core at each end.
 std::size_t left_out(std::size_t count) {
   constexpr std::size_t kPart = 32, kFewest = 8;
   return count < kFewest ? 0 : (count + kPart - 1) / kPart;
 }
 
-/// Whether floats relative to `origin` are too coarse for what lies along the side, where they need
-/// not be.
+/// Whether floats relative to `origin` are too coarse for the vertices along the side, though
+/// others would not be.
 bool is_coarse(const Side& core, double origin, std::uint64_t count) {
   constexpr double kHalfDigit = 0x1p-24, kPart = 1e-3;
   const double reach = std::max(std::abs(core.low - origin), std::abs(core.high - origin));
@@ -59,8 +60,8 @@ bool is_coarse(const Side& core, double origin, std::uint64_t count) {
   return core.length() > 0 && reach > 2 * core.length() && kHalfDigit * reach > kPart * distance;
 }
 
-/// The core, and as much on both sides of it; where all axes are alike, many times its longest
-/// side.
+/// Returns the core with as much on both sides of it; where all axes are alike, with many times its
+/// longest side.
 Side near(const Side& core, bool is_coarse, double longest) {
   constexpr double kManyTimes = 16;
   const double beyond = is_coarse ? core.length() : kManyTimes * longest;
@@ -84,7 +85,7 @@ bool fills_few_cells(std::span<const Vec3d> sample, const Side& side, Coordinate
     const auto cell = static_cast<std::size_t>(std::clamp(part * kCells, 0.0, kCells - 1.0));
     count += filled[cell] ? 0 : 1;
     if (count >= kFewCells)
-      return false;  // of most meshes soon
+      return false;  // soon, for most meshes
     filled.set(cell);
   }
   return true;

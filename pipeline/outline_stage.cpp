@@ -17,12 +17,12 @@
 namespace meshhier::pipeline {
 namespace {
 
-// At most 32 kB for any model (docs/architecture.md, Outline).
+// The file has at most 32 kB for any model (docs/architecture.md, Outline).
 constexpr std::size_t kOutlineBytes = 32000;
 
-// Border triangles and border edges, then segments, held at a time: 25 MB, whatever the budget, as
-// the result may not depend on it. The file has room for 2000 points; a mesh with more edges than
-// this (open patches, soup) is outlined on a coarser level, where they are fewer.
+// So many border triangles and border edges, then segments, are held at a time: 25 MB, whatever the
+// budget, as the result may not depend on it. The file has room for 2000 points; a mesh with more
+// edges than this (open patches, soup) is outlined on a coarser level, where they are fewer.
 constexpr std::size_t kMostEdges = 131072;
 constexpr std::size_t kMostSegments = 2 * kMostEdges;
 // Level 0 is outlined anyhow.
@@ -31,7 +31,7 @@ constexpr std::uint64_t kEdgeBytes = 100;
 /// A tile has vertices enough for so many sectors; finer tiles cost more and show no more.
 constexpr std::uint32_t kTileSectors = 32;
 
-/// The finest level with no more nodes than the sectors need.
+/// Returns the finest level with no more nodes than the sectors need.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
   Level level{0};
   while (level < tree.depth() && tree.node_count(finer(level)) <= sectors / kTileSectors)
@@ -39,7 +39,7 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
   return level;
 }
 
-/// Of the level's tiles; none if each is one sector.
+/// Divides the level's tiles into sectors; returns none if each tile is one sector.
 outline::Sectors divide(Forest& forest, Level level, std::uint32_t parts, const TileRoom& room,
                         const StageContext& context) {
   outline::Sectors sectors;
@@ -57,7 +57,8 @@ outline::Sectors divide(Forest& forest, Level level, std::uint32_t parts, const 
   return sectors;
 }
 
-/// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
+/// Adds all sectors of a level; returns false if their lines are too many and there is a coarser
+/// level.
 bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std::uint32_t parts,
              const StageContext& context) {
   using Collected = std::optional<outline::OutlineBuilder::Sector>;
@@ -84,7 +85,8 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std:
   return !too_many;
 }
 
-/// Of the coarsest level, which is one tile: the whole model at the scale of a thumbnail.
+/// Returns the crest lines of the coarsest level, which is one tile: the whole model at the scale
+/// of a thumbnail.
 std::vector<outline::CrestLine> crest_lines(Forest& forest) {
   return outline::crest_lines(forest.load({Level{0}, 0}).mesh);
 }
@@ -92,7 +94,7 @@ std::vector<outline::CrestLine> crest_lines(Forest& forest) {
 }  // namespace
 
 StageTimes outline_time(const JobSize& job, const TilePopulation& tiles) {
-  constexpr double kVertexSeconds = 0.1e-6;  // of the tiles of one level
+  constexpr double kVertexSeconds = 0.1e-6;  // a vertex of the tiles of one level
   const double sectors = std::min<double>(job.outline_sectors, tiles.simplified.count);
   const double vertices = tiles.simplified.count > 0
                               ? tiles.simplified.vertices / tiles.simplified.count

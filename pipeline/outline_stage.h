@@ -16,7 +16,9 @@ struct OutlineStageResult {
   OutlineReport report;
 };
 
-/// `diagonal`: of the model's bounding box.
+/// Makes the outline. Requires the tiles of all levels. Its memory is bounded whatever the budget,
+/// and the result the same. `diagonal`: that of the model's bounding box. Throws Error(io |
+/// interrupted).
 OutlineStageResult make_outline(Forest& forest, double diagonal, const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -14,8 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names relative to the hierarchy, in the archive's order: what a reader opens first comes first,
-/// and where it lies follows from sizes that the manifest and the index tell.
+/// Visits the names of all files, relative to the hierarchy, in the archive's order: those that a
+/// reader opens first come first, and their places follow from sizes that the manifest and the
+/// index tell.
 void for_each_name(const storage::HierarchyReader& made,
                    const std::function<void(const fs::path&)>& visit) {
   const std::vector<TileRecord>& tiles = made.records();

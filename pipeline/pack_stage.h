@@ -12,7 +12,7 @@
 
 namespace meshhier::pipeline {
 
-/// Counts files that are there for a while, but are no scratch files, as long as it is there.
+/// Counts files as temporary ones while the object lives, though they are no scratch files.
 class TemporaryFiles {
  public:
   TemporaryFiles(storage::ScratchUse& use, std::uint64_t bytes) : use_(use), bytes_(bytes) {
@@ -27,19 +27,19 @@ class TemporaryFiles {
   std::uint64_t bytes_;
 };
 
-/// Of the archive, beside the files in it.
+/// Returns the bytes of the archive beside the files in it.
 double archive_overhead_bytes(const TilePopulation& tiles);
 
-/// Bytes of the output: all files, or their archive.
+/// Returns the bytes of the output: all files, or their archive.
 double published_bytes(const JobSize& job, const TilePopulation& tiles);
 
-/// Seconds on the disk.
+/// Returns seconds on the disk.
 StageTimes pack_time(const JobSize& job, const TilePopulation& tiles);
 
 /// Makes the archive `file` of all files of the hierarchy `made`: manifest, index, outline,
-/// tilesets, then tiles level by level; forces it to the disk. What is read counts in `use`.
-/// Returns the archive's size. Throws Error(io | interrupted), Error(usage) if a file is too
-/// large for an archive.
+/// tilesets, then tiles level by level; forces it to the disk. Bytes that are read count in `use`.
+/// Returns the archive's size. Throws Error(io | interrupted), Error(usage) if a file is too large
+/// for an archive.
 std::uint64_t pack(const storage::HierarchyReader& made, const std::filesystem::path& file,
                    storage::ScratchUse& use, const StageContext& context);
 

@@ -70,7 +70,7 @@ mesh_io::FaceCounts distribute_faces(SourceMesh& mesh, Renumberer<Rank> renumber
   return blocks + rest;
 }
 
-/// Vertices, then triangles. `passing`: for what is needed meanwhile only.
+/// Distributes vertices, then triangles. `passing`: scratch for data that is needed only meanwhile.
 mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copies,
                                const TopTree& top, Chunks& chunks, storage::ScratchFile& passing,
                                const StageContext& context) {
@@ -152,7 +152,7 @@ void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
 
 namespace {
 
-/// Of an entry of the table of ranks.
+/// Returns the bytes of an entry of the table of ranks.
 std::uint64_t rank_bytes(const JobSize& job) {
   return job.has_copies() ? sizeof(WedgeRank) : sizeof(std::uint32_t);
 }
@@ -210,7 +210,7 @@ DiskVolumes partition_disk(const JobSize& job, const TilePopulation& /*tiles*/,
   const double chunks = vertices * job.vertex_bytes() +
                         Chunks::expected_triangle_bytes(job.place_count, job.face_count,
                                                         job.wedged_triangles(), kBoundaryShare);
-  // Copies: their list, and their rows until the ranks of their places are known; then these ranks.
+  // Copies have a list, and rows until the ranks of their places are known; then these ranks.
   const auto copies = static_cast<double>(job.vertex_count - job.place_count);
   const double list = copies * sizeof(CopyVertex);
   const double rows = copies * job.vertex_bytes();

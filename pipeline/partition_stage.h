@@ -12,21 +12,22 @@
 
 namespace meshhier::pipeline {
 
-/// What chunks are spooled to.
+/// Returns the spools that all chunks together have.
 ChunkSpools chunk_spools(const JobSize& job);
 
-/// Items are blocks of input.
+/// The stage's memory; items are blocks of input.
 StageMemory partition_memory(const JobSize& job);
-/// A sweep for the splits, then vertices and triangles distributed.
+/// The stage's time: a sweep for the splits, then vertices and triangles are distributed.
 StageTimes partition_time(const JobSize& job, const TilePopulation& tiles);
-/// Windows of the medians until the splits are found; ranks, and triangles that wait for one, while
-/// triangles are distributed; chunks until the end of `leaves`.
+/// The stage's disk: windows of the medians until the splits are found; ranks, and triangles that
+/// wait for one, while triangles are distributed; chunks until the end of `leaves`.
 DiskVolumes partition_disk(const JobSize& job, const TilePopulation& tiles,
                            const MemoryPlan& memory);
 
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
-/// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside
-/// `scratch`, here and below.
+/// triangles in one; returns how many faces the mesh has. Files that are needed only meanwhile lie
+/// beside `scratch`, here and below. Deterministic for any number of threads and any budget. Throws
+/// as SourceMesh, and Error(io).
 mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
                                    Chunks& chunks, storage::ScratchFile& scratch,
                                    const StageContext& context);
@@ -35,8 +36,8 @@ mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& 
 partition::TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
                                storage::ScratchFile& scratch, const StageContext& context);
 
-/// When all triangles are distributed: the stage that would be refused comes late, and takes long
-/// where triangles reach across.
+/// Warns, when all triangles are distributed, if so many reach across the mesh that a later stage
+/// takes long, or may be refused for lack of memory.
 void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -22,7 +22,7 @@ std::vector<NodeId> nodes_left(const Tree& tree, Level level, const Share& share
   return left;
 }
 
-/// What they hold is the next stage's.
+/// Ends the processes that encode and decode pictures, as their memory is the next stage's.
 struct EndOfCoders {
   EndOfCoders() = default;
   EndOfCoders(const EndOfCoders&) = delete;

@@ -1,4 +1,4 @@
-// What the stages that make tiles' pictures and normal maps have in common: level by level.
+// The frame of the stages that make tiles' pictures and normal maps level by level.
 #pragma once
 
 #include "pipeline/journal/build_journal.h"
@@ -10,8 +10,9 @@
 
 namespace meshhier::pipeline {
 
-/// Calls make(node) for each tile of the levels that the journal has nothing of, from the last
-/// level on, in parallel within one, and notes it. `name`: of the stage.
+/// Calls make(node) for each tile of the levels whose picture the journal does not have, from the
+/// last level on, in parallel within one, and notes it. `name`: the stage's. Throws what make()
+/// throws, Error(io | interrupted).
 void make_level_by_level(const char* name, const LevelRange& levels, TextureStore& textures,
                          BuildJournal& journal, const StageContext& context,
                          const std::function<void(NodeId node)>& make);

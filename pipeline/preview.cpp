@@ -18,31 +18,32 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// A level with more triangles shows no more in so few pixels, and takes longer to draw.
+/// The most triangles of the level that is drawn: more show nothing in so few pixels, and take
+/// longer.
 constexpr std::uint64_t kMostTriangles = 60'000;
 
-/// The same of the texels of its pictures, which are decoded a few times.
+/// The most texels of its pictures, which are decoded a few times.
 constexpr std::uint64_t kMostTexels = 2048 * 2048;
 
-/// Large triangles may lie on each other in any number. With more samples to look at, seconds, the
-/// picture is smaller.
+/// The most samples to look at, which takes seconds: large triangles may lie on each other in any
+/// number. With more the picture is smaller.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 28;
 constexpr std::uint32_t kLeastSide = 16;
 
-/// Of samples at a time: as many as one for each pixel.
+/// Memory of the samples that are held at a time: as many as one for each pixel.
 constexpr std::uint64_t kBandBytes =
     sizeof(render::Sample) * storage::kMostPreviewSide * storage::kMostPreviewSide;
-/// What is held beside a tile: samples, the picture; then what encodes it. And facets.
+/// Memory beside a tile: samples and the picture, then the encoder; and facets.
 constexpr std::uint64_t kPaintingBytes =
     kBandBytes + (3 << 20) + kMostTriangles * sizeof(render::Facet);
 
-/// Whether nothing but vertices is there to be drawn.
+/// Whether there is nothing but vertices to draw.
 bool is_of_points(std::span<const TileRecord> records) {
   return storage::record_of(records, NodeId{}).interior_count == 0;
 }
 
-/// Tiles draw all of their border, also what they leave to each other; of points two triangles
-/// each.
+/// Whether a cut is quick to draw. Tiles draw all of their border, also triangles that they leave
+/// to each other; a point is two triangles.
 bool is_quick(const Cut& cut, std::span<const TileRecord> records) {
   std::uint64_t triangles = 0, texels = 0;
   for (const NodeId node : cut.nodes()) {
@@ -54,7 +55,7 @@ bool is_quick(const Cut& cut, std::span<const TileRecord> records) {
   return triangles <= kMostTriangles && texels <= kMostTexels;
 }
 
-/// The finest level of those that are quick to draw, or the root.
+/// Returns the finest level of those that are quick to draw, or the root.
 Cut shown_cut(const Tree& tree, std::span<const TileRecord> records) {
   Cut shown = Cut::of_level(tree, Level{0});
   for (Level level{0}; level < tree.depth();) {
@@ -75,7 +76,8 @@ PublishedTile tile_of(const PreviewInput& input, NodeId node, const StageContext
   return storage::decode_tile(bytes, record.node, context.tree(), input.format, path.string());
 }
 
-/// Without its picture, which need not be decoded to see where they lie.
+/// Returns the facets of a tile without its picture, which need not be decoded to see where they
+/// lie.
 std::vector<render::Facet> facets_of(PublishedTile tile, const AttributeLayout& layout) {
   tile.image = {};
   return render::scene_tile(tile, layout).facets;
@@ -88,12 +90,12 @@ std::uint64_t vertices_of(const Cut& cut, std::span<const TileRecord> records) {
   return sum;
 }
 
-/// Of the root: its points if nothing else is there.
+/// Returns the facets of the root: its points if there is nothing else.
 std::vector<render::Facet> root_facets(const PublishedTile& root, const AttributeLayout& layout) {
   return root.mesh.interior.empty() ? render::points_of(root, layout) : facets_of(root, layout);
 }
 
-/// How a model is seen.
+/// The view of a model.
 struct Portrait {
   render::Camera camera;
   render::ViewAxes axes;
@@ -135,8 +137,8 @@ render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait
   return drawn;
 }
 
-/// Tiles as they are drawn, several times. Without pictures all that is shown is held: at most
-/// kMostTriangles of them.
+/// Gives tiles to be drawn, several times each. Without pictures it holds all of them, which have
+/// at most kMostTriangles.
 class DrawnTiles {
  public:
   DrawnTiles(const PreviewInput& input, const Cut& cut, const PublishedTile& root,
@@ -161,7 +163,7 @@ class DrawnTiles {
   render::SceneTile load(std::size_t tile) const {
     return drawn_tile(tile_of(input_, nodes_[tile], context_), portrait_);
   }
-  /// Of its triangles, also where points are drawn.
+  /// Counts the samples of a tile's triangles, also where points are drawn.
   std::uint64_t samples(std::size_t tile) const {
     const auto count = [&](std::span<const render::Facet> facets) {
       return render::samples_to_draw(facets, portrait_.camera);
@@ -176,10 +178,11 @@ class DrawnTiles {
   std::vector<NodeId> nodes_;
   const Portrait& portrait_;
   const StageContext& context_;
-  std::vector<render::SceneTile> held_;  ///< of all tiles, or of none
+  std::vector<render::SceneTile> held_;  ///< all tiles, or none
 };
 
-/// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
+/// Returns the scene of a cut. Tiles draw all of their border: triangles between two of them are
+/// drawn twice, and nothing is missing.
 render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
                        const DrawnTiles& tiles) {
   render::Scene scene;
@@ -201,7 +204,7 @@ std::uint64_t samples_of(const DrawnTiles& tiles, const StageContext& context) {
   return sum;
 }
 
-/// The same view, with fewer pixels if that is too much to draw.
+/// Returns the same view, with fewer pixels if that is too much to draw.
 render::Camera affordable(const render::Camera& camera, std::uint64_t samples) {
   render::Framing framing = camera.framing();
   for (; samples > kMostSamples && framing.width > kLeastSide && framing.height > kLeastSide;
@@ -242,7 +245,7 @@ MadePreview make_preview(const PreviewInput& input, PublishedTile root,
 }
 
 std::uint64_t first_view_memory(const JobSize& job) {
-  // A tile as it is published and decoded, and what is drawn of it.
+  // A tile is held as it is published and decoded, and as it is drawn.
   constexpr std::uint64_t kTriangleBytes = sizeof(render::Facet) + sizeof(render::Skin) + 40;
   return job.part_triangles(job.largest_tile) * kTriangleBytes;
 }

@@ -36,7 +36,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// Over the input's bounds as they are stored.
+/// Returns the lattice over the input's bounds as they are stored; nothing if positions stay exact.
 std::optional<Lattice> lattice_of(const DistributedSource& source, const StageContext& context) {
   const std::optional<std::uint32_t>& bits = context.config.storage.position_bits;
   if (!bits)
@@ -61,7 +61,7 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
   return format;
 }
 
-/// What writes tiles.
+/// All that writing tiles needs.
 struct TileWriter {
   const Forest& forest;
   const TextureStore& textures;
@@ -95,7 +95,7 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
   return record;
 }
 
-/// A tile with all that its file has of vertices and triangles.
+/// A tile with all vertices and triangles that its file has.
 struct FinishedMesh {
   TileMesh mesh;
   Shading shading;
@@ -142,12 +142,12 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
-/// As the config says, or from where the root is recognised.
+/// Returns the first view that the config asks for, or the one in which the root is recognised.
 Standpoint first_view_of(const TileWriter& to, Forest& forest) {
   if (const auto wished = to.context.config.first_view.standpoint())
     return *wished;
   const NodeId node = forest.tree().root();
-  // What is drawn takes as much as what is packed.
+  // Drawing a tile takes as much memory as packing it.
   const TileRoom room =
       room_for(forest, to.context.memory(), {heaviest_packed(forest, std::array{node})});
   FinishedMesh root = finish(to, node, forest.load(node).mesh);
@@ -204,7 +204,7 @@ Published write_tile(const TileWriter& to, NodeId node) {
   return published;
 }
 
-/// With their errors and bounds, which count the rounding of positions.
+/// Returns the records with errors and bounds, which count the rounding of positions.
 std::vector<TileRecord> complete_records(std::span<const Published> tiles, const TileErrors& errors,
                                          const std::optional<storage::Quantization>& rounded,
                                          const Tree& tree) {
@@ -223,7 +223,7 @@ std::vector<TileRecord> complete_records(std::span<const Published> tiles, const
   return records;
 }
 
-/// What the heaviest of the nodes takes while it is written.
+/// Returns the memory that the heaviest of the nodes takes while it is written.
 std::uint64_t heaviest_written(const Forest& forest, std::span<const NodeId> nodes,
                                const config::StorageConfig& storage) {
   return storage.compression != storage::Compression::none ? heaviest_packed(forest, nodes)
@@ -253,7 +253,7 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
                     context};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
-  // A picture as it was stored, on its own, and in the tile's file.
+  // A picture is held as it was stored, on its own, and in the tile's file.
   const std::uint64_t heaviest =
       heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
   const TileRoom room = room_for(forest, context.memory(), {heaviest});
@@ -270,7 +270,7 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
 
 namespace {
 
-/// What the whole tells of its input.
+/// Returns the summary of the input, completed by what all stages have found.
 SourceSummary complete_source(const BuildJournal& journal, const StageContext& context) {
   SourceSummary source = journal.source()->summary;
   source.unreferenced_vertices = journal.unreferenced_vertices();
@@ -310,7 +310,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
       complete_records(tiles, complete_errors(textures, journal, context), quantization, tree);
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);
-  // What is drawn takes as much as what is packed.
+  // Drawing a tile takes as much memory as packing it.
   const std::array root{tree.root()};
   const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
   const PreviewInput published{directory, format, records};
@@ -344,7 +344,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.normal_maps = format.normal_maps;
   manifest.config = config::resolved_json(context.config);
   if (!source.textures) {
-    manifest.config.erase("texture");  // what decided nothing
+    manifest.config.erase("texture");  // it decided nothing
     manifest.config.erase("missing_images");
   }
   if (context.plan.job.normal_map_side == 0)
@@ -392,7 +392,7 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   };
   const double plain =
       bytes_of(tiles.partitions) + bytes_of(tiles.simplified) - bytes_of(tiles.early);
-  // Room for a split of every other vertex, as very rough surfaces have them.
+  // There is room for a split of every other vertex, as very rough surfaces have them.
   constexpr double kMostSplits = 0.5;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   const double splits =

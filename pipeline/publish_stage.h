@@ -13,27 +13,29 @@
 
 namespace meshhier::pipeline {
 
-/// The published files, for good or until they are packed.
+/// Returns the bytes of the published files, which stay for good or until they are packed.
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
-/// What the preview or the first view holds: tiles on their way take less than in `simplify`.
+/// The stage's memory: that of the preview or the first view, as tiles on their way take less than
+/// in `simplify`.
 StageMemory publish_memory(const JobSize& job);
 StageTimes publish_time(const JobSize& job, const TilePopulation& tiles);
 
-/// Where tile files go.
+/// The directories that tile files go to.
 struct TileFiles {
-  std::filesystem::path directory;  ///< of the hierarchy
-  /// Where each is until it is whole and on disk, as other processes may write the same; empty: it
-  /// is written in its place.
+  std::filesystem::path directory;  ///< the hierarchy's
+  /// Each file is here until it is whole and on disk, as other processes may write the same. Empty:
+  /// it is written in its place.
   std::filesystem::path attempts{};
 };
 
-/// Writes the files of the share of all tiles, but for those the journal has. All are on disk then,
-/// if other processes write, too.
+/// Writes the files of the share of all tiles, but for those the journal has, and notes them. If
+/// `to.attempts` is given, all are on disk when it returns. Requires all tiles, their pictures and
+/// maps. The bytes are the same for any number of threads. Throws Error(io | budget | interrupted).
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
              const TileFiles& to, const Share& share, const StageContext& context);
 
-/// Writes all other files of the hierarchy, once all tiles are there, and adds up their errors and
-/// bounds.
+/// Adds up the errors and bounds of all tiles, which must be published, and writes all other files
+/// of the hierarchy; the manifest comes last. Throws Error(io | corrupt | interrupted).
 void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
                    const OutlineStageResult& outline, const std::filesystem::path& directory,
                    const StageContext& context);

@@ -24,7 +24,7 @@ SourceMesh read_vertices(importing::MeshInput& input, storage::ScratchFile& scra
   return mesh;
 }
 
-/// What ingest and partition learnt of the input, and import before them.
+/// Returns what ingest and partition learnt of the input, and import before them.
 SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
                         const importing::MeshInput& input, const execution::CancelToken& cancel) {
   SourceSummary summary = mesh.summary();

@@ -18,8 +18,8 @@ namespace {
 
 using cluster_simplify::ContractedTile;
 
-/// How far a simplified tile's surface went when its level was made, now that the level is
-/// complete.
+/// Returns how far a simplified tile's surface went when its level was made. Requires that the
+/// level is complete.
 Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   const TileMesh& mesh = loaded.tile.mesh;
   const cluster_simplify::SeamStripOf own{node.index, forest.seam_strip(node)};
@@ -48,7 +48,7 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   return step;
 }
 
-/// Of the places [begin, begin + count).
+/// Returns the part of a map for the places [begin, begin + count).
 WedgeMap part_of(const WedgeMap& map, std::size_t begin, std::size_t count) {
   const auto at = [&](std::size_t place) {
     return std::lower_bound(map.places.begin(), map.places.end(), place) - map.places.begin();
@@ -72,9 +72,8 @@ class Simplifier {
   Simplifier(Forest& forest, const AttributeLayout& attributes, const StageContext& context)
       : forest_(forest), attributes_(attributes), context_(context) {}
 
-  /// Loads a tile of the level below, or the root: this is when all of its level is known, its
-  /// neighbours' places too, so its step is measured, unless it is a partition, and its normals are
-  /// made.
+  /// Loads a tile of the level below, or the root. All of its level is known now, its neighbours'
+  /// places too: so its step is measured, unless it is a partition, and its normals are made.
   BuildTile load(NodeId node, std::vector<IndexedStep>& steps) {
     LoadedTile loaded = forest_.load_with_mapped(node);
     const TileMesh& mesh = loaded.tile.mesh;
@@ -154,7 +153,7 @@ std::vector<NodeId> tiles_left(const Tree& tree, Level level, const Share& share
   return left;
 }
 
-/// One for each of so many tiles.
+/// Returns a step for each of so many tiles.
 std::vector<Step> in_order(std::vector<IndexedStep> steps, std::uint32_t count) {
   std::vector<Step> all(count);
   for (IndexedStep& step : steps)
@@ -216,10 +215,10 @@ TileErrors add_up(BuildJournal& journal, const Tree& tree, double diagonal) {
 }
 
 StageMemory simplify_memory(const JobSize& job) {
-  // Two children read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8 of a
-  // triangle's 12; edges, queue and quadrics while they collapse.
+  // Two children are read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8
+  // of a triangle's 12; edges, queue and quadrics while they collapse.
   const std::uint64_t vertices = std::min(2 * std::uint64_t{job.largest_tile}, job.place_count);
-  // With copies, these and the wedges of triangles likewise, and what each wedge becomes.
+  // Copies and the wedges of triangles are there as often, and the wedge that each becomes.
   const std::uint64_t copies =
       job.has_copies() ? job.part_copies(vertices) * (5 * (job.vertex_bytes() + 4) + 60) +
                              job.part_triangles(vertices) * 48
@@ -230,7 +229,7 @@ StageMemory simplify_memory(const JobSize& job) {
 }
 
 StageTimes simplify_time(const JobSize& job, const TilePopulation& tiles) {
-  // Of each vertex that is joined to be contracted, with its two triangles.
+  // Seconds for each vertex that is joined to be contracted, with its two triangles.
   constexpr double kCollapsed = 1.12e-6;
   constexpr double kClustered = 0.62e-6;
   constexpr double kShaded = 0.1e-6;

@@ -11,29 +11,31 @@
 
 namespace meshhier::pipeline {
 
-/// Items are pairs of children and their parent.
+/// The stage's memory; items are pairs of children and their parent.
 StageMemory simplify_memory(const JobSize& job);
 StageTimes simplify_time(const JobSize& job, const TilePopulation& tiles);
-/// Simplified tiles, parent maps and seam strips, until the end.
+/// The stage's disk: simplified tiles, parent maps and seam strips, until the end.
 DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles,
                           const MemoryPlan& memory);
 
 /// Contracts, level by level from the last above the partitions to the top one, the tiles that the
-/// journal does not have. `attributes`: of the input. Requires all tiles of level `end`, and those
-/// of the whole levels between if there are any. If normals are computed, every tile that is read
-/// gets those of its own surface (shading/own_normals.h); the root, if it is made, too.
+/// journal does not have, and notes them. `attributes`: the input's. Requires all tiles of level
+/// `end`, and those of the whole levels between if there are any. If normals are computed, every
+/// tile that is read gets those of its own surface (shading/own_normals.h); the root, if it is
+/// made, too. Deterministic for any number of threads. Throws Error(io | budget | interrupted).
 ///
-/// How far a contraction moves the surface is measured while it is carried out (deviation.h), and
-/// at the seams when its level is complete (seam_strip.h): such steps are noted in the journal.
+/// The distance that a contraction moves the surface is measured while it is carried out
+/// (deviation.h), and at the seams when its level is complete (seam_strip.h): such steps are noted
+/// in the journal.
 void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attributes,
               const LevelRange& levels, const StageContext& context);
 
-/// Error and bound of every tile, from the partitions (0) to the root, each more than its
-/// children's, once all tiles and the root are noted; takes their steps from the journal.
+/// Returns error and bound of every tile, from the partitions (0) to the root, each more than its
+/// children's. Requires that all tiles and the root are noted; takes their steps from the journal.
 ///
 /// `bound` sums the certain distances of the steps along every way a point may have taken, through
 /// the tile itself and its neighbours (bound_chain.h); `error` adds the steps' root mean squares up
-/// the tree. `diagonal`: of the input's bounds.
+/// the tree. `diagonal`: that of the input's bounds.
 TileErrors add_up(BuildJournal& journal, const Tree& tree, double diagonal);
 
 }  // namespace meshhier::pipeline

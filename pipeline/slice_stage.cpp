@@ -19,7 +19,7 @@ namespace {
 using partition::Renumberer;
 using partition::WedgeRank;
 
-/// Ids in whole blocks: all that some triangles name, and their neighbours in the file.
+/// A set of ids in whole blocks: all that some triangles name, and their neighbours in the file.
 class NamedIds {
  public:
   explicit NamedIds(std::uint64_t vertices = 0)
@@ -51,7 +51,7 @@ class NamedIds {
   }
 
  private:
-  // About a block of vertices, whose ranks are read as a whole.
+  // The size is about that of a block of vertices, whose ranks are read as a whole.
   static constexpr std::uint64_t kBlock = 65536;
 
   std::uint64_t begin_of(std::ptrdiff_t block) const {
@@ -62,7 +62,7 @@ class NamedIds {
   std::vector<char> blocks_;
 };
 
-/// Those that a share of the faces names. Reads the faces.
+/// Returns the ids that a share of the faces names. Reads the faces.
 NamedIds ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
   const std::uint64_t vertices = mesh.summary().vertices;
   NamedIds all(vertices);
@@ -79,13 +79,13 @@ NamedIds ids_of(SourceMesh& mesh, const Share& share, const StageContext& contex
   return all;
 }
 
-/// Ranks of ascending ids, one by one.
+/// Gives the ranks of ascending ids, one by one.
 class RankCursor {
  public:
   RankCursor(const SlicedRanks& ranks, std::uint64_t vertices)
       : ranks_(ranks), vertices_(vertices) {}
 
-  /// Of a place by its first vertex.
+  /// Returns the rank of a place, by the id of its first vertex.
   std::uint32_t operator()(std::uint32_t id) {
     if (id - first_ >= block_.size()) {
       first_ = id;
@@ -104,7 +104,7 @@ class RankCursor {
   }
 
  private:
-  // No fewer than a block of vertices has, whose ranks are read as a whole.
+  // A block of vertices has no more; its ranks are read as a whole.
   static constexpr std::uint64_t kBlock = 65536;
   const SlicedRanks& ranks_;
   std::uint64_t vertices_;
@@ -122,7 +122,7 @@ void rank_copies(const SlicedInput& input, const ForEach& for_each, storage::Scr
       context.memory().table_bytes, take);
 }
 
-/// The table of ranks of some ids, in their order, of a mesh with copies.
+/// The table of ranks of some ids, in their order, for a mesh with copies.
 class WedgeTable {
  public:
   WedgeTable(const SlicedInput& input, const NamedIds& ids, storage::ScratchFile& passing,
@@ -152,7 +152,7 @@ class WedgeTable {
   }
 
  private:
-  // Several blocks of vertices, whose ranks are read as a whole.
+  // So many are several blocks of vertices, whose ranks are read as a whole.
   static constexpr std::size_t kBlock = 262144;
 
   WedgeRank copy(std::uint64_t id) {
@@ -167,7 +167,7 @@ class WedgeTable {
   std::uint64_t next_ = 0;
 };
 
-/// Calls distribute(triangles) with a TriangleDistribution whose table is that of some ids.
+/// Calls distribute(triangles) with a TriangleDistribution whose table has the ranks of some ids.
 template <class Distribute>
 auto with_table(SlicedInput& input, const NamedIds& ids, Chunks& chunks,
                 storage::ScratchFile& scratch, const StageContext& context,
@@ -195,7 +195,7 @@ auto with_table(SlicedInput& input, const NamedIds& ids, Chunks& chunks,
   return run(TrianglesByWedge{}, WedgeRank{}, table);
 }
 
-/// Of so many, what a share of the blocks has about.
+/// Returns about how many of `count` a share of the blocks has.
 std::uint64_t about(std::uint64_t count, const Share& share) {
   return share.end(count) - share.begin(count);
 }

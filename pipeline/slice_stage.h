@@ -1,7 +1,8 @@
 // The stage `partition` behind the splits, in slices of a mesh whose vertices are in place: first
 // the vertices of all slices; then, with the ranks of all of them, copies and triangles of all
 // slices; and at last the faces that no slice could take. Together they make the chunks of
-// partition_mesh(). What is needed meanwhile only is beside `scratch`.
+// partition_mesh(), and throw as it does. Files that are needed only meanwhile lie beside
+// `scratch`.
 #pragma once
 
 #include "import/copy_list.h"
@@ -18,7 +19,7 @@
 
 namespace meshhier::pipeline {
 
-/// What slices work with.
+/// All that a slice works with.
 struct SlicedInput {
   SourceMesh& mesh;
   const importing::CopyList& copies;
@@ -36,12 +37,14 @@ void distribute_copies(SlicedInput& input, const Share& slice,
                        const storage::RecordSpool<float>& copy_rows, Chunks& chunks,
                        storage::ScratchFile& scratch, const StageContext& context);
 
-/// Distributes the triangles of a slice of the blocks, as SourceMesh::read_triangle_blocks(). Reads
-/// the faces twice, and of the ranks about those of the vertices that they name.
+/// Distributes the triangles of a slice of the blocks, and returns what
+/// SourceMesh::read_triangle_blocks() does. Reads the faces twice, and little more of the ranks
+/// than those of the vertices that they name.
 FaceBlocks distribute_triangles(SlicedInput& input, const Share& slice, Chunks& chunks,
                                 storage::ScratchFile& scratch, const StageContext& context);
 
-/// Distributes the triangles of all faces from that one on, as SourceMesh::read_triangles_from().
+/// Distributes the triangles of all faces from that one on, and returns what
+/// SourceMesh::read_triangles_from() does.
 mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SlicedInput& input,
                                               Chunks& chunks, storage::ScratchFile& scratch,
                                               const StageContext& context);

@@ -13,10 +13,11 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// What several stages know of each tile until the end, the archive's index, and PROJ.
+/// Returns the memory of what several stages keep about each tile until the end, of the archive's
+/// index, and of PROJ.
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
-  // Six blob entries, what is known of it, its record, its statistics, its step and the sums of
-  // steps with some twenty neighbours each.
+  // A tile has six blob entries, its record, its statistics, its step and the sums of steps with
+  // some twenty neighbours each.
   constexpr std::uint64_t kTileBytes = 528;
   const std::uint64_t tiles = 2 * std::uint64_t{job.partition_count};
   return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0)) +
@@ -113,7 +114,7 @@ std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSu
 DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t splits) {
   const JobSize& job = plan.job;
   const storage::TileSums sums = expected_tiles(job).partitions;
-  // Ghosts have them too: more than others, as measured.
+  // Ghosts have splits too: more than others, as measured.
   constexpr double kGhostSplits = 1.5;
   const double tiles_per_vertex =
       1 + kGhostSplits * sums.boundary * sums.ghosts_per_boundary / sums.vertices;

@@ -1,6 +1,6 @@
-// What all stages of a build (pipeline/stages.h) take together, and the plan that follows from it.
+// The costs of all stages of a build (pipeline/stages.h), and the plan that follows from them.
 //
-// What is written when, and how long it stays:
+// Data is written, and stays on disk:
 //
 //   data                    written in     stays until
 //   the input as a PLY      import         partition is done   if it is imported
@@ -35,32 +35,33 @@ namespace meshhier::pipeline {
 
 MemoryCosts memory_costs(const JobSize& job);
 
-/// `tiles`: expected_tiles(job), or what is known better.
+/// `tiles`: expected_tiles(job), or better known ones.
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles);
 
-/// Of a whole build, about, for what is to be said before a mesh is known: an input triangle's.
+/// CPU seconds of a whole build for each triangle of the input, about: for estimates before a mesh
+/// is known.
 inline constexpr double kBuildTriangleSeconds = 1.4e-6;
 
-/// CPU seconds of all stages from ingest to publish, in the order of a build.
+/// Returns the CPU seconds of all stages from ingest to publish, in the order of a build.
 StageTimes cpu_times(const BuildPlan& plan);
 
-/// So many CPU seconds on the threads that a build uses: a part of it one thread does while the
-/// others wait.
+/// Returns the wall seconds of a build's work on so many threads; one thread does a part of it
+/// while the others wait.
 double wall_seconds(double cpu_seconds, std::size_t threads);
 
-/// Wall seconds of all stages to the end, import left out.
+/// Returns the wall seconds of all stages to the end, import left out.
 StageTimes wall_times(const BuildPlan& plan);
 
-/// What the disk needs when all partitions are there, if these take far more than was expected from
-/// the header: around vertices of very many triangles, or in a soup. Else none.
+/// Returns the need of disk when all partitions are there, if these take far more than was expected
+/// from the header: around vertices of very many triangles, or in a soup. Else returns nothing.
 std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSums& partitions);
 
-/// What the disk needs when all normals are there: `need` did not count vertices that are split at
-/// creases.
+/// Returns the need of disk when all normals are there: `need` did not count vertices that are
+/// split at creases.
 DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t splits);
 
-/// The plan for a mesh of which the header was read; `imported_bytes` as in job_size(). Throws as
-/// plan_tree(), and Error(budget) if the memory budget is too small.
+/// Returns the plan for a mesh of which the header was read; `imported_bytes` as in job_size().
+/// Throws as plan_tree(), and Error(budget) if the memory budget is too small.
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
                      std::uint64_t imported_bytes = 0, TexturePlan textures = {});
 

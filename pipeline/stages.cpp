@@ -26,8 +26,8 @@ bool has_pictures(const JobSize& job) {
   return job.textured;
 }
 
-/// The partitions tell what the disk needs. Without the chunks they cannot be made again, so they
-/// reach the disk before those go.
+/// Checks the disk by the partitions, which tell what it needs. Without the chunks they cannot be
+/// made again, so they reach the disk before those go.
 void settle_leaves(Making& of, const StageContext& context) {
   Workshop& workshop = of.workshop;
   if (const auto refined = refine_disk(context.plan, workshop.forest.partition_sums())) {
@@ -41,7 +41,7 @@ void settle_leaves(Making& of, const StageContext& context) {
   });
 }
 
-/// The normals tell how many vertices are split.
+/// Checks the disk by the normals, which tell how many vertices are split.
 void settle_tiles(Making& of, const StageContext& context) {
   of.settled.get();
   if (const std::uint64_t splits = of.workshop.forest.split_count(); splits > 0) {
@@ -63,7 +63,8 @@ StageTimes sync_time(const JobSize& job, const TilePopulation& tiles) {
   return {{"sync", "bytes", 0, published_bytes(job, tiles) / kDiskBytesPerSecond}};
 }
 
-// Of the time of `partition`: the sweep for the splits, vertices, and twice as many triangles.
+// Parts of the time of `partition`: the sweep for the splits, vertices, and twice as many
+// triangles.
 constexpr double kSweep = 0.25, kVertices = 0.25, kTriangles = 0.5;
 
 constexpr std::array kStages{

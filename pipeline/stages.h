@@ -41,7 +41,7 @@ struct Stage {
   std::string_view name;  ///< progress and statistics call it so
   bool (*applies)(const JobSize& job) = [](const JobSize& /*job*/) { return true; };
 
-  // What it takes, if it applies.
+  // The costs of the stage if it applies. Each function is beside the stage's code.
   StageMemory (*memory)(const JobSize& job) = nullptr;
   DiskVolumes (*disk)(const JobSize& job, const TilePopulation& tiles,
                       const MemoryPlan& memory) = nullptr;
@@ -50,10 +50,13 @@ struct Stage {
 
   /// Throws if something is damaged that the stage needs and other processes have made.
   void (*check)(Making& of, const LevelRange& part, const StageContext& context) = nullptr;
-  /// Makes the part, the share of its levels, or of all chunks or tiles, in the workshop. Null: the
-  /// stage reads the input or ends the output, which is the driver's.
+  /// Makes the part in the workshop, but for what the journal has, and notes it: the share of its
+  /// levels, or of all chunks or tiles. It may be stopped at any moment, by cancelling or a
+  /// failure, and called again. It uses TBB's threads; the result depends on none of them. Null:
+  /// the stage reads the input or ends the output, which is the driver's.
   void (*make)(Making& of, const LevelRange& part, const StageContext& context) = nullptr;
-  /// On one machine: what can be told, or is not needed any more, when all is made.
+  /// Comes after make() on one machine: tells what is known now, and removes what is not needed any
+  /// more.
   void (*then)(Making& of, const StageContext& context) = nullptr;
 
   TaskPart tasks[4]{};          ///< kinds that do it; the rest has no names
@@ -87,10 +90,10 @@ enum class Takes {
 
 /// A kind of task.
 struct TaskKind {
-  std::string_view name;  ///< of its stage; of several, "NAME-1", "NAME-2" ...
+  std::string_view name;  ///< its stage's; "NAME-1", "NAME-2" ... if there are several
   TaskCut cut{};
   Takes takes{};
-  storage::ScratchFile Workshop::*scratch{};  ///< has what is made
+  storage::ScratchFile Workshop::*scratch{};  ///< the file that its data goes to
   std::uint32_t first_level = 0;              ///< levels above the last
   bool is_of_pictures = false;                ///< there is none if the mesh can have no textures
   /// Does the work in the place of its stages' make(), unless it is null.
@@ -103,7 +106,8 @@ inline constexpr std::string_view kReadTask = "read", kImagesTask = "images",
 /// Returns the kinds in the order in which their tasks are to run.
 std::span<const TaskKind> task_kinds();
 
-/// Makes of all stages that tasks of a kind do the part of one of them.
+/// Makes the part of one task: of all stages that tasks of its kind do. Throws what the stages
+/// throw.
 void make_stages(const TaskKind& kind, Making& of, const LevelRange& part,
                  const StageContext& context);
 

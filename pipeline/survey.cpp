@@ -17,7 +17,7 @@ constexpr std::uint64_t kWindow = std::uint64_t{1} << 27;
 constexpr std::uint64_t kMostSample = 65536;
 /// Enough for a median that is off by a fiftieth at most.
 constexpr std::uint64_t kEdgeTriangles = 4096;
-/// Of faces with many corners.
+/// The most, as faces with many corners are many triangles.
 constexpr std::uint64_t kMostEdgeTriangles = 4 * kEdgeTriangles;
 
 using SourceTriangle = Triangle<VertexId>;
@@ -54,7 +54,7 @@ class EdgeSample {
   explicit EdgeSample(std::uint64_t faces)
       : stride_(std::max<std::uint64_t>(faces / kEdgeTriangles, 1)) {}
 
-  /// All triangles, in the order of the file.
+  /// Takes all triangles, in the order of the file, call by call.
   void add(SourceTriangles triangles) {
     const std::uint64_t end = first_ + triangles.size();
     while (corners_.size() < kMostEdgeTriangles && next() < end)
@@ -62,7 +62,7 @@ class EdgeSample {
     first_ = end;
   }
 
-  /// No triangles follow, but places().
+  /// Ends the triangles; from() may follow.
   void sort() {
     for (const SourceTriangle& t : corners_)
       vertices_.insert(vertices_.end(), t.begin(), t.end());
@@ -71,7 +71,7 @@ class EdgeSample {
     positions_.resize(vertices_.size());
   }
 
-  /// The corners from a vertex on, and room for their places. Thread-safe.
+  /// Returns the corners from a vertex on, and room for their positions. Thread-safe.
   std::pair<std::span<const VertexId>, std::span<Vec3d>> from(std::uint64_t vertex) {
     const auto at = std::ranges::lower_bound(vertices_, vertex, {},
                                              [](VertexId v) { return std::uint64_t{raw(v)}; });
@@ -93,7 +93,7 @@ class EdgeSample {
   }
 
  private:
-  /// The triangle to take: one of each stride, not always the same.
+  /// Returns the next triangle to take: one of each stride, not always the same.
   std::uint64_t next() const {
     constexpr std::uint64_t kGoldenRatio = 0x9e3779b97f4a7c15;  // Fibonacci hashing, Knuth 6.4
     const std::uint64_t stride = corners_.size();
@@ -105,10 +105,10 @@ class EdgeSample {
   }
 
   std::uint64_t stride_;
-  std::uint64_t first_ = 0;  ///< of the triangles that come next
+  std::uint64_t first_ = 0;  ///< number of the triangle that comes next
   std::vector<SourceTriangle> corners_;
-  std::vector<VertexId> vertices_;  ///< of the corners, ascending
-  std::vector<Vec3d> positions_;    ///< of these
+  std::vector<VertexId> vertices_;  ///< the corners' vertices, ascending
+  std::vector<Vec3d> positions_;    ///< these vertices' positions
 };
 
 void read_faces(SourceMesh& mesh, const std::function<void(SourceTriangles)>& visit,
@@ -158,7 +158,7 @@ void for_each_window(SourceMesh& mesh, const std::function<void(SourceTriangles)
   }
 }
 
-/// The box of a window's vertices, and the places of corners.
+/// Returns the box of a window's vertices, and fills in the positions of corners.
 BoundsD box_of(const UsedVertices& used, EdgeSample& edges, const SourceMesh& mesh,
                const StageContext& context) {
   struct Slot {

@@ -1,4 +1,5 @@
-// What the triangles of a mesh use: where its vertices are, and how long its edges.
+// A survey of the vertices that the triangles of a mesh use: where they are, and how long edges
+// are.
 #pragma once
 
 #include "hierarchy/bounds.h"
@@ -13,28 +14,28 @@ namespace meshhier::pipeline {
 class SourceMesh;
 struct StageContext;
 
-/// In input coordinates. What no triangle uses counts for nothing.
+/// A survey, in input coordinates. Vertices that no triangle uses count for nothing.
 struct Survey {
-  BoundsD bounds;             ///< of all vertices; empty if there are no triangles
-  std::vector<Vec3d> sample;  ///< of the vertices
-  double median_edge = 0;     ///< of the edges of some thousand triangles; 0 if there are none
+  BoundsD bounds;             ///< box of all vertices; empty if there are no triangles
+  std::vector<Vec3d> sample;  ///< some of the vertices
+  double median_edge = 0;     ///< among the edges of some thousand triangles; 0 if there are none
 };
 
-/// `sample`: the positions that partition::SampleIds names, in their order. Reads all faces and all
-/// vertices once for each 2^27 vertices, of which a bit each is in memory: 16 MiB at most, and 4
-/// MiB for the samples. Deterministic.
+/// Surveys a mesh. `sample`: the positions that partition::SampleIds names, in their order. Reads
+/// all faces and all vertices once for each 2^27 vertices, which take a bit each of memory: 16 MiB
+/// at most, and 4 MiB for the samples. Deterministic. Throws as SourceMesh.
 Survey survey(SourceMesh& mesh, std::span<const Vec3d> sample, const StageContext& context);
 
 /// Vertices that triangles use and that lie outside of a box.
 struct FarVertices {
   std::uint64_t count = 0;
-  Vec3d first;  ///< in the order of the file
+  Vec3d first;  ///< the first one in the order of the file
 };
 
-/// Reads as survey().
+/// Counts them; reads as survey() does.
 FarVertices used_outside(SourceMesh& mesh, const BoundsD& box, const StageContext& context);
 
-/// Of a mesh of so many vertices.
+/// Returns the memory that a survey of so many vertices takes.
 std::uint64_t survey_bytes(std::uint64_t vertex_count);
 
 }  // namespace meshhier::pipeline

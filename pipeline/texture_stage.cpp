@@ -30,7 +30,7 @@ namespace {
 using images::Image;
 using images::Material;
 
-/// Interior triangles, then border ones.
+/// Returns what interior triangles have, then what border ones have.
 template <class T>
 std::vector<T> joined(std::vector<T> interior, std::span<const T> border) {
   interior.insert(interior.end(), border.begin(), border.end());
@@ -39,8 +39,8 @@ std::vector<T> joined(std::vector<T> interior, std::span<const T> border) {
 
 // ---- partitions ----------------------------------------------------------------------------
 
-/// Texture coordinates and materials of a partition's vertices, copies last, and its triangles by
-/// vertices' numbers.
+/// The texture coordinates and materials of a partition's vertices, copies last, and its triangles
+/// by vertices' numbers.
 struct LeafCorners {
   std::vector<Vec2f> texcoords;
   std::vector<std::uint32_t> materials;
@@ -83,8 +83,9 @@ std::vector<texture::MaterialTexels> texels_of(const TexturedInput& input) {
   return all;
 }
 
-/// By how much a partition's picture is reduced to be baked from: it keeps at least the texels that
-/// the tile above has for it, which saves reducing it again for each tile that is baked from it.
+/// Returns the factor by which a partition's picture is reduced to be baked from. It keeps at least
+/// the texels that the tile above has for it, which saves reducing it again for each tile that is
+/// baked from it.
 std::uint32_t reduction(std::uint64_t texels, std::uint32_t side) {
   const std::uint64_t wanted = std::uint64_t{side} * side / 2;
   std::uint32_t factor = 1;
@@ -94,7 +95,7 @@ std::uint32_t reduction(std::uint64_t texels, std::uint32_t side) {
   return factor;
 }
 
-/// That picture, from the bands of the partition's.
+/// Makes that picture from the bands of the partition's.
 class SourcePicture {
  public:
   SourcePicture(const images::WrittenImage& whole,
@@ -123,19 +124,20 @@ class SourcePicture {
 
 // ---- all tiles -----------------------------------------------------------------------------
 
-/// The largest side of a partition's picture: one of the input of 4,096 texels with the gutter
-/// around it, or what the format has; of KTX2 half of that. Where the input has more texels, as of
-/// pictures that repeat, a coarser level of them is shown, with a warning.
+/// Returns the largest side of a partition's picture: a picture of the input of 4,096 texels with
+/// the gutter around it, or the format's most, if that is less (for KTX2 half of it). Where the
+/// input has more texels, as with pictures that repeat, a coarser level of them is shown, with a
+/// warning.
 std::uint32_t leaf_side(ImageFormat format) {
   constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
   return std::min(kLeafSide, images::coders_of(format).most_side);
 }
 
-/// Of a triangle at work: its corners, positions, and coordinates before and after.
+/// Memory of a triangle at work: its corners, positions, and coordinates before and after.
 constexpr std::uint64_t kTriangleBytes = 300;
 
-/// A partition's picture: a band of it, what the encoder holds and what has come from it, twice,
-/// and the smaller picture that others are baked from.
+/// Returns the memory of a partition's picture at work: a band of it, the encoder and its output,
+/// twice, and the smaller picture that others are baked from.
 std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side) {
   const std::uint64_t texels = std::uint64_t{picture.width} * picture.height;
   const std::uint64_t encoded = is_exact(picture.format, picture.quality) ? 4 : 1;
@@ -144,7 +146,7 @@ std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side)
          texels * encoded + texture::Reduction::bytes(texels, texels / (factor * factor));
 }
 
-/// A simplified tile's picture, and the finer ones that it is baked from.
+/// Returns the memory of a simplified tile's picture, and of the finer ones that it is baked from.
 std::uint64_t bake_bytes(ImageFormat format, std::uint32_t side) {
   constexpr std::uint64_t kBakedBytes = 64;
   constexpr std::uint64_t kSources = 16;
@@ -177,8 +179,7 @@ class TextureMaker {
       bake(node);
   }
 
-  /// What all should know of texels that partitions do not show, in one line; empty if there are
-  /// none.
+  /// Returns one line on texels that partitions do not show; empty if there are none.
   std::string warning() const {
     if (reduced_ == 0)
       return {};
@@ -192,7 +193,7 @@ class TextureMaker {
   }
 
  private:
-  /// The picture of a partition.
+  /// Makes the picture of a partition.
   void cut(NodeId node) {
     TileMesh mesh = forest_.load(node).mesh;
     std::vector<std::uint16_t> parent_map;
@@ -229,7 +230,7 @@ class TextureMaker {
   TileTexture painted(const LeafPicture& picture, const images::WrittenImage& written,
                       BakeSource& source) const {
     TileTexture texture{tile_image(written, source.alpha), source.corners};
-    // Address space is no memory yet: the bytes need not move while they grow.
+    // Reserved address space takes no memory yet, and the bytes need not move while they grow.
     texture.image.bytes.reserve(std::size_t{written.width} * written.height);
     const auto writer = images::open_picture_writer(written, [&](std::span<const std::byte> bytes) {
       texture.image.bytes.insert(texture.image.bytes.end(), bytes.begin(), bytes.end());
@@ -293,7 +294,7 @@ class TextureMaker {
     return texture::texel_size(source.surface(), source.image.width, source.image.height);
   }
 
-  /// The finest of the children's, and the mean square of what they have lost.
+  /// Returns the finest texels of the children, and the root mean square of what they have lost.
   TexelSizes texels_below(NodeId node) const {
     TexelSizes below;
     double squares = 0;
@@ -333,7 +334,7 @@ void make_textures(const Forest& forest, const TexturedInput& input, TextureStor
 
 TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& textures) {
   const std::vector<NodeId> nodes = tree.tile_nodes();
-  // The finest first: a tile's parent comes before it in the list.
+  // The finest come first: a tile's parent stands before it in the list.
   for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
     TileError& own = errors[*node];
     const TexelSizes& texels = textures.texels(*node);
@@ -354,7 +355,7 @@ StageMemory texture_memory(const JobSize& job) {
                                   4};
   const std::uint64_t largest = std::max(cut_bytes(leaf, job.picture_side),
                                          bake_bytes(job.pictures.format, job.picture_side));
-  // Geometry of the items that wait for room: read, ordered, cut into charts.
+  // Items that wait for room have their geometry: read, ordered, cut into charts.
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;
   return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
@@ -386,8 +387,8 @@ double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) 
 DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles,
                          const MemoryPlan& /*memory*/) {
   const double side = job.picture_side;
-  // What is baked from a partition has up to twice the texels of a simplified tile's picture, and
-  // no more than it shows.
+  // The reduced picture of a partition has up to twice the texels of a simplified tile's picture,
+  // and no more than it shows.
   const double cut = std::min(tiles.partitions.count * 2 * side * side,
                               static_cast<double>(job.source_texels) * 1.3);
   const double pictures =

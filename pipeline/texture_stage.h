@@ -19,21 +19,23 @@
 
 namespace meshhier::pipeline {
 
-/// Items are tiles, with their pictures. Requires a textured mesh, as all that is told of the
-/// stage.
+/// The stage's memory; items are tiles, with their pictures. It and the next ones require a
+/// textured mesh.
 StageMemory texture_memory(const JobSize& job);
-/// Bytes of the published pictures, about; of any mesh.
+/// Returns about how many bytes the published pictures have; for any mesh.
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles);
 StageTimes texture_time(const JobSize& job, const TilePopulation& tiles);
-/// Pictures of tiles, until the end.
+/// The stage's disk: pictures of tiles, until the end.
 DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 
-/// Makes the pictures of tiles that the journal does not have, level by level from the last on.
-/// Requires all of level `end`, and those of the whole levels between if there are any.
+/// Makes the pictures of tiles that the journal does not have, level by level from the last on, and
+/// notes them. Requires the tiles and pictures of level `end`, and of the whole levels between if
+/// there are any; `end` behind the partitions needs none. Deterministic for any number of threads.
+/// Throws Error(io | corrupt | budget | interrupted).
 void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
                    BuildJournal& journal, const LevelRange& levels, const StageContext& context);
 
-/// Errors that are no smaller than the texels of the tiles, where those are larger than the
+/// Returns errors that are no smaller than the texels of the tiles, where those are larger than the
 /// input's.
 TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& textures);
 

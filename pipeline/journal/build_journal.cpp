@@ -70,7 +70,7 @@ NodeId node_of(const Value& json) {
   return {static_cast<Level>(json.at(0).get<std::uint8_t>()), json.at(1)};
 }
 
-/// What is no object, lists as a whole, by its dotted path.
+/// All values but objects, lists as a whole, by their dotted paths.
 using Leaves = std::map<std::string, std::string>;
 
 void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
@@ -82,7 +82,7 @@ void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
     add_leaves(inner, path.empty() ? key : path + '.' + key, leaves);
 }
 
-/// "partition.vertices was 8192 and is 4096, ...".
+/// Returns "partition.vertices was 8192 and is 4096, ...".
 std::string differences(const Value& was, const Value& is) {
   Leaves before, now;
   add_leaves(was, "", before);
@@ -103,7 +103,7 @@ std::string differences(const Value& was, const Value& is) {
   return text;
 }
 
-/// False also if what an entry has is of another kind.
+/// Returns what take() does; false also if the entry has values of another kind.
 template <class Take>
 bool is_understood(const Take& take) {
   try {
@@ -227,7 +227,8 @@ bool BuildJournal::take_sealed_copies(const Entry& entry) {
   });
 }
 
-/// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
+/// Finds out whether the build was complete: then the scratch files are gone, and entries that name
+/// them say nothing.
 void BuildJournal::look_ahead(const std::filesystem::path& path, storage::ScratchUse& use) {
   if (!files_.exists(path))
     return;
@@ -238,7 +239,7 @@ void BuildJournal::look_ahead(const std::filesystem::path& path, storage::Scratc
 }
 
 bool BuildJournal::take(const Entry& entry) {
-  /// An entry's only key, or its first.
+  /// A kind of entry, known by its only key, or its first.
   struct Kind {
     std::string_view key;
     bool (BuildJournal::*take)(const Entry& value);
@@ -367,7 +368,7 @@ bool BuildJournal::take_published(const Entry& published) {
   return true;
 }
 
-/// Of chunks that are still needed, the disk must hold all that was put there.
+/// Whether the disk holds all that was put there of the chunks that are still needed.
 bool BuildJournal::can_make_all_leaves() const {
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
     cancel_.check();
@@ -377,7 +378,7 @@ bool BuildJournal::can_make_all_leaves() const {
   return true;
 }
 
-/// Pictures are needed as long as a partition has none of its own.
+/// Whether the disk holds the decoded pictures, as long as a partition has none of its own.
 bool BuildJournal::can_make_all_textures() {
   const auto left = [](char has) { return has == 0; };
   return pictures_ == nullptr || std::ranges::none_of(has_texture_.back(), left) ||

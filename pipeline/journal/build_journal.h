@@ -1,8 +1,9 @@
-// What of a build is done, on disk: a build that is stopped, however, goes on from there.
+// The journal of a build says on disk what is done: a build that is stopped, however, goes on from
+// there.
 //
-// Entries of the journal, in the order in which a build makes them:
+// A build makes these entries, in this order:
 //
-//   build      what decides the result: input, config, tree, version
+//   build      all that decides the result: input, config, tree, version
 //   partition  where a chunk's spools are, when all triangles are distributed; of a slice of the
 //              input, where its part of them is
 //   ingest     what was learnt of the input; with it the stages up to partition are done, unless
@@ -46,7 +47,7 @@
 
 namespace meshhier::pipeline {
 
-/// What distributing learnt of the input.
+/// The facts on the input that are known when it is distributed.
 struct DistributedSource {
   SourceSummary summary;
   Vec3d origin;
@@ -54,13 +55,13 @@ struct DistributedSource {
   importing::InputRecord input;
 };
 
-/// Whose journal it is.
+/// Identifies the build that a journal belongs to.
 struct BuildIdentity {
   nlohmann::json decides_result;  ///< an object
   std::int64_t input_times = 0;   ///< the input may be the same after it was touched
 };
 
-/// What an earlier build says of itself.
+/// The facts that an earlier build has noted of itself.
 struct EarlierBuild {
   nlohmann::json decides_result;
   std::int64_t input_times = 0;
@@ -69,14 +70,15 @@ struct EarlierBuild {
   importing::InputRecord input;
   bool is_whole = false;  ///< all of this is known
 };
-/// Takes what one entry tells of it. False if the entry is not understood.
+/// Takes the facts of one entry. Returns false if the entry is not understood.
 bool add_entry(const nlohmann::json& entry, EarlierBuild& build);
-/// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
-/// else is there is not looked at. Throws Error(io).
+/// Reads the facts from the journal in the directory `work`; returns nothing if there is none, or
+/// if the input was not read as a whole. Does not look whether anything else is there. Throws
+/// Error(io).
 std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
                                                const std::filesystem::path& work);
 
-/// What is restored.
+/// The things that a journal restores.
 struct Workpieces {
   Forest& forest;
   Chunks& chunks;
@@ -93,37 +95,43 @@ using IndexedStep = std::pair<std::uint32_t, Step>;
 /// A tile's file.
 struct Published {
   TileRecord record;    ///< but for error and bound, which are known when all tiles are there
-  double rounding = 0;  ///< how far its positions went to the lattice, at most
+  double rounding = 0;  ///< the largest distance that a position went to the lattice, input units
 };
 
+/// Notes what is done and says what is. An entry counts only if what it names is on disk as it was
+/// written, so a stage may be stopped at any moment and begun again: it asks has_...() and makes
+/// the rest. Queries may come from several threads while nothing is noted; notes come one at a
+/// time. All that it refers to must outlive it.
 class BuildJournal {
  public:
-  /// Opens the journal in the directory `work` and puts back into `forest` and `chunks` all that is
-  /// done; of published tiles, those whose files are whole. What the journal moves counts in `use`.
-  /// Throws Error(exists) if something is done towards another result, telling what differs.
+  /// Opens the journal in the directory `work`, or begins one, and puts back into `pieces` all that
+  /// is done; published tiles only if their files are whole. Reads all of that, to check it. Bytes
+  /// that the journal moves count in `use`. Throws Error(exists) if something is done towards
+  /// another result, telling what differs; Error(io | interrupted).
   BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
                const BuildIdentity& identity, storage::ScratchUse& use, Workpieces pieces,
                const execution::CancelToken& cancel);
 
-  /// Whether what is there can be gone on with: something is done, and the disk has kept it.
+  /// Whether the earlier work can be gone on with: something is done, and the disk has kept it.
   bool is_sound() const { return is_sound_; }
-  /// Whether the input has another time than when the journal was begun: whether it is the same is
-  /// to be found out.
+  /// Whether the input has another time than when the journal was begun: then its checksum must
+  /// show whether it is the same.
   bool input_was_touched() const { return input_was_touched_; }
-  /// Chunks, simplified tiles and published files that were found done, and all there will be.
+  /// The chunks, simplified tiles, pictures and published files that were found done; steps() is
+  /// how many there will be in all.
   std::uint64_t found() const { return found_; }
   std::uint64_t steps() const;
 
-  /// Of one of several processes that build together (pipeline/tasks): nothing is done at first,
-  /// `sink` gets what is noted.
+  /// Makes the journal of one of several processes that build together (pipeline/tasks): nothing is
+  /// done at first, and `sink` gets the notes. `built`: the directory of the hierarchy to be.
   BuildJournal(storage::FileSystem& files, const std::filesystem::path& built,
                BuildIdentity identity, Workpieces pieces, std::unique_ptr<storage::EntrySink> sink,
                const execution::CancelToken& cancel);
 
-  /// Takes an entry of another process, whose scratch files are mounted. False if it is none of a
-  /// build of this tree.
+  /// Takes an entry of another process, whose scratch files are mounted; the data is checked when
+  /// it is used. Returns false if the entry does not belong to a build of this tree.
   bool take_sealed(const nlohmann::json& entry);
-  /// Likewise an entry `partition`, but of the chunk only the copies.
+  /// Does the same with an entry `partition`, but takes only the copies of the chunk.
   bool take_sealed_copies(const nlohmann::json& entry);
   /// Puts back the pictures that entries named; false if the scratch file does not hold them.
   bool restore_pictures();
@@ -134,34 +142,37 @@ class BuildJournal {
   std::uint64_t unreferenced_vertices() const { return unreferenced_; }
   bool has_tile(NodeId node) const { return has_tile_[raw(node.level)][node.index] != 0; }
   bool has_root() const { return has_root_; }
-  /// Steps of tiles of a level that went into tiles that are done; none are left.
+  /// Hands over the steps of a level's tiles that went into tiles which are done; none are left.
   std::vector<IndexedStep> take_steps(Level level);
-  /// Of the pictures that are decoded.
+  /// The broken ones among the pictures that were to be decoded.
   const std::vector<BrokenImage>& broken_images() const { return broken_images_; }
   bool has_texture(NodeId node) const { return has_texture_[raw(node.level)][node.index] != 0; }
   bool is_published(NodeId node) const { return published_.contains({node.level, node.index}); }
   /// Whether the file is there, and whole; reads it. Thread-safe.
   bool is_as_published(const TileRecord& record) const;
-  /// All tiles that are, ascending.
+  /// Returns all tiles that are published, ascending.
   std::vector<Published> published() const;
 
-  /// All that is left to do is to give the hierarchy its name.
+  /// Whether all that is left to do is to give the hierarchy its name.
   bool is_complete() const { return is_complete_; }
 
-  // Each notes what is done now; one call at a time. Throws Error(io).
+  // Each notes what is done now, and requires that its data is in scratch files or in the tile's
+  // file; one call at a time. Nothing is forced to the disk: an entry whose data was lost is not
+  // believed later. Throws Error(io).
   void note_source(const DistributedSource& source);
-  /// The part of it that is in the chunks, of a slice of the input.
+  /// Notes the chunks alone, of a slice of the input.
   void note_chunks();
   /// `why`: empty unless the picture is broken.
   void note_image(const images::StoredImage& stored, const std::string& why);
   void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);
-  /// `steps`: of the tile's children, if those are simplified tiles.
+  /// `steps`: those of the tile's children, if they are simplified tiles.
   void note_tile(NodeId node, std::span<const IndexedStep> steps);
   /// `steps`: the root's, if it is a simplified tile.
   void note_root(std::span<const IndexedStep> steps);
   void note_texture(NodeId node);
   void note_published(const Published& tile);
   void note_complete();
+  /// Forces the entries to the disk, not their data. Throws Error(io).
   void sync() { sink_->sync(); }
 
  private:
@@ -181,7 +192,7 @@ class BuildJournal {
   bool take_published(const Entry& published);
   bool can_make_all_leaves() const;
   bool can_make_all_textures();
-  /// The flag of a node that an entry names; null if there is none.
+  /// Returns the flag of a node that an entry names; null if there is no such node.
   char* flag_of(const Entry& node, std::vector<std::vector<char>>& flags) const;
 
   storage::FileSystem& files_;

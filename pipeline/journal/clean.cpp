@@ -27,7 +27,8 @@ const char* description(const FoundLeftover& leftover) {
   return "a file that was not finished";
 }
 
-/// A note about a hierarchy that is there, or can have its name back, is none.
+/// Whether it is a leftover: a note about a hierarchy that is there, or can have its name back, is
+/// none.
 bool is_leftover(storage::FileSystem& files, Leftover kind, const fs::path& output) {
   return kind != Leftover::input_note ||
          (!files.exists(output) && !files.exists(storage::replaced_path(output)));

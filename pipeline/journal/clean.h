@@ -1,5 +1,5 @@
-// What builds that were stopped, other commands that were killed, and hierarchies that were removed
-// left on disk.
+// Finds and removes what is left on disk by builds that were stopped, other commands that were
+// killed, and hierarchies that were removed.
 #pragma once
 
 #include "storage/format/layout.h"
@@ -17,22 +17,22 @@ namespace meshhier::pipeline {
 struct FoundLeftover {
   std::filesystem::path path;
   storage::Leftover kind{};
-  std::filesystem::path output;  ///< what it belongs to
+  std::filesystem::path output;  ///< the file or hierarchy that it belongs to
   std::uint64_t bytes = 0;
   bool in_use = false;     ///< a build is at work there
   bool only_copy = false;  ///< a hierarchy that was to be replaced, and nothing replaced it
 };
 
-/// Of a directory: what lies there of any output; of a hierarchy, finished or to be: what belongs
-/// to it. Ascending by path. Throws Error(io).
+/// Finds, in a directory, the leftovers of any output; for a hierarchy, finished or to be, those
+/// that belong to it. Ascending by path. Throws Error(io).
 std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
                                           const std::filesystem::path& directory_or_output);
 
-/// Removes what is not in use; gives a hierarchy that is the only copy its name back instead.
-/// Throws Error(io).
+/// Removes leftovers that are not in use; gives a hierarchy that is the only copy its name back
+/// instead. Throws Error(io).
 void remove_leftovers(storage::FileSystem& files, const std::vector<FoundLeftover>& found);
 
-/// A line each, and a last one; `removed`: remove_leftovers() was called.
+/// Returns a line each, and a last one; `removed`: remove_leftovers() was called.
 std::string leftovers_text(const std::vector<FoundLeftover>& found, bool removed);
 nlohmann::ordered_json leftovers_json(const std::vector<FoundLeftover>& found);
 

@@ -8,7 +8,7 @@
 namespace meshhier::pipeline {
 
 nlohmann::json to_json(const importing::InputRecord& record);
-/// The inverse. Throws nlohmann::json::exception if it is nothing of the kind.
+/// Parses what to_json() wrote. Throws nlohmann::json::exception if it is nothing of the kind.
 importing::InputRecord input_record(const nlohmann::json& json);
 
 }  // namespace meshhier::pipeline

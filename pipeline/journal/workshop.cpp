@@ -10,7 +10,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// But for the tiles.
+/// Whether all files of a hierarchy but its tiles are there and sound.
 bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
   try {
     const storage::HierarchyReader made(files, hierarchy);
@@ -101,7 +101,7 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   };
   const bool is_new = !files.exists(storage::journal_path(work.path()));
   if (is_new)
-    work.clear();      // what was not noted is of no use
+    work.clear();      // work that was not noted is of no use
   work.keep(!is_new);  // it may be of another build
   make();
   const BuildJournal& journal = open.workshop->journal;

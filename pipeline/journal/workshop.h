@@ -1,4 +1,5 @@
-// What a build works on: chunks, forest and their scratch files, with the journal of what is done.
+// The workshop of a build: chunks, forest and their scratch files, with the journal of what is
+// done.
 #pragma once
 
 #include "execution/cancel.h"
@@ -18,18 +19,20 @@
 namespace meshhier::pipeline {
 
 struct Workshop {
+  /// Opens the workshop in the directory `work`; throws as BuildJournal. `pool` and all in
+  /// `context` must outlive it.
   Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
            const AttributeLayout& layout, storage::MemoryPool& pool, const StageContext& context);
 
-  /// Of a task: what it makes goes to `directory` and its journal's entries to `sink`; nothing is
-  /// there yet. `built`: the hierarchy to be.
+  /// Makes the workshop of a task: its results go to `directory` and its journal's entries to
+  /// `sink`; nothing is there yet. `built`: the hierarchy to be.
   Workshop(const std::filesystem::path& directory, const std::filesystem::path& built,
            const BuildIdentity& identity, const AttributeLayout& layout, storage::MemoryPool& pool,
            std::unique_ptr<storage::EntrySink> sink, const StageContext& context);
 
-  storage::ScratchFile mesh_scratch;  ///< what is needed until the leaves are done
+  storage::ScratchFile mesh_scratch;  ///< needed until the leaves are done
   storage::ScratchFile tile_scratch;
-  storage::ScratchFile picture_scratch;  ///< what is needed until the textures are done
+  storage::ScratchFile picture_scratch;  ///< needed until the textures are done
   Chunks chunks;
   Forest forest;
   TextureStore textures;
@@ -44,26 +47,26 @@ struct Workshop {
   Workpieces pieces(const StageContext& context);
 };
 
-/// What decides the result of a build, and when its input was changed last.
+/// Returns all that decides the result of a build, and when its input was changed last.
 BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
                           const BuildPlan& plan);
 
 struct OpenWorkshop {
   std::unique_ptr<Workshop> workshop;
-  std::string found;  ///< for people: what was done already, or why it was of no use; may be empty
+  std::string found;  ///< for people: the work done already, or why it was of no use; may be empty
 };
 
-/// Opens what an earlier build of the same result left in `work`, if it can be gone on with; else
+/// Opens the work of an earlier build of the same result in `work`, if it can be gone on with; else
 /// empties it. Reads all that was done, to check it, and all of `input` if it was touched since.
 /// Throws Error(exists) as BuildJournal does, Error(io).
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context);
 
-/// What reading its input found out.
+/// Returns the description of the input that an earlier build has found.
 mesh_io::MeshDescription description_of(const EarlierBuild& build);
 
-/// What reading `input` would find out, from an earlier build of the same files; none if it was
-/// of others or if they were read in another way. Reads them all if they were touched since.
+/// Returns what reading `input` would find, from an earlier build of the same files; nothing if it
+/// had other files or read them in another way. Reads them all if they were touched since.
 std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlier,
                                                       importing::MeshInput& input,
                                                       const config::Config& asked,

@@ -29,7 +29,7 @@ std::uint32_t largest_partition(const Tree& tree) {
                                     tree.partition_count());
 }
 
-/// Of what an earlier build of the output left: it takes its place already.
+/// Returns the bytes that an earlier build of the output left: the new one takes them over.
 std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
   const std::filesystem::path work = storage::work_path(output);
   return files.exists(work) ? storage::bytes_below(files, work) : 0;
@@ -173,7 +173,8 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
 
 namespace {
 
-/// What is replaced is removed, and what lies in the work directory goes with it.
+/// Throws if a file of the input would go: with the output that is replaced, or with the work
+/// directory.
 void require_stay(std::span<const std::filesystem::path> inputs,
                   const std::filesystem::path& output, storage::FileSystem& files) {
   constexpr std::size_t kLongestName = 255;  // longer ones are check_place()'s to tell

@@ -1,5 +1,5 @@
-// What a build will do, decided before anything is written: the tree, who gets how much memory,
-// how much disk it will take.
+// The plan of a build, made before anything is written: the tree, the division of memory, the need
+// of disk.
 #pragma once
 
 #include "config/config.h"
@@ -23,35 +23,36 @@ namespace meshhier::pipeline {
 struct BuildPlan {
   Tree tree;
   std::size_t threads = 1;
-  TargetVertexCounts target_vertex_counts{};  ///< of simplified tiles
+  TargetVertexCounts target_vertex_counts{};  ///< for simplified tiles
   JobSize job{};
   MemoryPlan memory{};
   DiskNeed disk{};
   TexturePlan textures{};
 };
 
-/// The partitions of a mesh. Throws Error(usage | input) if those asked for cannot be.
+/// Returns the tree over the partitions of a mesh. Throws Error(usage | input) if those asked for
+/// cannot be.
 Tree plan_tree(const config::Config& config, std::uint64_t vertex_count,
                const TexturePlan& textures = {});
 
-/// Of a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one that the
-/// input was imported to.
+/// Returns the size of the job for a mesh of which the header was read. `imported_bytes`: those of
+/// the PLY that the input was imported to; 0 if it was not.
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
                  std::uint64_t imported_bytes, const Tree& tree, const TexturePlan& textures = {});
 
-/// Threads that a build of that config uses.
+/// Returns the number of threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);
 
-/// Bytes of memory that it may use: of a config that does not say it a quarter of what the process
-/// may use, but 512 MiB at least and 16 GiB at most.
+/// Returns the bytes of memory that it may use. If the config does not say, that is a quarter of
+/// what the process may use, but 512 MiB at least and 16 GiB at most.
 std::uint64_t memory_budget(const config::Config& config);
 
-/// A replaced output is removed, and the input must not go with it: throws Error(usage) if a file
-/// of it lies there.
+/// Throws Error(usage) if a file of the input lies where the output will be: a replaced output is
+/// removed, and the input must not go with it.
 void check_apart(const config::Config& config, storage::FileSystem& files);
 
-/// The same of what meshes name, which is known when they are read; `others`: files that are
-/// written besides the output.
+/// Throws so for the files that meshes name, which are known when the meshes are read. `others`:
+/// files that are written besides the output.
 void check_apart(const importing::Companions& companions, const config::Config& config,
                  const std::vector<std::filesystem::path>& others, storage::FileSystem& files);
 

@@ -21,7 +21,7 @@ double rounded(double number, double parts) {
   return std::round(number * parts) / parts;
 }
 
-/// Counters that do not know of each other may be read a moment apart.
+/// Returns a - b; 0 if that is less, as counters are read a moment apart.
 std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
   return a - std::min(a, b);
 }

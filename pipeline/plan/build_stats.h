@@ -1,4 +1,4 @@
-// The account of a build: what each stage took of time, memory and disk.
+// The account of a build: the time, memory and disk of each stage.
 #pragma once
 
 #include "execution/progress.h"
@@ -18,8 +18,8 @@
 
 namespace meshhier::pipeline {
 
-/// Bytes that went through system calls. What the memory pool holds is not counted: it never
-/// touches the disk.
+/// Bytes that went through system calls. Data in the memory pool does not count: it never touches
+/// the disk.
 struct Traffic {
   std::uint64_t input_read = 0;
   std::uint64_t output_written = 0;
@@ -36,18 +36,19 @@ struct StageStats {
   double wall_seconds = 0;
   double user_seconds = 0;
   double system_seconds = 0;
-  double serial_seconds = 0;  ///< of the CPU's, one step after another (execution/serial_time.h)
+  double serial_seconds = 0;  ///< those of work in one thread alone (execution/serial_time.h)
   Traffic bytes;
-  std::uint64_t peak_resident_bytes = 0;  ///< of the process, up to the end of the stage
+  std::uint64_t peak_resident_bytes = 0;  ///< the process's, up to the end of the stage
 
   double cpu_seconds() const { return user_seconds + system_seconds; }
 };
 
 /// Notes what happens from stage to stage, and passes on all that it hears. A stage that comes
-/// again (a repeated sweep) goes on with its first entry.
+/// again (a repeated sweep) goes on with its first entry. advance() may be called by several
+/// threads at once, all else by one.
 class StageMeter final : public execution::Progress {
  public:
-  /// Where its figures come from; tests put their own in.
+  /// The sources of its figures; tests put their own in.
   struct Sources {
     execution::Progress& shown;
     const storage::IoCounters& io;
@@ -72,7 +73,7 @@ class StageMeter final : public execution::Progress {
   void end();
 
   const std::vector<StageStats>& stages() const { return stages_; }
-  /// From the construction to the last end(), whatever is between stages included.
+  /// Returns the figures from the construction to the last end(), time between stages included.
   StageStats total() const;
 
  private:
@@ -91,32 +92,32 @@ class StageMeter final : public execution::Progress {
   std::size_t current_ = 0;  ///< index in stages_; their number: none
 };
 
-/// What there is to say of a whole build.
+/// The figures of a whole build.
 struct BuildStats {
   nlohmann::ordered_json config;  ///< resolved; with input, output, memory_budget, threads
   std::size_t threads = 1;
   std::uint64_t memory_budget_bytes = 0;
   std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;  ///< of the input
+  std::uint64_t triangles = 0;  ///< the input's
   std::uint32_t partitions = 0;
   int levels = 0;
   std::uint64_t tiles = 0;
   std::uint64_t input_bytes = 0;
-  std::uint64_t output_bytes = 0;  ///< of the published files
+  std::uint64_t output_bytes = 0;  ///< the published files'
   std::uint64_t peak_temporary_bytes = 0;
   std::uint64_t predicted_output_bytes = 0;
   std::uint64_t predicted_temporary_bytes = 0;
   std::vector<StageStats> stages;
   StageStats total;
 
-  /// What a build must move at least: the input read once, the output written once.
+  /// The bytes that a build must move at least: the input read once, the output written once.
   std::uint64_t floor_bytes() const { return input_bytes + output_bytes; }
 };
 
-/// A table for people, a line a stage, then what was on disk.
+/// Returns a table for people, a line a stage, then the bytes on disk.
 std::string stats_text(const BuildStats& stats);
 
-/// One object; docs/command_line.md lists its keys. Bytes and seconds throughout.
+/// Returns one object; docs/command_line.md lists its keys. Bytes and seconds throughout.
 nlohmann::ordered_json to_json(const BuildStats& stats);
 
 }  // namespace meshhier::pipeline

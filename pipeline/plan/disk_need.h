@@ -1,7 +1,7 @@
-// How much disk a build will take: what its stages write, added up for each moment of the build.
+// The disk that a build will take: the bytes that its stages write, added up for each moment.
 //
-// What the journal names, chunks and all that is made of them, is on disk whatever the budget. Of
-// the rest, what the memory pool holds is not.
+// Data that the journal names, chunks and all that is made of them, is on disk whatever the budget.
+// The rest is on disk as far as the memory pool does not hold it.
 #pragma once
 
 #include "pipeline/plan/stage_cost.h"
@@ -15,11 +15,11 @@ namespace meshhier::pipeline {
 /// no difference that counts.
 struct DiskNeed {
   std::uint64_t temporary_bytes = 0;  ///< the most that lies in temporary files at once
-  std::uint64_t output_bytes = 0;     ///< of the published files
+  std::uint64_t output_bytes = 0;     ///< the published files'
   std::uint64_t room_bytes = 0;       ///< the most that lies on disk at once, both kinds together
 };
 
-/// Bytes of temporary files at one moment, with a memory pool of `pool_bytes`.
+/// Returns the bytes of temporary files at one moment, with a memory pool of `pool_bytes`.
 double temporary_bytes_at(DiskMoment moment, const DiskVolumes& volumes, std::uint64_t pool_bytes);
 
 DiskNeed predict_disk(const DiskCosts& costs, std::uint64_t pool_bytes);

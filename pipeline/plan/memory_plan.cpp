@@ -19,7 +19,7 @@ constexpr std::uint64_t kBaseBytes = 22 * kMiB;
 // The table of ranks has what the blocks and the spools leave, and this at least.
 constexpr std::uint64_t kLeastTableBytes = 4 * kMiB;
 
-/// What the hungriest stage holds with one item in flight.
+/// Returns the memory that the hungriest stage holds with one item in flight.
 std::uint64_t least_work_bytes(const MemoryCosts& costs) {
   std::uint64_t most = 0;
   for (const StageMemory& stage : costs.stages)

@@ -10,14 +10,15 @@ struct Share {
   std::uint32_t index = 0;
   std::uint32_t of = 1;  ///< >= 1
 
-  /// Of `count` items in order: [begin(count), end(count)). All parts together are all items.
+  /// The share of `count` items in order is [begin(count), end(count)). All shares together are all
+  /// items.
   constexpr std::uint64_t begin(std::uint64_t count) const { return count * index / of; }
   constexpr std::uint64_t end(std::uint64_t count) const {
     return count * (std::uint64_t{index} + 1) / of;
   }
 };
 
-/// Levels [top, end) of the tree, and of each the part that is to be made.
+/// Levels [top, end) of the tree, and the part of each that is to be made.
 struct LevelRange {
   int top = 0;
   int end = 0;

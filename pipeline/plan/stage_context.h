@@ -1,4 +1,4 @@
-// What every stage of a build works with.
+// The surroundings of every stage of a build.
 #pragma once
 
 #include "config/config.h"
@@ -9,15 +9,17 @@
 
 namespace meshhier::pipeline {
 
-/// What a build works with, besides its config.
+/// The surroundings of a build, besides its config. All must outlive it; any thread of the build
+/// may use them.
 struct BuildEnvironment {
   storage::FileSystem& files;
-  execution::Progress& progress;
+  execution::Progress& progress;  ///< advance() comes from any thread, all else from one
   const execution::CancelToken& cancel;
 };
 
-/// What a stage may look at and report to, once it is planned what there is to do. What it works on
-/// and what it learns are arguments and results of the stage's function.
+/// The things that a stage may look at and report to, once the build is planned. The data that it
+/// works on and learns are arguments and results of the stage's function. Nothing of it is changed
+/// while stages run, so any thread may read it.
 struct StageContext {
   const config::Config& config;
   const BuildPlan& plan;

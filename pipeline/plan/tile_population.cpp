@@ -10,9 +10,9 @@ namespace {
 
 using storage::TileSums;
 
-// Measured as kBoundaryShare. Per vertex of the boundary: ghosts 1.0 to 1.2, triangles that a
-// neighbour has as well 1.0 to 1.1, foreign corners of a fresh simplified tile, which are one level
-// finer, 1.8.
+// These were measured as kBoundaryShare. There are, per vertex of the boundary, 1.0 to 1.2 ghosts,
+// 1.0 to 1.1 triangles that a neighbour has as well, and 1.8 foreign corners of a fresh simplified
+// tile, which are one level finer.
 constexpr double kGhosts = 1.1;
 constexpr double kSharedTriangles = 1.05;
 constexpr double kFreshForeign = 1.8;
@@ -24,8 +24,8 @@ constexpr double kClusteredTriangles = 1.35;
 /// Nodes of one level that stand over equally many partitions.
 struct Nodes {
   double count = 0;
-  double vertices = 0;  ///< of each one's tile
-  double joined = 0;    ///< of its children together; partitions: none
+  double vertices = 0;  ///< each one's tile has
+  double joined = 0;    ///< vertices of its children together; partitions: none
   bool early = false;   ///< has its partition's tile
 };
 using LevelNodes = std::map<std::uint32_t, Nodes>;  // by partitions: never more than two kinds
@@ -34,12 +34,12 @@ double triangles_per_vertex(const JobSize& job) {
   return static_cast<double>(job.face_count) / static_cast<double>(job.place_count);
 }
 
-/// Triangles a vertex on simplified levels, over those of the input.
+/// Returns the triangles a vertex on simplified levels, over those of the input.
 double simplified_ratio(const JobSize& job) {
   return job.clustered ? kClusteredTriangles : 1;
 }
 
-/// From the root down to the partitions.
+/// Returns the nodes of all levels, from the root down to the partitions.
 std::vector<LevelNodes> count_nodes(const JobSize& job) {
   std::vector<LevelNodes> levels(1);
   levels[0][job.partition_count].count = 1;
@@ -84,12 +84,13 @@ void add(const TileSums& from, TileSums& to) {
   to.triangles += from.triangles;
 }
 
-/// Of a tile with others all around it.
+/// Returns the boundary vertices of a tile with others all around it.
 double boundary_of(double vertices) {
   return std::min(vertices, kBoundaryShare * std::sqrt(vertices));
 }
 
-/// Near the root there is less around a tile.
+/// Returns the part of a tile's border with others behind it: near the root there is less around
+/// it.
 double share_around(const JobSize& job, std::size_t level) {
   return job.face_count == 0 ? 0 : 1 - std::ldexp(1.0, -static_cast<int>(level));
 }
@@ -115,7 +116,7 @@ double times_expected(double counted, double expected) {
   return expected > 0 ? counted / expected : 1;
 }
 
-/// `expected`, `counted`: partitions.
+/// Returns `tiles` changed as partitions are: `counted` ones, beside `expected` ones.
 TileSums in_proportion(TileSums tiles, const TileSums& expected, const TileSums& counted) {
   tiles.boundary = std::min(tiles.vertices,
                             tiles.boundary * times_expected(counted.boundary, expected.boundary));

@@ -1,4 +1,5 @@
-// The tiles that a job will have, before there are any: how many, and how large all together.
+// The tiles that a job will have, estimated before there are any: their number, and their size all
+// together.
 #pragma once
 
 #include "pipeline/plan/job_size.h"
@@ -13,28 +14,28 @@ namespace meshhier::pipeline {
 /// vertices: 3.6 to 4.7; on nested shells 4.2 to 6.9.
 inline constexpr double kBoundaryShare = 5;
 
-/// Tiles as the forest holds them: early ones among the simplified.
+/// Tiles as the forest holds them: it counts early ones among the simplified.
 struct TilePopulation {
   storage::TileSums partitions;
   storage::TileSums simplified;
-  storage::TileSums early;  ///< of the simplified ones
-  double steep_boundary =
-      0;  ///< of the joined children of simplified tiles, in vertices: what they
-          ///< have beyond the boundary of a tile of twice their parent's size
+  storage::TileSums early;    ///< those among the simplified ones
+  double steep_boundary = 0;  ///< boundary vertices of the joined children of simplified tiles,
+                              ///< beyond those that a tile of twice their parent's size has
   int levels = 0;
   bool counted = false;  ///< the partitions are, and the others follow from them
 
-  /// Files that hold them: partitions and simplified tiles, manifest, index and outline.
+  /// Returns the number of files: partitions and simplified tiles, manifest, index and outline.
   double files() const { return partitions.count + simplified.count + 3; }
 };
 
-/// For a surface, whose tiles have borders as scans have them.
+/// Returns the tiles that a surface will have, with borders as scans have them.
 TilePopulation expected_tiles(const JobSize& job);
 
-/// With partitions as they were counted: the tiles above have borders and triangles in proportion.
+/// Returns the tiles to expect above partitions that were counted: they have borders and triangles
+/// in proportion.
 TilePopulation with_counted(const TilePopulation& expected, const storage::TileSums& partitions);
 
-/// Tiles of a hierarchy, by arithmetic alone.
+/// The numbers of a hierarchy's tiles, by arithmetic alone.
 struct TileCounts {
   int levels = 0;
   std::uint64_t partitions = 0;

@@ -15,14 +15,15 @@ namespace meshhier::pipeline {
 
 namespace {
 
-// Some 3 MiB stay behind a usual tile, which has 10 MiB at work: every 64 tiles.
+// A usual tile has 10 MiB at work and leaves some 3 MiB behind: memory is given back every 64
+// tiles.
 constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
 constexpr std::uint64_t kMostBetweenReleases = 64;
 
 constexpr std::uint64_t kBudgetStep = std::uint64_t{1} << 20;
 
-/// So much more budget has room for what lacks. Of more budget a part is the allocator's
-/// (kAllocatorParts), which may lack its part of this one.
+/// Returns how much more budget has room for the lacking bytes. A part of it is the allocator's
+/// (kAllocatorParts), which may lack its part of the present one, too.
 std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
   return ((lacking + plan.budget_bytes / kAllocatorParts) / (kAllocatorParts - 1) *
               kAllocatorParts / kBudgetStep +
@@ -109,9 +110,9 @@ std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> 
 
 namespace {
 
-/// Of a tile's triangles, foreign corners and copies, for each of its vertices: tiles of surfaces
-/// have two triangles a vertex, some of which other tiles have too, and as many copies as the mesh
-/// has on average.
+/// Returns the bytes of a tile's triangles, foreign corners and copies for each of its vertices:
+/// tiles of surfaces have two triangles a vertex, some of which other tiles have too, and as many
+/// copies as the mesh has on average.
 std::uint64_t usual_bytes(const JobSize& job) {
   const std::uint64_t triangles = 4 * sizeof(TileTriangle) + 2 * sizeof(GhostRef);
   if (!job.has_copies())

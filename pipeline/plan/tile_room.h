@@ -14,34 +14,35 @@ namespace meshhier::pipeline {
 
 /// The memory plan counts with the triangles that vertices of the mesh have on average. Around a
 /// vertex of a million triangles, or in a soup, a tile has many times as many: then fewer are at
-/// work at a time, and what one alone needs beyond the plan is taken from the pool, until this
-/// object goes.
+/// work at a time, and bytes that one alone needs beyond the plan are taken from the pool, until
+/// this object goes.
 class TileRoom {
  public:
-  /// How many bytes are at work for each that Forest::triangle_bytes() tells. Measured with
-  /// fans, books and soups: 19 to 22, and half of it where tiles are only read.
+  /// So many bytes are at work for each that Forest::triangle_bytes() tells. Fans, books and soups
+  /// took 19 to 22, and half of it where tiles are only read.
   static constexpr std::uint64_t kContracted = 24;
   static constexpr std::uint64_t kRead = 12;
-  /// Read and compressed: the plain file, corners in two orders, what finds the orders and the
-  /// results take 80 to 90 bytes a triangle more, of which triangle_bytes() tells 12.
+  /// The same for tiles that are read and compressed: the plain file, corners in two orders, the
+  /// search for the orders and the results take 80 to 90 bytes a triangle more, of which
+  /// triangle_bytes() tells 12.
   static constexpr std::uint64_t kPacked = kRead + 8;
 
-  /// What items take at work, in bytes.
+  /// The bytes that the heaviest item takes at work.
   struct Heaviest {
     std::uint64_t now = 0;
     std::uint64_t ahead = 0;  ///< of those that come in the same stage, as far as it is known
   };
-  /// Throws Error(budget) if there is no room for what is to be done now, naming what would do for
-  /// all.
+  /// Throws Error(budget) if there is no room for the items of now; names a budget that would do
+  /// for all.
   TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, const Heaviest& heaviest);
   TileRoom(const TileRoom&) = delete;
   TileRoom& operator=(const TileRoom&) = delete;
   ~TileRoom() { pool_.give_back(taken_); }
 
-  /// Items at a time.
+  /// The number of items at a time.
   std::size_t in_flight() const { return in_flight_; }
-  /// After so many items free memory should go back to the system (release_free_memory()): what
-  /// they leave behind between the blobs that stay adds up.
+  /// After so many items free memory should go back to the system (release_free_memory()): each
+  /// leaves some behind between the blobs that stay, and that adds up.
   std::size_t items_between_releases() const { return items_between_releases_; }
 
  private:
@@ -51,29 +52,31 @@ class TileRoom {
   std::size_t items_between_releases_;
 };
 
-/// A TileRoom in the forest's pool, of which tiles kept in memory make way; the memory they had
-/// goes back to the system.
+/// Returns a TileRoom in the forest's pool. Tiles that are kept in memory make way for it; their
+/// memory goes back to the system.
 TileRoom room_for(Forest& forest, const MemoryPlan& plan, const TileRoom::Heaviest& heaviest);
 
-/// Of the tiles of these nodes, what the heaviest takes while it is read, or also compressed.
+/// These return the bytes that the heaviest tile of these nodes takes while it is read, and while
+/// it is also compressed.
 std::uint64_t heaviest_read(const Forest& forest, std::span<const NodeId> nodes);
 std::uint64_t heaviest_packed(const Forest& forest, std::span<const NodeId> nodes);
-/// Of a whole level.
+/// Returns the same for a whole level.
 std::uint64_t heaviest_read(const Forest& forest, Level level);
-/// What the heaviest takes while its tile is made of its children's.
+/// Returns the bytes that the heaviest node takes while its tile is made of its children's.
 std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> nodes);
-/// The same of coarser levels down to `top`, while the tiles of `made` are there and no coarser
-/// ones: with all triangles that are too many for a tile's vertices now, wherever they meet again.
+/// Returns the same for coarser levels down to `top`, while the tiles of `made` are there and no
+/// coarser ones: with all triangles that are too many for a tile's vertices now, wherever they meet
+/// again.
 std::uint64_t heaviest_contracted_above(const Forest& forest, Level made, Level top,
                                         const JobSize& job);
 
-/// A budget with room for such an item, if the pool is empty then.
+/// Returns a budget with room for such an item, if the pool is empty then.
 std::uint64_t budget_for(const MemoryPlan& plan, std::uint64_t heaviest_bytes);
 
-/// About the same for the heaviest node of all levels above the chunks, before there are tiles:
-/// from triangles that reach across the mesh, and so stay in the tiles of many nodes. Far less
-/// where vertices join so that many of these become one, and 0 if there are none: it may warn, not
-/// refuse.
+/// Returns about the same for the heaviest node of all levels above the chunks, before there are
+/// tiles: from triangles that reach across the mesh, and so stay in the tiles of many nodes. The
+/// truth is far less where vertices join so that many of these become one: it may warn, not refuse.
+/// Returns 0 if there are none.
 std::uint64_t expected_contracted(const Chunks& chunks);
 
 }  // namespace meshhier::pipeline

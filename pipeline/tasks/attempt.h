@@ -1,4 +1,4 @@
-// Where a task works until what it made is sealed.
+// The directory that a task works in until its result is sealed.
 #pragma once
 
 #include "execution/cancel.h"
@@ -12,7 +12,8 @@ namespace meshhier::pipeline {
 /// A directory that no other attempt has; it goes with its object.
 class Attempt {
  public:
-  /// In the plan's directory `work`, or in `scratch` unless that is empty.
+  /// Makes it in the plan's directory `work`, or in `scratch` unless that is empty. Throws
+  /// Error(io).
   Attempt(storage::FileSystem& files, std::filesystem::path work,
           const std::filesystem::path& scratch);
   Attempt(const Attempt&) = delete;
@@ -20,11 +21,13 @@ class Attempt {
   ~Attempt();
 
   const std::filesystem::path& directory() const { return directory_; }
-  /// In the plan's directory, made when it is asked for: for what gets its name by being renamed.
+  /// Returns a directory in the plan's directory, made when it is first asked for: files there can
+  /// get their names by being renamed.
   std::filesystem::path shared_directory();
 
-  /// Makes `data`, a file in directory() or none, with its entries the segment of that name, on
-  /// disk. If another attempt has sealed one before, that stays.
+  /// Makes `data`, a file in directory() or none, the segment of that name, with its entries, and
+  /// forces it to the disk. If another attempt has sealed one before, and it is whole, that stays.
+  /// Throws Error(io | interrupted).
   void seal(const storage::SegmentWriter& entries, const std::filesystem::path& data,
             const storage::SegmentName& name, const execution::CancelToken& cancel);
 

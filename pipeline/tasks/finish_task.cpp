@@ -27,7 +27,7 @@ storage::Output output_of(const config::Config& config) {
   return {config.output, config.storage.container};
 }
 
-/// Where the hierarchy, or its archive, lies in `work` until it gets its name.
+/// Returns the path in `work` of the hierarchy, or its archive, until it gets its name.
 fs::path made_path(const fs::path& work, storage::Container container) {
   return container == storage::Container::files ? storage::built_path(work)
                                                 : storage::packed_path(work);
@@ -43,15 +43,15 @@ auto in_hierarchy(storage::FileSystem& files, const fs::path& path, storage::Con
   return visit(archive, path);
 }
 
-/// What tells a finished hierarchy, or its archive, from any other.
+/// Identifies a finished hierarchy, or its archive.
 struct Finished {
-  std::uint64_t checksum = 0;  ///< of the manifest
-  std::uint64_t inode = 0;     ///< of the manifest's file, or the archive's; 0: not known
+  std::uint64_t checksum = 0;  ///< the manifest's
+  std::uint64_t inode = 0;     ///< the manifest's file's, or the archive's; 0: not known
   friend bool operator==(const Finished&, const Finished&) = default;
 };
 
-/// Of what lies at `path`; none if that is no hierarchy of the container. Throws Error(io) if it
-/// cannot be read: then nobody knows what it is.
+/// Identifies the hierarchy at `path`; returns nothing if there is none of the container. Throws
+/// Error(io) if it cannot be read: then nobody knows what it is.
 std::optional<Finished> look_at(storage::FileSystem& files, const fs::path& path,
                                 storage::Container container) {
   if (!files.exists(path) || files.is_directory(path) != (container == storage::Container::files))
@@ -90,7 +90,7 @@ Finished read_finished(const TaskPlan& plan, const fs::path& work, storage::File
   return *finished;
 }
 
-/// What tasks sealed or left, but for what says that all is done.
+/// Removes what tasks sealed or left, but for the segment that says that all is done.
 void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
                                storage::FileSystem& files) {
   const fs::path last =
@@ -104,7 +104,7 @@ void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
   files.remove_all(storage::packed_path(work));
 }
 
-/// The task of `publish` that makes the tile at that place among all.
+/// Returns the task of `publish` that makes the tile at that place among all.
 std::uint32_t publisher_of(std::size_t place, std::size_t count, std::uint32_t tasks) {
   std::uint32_t task = 0;
   while (place >= Share{task, tasks}.end(count))
@@ -112,7 +112,8 @@ std::uint32_t publisher_of(std::size_t place, std::size_t count, std::uint32_t t
   return task;
 }
 
-/// All tiles' files must be what was published: any program can reach them, so all are read.
+/// Checks that all tiles' files are what was published: any program can reach them, so all are
+/// read.
 void check_tiles(const BuildJournal& journal, const fs::path& work, std::uint32_t tasks,
                  const StageContext& context) {
   const std::vector<Published> tiles = journal.published();
@@ -139,7 +140,7 @@ void check_tiles(const BuildJournal& journal, const fs::path& work, std::uint32_
       });
 }
 
-/// What others put there would become part of the output.
+/// Throws if there are files of others: they would become part of the output.
 void check_no_others(const fs::path& built, storage::FileSystem& files) {
   for (const fs::path& file : files.list(built)) {
     const std::string name = file.lexically_relative(built).generic_string();

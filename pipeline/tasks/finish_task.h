@@ -12,21 +12,21 @@
 
 namespace meshhier::pipeline {
 
-/// Completes the hierarchy in `work`, or its archive, of which all tiles are published, by what a
-/// task of that kind makes, and notes what it is in `entries`. Reads all tiles. `tasks`: of the
-/// stage `publish`. Throws Error(corrupt) that names the task to run again if a tile is missing or
-/// not what was published.
+/// Completes the hierarchy in `work`, or its archive: makes the files that a task of that kind
+/// does, and notes the result in `entries`. Requires that all tiles are published; reads them all.
+/// `tasks`: their number in the stage `publish`. Throws Error(corrupt) that names the task to run
+/// again if a tile is missing or not what was published.
 void finish_hierarchy(const TaskKind& kind, Workshop& workshop, const std::filesystem::path& work,
                       std::uint32_t tasks, storage::SegmentWriter& entries,
                       const StageContext& context);
 
-/// Gives what was finished the output's name and removes what tasks have sealed, unless that is
-/// done already. Returns what there is, for people. Throws Error(exists) as check_output() does,
-/// Error(corrupt) if what was finished is gone.
+/// Gives the finished hierarchy the output's name and removes the segments, unless that is done
+/// already. Returns a text on the output, for people. Throws Error(exists) as check_output() does,
+/// Error(corrupt) if the finished hierarchy is gone.
 std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
                            storage::FileSystem& files);
 
-/// Whether that was done. Throws Error(io).
+/// Whether name_hierarchy() has done that. Throws Error(io).
 bool is_named(const TaskPlan& plan, const std::filesystem::path& work, storage::FileSystem& files);
 
 }  // namespace meshhier::pipeline

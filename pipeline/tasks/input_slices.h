@@ -1,4 +1,4 @@
-// The stages between `read` and `leaves`: an input that tasks distribute to chunks in slices.
+// The stages between `read` and `leaves`, in which tasks distribute an input to chunks in slices.
 //
 // Entries of segments, besides those of the journal:
 //
@@ -6,7 +6,7 @@
 //   copies   of `read`: where the copies of a block of ids are
 //   sums     of `read` and `faces`: checksums of what was read of the input
 //   ranks    of `distribute`: where the ranks of a slice's vertices are, and the rows of its copies
-//   faces    of `faces`: what the triangles of a slice came to
+//   faces    of `faces`: counts of the triangles of a slice
 #pragma once
 
 #include "import/copy_list.h"
@@ -30,7 +30,7 @@ class InputSlices {
  public:
   using Entry = storage::EntrySink::Entry;
 
-  /// Notes for the slices what `read` found.
+  /// Notes for the slices what `read` has found.
   static void note(const InputSplits& splits, storage::EntrySink& entries);
   /// Whether it is one of the entries above.
   static bool is_entry(const Entry& entry);
@@ -40,19 +40,22 @@ class InputSlices {
   /// is none.
   static bool ends_faces(const Entry& entry);
 
-  /// Opens the input. Throws Error(input) if it is not what `read` found, as `source` has it.
-  /// `slice`: what the task does of a stage that has slices.
+  /// Opens the input. Throws Error(input) if it is not the one that `read` found, as `source` has
+  /// it. `slice`: the task's share of a stage that has slices.
   InputSlices(const config::Config& config, const EarlierBuild& source, const Share& slice,
               Workshop& workshop, const StageContext& context);
 
-  /// Takes an entry of a stage before, in the order of stages and tasks. False if it does not fit.
+  /// Takes an entry of a stage before, in the order of stages and tasks. Returns false if it does
+  /// not fit.
   bool take(const Entry& entry, const Share& from);
 
-  // Each is what a stage does when the entries before were taken, the source among them; it notes
-  // that in the journal and in `entries`.
+  // Each does the work of a stage, when the entries before were taken, the source among them, and
+  // notes it in the journal and in `entries`. They throw as slice_stage.h, and Error(corrupt) if
+  // entries are missing.
   void distribute(storage::EntrySink& entries);
   void take_faces(storage::EntrySink& entries);
-  /// The faces that no slice could take, and what all slices learnt of the source.
+  /// Distributes the faces that no slice could take, and notes what all slices learnt of the
+  /// source.
   void join(storage::EntrySink& entries);
 
  private:
@@ -60,7 +63,7 @@ class InputSlices {
   bool take_copies(const Entry& copies);
   bool take_ranks(const Entry& ranks, const Share& from);
   bool take_faces_entry(const Entry& faces);
-  /// When all entries were taken. Throws Error(corrupt) if some are missing.
+  /// These return the input when all entries were taken; throw Error(corrupt) if some are missing.
   SlicedInput input();
   SlicedInput input_with_ranks();
 
@@ -73,9 +76,9 @@ class InputSlices {
   std::optional<SourceMesh> mesh_;  ///< when the source is known
   importing::CopyList copies_;
   SlicedRanks ranks_;
-  storage::RecordSpool<float> copy_rows_;  ///< of the slice
+  storage::RecordSpool<float> copy_rows_;  ///< the slice's
   std::optional<partition::TopTree> top_;
-  mesh_io::FaceCounts counts_;  ///< of the slices up to the first that ended early
+  mesh_io::FaceCounts counts_;  ///< all slices up to the first that ended early
   bool faces_ended_ = false;    ///< it was there
 };
 

@@ -55,7 +55,7 @@ class Task {
         meter_({environment.progress, environment.files.counters(), pool_.scratch_use()}),
         attempt_(environment.files, request.work, request.scratch) {}
 
-  /// Makes what the task is for and seals it.
+  /// Does the task's work and seals it.
   void run() {
     if (stage_.kind->takes == Takes::nothing)
       read();
@@ -71,16 +71,17 @@ class Task {
 
   void read();
   void go_on();
-  /// What the stage `read` noted; also whether the input has slices. Throws Error(corrupt).
+  /// Returns what the stage `read` noted, and finds out whether the input has slices. Throws
+  /// Error(corrupt).
   EarlierBuild find_source();
   void open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
                      const AttributeLayout& layout, const StageContext& context);
-  /// Takes what the tasks before have made, as far as this one needs it.
+  /// Takes the results of the tasks before, as far as this one needs them.
   void mount_inputs();
   void mount(const TaskStage& stage);
-  /// Takes an entry of a segment that is mounted. False if it does not fit the plan.
+  /// Takes an entry of a segment that is mounted. Returns false if it does not fit the plan.
   bool take(const storage::EntrySink::Entry& entry, std::uint32_t index);
-  /// Of the journal's entry of a chunk.
+  /// Whether the task needs the chunk of such an entry of the journal.
   bool needs_chunk(const storage::EntrySink::Entry& partition) const;
   bool is_slice() const { return stage_.kind->takes == Takes::slices; }
   /// Tells whether the task reads what tasks of a stage before have made. `is_next`: its own stage
@@ -106,7 +107,7 @@ class Task {
   storage::SegmentWriter* entries_ = nullptr;  ///< the journal's
   std::unique_ptr<Workshop> workshop_;
   bool has_slices_ = false;
-  std::unique_ptr<InputSlices> slices_;    ///< of the stages that read them
+  std::unique_ptr<InputSlices> slices_;    ///< only in stages that read them
   std::uint32_t last_faces_ = UINT32_MAX;  ///< slices behind this one have no triangles
 };
 
@@ -290,7 +291,7 @@ void Task::seal() {
                 name(stage_.name, index_), environment_.cancel);
 }
 
-/// One process at a time, from the first file to the name.
+/// Finishes the hierarchy: one process at a time, from the first file to the name.
 TaskReport finish(const TaskPlan& plan, const TaskStage& stage, const TaskRequest& request,
                   const BuildEnvironment& environment) {
   TaskReport report;

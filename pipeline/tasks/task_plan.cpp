@@ -53,7 +53,8 @@ std::string text_of(const TaskPlan& plan) {
   return storage::json_text(json_of(plan), {.indent = 2}) + '\n';
 }
 
-/// What does not decide the result may change from one plan to the next.
+/// Returns the fingerprint. Keys that do not decide the result may change from one plan to the
+/// next.
 std::uint64_t fingerprint_of(const TaskPlan& plan) {
   Json json = json_of(plan);
   for (const char* key : {"memory_budget", "threads"})
@@ -94,7 +95,7 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
   }
 }
 
-/// Of an input that is to be read before it is known how many vertices it has, no fewer.
+/// Returns an upper bound of the vertices of an input that must be read to count them.
 std::uint64_t most_vertices(const importing::MeshInput& input) {
   constexpr std::uint64_t kBestPacking =
       1032;  // of deflate; no format has less than a byte a vertex
@@ -104,7 +105,7 @@ std::uint64_t most_vertices(const importing::MeshInput& input) {
   return most;
 }
 
-/// The deepest tree that may come out has so many levels above the partitions that are cut.
+/// Returns how many levels above the partitions are cut in the deepest tree that may come out.
 std::uint32_t most_levels(const config::Config& config, std::uint64_t vertices,
                           std::uint64_t least_partition, std::uint32_t tasks) {
   const std::uint64_t partitions = config.partition.count
@@ -116,12 +117,12 @@ std::uint32_t most_levels(const config::Config& config, std::uint64_t vertices,
   return depth > top ? depth - top : 0;
 }
 
-/// How deep the tree may be.
+/// Returns how many levels the tree may have that are cut.
 std::uint32_t count_levels(const config::Config& config, const importing::MeshInput& input,
                            std::uint32_t tasks) {
   if (!is_read_before_plan(input, config))
     return most_levels(config, input.description().places(), config.partition.vertices, tasks);
-  // The more texels a vertex has, the smaller are partitions.
+  // Partitions are the smaller, the more texels a vertex has.
   const std::uint64_t least = input.needs_import() && config.texture.use
                                   ? config::partition_vertices(config, 1, std::uint64_t{1} << 40)
                                   : config.partition.vertices;
@@ -130,7 +131,7 @@ std::uint32_t count_levels(const config::Config& config, const importing::MeshIn
   return most_levels(config, vertices, std::max<std::uint64_t>(least, 1), tasks);
 }
 
-/// Anything but what a `plan` leaves that was killed.
+/// Whether there is anything but what a `plan` leaves that was killed.
 bool has_foreign_files(const fs::path& work, storage::FileSystem& files) {
   const fs::path attempts = storage::attempts_path(work);
   const fs::path segments = storage::segments_path(work);
@@ -146,7 +147,7 @@ bool has_foreign_files(const fs::path& work, storage::FileSystem& files) {
   return std::ranges::any_of(files.children(work), is_foreign);
 }
 
-/// `finish` removes what is in `work`: nothing of others may be there.
+/// Throws if files of others are in `work`, as `finish` removes all that is there.
 void check_work(const fs::path& work, const fs::path& output, storage::FileSystem& files) {
   const fs::path place = files.canonical(work);
   const fs::path made = files.canonical(output);
@@ -186,7 +187,7 @@ TaskPlan load_plan(const fs::path& work, const std::string& program, storage::Fi
   return plan;
 }
 
-/// Whether that plan is there already. Throws Error(exists) if another is.
+/// Whether the plan is there already. Throws Error(exists) if another one is.
 bool is_there(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
   if (!files.exists(storage::task_plan_path(work)))
     return false;
@@ -197,7 +198,8 @@ bool is_there(const TaskPlan& plan, const fs::path& work, storage::FileSystem& f
       fmt::format("{} holds another plan: remove it, or plan in another directory", work.string()));
 }
 
-/// The tasks' results get their places by being renamed.
+/// Throws if the two lie on different file systems: tasks' results get their places by being
+/// renamed.
 void check_one_file_system(const fs::path& work, const fs::path& output,
                            storage::FileSystem& files) {
   const fs::path name = storage::unique_name();
@@ -218,7 +220,7 @@ void check_one_file_system(const fs::path& work, const fs::path& output,
   files.remove_all(to);
 }
 
-/// In the place of what is there, which is the same plan for other machines.
+/// Writes the plan. One that is there is the same plan for other machines, and is replaced.
 void write_plan(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
   const std::string text = text_of(plan);
   const fs::path attempt = work / storage::unique_name();

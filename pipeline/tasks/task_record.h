@@ -1,4 +1,4 @@
-// What tasks say of themselves and of each other.
+// Entries and errors in which tasks tell of themselves and of each other.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -15,7 +15,7 @@
 
 namespace meshhier::pipeline {
 
-/// What a task took; not in it: reading the plan, and sealing.
+/// The costs of a task, without reading the plan and sealing.
 struct TaskCost {
   double wall_seconds = 0;
   double cpu_seconds = 0;
@@ -24,17 +24,18 @@ struct TaskCost {
   std::uint64_t bytes_written = 0;
 };
 
-/// The last entry of a segment.
+/// Returns the last entry of a segment, which has them.
 nlohmann::json took_entry(const StageStats& total);
-/// None if it is no such entry.
+/// Parses such an entry; returns nothing if it is none.
 std::optional<TaskCost> task_cost(const nlohmann::json& entry);
 
-/// Throws missing_task() if there is none, and as Segment::open().
+/// Opens a segment; waits some seconds for a network file system to show it. Throws missing_task()
+/// if there is none, and as Segment::open().
 std::unique_ptr<storage::Segment> open_segment(storage::FileSystem& files,
                                                const std::filesystem::path& work,
                                                const storage::SegmentName& name);
 
-/// Each says which task to run.
+/// Each returns an error that says which task to run.
 Error missing_task(const std::filesystem::path& work, const std::string& stage,
                    std::uint32_t index);
 Error damaged_segment(const std::filesystem::path& work, const storage::SegmentName& name);

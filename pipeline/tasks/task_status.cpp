@@ -42,8 +42,8 @@ void add_segment(storage::Segment& segment, StageStatus& stage, EarlierBuild& so
   stage.bytes += segment.take_file()->size();
 }
 
-/// `there`: the names in the directory. Looking for others, a network file system would remember
-/// for a while that they were not there.
+/// `there`: the names in the directory. Others are not looked for, as a network file system would
+/// remember for a while that they were not there.
 StageStatus stage_status(const TaskPlan& plan, const TaskStage& stage,
                          const std::filesystem::path& work,
                          const std::vector<std::filesystem::path>& there,
@@ -67,8 +67,8 @@ StageStatus stage_status(const TaskPlan& plan, const TaskStage& stage,
   return status;
 }
 
-/// The part of a kind's time that the tasks of one of its stages take, in a tree of that depth: a
-/// level has half the tiles of the one below.
+/// Returns the part of a kind's time that the tasks of one of its stages take, in a tree of that
+/// depth: a level has half the tiles of the one below.
 double part_of(const TaskStage& stage, const TaskPlan& plan, int depth) {
   const auto halvings = [&](std::uint32_t levels_up) {
     return static_cast<int>(levels_up + 1 - stage.kind->first_level);
@@ -81,7 +81,7 @@ double part_of(const TaskStage& stage, const TaskPlan& plan, int depth) {
   return own > depth ? 0 : std::ldexp(1.0, -own);
 }
 
-/// What each stage will take by the model that progress is told by (stage_costs.h), in CPU seconds.
+/// Returns the CPU seconds that each stage will take by the model of stage_costs.h.
 std::map<std::string, double> expected_seconds(const TaskPlan& plan, const BuildPlan& build) {
   const TilePopulation tiles = expected_tiles(build.job);
   std::map<std::string_view, double> by_kind;

@@ -1,4 +1,4 @@
-// Where scratch files hold blobs, as the journal keeps it.
+// The places of blobs in scratch files, as the journal keeps them.
 #pragma once
 
 #include "storage/io/blob_store.h"
@@ -13,8 +13,8 @@ inline nlohmann::json to_json(const storage::StoredBlob& blob) {
   return {blob.offset, blob.bytes, blob.checksum};
 }
 
-/// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
-/// `stored` is nothing of the kind.
+/// Restores a blob; returns false if the scratch file does not hold it as it was. Throws
+/// nlohmann::json::exception if `stored` is nothing of the kind.
 inline bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json& stored) {
   return store.restore(index, {stored.at(0), stored.at(1), stored.at(2)});
 }

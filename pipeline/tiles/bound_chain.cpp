@@ -10,7 +10,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// A float that is certainly not below `value`, and above `below`.
+/// Returns a float that is certainly not below `value`, and above `below`.
 float above(float below, double value) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   auto result = static_cast<float>(value);
@@ -58,7 +58,7 @@ std::uint32_t BoundChain::parent(Level level, std::uint32_t finer_tile) const {
   return tree_.parent({finer(level), finer_tile}).index;
 }
 
-/// The largest way back from any of the tiles, which are of the level below.
+/// Returns the largest way back from any of the tiles, which are of the level below.
 double BoundChain::farthest_back(const TileSet& tiles) const {
   if (tiles.is_all())
     return most_back_;

@@ -1,4 +1,4 @@
-// Errors and bounds of tiles, from how far each level's contraction moved the surface.
+// Errors and bounds of tiles, from the distance that each level's contraction moved the surface.
 #pragma once
 
 #include "hierarchy/tree.h"
@@ -20,7 +20,7 @@ class TileSet {
   static constexpr std::size_t kMost = 1024;
 
   TileSet() = default;
-  /// As numbers() gave it.
+  /// Takes what numbers() returned.
   TileSet(std::vector<std::uint32_t> numbers) : numbers_(std::move(numbers)) {}
 
   void add(std::uint32_t tile) {
@@ -42,7 +42,7 @@ class TileSet {
     for (const std::uint32_t tile : numbers_)
       visit(tile);
   }
-  /// What there is to keep.
+  /// All that must be kept to make the set again.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
 
  private:
@@ -50,15 +50,15 @@ class TileSet {
   std::vector<std::uint32_t> numbers_;  ///< or kAll alone
 };
 
-/// How far one contraction moved the surface: that of a tile, its seams counted.
+/// The distance that the contraction of one tile moved the surface, its seams counted.
 struct Step {
-  double certain = 0;        ///< both ways; infinite if what was drawn is drawn nowhere near
+  double certain = 0;        ///< both ways; infinite if a drawn part has nothing drawn near it now
   double mean_square = 0;    ///< infinite likewise
   TileSet finer_neighbours;  ///< tiles of the children's level that the drawn surface was held
                              ///< against
 };
 
-/// How far a tile is from the original mesh. See TileRecord.
+/// The distance of a tile from the original mesh. See TileRecord.
 struct TileError {
   float error = 0;
   float bound = 0;
@@ -86,15 +86,15 @@ class TileErrors {
 ///          may have come to lie in.
 class BoundChain {
  public:
-  /// No distance counts for more than `diagonal`, of the whole model: a float, as readers refuse
-  /// coordinates between which there are longer ones (mesh_io/coordinate_range.h).
+  /// `diagonal`: that of the whole model; no distance counts for more. A float can hold it, as
+  /// readers refuse coordinates with longer distances between them (mesh_io/coordinate_range.h).
   BoundChain(const Tree& tree, double diagonal);
 
-  /// `steps`: one per node of the level, the next above the last call's. In parallel on the
-  /// caller's TBB arena.
+  /// Adds the steps of a level, the next above the last call's, one per node. Works in parallel on
+  /// the caller's TBB arena.
   void add(Level level, std::span<const Step> steps);
 
-  /// Of the levels added so far; 0 for the partitions.
+  /// The errors of the levels that were added so far; 0 for the partitions.
   const TileErrors& errors() const { return errors_; }
 
  private:
@@ -113,8 +113,8 @@ class BoundChain {
   TileErrors errors_;
   double diagonal_;
   std::vector<Sum> below_;
-  double most_back_ = 0;     ///< of all of below_
-  double most_certain_ = 0;  ///< of all steps of the level that is added
+  double most_back_ = 0;     ///< the largest in below_
+  double most_certain_ = 0;  ///< the largest among the steps of the level that is added
 };
 
 }  // namespace meshhier::pipeline

@@ -17,15 +17,15 @@ using partition::RankTriangle;
 
 constexpr std::uint64_t kBatch = 16384;  // records read at a time: nothing is held twice
 
-/// Counts of items, entry i + 1 for item i, become the places where they start, and where the next
-/// of each goes.
+/// Turns counts of items, entry i + 1 for item i, into the places where they start, and where the
+/// next of each goes.
 void counts_to_starts(std::vector<std::uint32_t>& counts, std::vector<std::uint32_t>& next) {
   for (std::size_t i = 1; i < counts.size(); ++i)
     counts[i] += counts[i - 1];
   next.assign(counts.begin(), counts.end() - 1);
 }
 
-/// How many levels above these three nodes of one level their ancestors still are three.
+/// Returns how many levels above these three nodes of one level their ancestors still are three.
 int levels_apart(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return std::min({std::bit_width(a ^ b), std::bit_width(b ^ c), std::bit_width(a ^ c)}) - 1;
 }
@@ -324,7 +324,7 @@ std::size_t ChunkSpools::block_bytes(std::uint64_t work_bytes) const {
 }
 
 std::uint64_t ChunkSpools::index_bytes(std::uint64_t block) const {
-  // 8 bytes for every block, in vectors that may be half empty, and both halves held while they
+  // A block takes 8 bytes, in vectors that may be half empty, and that are there twice while they
   // grow.
   constexpr std::uint64_t kEntryBytes = 24;
   return spooled_bytes / block * kEntryBytes;

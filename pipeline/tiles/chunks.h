@@ -67,7 +67,8 @@ struct WedgedTriangle {
 };
 static_assert(sizeof(WedgedTriangle) == 24);
 
-/// Of triangles with corners in three chunks: [k] have them in three nodes up to k levels above.
+/// Counts triangles with corners in three chunks: [k] of them have their corners in three nodes up
+/// to k levels above.
 using WideCounts = std::array<std::uint64_t, 32>;
 
 /// A block of triangles sorted by chunk; keeps its memory from block to block.
@@ -89,7 +90,7 @@ struct ChunkedTriangles {
   std::vector<std::uint32_t> next_;
 };
 
-/// Chunks of a mesh of so many vertices, at most: each has more than half of
+/// Returns the most chunks of a mesh with so many places: each has more than half of
 /// partition::kChunkVertices.
 std::uint64_t most_chunks(std::uint64_t place_count);
 
@@ -100,32 +101,34 @@ struct ChunkSpools {
   // size of the mesh.
   static constexpr std::uint64_t kLeastBlock = 4096;
   static constexpr std::uint64_t kMostBlock = 262144;
-  /// Of a stage's memory, one part in so many is for the open blocks.
+  /// One part in so many of a stage's memory is for the open blocks.
   static constexpr std::uint64_t kWorkParts = 8;
 
   std::uint64_t count = 0;  ///< spools
   std::uint64_t spooled_bytes = 0;
 
-  /// `vertex_bytes`: of a position and its attributes. `wedged`: of the faces, those that name
-  /// copies.
+  /// Returns the spools for a mesh. `vertex_bytes`: a position and its attributes. `wedged`: the
+  /// number of faces that name copies.
   static ChunkSpools of(std::uint64_t place_count, std::uint64_t copy_count,
                         std::uint32_t vertex_bytes, std::uint64_t face_count, std::uint64_t wedged);
 
-  /// For a stage that may hold `work_bytes`.
+  /// Returns the size of a block for a stage that may hold `work_bytes`.
   std::size_t block_bytes(std::uint64_t work_bytes) const;
   std::uint64_t index_bytes(std::uint64_t block) const;
   std::uint64_t bytes(std::uint64_t block) const { return count * block + index_bytes(block); }
 };
 
-/// All chunks of a mesh, spooled.
+/// All chunks of a mesh, spooled. Failures of the scratch file throw Error(io). `scratch` must
+/// outlive it.
 class Chunks {
  public:
-  /// Spools a chunk has: vertices, inner and shared triangles; with copies, these and the triangles
-  /// that name them.
+  /// The number of spools that a chunk has: vertices, inner and shared triangles; with copies,
+  /// these and the triangles that name them.
   static constexpr int kSpools = 3, kCopySpools = 2;
 
-  /// Bytes of the spooled triangles; chunks share those along their borders. `boundary_share`: the
-  /// part of a chunk's vertices that is its boundary, times the root of their number.
+  /// Returns the bytes of the spooled triangles; chunks share those along their borders.
+  /// `boundary_share`: the part of a chunk's vertices that is its boundary, times the root of their
+  /// number.
   static double expected_triangle_bytes(std::uint64_t place_count, std::uint64_t face_count,
                                         std::uint64_t wedged, double boundary_share);
 
@@ -136,14 +139,15 @@ class Chunks {
   const partition::ChunkMap& map() const { return map_; }
   std::uint32_t count() const { return map_.count(); }
   bool has_copies() const { return !copies_.empty(); }
-  /// Numbers that a vertex has: its position and attributes.
+  /// The count of numbers that a vertex has: its position and attributes.
   std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
 
-  /// Blocks in any order, once they are ranked. Thread-safe.
+  /// These append blocks, in any order, once they are ranked. Thread-safe. take() returns triangles
+  /// in the order in which they came.
   void append(const ChunkedVertices& block);
   void append(const ChunkedTriangles& block);
-  /// A copy of the place that has this provisional rank, after all copies before it.
-  /// `row`: its position and attributes, row_width() numbers.
+  /// Appends a copy of the place that has this provisional rank, after all copies before it. `row`:
+  /// its position and attributes, row_width() numbers.
   void append_copy(std::uint32_t rank, std::span<const float> row);
 
   /// Reads a chunk and forgets it. Thread-safe for different chunks.
@@ -152,19 +156,19 @@ class Chunks {
   bool has(std::uint32_t chunk) const;
   /// Whether all vertices of the chunk are there.
   bool is_whole(std::uint32_t chunk) const { return place_count(chunk) == map_.size(chunk); }
-  /// For the journal, when all is appended: where the scratch file holds a chunk, or what of it was
-  /// appended here, which is then on disk.
+  /// Puts on disk what was appended here of a chunk, and returns where it is, for the journal.
+  /// Nothing can be appended any more. Thread-safe for different chunks.
   nlohmann::json store(std::uint32_t chunk);
-  /// Takes that, behind what is there of the chunk. False if it contradicts itself. Throws
+  /// Takes that, behind what is there of the chunk. Returns false if it contradicts itself. Throws
   /// nlohmann::json::exception if `stored` is nothing of the kind.
   bool restore(std::uint32_t chunk, const nlohmann::json& stored);
-  /// Likewise, of what was stored the copies alone.
+  /// Does the same, but takes the copies alone.
   bool restore_copies(std::uint32_t chunk, const nlohmann::json& stored);
   /// Whether all vertices of a restored chunk are there, and the scratch file holds it as it was;
   /// reads it all.
   bool is_as_stored(std::uint32_t chunk) const;
-  /// Which file holds something else of a restored chunk than what was stored, as
-  /// ScratchFile::changed(); none if all is as it was. Reads it all.
+  /// Returns ScratchFile::changed() for a file that does not hold a restored chunk as it was
+  /// stored; nothing if all is as it was. Reads it all.
   std::optional<Error> find_change(std::uint32_t chunk) const;
   /// Forgets a chunk that is not needed.
   void drop(std::uint32_t chunk);
@@ -173,21 +177,22 @@ class Chunks {
     return inner_[chunk].size() + shared_[chunk].size() +
            (has_copies() ? wedged_[chunk].size() : 0);
   }
-  /// Bytes a chunk's triangles take in memory.
+  /// Returns the bytes that a chunk's triangles take in memory.
   std::uint64_t triangle_bytes(std::uint32_t chunk) const;
 
   std::uint64_t copy_count(std::uint32_t chunk) const;
-  /// Bytes a chunk's copies take in memory.
+  /// Returns the bytes that a chunk's copies take in memory.
   std::uint64_t copy_bytes(std::uint32_t chunk) const;
 
-  /// Places of the chunk whose first vertices are there.
+  /// Returns the number of the chunk's places whose first vertices are there.
   std::uint64_t place_count(std::uint32_t chunk) const { return vertices_[chunk].size(); }
 
-  /// Of all triangles that were appended; add_wide() takes those of other processes.
+  /// Counts all triangles that were appended; add_wide() takes those of other processes.
   const WideCounts& wide() const { return wide_; }
   void add_wide(const WideCounts& wide);
-  /// Triangles appended whose corners are in three nodes of `level`, not below the chunks'. As
-  /// vertices join within nodes only, none of them degenerates on that level or below.
+  /// Returns the number of appended triangles whose corners are in three nodes of `level`, not
+  /// below the chunks'. As vertices join within nodes only, none of them degenerates on that level
+  /// or below.
   std::uint64_t wide_triangles(Level level) const;
 
  private:
@@ -203,7 +208,7 @@ class Chunks {
   std::vector<JoinedSpool<float>> copies_;  ///< rank in the chunk as bits, then as vertices
   std::vector<JoinedSpool<WedgedTriangle>> wedged_;
   WideCounts wide_{};
-  std::vector<std::mutex> locks_;  ///< per chunk, of who appends
+  std::vector<std::mutex> locks_;  ///< per chunk, for those who append
   std::mutex wide_lock_;
 };
 
@@ -215,7 +220,7 @@ class Ranker {
       next_[c] = map.first_rank(c);
   }
 
-  /// Also says in the block where its rows go.
+  /// Returns the ranks of a block's vertices in `ranks`, and says in the block where its rows go.
   template <class Rank>
   void rank(ChunkedVertices& block, std::vector<Rank>& ranks) {
     block.first_ranks = next_;

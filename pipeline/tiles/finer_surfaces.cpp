@@ -12,8 +12,8 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// The cells of a grid that the border triangles of a tile reach: what of the neighbours' surfaces
-/// may be near them.
+/// The cells of a grid that the border triangles of a tile reach: the neighbours' surfaces are near
+/// the border only there.
 class BorderCells {
  public:
   explicit BorderCells(const TileMesh& mesh) {
@@ -78,7 +78,8 @@ class BorderCells {
   std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
 };
 
-/// A part without the rest of its directions: there may be many neighbours.
+/// Returns a part with its own directions alone, so that the whole can go: there may be many
+/// neighbours.
 FinerSurface alone(FinerSurface part, const BakeSource& whole) {
   BakeSource source;
   source.positions = whole.positions;

@@ -1,4 +1,4 @@
-// What a tile's picture and normal map are baked from.
+// The finer surfaces that a tile's picture and normal map are baked from.
 #pragma once
 
 #include "pipeline/tiles/forest.h"
@@ -13,10 +13,10 @@
 
 namespace meshhier::pipeline {
 
-/// A tile's places and triangles, interior ones first, with nothing to be baked from yet.
+/// Returns a tile's places and triangles, interior ones first, without picture or directions.
 BakeSource bare_source(const TileMesh& mesh);
 
-/// A finer surface, or what of it lies near the border of the tile.
+/// A finer surface, or the part of it that lies near the border of the tile.
 struct FinerSurface {
   std::shared_ptr<const BakeSource> source;
   std::vector<TileTriangle> triangles{};  ///< empty: all
@@ -27,8 +27,8 @@ struct FinerSurface {
   texture::NormalSurface normal_surface() const;
 };
 
-/// The node's children, then those of its neighbours, as far as they are near the border of its
-/// tile. `source`: of a tile's node. Those without triangles are left out.
+/// Returns the node's children, then those of its neighbours, as far as they are near the border of
+/// its tile. `source(tile)`: returns that tile's surface. Those without triangles are left out.
 std::vector<FinerSurface> finer_surfaces(
     const Forest& forest, NodeId node, const TileMesh& mesh,
     const std::function<std::shared_ptr<const BakeSource>(NodeId tile)>& source);

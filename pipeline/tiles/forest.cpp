@@ -129,7 +129,7 @@ void Forest::drop_copies(std::uint64_t free_bytes) {
   }
 }
 
-/// The tile with its ghosts at its own level, but without their vertices.
+/// Returns the tile with its ghosts at its own level, but without their vertices.
 template <class Corner>
 LoadedTile Forest::resolved(NodeId node) const {
   const storage::BlobStore& tiles = levels_[raw(node.level)].tiles;
@@ -191,7 +191,7 @@ std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const FinerGhost> fo
 void Forest::map_wedges(NodeId node, SimplifiedTile& tile) const {
   if (tile.border_wedges.empty())
     return;
-  // Of each foreign corner, the map of its tile.
+  // Each foreign corner has the map of its tile.
   std::vector<WedgeMap> maps;
   std::vector<std::uint32_t> map_of(tile.foreign.size());
   for_each_owner(std::span<const FinerGhost>(tile.foreign),

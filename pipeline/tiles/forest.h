@@ -18,7 +18,7 @@
 
 namespace meshhier::pipeline {
 
-/// What the contraction that made a tile had to do. See TileRecord.
+/// The vertices that the contraction of a tile had to force away. See TileRecord.
 struct Fallbacks {
   std::uint32_t torn_count = 0;
   std::uint32_t forced_count = 0;
@@ -26,23 +26,26 @@ struct Fallbacks {
 
 struct LoadedTile {
   BuildTile tile;  ///< with its ghosts at its own level, positions and all
-  /// What foreign corners of the tile as it was just made (WorkTile::foreign) are at its own level.
+  /// The ghosts at its own level that foreign corners of the tile as it was just made
+  /// (WorkTile::foreign) have become.
   std::vector<GhostRef> mapped;
 };
 
 /// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that
 /// level are there (and, of a simplified level, all parent maps that lead to it). Loading and
-/// putting are thread-safe.
+/// putting are thread-safe for different nodes. Failures of the scratch file throw Error(io), and
+/// Error(corrupt) if another process's file is not as it was.
 ///
 /// An early node has a tile here too: its partition's, kept as it is.
 class Forest {
  public:
-  /// `layout`: of partitions; tiles above them have no texture coordinates if those name materials.
+  /// `layout`: that of partitions; tiles above them have no texture coordinates if those name
+  /// materials. `chunks`: the level of the chunks.
   Forest(const Tree& tree, Level chunks, const AttributeLayout& layout,
          storage::ScratchFile& scratch, bool computes_normals = false);
 
   const Tree& tree() const { return tree_; }
-  /// Of the tiles of a level.
+  /// The layout of the tiles of a level.
   const AttributeLayout& layout(Level level) const {
     return level == tree_.depth() ? layout_ : layout_above_;
   }
@@ -53,13 +56,13 @@ class Forest {
   void put_tile(NodeId node, const SimplifiedTile& tile) { put_work_tile(node, tile); }
   /// Whether a tile gets normals of its own: an early node has its partition's.
   bool has_normals(NodeId node) const { return computes_normals_ && !tree_.is_early(node); }
-  /// The normals of such a tile, which `mesh` is.
+  /// Puts the normals of such a tile, which `mesh` is.
   void put_normals(NodeId node, const OwnShading& normals, const TileMesh& mesh);
-  /// What the neighbours of a simplified tile may see of it.
+  /// Puts the part of a simplified tile that its neighbours may see.
   void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
-  /// The map from `child` to its parent's tile.
+  /// Puts the map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
-  /// The same for its wedges; not needed if all keep their numbers.
+  /// Puts the map for its wedges; not needed if all keep their numbers.
   void put_wedge_map(NodeId child, const WedgeMap& wedge_map);
 
   void put_fallbacks(NodeId node, const Fallbacks& fallbacks) {
@@ -72,46 +75,50 @@ class Forest {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
-  /// What the triangles and foreign corners of a tile take, and a part of what its copies do.
+  /// Returns the bytes of a tile's triangles and foreign corners, and a part of those of its
+  /// copies.
   std::uint64_t triangle_bytes(NodeId node) const;
   /// For each byte of a triangle four times as many are at work as for one of a copy (TileRoom):
   /// five with a million vertices at one place.
   static constexpr std::uint64_t kCopyShare = 4;
-  /// Of all partitions; ask when all are there.
+  /// Returns the sums of all partitions, which must be there.
   storage::TileSums partition_sums() const;
-  /// Splits of the own vertices of all tiles that will be published; ask when all have normals.
+  /// Returns the number of splits of the own vertices of all tiles that will be published. Requires
+  /// that all have normals.
   std::uint64_t split_count() const;
-  /// What is kept in memory counts against it.
+  /// The pool that tiles in memory count against.
   storage::MemoryPool& pool() const { return pool_; }
 
   /// Takes tiles out of memory, which are on disk too, the finest first, until the pool has so much
-  /// free; while nothing is loaded.
+  /// free. Nothing may be loaded meanwhile.
   void drop_copies(std::uint64_t free_bytes);
 
   LoadedTile load_with_mapped(NodeId node) const;
   BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
   OwnShading normals(NodeId node) const;
-  /// What neighbours see of a tile's normals; of an early node what they see of its partition's.
+  /// Returns the part of a tile's normals that neighbours see; for an early node, of its
+  /// partition's.
   BoundaryShading boundary_normals(NodeId node) const;
   SeamStrip seam_strip(NodeId node) const;
-  /// The map from `child` to its parent's tile.
+  /// Returns the map from `child` to its parent's tile.
   std::vector<std::uint16_t> parent_map(NodeId child) const;
-  /// The map from `node` to the nearest ancestor that is published; empty for the root.
+  /// Returns the map from `node` to the nearest ancestor that is published; empty for the root.
   std::vector<std::uint16_t> published_parent_map(NodeId node) const;
-  /// Of each ghost of the node's tile its GhostChain, one after another.
+  /// Returns the GhostChain of each ghost of the node's tile, one after another.
   std::vector<std::uint16_t> chains(NodeId node, std::span<const GhostRef> ghosts) const;
 
-  // For the journal: where the scratch file holds what was put, to be restored in another process.
+  // These return, for the journal, where the scratch file holds what was put, to be restored in
+  // another process.
 
-  /// Of a chunk: its places, and all its partitions.
+  /// Returns the places of a chunk, and all its partitions.
   nlohmann::json stored_chunk(std::uint32_t chunk) const;
-  /// Of a simplified tile: all that was put when it was made, the maps to it and the normals of its
-  /// children included.
+  /// Returns all that was put when a simplified tile was made, the maps to it and the normals of
+  /// its children included.
   nlohmann::json stored_tile(NodeId node) const;
-  /// The normals of the root, when they are there.
+  /// Returns the normals of the root, when they are there.
   nlohmann::json stored_root() const;
-  /// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
-  /// `stored` is nothing of the kind.
+  /// These return false if the scratch file does not hold it as it was. They throw
+  /// nlohmann::json::exception if `stored` is nothing of the kind.
   bool restore_chunk(std::uint32_t chunk, const nlohmann::json& stored);
   bool restore_tile(NodeId node, const nlohmann::json& stored);
   bool restore_root(const nlohmann::json& stored);

@@ -1,4 +1,4 @@
-// Records of several spools in a row.
+// Several spools in a row, read as one.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -13,8 +13,8 @@
 
 namespace meshhier::pipeline {
 
-/// One spool that is written, or those that tasks have stored, one behind the other. As a spool:
-/// one writer, then any number of readers.
+/// One spool that is written, or those that tasks have stored, one behind the other. As with a
+/// spool, one thread writes, then any threads may read at once.
 template <class Record>
 class JoinedSpool {
  public:
@@ -51,9 +51,10 @@ class JoinedSpool {
       visit(part);
   }
 
-  /// Of what was appended.
+  /// Stores what was appended.
   storage::StoredSpool store() { return first_.store(); }
-  /// Takes what was stored behind what is there; false if `stored` contradicts itself.
+  /// Takes stored records behind those that are there; returns false if `stored` contradicts
+  /// itself.
   bool restore(const storage::StoredSpool& stored) {
     if (stored.bytes % sizeof(Record) != 0)
       return false;
@@ -63,7 +64,7 @@ class JoinedSpool {
       return first_.restore(stored);
     return more_.emplace_back(*scratch_, stored.block_bytes).restore(stored);
   }
-  /// Of what was restored: as Spool::changed() of what is not as it was stored; none if all is.
+  /// Returns Spool::changed() for a restored part that is not as it was stored; nothing if all are.
   std::optional<Error> find_change() const {
     if (!first_.is_as_stored())
       return first_.changed();
@@ -75,7 +76,7 @@ class JoinedSpool {
   }
 
  private:
-  /// Reads what of the records lies in the part; `first` becomes a place behind it.
+  /// Reads the records that lie in the part; `first` and `records` become those behind it.
   static void read_part(const storage::RecordSpool<Record>& part, std::uint64_t& first,
                         std::span<Record>& records) {
     if (first >= part.size()) {

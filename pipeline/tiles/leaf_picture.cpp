@@ -20,12 +20,13 @@ using texture::kLeafAlignment;
 
 constexpr std::uint32_t kBandTexels = std::uint32_t{1} << 20;
 
-/// Of rows of blocks, as large a number as a band may have; at least one.
+/// Returns the rows of a band: as many rows of blocks as it may have, at least one.
 std::uint32_t band_rows(std::uint32_t width) {
   return std::max(kBandTexels / width / kLeafAlignment, 1U) * kLeafAlignment;
 }
 
-/// Of a material without a picture. Alpha is that of the tile's picture, whose cutoff is 0.5.
+/// Returns the colour of a material without a picture. Its alpha suits the tile's picture, whose
+/// cutoff is 0.5.
 std::array<float, 4> shown_colour(const images::Material& material) {
   std::array<float, 4> colour = material.colour;
   if (material.alpha == AlphaMode::opaque)
@@ -46,7 +47,7 @@ void fill(const images::Material& material, Image& image, std::uint32_t left, st
   }
 }
 
-/// Of each block whether it belongs to a piece.
+/// Returns for each block whether it belongs to a piece.
 std::vector<std::uint8_t> blocks_of(const texture::LeafAtlas& atlas) {
   const std::size_t width = atlas.width / kLeafAlignment;
   std::vector<std::uint8_t> is_piece(width * (atlas.height / kLeafAlignment));
@@ -112,7 +113,8 @@ void LeafPicture::find_shown(std::span<const texture::CornerTexcoords> corners) 
   }
 }
 
-/// Of an eighth of the size, from a level of the pictures' pyramids; then all around.
+/// Paints a picture of an eighth of the size, a texel for each block: pieces from a level of the
+/// pictures' pyramids, then all around them.
 void LeafPicture::paint_background() {
   constexpr std::uint32_t kUp = std::countr_zero(kLeafAlignment);
   for (const AtlasPiece& piece : atlas_.pieces) {

@@ -15,7 +15,7 @@
 
 namespace meshhier::pipeline {
 
-/// Materials, and their pictures as the store numbers them.
+/// Materials, and the pictures that they number.
 struct TexturedInput {
   const images::MaterialList& materials;
   const images::ImageStore& pictures;
@@ -24,20 +24,21 @@ struct TexturedInput {
 /// Blocks of kLeafAlignment * kLeafAlignment texels that triangles and their gutters reach are the
 /// input's. All others, between pieces or in them, have about the colour of the nearest of those:
 /// smaller pictures that viewers make of it have no black in them, and encoders nothing to do.
+/// Thread-safe once constructed. Reading pictures throws Error(io | corrupt).
 class LeafPicture {
  public:
-  /// `atlas`, which has a piece or more, and `input` must outlive it. `corners`: of all triangles,
-  /// in the atlas.
+  /// `atlas`, which has a piece or more, and `input` must outlive it. `corners`: those of all
+  /// triangles, in the atlas.
   LeafPicture(const texture::LeafAtlas& atlas, std::span<const texture::CornerTexcoords> corners,
               const TexturedInput& input);
 
-  /// The strongest of the materials that are shown.
+  /// The strongest alpha among the materials that are shown.
   AlphaMode alpha() const { return alpha_; }
   std::uint32_t channels() const { return background_.channels; }
-  /// Rows from `top` on, a multiple of kLeafAlignment of them: about a million texels.
+  /// Returns rows from `top` on, a multiple of kLeafAlignment of them: about a million texels.
   images::Image band(std::uint32_t top) const;
 
-  /// What it holds, a band included.
+  /// Returns the memory that it holds, a band included.
   static std::uint64_t bytes(std::uint32_t width, std::uint32_t height);
 
  private:
@@ -53,9 +54,9 @@ class LeafPicture {
   const texture::LeafAtlas& atlas_;
   const TexturedInput& input_;
   AlphaMode alpha_ = AlphaMode::opaque;
-  std::vector<std::optional<images::MaterialTexels>> texels_;  ///< of materials with pictures
+  std::vector<std::optional<images::MaterialTexels>> texels_;  ///< for materials with pictures
   images::Image background_;                                   ///< a texel for each block
-  std::vector<std::uint8_t> is_shown_;  ///< of blocks: a triangle or its gutter reaches it
+  std::vector<std::uint8_t> is_shown_;  ///< per block: a triangle or its gutter reaches it
 };
 
 }  // namespace meshhier::pipeline

@@ -20,14 +20,14 @@
 
 namespace meshhier::pipeline {
 
-/// Rows of `width` numbers, spooled in runs, each with the number of its first row. As JoinedSpool;
-/// rows of each part are numbered behind those of the parts before.
+/// Rows of `width` numbers, spooled in runs, each with the number of its first row. Parts and
+/// threads are as JoinedSpool's; rows of each part are numbered behind those of the parts before.
 class RowSpool {
  public:
   RowSpool(storage::ScratchFile& scratch, std::size_t block_bytes, std::size_t width)
       : runs_(scratch, block_bytes), width_(width) {}
 
-  /// Rows `first`, first + 1, ...; each number once.
+  /// Appends the rows `first`, first + 1, ...; each number may come once.
   void append(std::uint32_t first, std::span<const float> rows) {
     const auto count = static_cast<std::uint32_t>(rows.size() / width_);
     runs_.append(Header{std::bit_cast<float>(first), std::bit_cast<float>(count)});
@@ -35,7 +35,7 @@ class RowSpool {
     counts_[0] += count;
   }
 
-  /// Rows that are there.
+  /// Returns the number of rows that are there.
   std::uint64_t size() const {
     return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
   }
@@ -61,7 +61,7 @@ class RowSpool {
     runs_.clear();
     counts_ = {0};
   }
-  /// As spool_json.h, with the number of rows behind.
+  /// Returns what spool_json.h does, with the number of rows behind.
   nlohmann::json store() {
     nlohmann::json stored = pipeline::store(runs_);
     stored.push_back(counts_[0]);
@@ -83,15 +83,15 @@ class RowSpool {
  private:
   using Header = std::array<float, 2>;  ///< bits: number of the first row, rows
 
-  /// Numbers of a spool, some at a time.
+  /// Reads the numbers of a spool, some at a time.
   class Reader {
    public:
     Reader(const storage::RecordSpool<float>& spool, std::size_t room)
         : spool_(spool), buffer_(std::min<std::uint64_t>(room, spool.size())) {}
 
     bool is_at_end() const { return begin_ == end_ && next_ == spool_.size(); }
-    /// Of those that follow, `least` or more, but no more than `most`. Throws Error(corrupt) if
-    /// there are fewer.
+    /// Returns the numbers that follow: a multiple of `least`, no more than `most`. Throws
+    /// Error(corrupt) if there are fewer than `least`.
     std::span<const float> take(std::size_t least, std::uint64_t most) {
       if (end_ - begin_ < least)
         fill();
@@ -117,8 +117,8 @@ class RowSpool {
 
     const storage::RecordSpool<float>& spool_;
     std::vector<float> buffer_;
-    std::size_t begin_ = 0, end_ = 0;  ///< in the buffer: what is still to be taken
-    std::uint64_t next_ = 0;           ///< in the spool: what is to be read
+    std::size_t begin_ = 0, end_ = 0;  ///< range of the buffer that is still to be taken
+    std::uint64_t next_ = 0;           ///< next number of the spool to be read
   };
 
   [[noreturn]] static void throw_corrupt() {
@@ -147,7 +147,7 @@ class RowSpool {
 
   JoinedSpool<float> runs_;
   std::size_t width_;
-  std::vector<std::uint32_t> counts_{0};  ///< of rows, per part
+  std::vector<std::uint32_t> counts_{0};  ///< rows of each part
 };
 
 }  // namespace meshhier::pipeline

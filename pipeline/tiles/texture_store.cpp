@@ -17,7 +17,8 @@ std::span<const T> all_of(const std::vector<T>& values) {
   return values;
 }
 
-/// Two of bytes at kImageBytes, the picture's and the normal map's.
+/// The head of a stored texture; at kImageBytes it has the bytes of the picture and of the normal
+/// map.
 using TextureHead = std::array<std::uint64_t, 11>;
 constexpr std::size_t kImageBytes = 4;
 

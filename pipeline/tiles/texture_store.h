@@ -25,23 +25,23 @@
 
 namespace meshhier::pipeline {
 
-/// What is held of the input's pictures that were read, and as much of finer tiles'. More than the
-/// most saves no time worth it.
+/// So many bytes of the input's pictures that were read are held, and as many of finer tiles'. More
+/// than the most saves no time worth it.
 inline constexpr std::uint64_t kLeastPictureCache = std::uint64_t{6} << 20;
 inline constexpr std::uint64_t kMostPictureCache = std::uint64_t{24} << 20;
 
-/// Of what a stage may hold.
+/// Returns the part of a stage's memory that is for them.
 constexpr std::uint64_t picture_cache_bytes(std::uint64_t work_bytes) {
   return std::clamp(work_bytes / 16, kLeastPictureCache, kMostPictureCache);
 }
 
-/// Of the same, what is left for pictures and normal maps at work.
+/// Returns the rest, for pictures and normal maps at work.
 constexpr std::uint64_t picture_room_bytes(std::uint64_t work_bytes) {
   return work_bytes - std::min(work_bytes, 2 * picture_cache_bytes(work_bytes));
 }
 
-/// What a tile is published with. Its triangles are those that Forest::load() gives, interior ones
-/// first, of a partition once its vertices are ordered.
+/// The picture or normal map that a tile is published with. Its triangles are those that
+/// Forest::load() gives, interior ones first; a partition's once its vertices are ordered.
 struct TileTexture {
   TileImage image;                                  ///< empty if the tile has no triangles
   std::vector<texture::CornerTexcoords> corners;    ///< one a triangle
@@ -49,53 +49,55 @@ struct TileTexture {
   std::vector<texture::CornerTangents> tangents{};  ///< with a normal map one a triangle
 };
 
-/// What the pictures and normal maps of coarser tiles are made of: a tile with its picture, perhaps
-/// reduced, or with its directions.
+/// The surface that the pictures and normal maps of coarser tiles are made of: a tile with its
+/// picture, perhaps reduced, or with its directions.
 struct BakeSource {
-  std::vector<Vec3f> positions;  ///< of its places
+  std::vector<Vec3f> positions;  ///< one for each place
   std::vector<TileTriangle> triangles;
   std::vector<texture::CornerTexcoords> corners;
   images::Image image;
   AlphaMode alpha = AlphaMode::opaque;
   texture::NormalTexels directions{};
-  std::vector<texture::CornerNormals> normals{};  ///< of partitions in place of `directions`
+  std::vector<texture::CornerNormals> normals{};  ///< partitions have these, no `directions`
 
   texture::TexturedSurface surface() const { return {positions, triangles, corners, &image}; }
   std::uint64_t bytes() const;
 };
 
-/// How large texels are on the surface.
+/// The sizes of texels on the surface, in input units.
 struct TexelSizes {
-  float own = 0;     ///< of the tile's picture
-  float finest = 0;  ///< of the pictures of the partitions below it, the finest of them
-  float lost = 0;    ///< of pixels that hardly differ from the input's (see BakedTexture)
+  float own = 0;     ///< the tile's picture
+  float finest = 0;  ///< the finest of the pictures of the partitions below it
+  float lost = 0;    ///< pixels of this size hardly differ from the input's (see BakedTexture)
 };
 
-/// Of each tile node. Putting and loading are thread-safe.
+/// Holds the texture and the bake source of each tile node. Putting and loading are thread-safe for
+/// different nodes; any threads may load the same one. Failures of the scratch file throw
+/// Error(io), and Error(corrupt) if another process's file is not as it was.
 class TextureStore {
  public:
   TextureStore(const Tree& tree, storage::ScratchFile& scratch);
 
-  /// Of recently read sources so many bytes stay in memory at most.
+  /// Sets how many bytes of recently read sources stay in memory, at most.
   void set_cache_bytes(std::uint64_t bytes) { cache_bytes_ = bytes; }
   void put(NodeId node, const TileTexture& texture, const BakeSource& source,
            const TexelSizes& texels);
   TileTexture texture(NodeId node) const;
   std::shared_ptr<const BakeSource> source(NodeId node) const;
-  /// The same of what was never put: makes it unless it is still in memory.
+  /// Returns a source that was never put: makes it unless it is still in memory.
   std::shared_ptr<const BakeSource> source(NodeId node,
                                            const std::function<BakeSource()>& make) const;
   const TexelSizes& texels(NodeId node) const {
     return levels_[raw(node.level)].texels[node.index];
   }
-  /// Whether any tile has one. Requires that all tiles' are there.
+  /// Whether any tile has one. Requires that all tiles' textures are there.
   bool has_normal_maps() const;
-  /// Of all published pictures.
+  /// Returns the bytes of all published pictures.
   std::uint64_t image_bytes() const;
-  /// Of what the largest tile is published with.
+  /// Returns the bytes of the largest texture of a tile: picture, map and corners.
   std::uint64_t heaviest_bytes() const;
 
-  /// For the journal, as Forest's.
+  // For the journal, as Forest's.
   nlohmann::json stored(NodeId node) const;
   bool restore(NodeId node, const nlohmann::json& stored);
   void drop_copies();

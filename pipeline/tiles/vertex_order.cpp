@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kNowhere = UINT32_MAX;
 
-/// The vertices of the tile in their new order: boundary and ghosts stay, inner ones as they are
-/// first used, unused ones last.
+/// Returns the vertices of the tile in their new order: boundary and ghosts stay, inner ones come
+/// as they are first used, unused ones last.
 std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * mesh.interior.size());

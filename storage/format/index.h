@@ -28,8 +28,8 @@ TileRecord decode_record(std::span<const std::byte> bytes);
 std::uint64_t index_bytes(const Tree& tree);
 std::uint64_t index_bytes(std::uint64_t records);
 
-/// Returns the record of `node`, which has a tile; throws Error(corrupt) if there is none.
-/// `records`: all of a tree's, ascending by node. O(log n).
+/// Returns the record of `node`. Requires that it has a tile. `records`: all of a tree's, ascending
+/// by node. O(log n).
 const TileRecord& record_of(std::span<const TileRecord> records, NodeId node);
 
 }  // namespace meshhier::storage
