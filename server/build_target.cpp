@@ -13,18 +13,18 @@
 namespace meshhier::server {
 namespace {
 
-/// As a manifest has it, in which what is no UTF-8 was replaced.
+/// Returns a name as a manifest has it, in which bytes that are no UTF-8 were replaced.
 std::string as_text(const std::string& name) {
   return storage::json_text(nlohmann::json(name));
 }
 
-/// The name of its hierarchy, without the ending: a file in a folder is called as that.
+/// Returns the name of its hierarchy, without the ending: a file in a folder has the folder's name.
 std::string stem_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? mesh_io::mesh_stem(name) : name.substr(0, slash);
 }
 
-/// Another one, which no other file of an inbox has as its stem.
+/// Returns another name, which no other file of an inbox has as its stem.
 std::string full_name_of(std::string name) {
   std::replace(name.begin(), name.end(), '/', '.');
   return name;
@@ -39,7 +39,8 @@ bool is_first_of_its_stem(const std::string& name, const std::vector<std::string
 /// NAME_MAX of Linux, in bytes.
 constexpr std::size_t kLongestName = 255;
 
-/// The longest name that a hierarchy has beside it while it is built, shown and checked.
+/// Returns the length of the longest name that is beside a hierarchy while it is built, shown and
+/// checked.
 std::size_t longest_beside(const std::string& output) {
   const std::filesystem::path path = output;
   std::size_t longest = 0;

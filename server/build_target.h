@@ -1,4 +1,4 @@
-// Where the hierarchy of a dropped file goes, and whether it is there already.
+// The place for the hierarchy of a dropped file, and whether it is there already.
 #pragma once
 
 #include "server/hierarchies.h"
@@ -19,7 +19,7 @@ struct BuildTarget {
     nowhere   ///< both names are taken by something else
   };
   Kind kind = Kind::nowhere;
-  std::string name;  ///< in the folder; of `nowhere`: the last one looked at
+  std::string name;  ///< in the folder; if `nowhere`, the last one looked at
 };
 
 struct TargetFolder {
@@ -28,16 +28,17 @@ struct TargetFolder {
   std::string suffix;  ///< ".hier"
 };
 
-/// Bytes by which the name of a hierarchy is too long for all that lies beside it; 0: it is not.
+/// Returns by how many bytes the name of a hierarchy is too long for all that lies beside it; 0 if
+/// it is not.
 std::size_t excess_of_output(const std::string& output);
-/// The same of a mesh's file, whichever of the two names below its hierarchy gets.
+/// Returns the same for a mesh's file, whichever of the two names below its hierarchy gets.
 std::size_t excess_of_name(const std::string& name, const std::string& suffix);
 
-/// For the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to "a.ply.hier" if
-/// a.hier was made from something else, or an inbox file earlier in the alphabet has the same stem.
-/// "house/a.obj" goes to "house.hier", or "house.a.obj.hier". `is_made_of` says whether a hierarchy
-/// of a file of that name is one of this very file, and is asked for no other. Throws Error(io),
-/// and what `is_made_of` throws.
+/// Finds the place for the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to
+/// "a.ply.hier" if a.hier was made from something else, or an inbox file earlier in the alphabet
+/// has the same stem. "house/a.obj" goes to "house.hier", or "house.a.obj.hier". `is_made_of` says
+/// whether a hierarchy of a file of that name is one of this very file, and is asked for no other.
+/// Throws Error(io), and what `is_made_of` throws.
 BuildTarget find_target(TargetFolder target, const std::string& name,
                         const std::vector<std::string>& inbox,
                         const std::function<bool(const Model&)>& is_made_of);

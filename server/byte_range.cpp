@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kUnit = "bytes=";
 
-/// Digits only; a number beyond 64 bits counts as the largest.
+/// Parses a number of digits only; one beyond 64 bits counts as the largest.
 std::optional<std::uint64_t> parse_number(std::string_view text) {
   if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos)
     return std::nullopt;

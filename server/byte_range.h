@@ -1,4 +1,4 @@
-// Which part of a file a Range header asks for (RFC 9110, section 14).
+// Parses Range headers, which ask for a part of a file (RFC 9110, section 14).
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,11 @@ struct RangeAnswer {
     outside  ///< 416
   };
   Kind kind = Kind::whole;
-  ByteRange range;  ///< of a part: at least one byte, within the file
+  ByteRange range;  ///< only of a part: at least one byte, within the file
 };
 
-/// `header`: the value, which nobody vouches for.
+/// Returns the part of a file of `file_bytes` that a header asks for. `header`: the value, which
+/// nobody vouches for. Never throws.
 RangeAnswer find_range(std::string_view header, std::uint64_t file_bytes);
 
 }  // namespace meshhier::server

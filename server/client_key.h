@@ -1,13 +1,13 @@
-// By what clients are told apart when threads and connections are shared out.
+// The key that tells clients apart when threads and connections are shared out.
 #pragma once
 
 #include <string>
 
 namespace meshhier::server {
 
-/// Of a numeric address. An IPv6 client has a whole /64 network, so its key is that network:
-/// "2001:db8:1:2::/64". IPv4 addresses are their own key, also where they are mapped into IPv6.
-/// Other text is returned as it is.
+/// Returns the key of a numeric address. An IPv6 client has a whole /64 network, so its key is that
+/// network: "2001:db8:1:2::/64". IPv4 addresses are their own key, also where they are mapped into
+/// IPv6. Other text is returned as it is.
 std::string client_key(const std::string& address);
 
 }  // namespace meshhier::server

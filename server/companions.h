@@ -11,30 +11,32 @@
 
 namespace meshhier::server {
 
-/// Of one thread. Files are looked at, never changed.
+/// For one thread. Files are looked at, never changed.
 class Companions {
  public:
-  /// `folder`: of the meshes. `files` must outlive this.
+  /// `folder`: the meshes'. `files` must outlive this.
   Companions(storage::FileSystem& files, std::filesystem::path folder)
       : files_(files), folder_(std::move(folder)) {}
 
-  /// One number for sizes and times of all that a note names but the mesh: as long as it stays, so
-  /// do they, and nothing has appeared that was missing. 0 if there are none. Throws Error(io).
+  /// Returns one number for sizes and times of all that a note names but the mesh: as long as it
+  /// stays, so do they, and nothing has appeared that was missing. 0 if there are none. Throws
+  /// Error(io).
   std::uint64_t mark(const storage::InputNote& note) const;
 
-  /// Whether they are what the note says; one that is gone counts as unchanged, as a mesh that is
-  /// gone does. Those of other times are read if `may_read`, else they are others; `note` gets the
-  /// times of those that were read and found the same. `check` is called before each read and may
-  /// throw. Throws Error(io).
+  /// The result of compare().
   struct Comparison {
     bool is_same = true;
     bool was_read = false;
   };
+  /// Compares the files with the note; one that is gone counts as unchanged, as a mesh that is gone
+  /// does. Files of other times are read if `may_read`, else they are others; `note` gets the times
+  /// of those that were read and found the same. `check` is called before each read and may throw.
+  /// Throws Error(io).
   Comparison compare(storage::InputNote& note, bool may_read,
                      const std::function<void()>& check) const;
 
  private:
-  /// None if there is no regular file of that name.
+  /// Returns nothing if there is no regular file of that name.
   std::optional<storage::FileIdentity> identity(const std::filesystem::path& path) const;
   bool has_appeared(const storage::InputNote& note) const;
 
@@ -42,7 +44,7 @@ class Companions {
   std::filesystem::path folder_;
 };
 
-/// With the time at which name and rights last changed.
+/// Compares also the times at which name and rights last changed.
 bool is_untouched(const storage::FileIdentity& a, const storage::FileIdentity& b);
 
 }  // namespace meshhier::server

@@ -11,7 +11,7 @@
 namespace meshhier::server {
 namespace {
 
-/// Takes what stands before the next `mark` off the front.
+/// Takes all up to the next `mark` off the front, and drops the mark.
 std::string_view take_until(std::string_view& text, char mark) {
   const std::size_t end = std::min(text.find(mark), text.size());
   const std::string_view part = text.substr(0, end);
@@ -19,17 +19,18 @@ std::string_view take_until(std::string_view& text, char mark) {
   return trimmed(part);
 }
 
-/// "q=0", "q=0.000"
+/// Whether it is "q=0", "q=0.000" ...
 bool is_zero_weight(const std::string& parameter) {
   return parameter.starts_with("q=0") && parameter.find_first_not_of("0.", 2) == std::string::npos;
 }
 
-/// Or nothing.
+/// Whether it is a port, or empty.
 bool is_port(std::string_view text) {
   return text.size() <= 5 && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// "127.0.0.1", "127.1": what ends with a digit and is no address is no name either, to no browser.
+/// Whether it is an address as "127.0.0.1" or "127.1". No browser takes a text that ends with a
+/// digit and is no address for a name.
 bool is_loopback_address(std::string_view text) {
   return text.starts_with("127.") && !text.ends_with('.') &&
          text.find_first_not_of("0123456789.") == std::string_view::npos;

@@ -9,10 +9,10 @@
 
 namespace meshhier::server {
 
-/// The ETag of a file, in quotes: another one whenever the file is another one, or was changed.
-/// `offset`: of its content, if it lies in an archive.
+/// Returns the ETag of a file, in quotes: another one whenever the file is another one, or was
+/// changed. `offset`: where its content begins, if it lies in an archive; else 0.
 std::string file_tag(const storage::FileVersion& version, std::uint64_t offset);
-/// The ETag of a text.
+/// Returns the ETag of a text.
 std::string text_tag(std::string_view text);
 
 /// Whether If-None-Match names `tag`; weak tags count as well.

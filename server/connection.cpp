@@ -17,14 +17,14 @@
 namespace meshhier::server {
 namespace {
 
-/// How long a thread may not notice that the server stops, or that others wait.
+/// A thread notices after so long that the server stops, or that others wait.
 constexpr std::chrono::milliseconds kSlice{100};
 
-/// What finish() drops at the most, and for how long.
+/// finish() drops so many bytes at the most, and for so long.
 constexpr std::size_t kMostDropped = 256 * 1024;
 constexpr std::chrono::milliseconds kDropTime{200};
 
-/// "127.0.0.1"; empty if it is not known.
+/// Returns an address, "127.0.0.1"; empty if it is not known.
 template <class Ask>
 std::string address_of(socket_t socket, const Ask& ask) {
   sockaddr_storage address{};
@@ -97,7 +97,7 @@ void Connection::begin_exchange() {
 }
 
 Connection::Next Connection::next_request() {
-  begin_exchange();  // which may be that there is no request
+  begin_exchange();  // also if there is no request: a refusal is a reply
   has_unread_ = has_begun();
   const std::size_t found = received_.find(kHeadEnd);
   const std::size_t bytes = found == std::string::npos ? 0 : found + kHeadEnd.size();

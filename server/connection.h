@@ -19,7 +19,8 @@
 
 namespace meshhier::server {
 
-/// Of one thread at a time.
+/// One thread at a time may use it. Nothing here throws but for lack of memory; failures of the
+/// socket end the conversation.
 class Connection final : public httplib::Stream {
  public:
   /// Whether a slow reply to that client must end, because others wait.
@@ -32,47 +33,48 @@ class Connection final : public httplib::Stream {
   Connection& operator=(const Connection&) = delete;
   ~Connection() override;
 
-  /// Of the client; the same however often it is asked.
+  /// The client's address; the same however often it is asked.
   const std::string& address() const { return address_; }
-  /// client_key() of it.
+  /// client_key() of address().
   const std::string& client() const { return client_; }
-  /// Reads what has arrived, without waiting. True if next_request() may be called: a request is
-  /// there as a whole, or none will come.
+  /// Reads the bytes that have arrived, without waiting. Returns true if next_request() may be
+  /// called: a request's head is there as a whole, or none will come.
   bool read_available();
   /// Whether a part of the next request is there.
   bool has_begun() const { return !received_.empty(); }
-  /// How many requests there were.
+  /// The number of requests so far.
   std::size_t requests() const { return requests_; }
 
   enum class Next {
     request,    ///< head() is the next request's
-    malformed,  ///< what came is none
+    malformed,  ///< the bytes that came are none
     too_large,
-    end,  ///< of the conversation: the client has closed it
+    end,  ///< the client has closed the conversation
   };
-  /// Requires that read_available() was true.
+  /// Takes the next request. Requires that read_available() was true.
   Next next_request();
   const RequestHead& head() const { return head_; }
 
-  /// What came of the body.
+  /// A piece of the body.
   struct Piece {
     std::size_t bytes = 0;             ///< 0: none comes any more,
     Body::End end = Body::End::whole;  ///< because of this
   };
-  /// The next bytes behind the head, as far as Content-Length announced some: what is there, or
-  /// what comes first. A client that waits for it is told to go on.
+  /// Returns the next bytes behind the head, as far as Content-Length announced some: those that
+  /// are there, else waits for the first that come, within the limits. A client that waits for it
+  /// is told to go on.
   Piece take_body(std::span<std::byte> bytes);
   bool is_stopping() const { return is_stopping_(); }
 
-  /// Nothing more is said. If the client may still be speaking, what it says is dropped for a
-  /// moment: it could not read the reply otherwise.
+  /// Says that nothing more is sent. If the client may still be sending, its bytes are dropped for
+  /// up to 200 ms: it could not read the reply otherwise.
   void finish();
 
   bool is_readable() const override { return place_ < head_.text.size(); }
   bool is_writable() const override { return !is_broken_; }
-  /// From the head, and nothing behind it: the library reads no bodies.
+  /// Reads from the head, and nothing behind it: the library reads no bodies.
   ssize_t read(char* bytes, std::size_t count) override;
-  /// -1 if the client takes too long.
+  /// Writes some bytes and returns how many, perhaps 0; -1 if the client takes too long or is gone.
   ssize_t write(const char* bytes, std::size_t count) override;
   void get_remote_ip_and_port(std::string& ip, int& port) const override;
   void get_local_ip_and_port(std::string& ip, int& port) const override;
@@ -81,7 +83,8 @@ class Connection final : public httplib::Stream {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Whether the socket is ready for `event` before `end`; false, too, if `is_over` says so.
+  /// Waits until the socket is ready for `event`; returns false if it is not before `end`, or once
+  /// `is_over` says so.
   bool wait(short event, Clock::time_point end, const std::function<bool()>& is_over) const;
   bool has_head() const;
   void begin_exchange();
@@ -101,14 +104,14 @@ class Connection final : public httplib::Stream {
   std::function<bool()> is_stopping_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
-  std::size_t place_ = 0;  ///< what was read of the head
+  std::size_t place_ = 0;  ///< bytes that were read of the head
   std::size_t requests_ = 0;
-  std::uint64_t body_left_ = 0;  ///< of what was announced
+  std::uint64_t body_left_ = 0;  ///< announced bytes that have not come
   Clock::time_point exchange_start_;
-  std::size_t exchanged_bytes_ = 0;  ///< of the body, then of the reply
+  std::size_t exchanged_bytes_ = 0;  ///< the body's, then the reply's
   bool is_broken_ = false;
   bool has_ended_ = false;   ///< the client says no more
-  bool has_unread_ = false;  ///< what was not taken as a request
+  bool has_unread_ = false;  ///< bytes came, or may come, that are no part of a request
 };
 
 }  // namespace meshhier::server

@@ -1,4 +1,4 @@
-// What a client sends behind a head.
+// The body that a client sends behind a head.
 #pragma once
 
 #include "server/connection.h"
@@ -10,7 +10,7 @@
 
 namespace meshhier::server {
 
-/// Of the request that `connection` is at, which must outlive this.
+/// The body of the request that `connection` is at, which must outlive this.
 class ConnectionBody final : public Body {
  public:
   ConnectionBody(Connection& connection, std::uint64_t bytes)

@@ -1,4 +1,4 @@
-// How slow a client may be.
+// Limits to the slowness of a client.
 #pragma once
 
 #include <chrono>
@@ -14,8 +14,8 @@ struct ConnectionLimits {
   Milliseconds patience{1'000};        ///< for a whole head, while others wait for a connection
   Milliseconds head{10'000};           ///< from the first byte of a request to the end of its head
   Milliseconds stall{10'000};          ///< without a byte taken
-  Milliseconds grace{30'000};          ///< after which a reply is taken at
-  std::size_t least_rate = 16 * 1024;  ///< bytes a second, on average
+  Milliseconds grace{30'000};          ///< from then on least_rate counts
+  std::size_t least_rate = 16 * 1024;  ///< at which a reply is taken: bytes a second, on average
 };
 
 }  // namespace meshhier::server

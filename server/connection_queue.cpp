@@ -14,7 +14,7 @@
 namespace meshhier::server {
 namespace {
 
-/// How late a time limit may be noticed.
+/// A time limit may be noticed so late.
 constexpr std::chrono::milliseconds kPollTime{50};
 
 int make_wakeup_fd() {
@@ -112,8 +112,8 @@ void ConnectionQueue::read_available(PendingConnection& pending) {
   pending.since = Clock::now();
 }
 
-/// One thread is enough: whoever takes a connection offers the next one. A thread that is busy now
-/// looks for itself when it comes back.
+/// Wakes one thread, which is enough: whoever takes a connection offers the next one. A thread that
+/// is busy now looks for itself when it comes back.
 void ConnectionQueue::offer_next() {
   if (schedule_.has_next())
     has_next_.notify_one();
@@ -136,7 +136,8 @@ void ConnectionQueue::watch() {
   }
 }
 
-/// Connections may be gone after poll(): they are looked up again by their ids.
+/// Waits for bytes of pending connections and reads them. Connections may be gone after poll():
+/// they are looked up again by their ids.
 void ConnectionQueue::poll_pending() {
   std::vector<pollfd> sockets{{wakeup_fd_, POLLIN, 0}};
   std::vector<ConnectionSchedule::Id> ids{0};

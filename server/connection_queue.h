@@ -27,20 +27,20 @@ class ConnectionQueue {
 
   /// Adds a new connection. Waits while there are too many.
   void accept(std::unique_ptr<Connection> connection);
-  /// The next one to be served: its request is whole, or none will come. Waits for it; null after
-  /// close().
+  /// Waits for the next one to be served and returns it: its request is whole, or none will come.
+  /// Returns null after close().
   std::unique_ptr<Connection> next();
-  /// One of next() that was served and may bring another request.
+  /// Gives back one of next() that was served and may bring another request.
   void return_connection(std::unique_ptr<Connection> connection);
   /// Closes one of next().
   void close_connection(std::unique_ptr<Connection> connection);
 
   /// Whether a new connection waits until another one is closed.
   bool has_waiting_accepts() const;
-  /// Whether a slow reply to `client` must end: a new connection waits, or a ready one as
-  /// ConnectionSchedule::must_yield() tells.
+  /// Whether a slow reply to `client` must end: a new connection waits, or a ready one by the rule
+  /// of ConnectionSchedule::must_yield().
   bool must_yield(const std::string& client) const;
-  /// How many connections have a thread.
+  /// Returns how many connections have a thread.
   std::size_t served() const;
   /// Serves nobody any more, and closes all pending connections.
   void close();

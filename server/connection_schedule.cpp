@@ -6,7 +6,7 @@
 namespace meshhier::server {
 namespace {
 
-/// Threads that a client may have for each that is free.
+/// A client may have so many threads for each that is free.
 constexpr std::size_t kShare = 3;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Which pending connection is served next, and which one is closed to make room: the rules, without
-// sockets, threads or a clock.
+// The rules by which a pending connection is served next, or closed to make room, without sockets,
+// threads or a clock.
 //
 // The number of connections is limited. When all are in use, the next client waits until one is
 // closed, or until a pending one has had no whole request for too long: of the client with the most
@@ -20,11 +20,11 @@
 
 namespace meshhier::server {
 
-/// One that no thread serves.
+/// A connection that no thread serves.
 struct PendingConnection {
   std::unique_ptr<Connection> connection{};
   std::string client{};                           ///< client_key() of its address
-  std::chrono::steady_clock::time_point since{};  ///< of its arrival, or of a request's first byte
+  std::chrono::steady_clock::time_point since{};  ///< its arrival, or a request's first byte
   bool has_begun = false;                         ///< a part of a request is there
   bool is_ready = false;                          ///< to be served
 };
@@ -42,14 +42,15 @@ class ConnectionSchedule {
   ConnectionSchedule(Size size, const ConnectionLimits& limits);
 
   Id add(PendingConnection connection);
-  /// Those that may be changed until they are taken.
+  /// The pending ones; they may be changed until they are taken.
   std::map<Id, PendingConnection>& pending() { return pending_; }
 
   /// Whether a pending connection may be served now.
   bool has_next() const;
-  /// The oldest that may be served now, which then counts as served; nothing if there is none.
+  /// Takes the oldest that may be served now, which then counts as served; nothing if there is
+  /// none.
   std::optional<PendingConnection> take_next();
-  /// One of that client is served no more.
+  /// Says that one of that client is served no more.
   void release(const std::string& client);
   std::size_t served() const { return all_served_; }
 
@@ -57,9 +58,10 @@ class ConnectionSchedule {
   /// clients that have no more threads than `client`.
   bool must_yield(const std::string& client) const;
 
-  /// Closes a pending connection if all are in use; false if none has waited too long.
+  /// Returns whether there is room for a new connection. If all are in use, closes a pending one
+  /// that has waited too long, if there is any.
   bool make_room(Clock::time_point now);
-  /// Closes those that had their time for a request. True if there was one.
+  /// Closes those that had their time for a request. Returns true if there was one.
   bool drop_timed_out(Clock::time_point now);
 
  private:

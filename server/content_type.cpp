@@ -10,7 +10,7 @@
 namespace meshhier::server {
 namespace {
 
-// What hierarchies, streams and the viewer's page consist of, besides pictures.
+// The files of hierarchies, streams and the viewer's page, besides pictures.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{
     {{".3tz", "application/vnd.maxar.archive.3tz+zip"},
      {".css", "text/css; charset=utf-8"},

@@ -11,7 +11,7 @@
 namespace meshhier::server {
 namespace {
 
-/// RFC 1952: what no GLB begins with.
+/// A gzip member begins with this (RFC 1952), and no GLB does.
 constexpr std::array kGzipMagic{std::byte{0x1f}, std::byte{0x8b}};
 
 bool is_gzip(const storage::File& file) {

@@ -1,4 +1,4 @@
-// A file as the answer to a request: whole, a part of it, or that the client has it already.
+// A file as the answer to a request: the whole, a part of it, or that the client has it already.
 #pragma once
 
 #include "server/http.h"
@@ -10,6 +10,7 @@
 
 namespace meshhier::server {
 
+/// A file and the headers that it is sent with.
 struct SentFile {
   std::shared_ptr<const storage::File> file;
   std::string tag;
@@ -18,9 +19,10 @@ struct SentFile {
   bool may_be_gzip = false;  ///< stored as a gzip member, sent as one if its bytes say so
 };
 
-/// 200, 206, 304, 416, or 406: a file that is stored as gzip is never unpacked here, so that no
-/// request makes the server hold a tile. Clients that say nothing of encodings take any (RFC 9110,
-/// 12.5.3). Throws Error(io).
+/// Returns 200, 206, 304, 416, or 406: a file that is stored as gzip is never unpacked here, so
+/// that no request makes the server hold a tile. Clients that say nothing of encodings take any
+/// (RFC 9110, 12.5.3). Reads at most the first bytes; the reply keeps the file open. Thread-safe.
+/// Throws Error(io).
 Reply file_reply(const Request& request, const SentFile& sent);
 
 }  // namespace meshhier::server

@@ -13,7 +13,7 @@
 namespace meshhier::server {
 namespace {
 
-// Beyond any collection of models, and still looked through within a second.
+// No collection of models has so many, and they are still looked through within a second.
 constexpr std::size_t kMostDirectories = 10'000;
 
 class Scanner {
@@ -48,7 +48,8 @@ class Scanner {
     }
   }
 
-  /// What others may not read (lost+found) or a disk has lost must not hide the rest.
+  /// Lists a directory, or notes why it cannot be listed: one that others may not read (lost+found)
+  /// or a disk has lost must not hide the rest.
   std::vector<storage::FolderEntry> entries_of(const std::string& directory) {
     try {
       return folder_.entries(directory);

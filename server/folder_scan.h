@@ -1,4 +1,4 @@
-// Where hierarchies lie below a folder.
+// Looks for hierarchies below a folder.
 #pragma once
 
 #include "storage/io/folder.h"
@@ -15,12 +15,12 @@ struct FolderScan {
   bool is_complete = true;               ///< false: there is too much to look at it all
 };
 
-/// Directories with a manifest, in which nothing else is looked for, and archives. Names that no
-/// URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io) if
-/// the folder itself cannot be listed, and storage::Busy.
+/// Finds directories with a manifest, in which nothing else is looked for, and archives. Names that
+/// no URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io)
+/// if the folder itself cannot be listed, and storage::Busy.
 FolderScan scan_folder(const storage::Folder& folder);
 
-/// A path in a folder, of which either part may be empty.
+/// Returns a path in a folder, "directory/name"; either part may be empty.
 std::string joined(const std::string& directory, const std::string& name);
 
 /// Whether a file of that name is taken for an archive.

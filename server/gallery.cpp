@@ -10,14 +10,15 @@
 namespace meshhier::server {
 namespace {
 
-/// Pages ask every few seconds, each of them: the disk is asked once for all.
+/// The disk is asked once for all pages, each of which asks every few seconds.
 constexpr std::chrono::seconds kFreshFor{1};
 
 std::string directory_of(const Model& model) {
   return model.path.empty() ? "models/" : "models/" + encode_path(model.path) + '/';
 }
 
-/// An archive without its slash would be the archive itself, which is read in parts.
+/// Returns the URL of a model. Without a slash an archive's would be the archive itself, which is
+/// read in parts.
 std::string url_of(const Model& model) {
   std::string url = directory_of(model);
   if (!is_archive_name(model.path))
@@ -81,7 +82,7 @@ std::string gallery_json(const std::vector<Model>& models,
     document["inbox"] = places.inbox;
   if (offer)
     document["upload"] = {{"limit", offer->limit_bytes}, {"token", offer->needs_token}};
-  // Names of files may hold any bytes, JSON may not.
+  // Names of files may hold any bytes, JSON may not: the writer replaces those that are no UTF-8.
   return storage::json_text(document) + '\n';
 }
 

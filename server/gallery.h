@@ -1,4 +1,4 @@
-// models.json: what the page shows first.
+// models.json, the list of models that the page shows first.
 #pragma once
 
 #include "server/hierarchies.h"
@@ -15,41 +15,44 @@
 
 namespace meshhier::server {
 
-/// What the page calls the folder that is served, and the one that is watched; empty: not told.
+/// The page's names for the folder that is served, and for the one that is watched; empty: not
+/// told.
 struct PlaceNames {
   std::string folder{};
   std::string inbox{};
 };
 
-/// What a page may send to the inbox.
+/// The uploads that a page may send to the inbox.
 struct UploadOffer {
   std::uint64_t limit_bytes = 0;
   bool needs_token = false;
 };
 
-/// The listing of a plain host, which hands out archives as they are, with a picture beside each.
+/// Returns the listing of a plain host, which hands out archives as they are, with a picture beside
+/// each.
 std::string static_gallery_json(const std::vector<Model>& models);
-/// Relative to the listing, as a path; requires model.has_story.
+/// Returns the path of a model's story, relative to the listing. Requires model.has_story.
 std::string story_beside(const Model& model);
-/// Of an archive on a plain host, relative to the listing, as a path.
+/// Returns the path of an archive's picture on a plain host, relative to the listing.
 std::string picture_beside(const Model& model);
 
-/// `jobs`: of a watched folder; none if none is watched, and then no build's warnings are told.
-/// `offer`: none if no uploads are taken. Paths are relative to the document, as a URL has them.
+/// Returns the listing of a server. `jobs`: the watched folder's; none if none is watched, and then
+/// no build's warnings are told. `offer`: none if no uploads are taken. Paths are relative to the
+/// document, as a URL has them.
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
                          const PlaceNames& places, const std::optional<UploadOffer>& offer = {});
 
-/// Thread-safe.
+/// The models of a folder, listed at most once a second. Thread-safe.
 class Gallery {
  public:
   using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
   explicit Gallery(Hierarchies& hierarchies, Clock clock = std::chrono::steady_clock::now);
 
-  /// The models as they were at most a second ago. Throws Error(io).
+  /// Returns the models as they were at most a second ago. Throws Error(io).
   std::vector<Model> models();
-  /// There is news: the next one who asks gets it.
+  /// Says that there is news: the next one who asks gets it.
   void refresh();
 
  private:

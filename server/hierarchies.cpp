@@ -20,10 +20,10 @@
 namespace meshhier::server {
 namespace {
 
-/// Each holds 32 bytes a file of its own and an open file: a screenful of models.
+/// A screenful of models. Each open archive holds 32 bytes a file of its own, and an open file.
 constexpr std::size_t kMostOpenArchives = 16;
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;  // of a second
+constexpr std::int64_t kNanoseconds = 1'000'000'000;  // a second has so many
 
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
@@ -40,7 +40,7 @@ struct Split {
   std::string name;
 };
 
-/// `parts`: of the file's name.
+/// Splits a path whose file's name has so many parts.
 std::optional<Split> split_behind(std::string_view path, std::size_t parts) {
   std::size_t begin = path.size();
   for (std::size_t part = 0; part < parts; ++part) {
@@ -54,7 +54,7 @@ std::optional<Split> split_behind(std::string_view path, std::size_t parts) {
                std::string(path.substr(is_whole ? 0 : begin + 1))};
 }
 
-/// Names of files have one part or three.
+/// Splits a path. Names of files have one part or three.
 std::optional<Split> split(std::string_view path) {
   for (const std::size_t parts : {1U, 3U}) {
     std::optional<Split> found = split_behind(path, parts);
@@ -109,8 +109,8 @@ std::string Hierarchies::build_of(const std::string& hierarchy) {
   return model ? model->build : std::string();
 }
 
-// Another build may take the place of one at any moment: what lies between two looks at the
-// manifest is of the build that both saw.
+// Another build may take the place of one at any moment: a file that is opened between two looks at
+// the manifest belongs to the build that both saw.
 std::optional<PublishedFile> Hierarchies::open_of_build(const std::string& hierarchy,
                                                         const std::string& name) {
   const std::string before = build_of(hierarchy);
@@ -129,7 +129,8 @@ std::optional<PublishedFile> Hierarchies::open_picture(std::string_view path) {
   return picture ? std::optional(PublishedFile{std::move(picture)}) : std::nullopt;
 }
 
-/// A note that cannot be read, or is damaged, tells nothing.
+/// Returns the warnings of a model's build. A note that cannot be read, or is damaged, tells
+/// nothing.
 std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
   try {
     return noted_warnings(model);
@@ -140,7 +141,7 @@ std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
   }
 }
 
-/// Notes are written by watched folders alone, and tell of no other build.
+/// Reads the warnings in a note. Only watched folders write notes, which tell of no other build.
 std::vector<std::string> Hierarchies::noted_warnings(const Model& model) {
   const std::string name = storage::input_note_path(model.path).generic_string();
   const auto note = model.path.empty() ? nullptr : folder_->open(name);
@@ -176,7 +177,7 @@ bool Hierarchies::has_story(const std::string& hierarchy) {
 
 std::unique_ptr<storage::File> Hierarchies::open_story(const std::string& hierarchy) const {
   if (hierarchy.empty())
-    return nullptr;  // what is beside the folder is not served
+    return nullptr;  // files beside the folder are not served
   auto story = folder_->open(storage::story_path(hierarchy).generic_string());
   return story && story->size() <= storage::kMostStoryBytes ? std::move(story) : nullptr;
 }
@@ -252,7 +253,7 @@ std::optional<Model> Hierarchies::look_at_directory(const std::string& path) {
   });
 }
 
-// As a copy is without them that is not complete. All of them would be too many to look at.
+// A copy that is not complete may lack tiles. All of them would be too many to look at.
 void Hierarchies::require_tiles(const std::string& path) const {
   for (const auto& file : {storage::index_path({}), storage::tile_path({}, NodeId{Level{0}, 0})}) {
     const std::string name = joined(path, file.generic_string());

@@ -24,14 +24,14 @@ namespace meshhier::server {
 /// A file of a hierarchy or a stream.
 struct PublishedFile {
   std::shared_ptr<const storage::File> file;
-  std::uint64_t archive_offset = 0;  ///< of its content; 0 if it lies in a directory
+  std::uint64_t archive_offset = 0;  ///< where its content begins; 0 if it lies in a directory
   bool is_tile = false;
-  std::string build{};  ///< the one that it is of, where that is known
+  std::string build{};  ///< the name of the build that it belongs to; empty: not known
 };
 
-/// Looks at what is there whenever it is asked, and remembers manifests as long as their files stay
-/// the same. Where no file can be opened at this moment, nothing is known: storage::Busy is thrown.
-/// Thread-safe.
+/// Looks at the folder whenever it is asked, and remembers manifests as long as their files stay
+/// the same. Nothing outside the folder can be reached. If no file can be opened at this moment,
+/// nothing is known, and storage::Busy is thrown. Thread-safe.
 class Hierarchies {
  public:
   /// Hears of hierarchies and directories that cannot be read, each once, the first thousand; may
@@ -40,32 +40,32 @@ class Hierarchies {
 
   Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell);
 
-  /// All that can be read, by path: directories, and archives whose names end in ".3tz".
+  /// Returns all that can be read, by path: directories, and archives whose names end in ".3tz".
   /// Directories whose names begin with a dot are work in progress and left out. Throws Error(io)
   /// if the folder itself cannot be listed.
   std::vector<Model> list();
 
-  /// The hierarchy of that path; nothing if there is none, or it is damaged. Throws Error(io) if
-  /// its file cannot be opened: there may be one.
+  /// Returns the hierarchy of that path; nothing if there is none, or it is damaged. Throws
+  /// Error(io) if its file cannot be opened: there may be one.
   std::optional<Model> look(const std::string& path);
 
-  /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
+  /// Opens the file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb", or a whole
   /// archive, "sub/david.3tz", or a story, "sub/david.3tz.story.json", or a picture beside a story
-  /// that names it, "sub/pictures/1.jpg". Nothing if it is no file of
-  /// a hierarchy or stream that can be read, whatever else lies in the folder. Throws Error(io) if
-  /// that file, of a hierarchy that can be read, cannot be opened.
+  /// that names it, "sub/pictures/1.jpg". Returns nothing if it is no file of a hierarchy or stream
+  /// that can be read, whatever else lies in the folder. Throws Error(io) if that file, of a
+  /// hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
 
  private:
-  /// What a manifest, an archive or a stream's index says, as long as its file is this one.
+  /// The content of a manifest, an archive or a stream's index, as long as its file is this one.
   struct Known {
     storage::FileVersion version;
     std::optional<Model> model;  ///< none: it cannot be read
   };
-  /// What the build of a hierarchy warned of, as long as its note is this one.
+  /// The warnings of a hierarchy's build, as long as its note is this one.
   struct Warned {
     storage::FileVersion version;
-    std::uint64_t content = 0;  ///< of the hierarchy that it is about
+    std::uint64_t content = 0;  ///< identifies the hierarchy that it is about
     std::vector<std::string> warnings;
   };
   struct OpenArchive {
@@ -87,11 +87,11 @@ class Hierarchies {
   std::shared_ptr<const storage::Archive> archive(const std::string& path,
                                                   std::unique_ptr<storage::File> file);
   bool has_story(const std::string& hierarchy);
-  /// Null if it has none. Throws Error(io).
+  /// Returns null if it has none. Throws Error(io).
   std::unique_ptr<storage::File> open_story(const std::string& hierarchy) const;
   std::optional<PublishedFile> open_picture(std::string_view path);
   std::optional<PublishedFile> open_archive(const std::string& path);
-  /// Of a hierarchy, with the build that it is of.
+  /// Opens a file of a hierarchy, and tells the build that it belongs to.
   std::optional<PublishedFile> open_of_build(const std::string& hierarchy, const std::string& name);
   std::string build_of(const std::string& hierarchy);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);

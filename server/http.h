@@ -1,4 +1,4 @@
-// A request and its reply as values: what is answered is decided without a socket.
+// A request and its reply as values: a reply is made without a socket.
 #pragma once
 
 #include "storage/io/file.h"
@@ -15,7 +15,7 @@
 
 namespace meshhier::server {
 
-/// The bytes behind a head, from the first to the last, each once.
+/// The bytes behind a head, from the first to the last, each once. For one thread; never throws.
 class Body {
  public:
   enum class End {
@@ -30,15 +30,16 @@ class Body {
   Body& operator=(const Body&) = delete;
   virtual ~Body() = default;
 
-  /// As announced.
+  /// Returns how many bytes are announced.
   virtual std::uint64_t bytes() const = 0;
-  /// Up to bytes.size() of them, at least one; 0: none comes any more, and end() says why.
+  /// Reads up to bytes.size() of them, at least one, and returns how many; waits for them. 0: none
+  /// comes any more, and end() says why.
   virtual std::size_t read(std::span<std::byte> bytes) = 0;
   virtual End end() const = 0;
   virtual bool is_stopping() const = 0;
 };
 
-/// What a client sent; nobody vouches for any of it.
+/// A request as a client sent it; nobody vouches for any of it.
 struct Request {
   std::string method = "GET";
   std::string target{};  ///< as it was sent: "/models.json?x", not decoded
@@ -62,6 +63,7 @@ struct FilePart {
   std::uint64_t bytes = 0;
 };
 
+/// The reply to a request. The server adds Content-Length and Connection.
 struct Reply {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers{};
@@ -69,19 +71,19 @@ struct Reply {
   std::optional<FilePart> file{};  ///< this
 
   std::uint64_t body_bytes() const { return file ? file->bytes : text.size(); }
-  /// The header's value, "" if it is not there; names are as they were put in.
+  /// Returns the header's value, "" if it is not there; `name` as it was put in.
   std::string_view header(std::string_view name) const;
 };
 
-/// How long a client waits until it asks again, where nothing is known.
+/// A client waits so long until it asks again.
 inline constexpr const char* kRetryAfterSeconds = "1";
 
-/// One line for people.
+/// Returns a reply of one line for people.
 inline Reply text_reply(int status, const std::string& text) {
   return {status, {{"Content-Type", "text/plain; charset=utf-8"}}, text + '\n', {}};
 }
 
-/// What may pass: 503, and when to ask again.
+/// Returns 503, for a failure that may pass, and when to ask again.
 inline Reply busy_reply() {
   Reply reply =
       text_reply(503, "The server has too much to do at this moment: ask again in a second.");

@@ -26,24 +26,24 @@
 namespace meshhier::server {
 namespace {
 
-/// What a thread holds of a file.
+/// A thread holds so much of a file.
 constexpr std::size_t kPieceBytes = 64 * 1024;
 
 /// Connections that the system keeps until we take them; the library asks for 5, and more than a
 /// handful of clients at once would wait a second for their next try. Linux grants 4096 at most.
 constexpr int kBacklog = 4096;
 
-/// Then a connection is closed; more would only keep a thread from others.
+/// After so many a connection is closed; more would only keep a thread from others.
 constexpr std::size_t kMostRequests = 10'000;
 
-/// What is open besides connections and what they read: standard streams, folders, the port, kept
-/// archives (hierarchies.cpp).
+/// Files that are open besides connections and those that they read: standard streams, folders, the
+/// port, kept archives (hierarchies.cpp).
 constexpr std::size_t kOwnFiles = 24;
-/// What a thread has open at once while it looks for a file, or stores one.
+/// Files that a thread has open at once while it looks for a file, or stores one.
 constexpr std::size_t kFilesOfThread = 4;
 
-/// As many threads and connections as the open files of this process allow: a request that finds
-/// none left could only be told to come again.
+/// Returns the options with as many threads and connections as the open files of this process
+/// allow: a request that finds none left could only be told to come again.
 ServerOptions fitted(ServerOptions options) {
   const std::size_t files =
       std::max<std::size_t>(storage::most_open_files(), kOwnFiles) - kOwnFiles;
@@ -60,13 +60,13 @@ std::optional<std::string> header(const httplib::Request& request, const char* n
   return request.get_header_value(name);
 }
 
-/// Heads that say it in two ways were refused before.
+/// Whether a body is announced. Heads that say it in two ways were refused before.
 bool announces_body(const httplib::Request& request) {
   return request.has_header("Transfer-Encoding") ||
          request.get_header_value("Content-Length").find_first_not_of('0') != std::string::npos;
 }
 
-/// "" if there are several, which is nobody's origin.
+/// Returns the origin; "" if there are several, which is nobody's origin.
 std::optional<std::string> origin_of(const httplib::Request& request) {
   if (!request.has_header("Origin"))
     return std::nullopt;
@@ -110,7 +110,8 @@ httplib::ContentProvider sender_of(const std::string& text) {
   };
 }
 
-/// Bodies are always given as providers: others the library would compress at will.
+/// Puts a reply into the library's. Bodies are always given as providers: others the library would
+/// compress at will.
 void put(const Reply& reply, httplib::Response& response) {
   response.status = reply.status;
   std::string type;
@@ -141,7 +142,7 @@ void put(const Reply& reply, httplib::Response& response) {
                           place, error == 0 ? "no such host" : std::strerror(error)));
 }
 
-/// A host as URLs have it: IPv6 addresses in brackets.
+/// Returns a host as URLs have it: IPv6 addresses in brackets.
 std::string in_url(const std::string& host) {
   return host.find(':') == std::string::npos ? host : '[' + host + ']';
 }
@@ -153,17 +154,17 @@ class InlineTaskQueue final : public httplib::TaskQueue {
   void shutdown() override {}
 };
 
-/// What this thread has in hand, which the library passes on to nobody.
+/// The exchange that this thread is at: facts that the library does not pass on.
 struct Exchange {
-  Body* body = nullptr;          ///< of the request
-  bool ends_connection = false;  ///< with the reply
+  Body* body = nullptr;          ///< the request's
+  bool ends_connection = false;  ///< the reply is the last one
 };
 thread_local Exchange exchange;
 
 }  // namespace
 
-/// The library's server, with connections of ours: as its own server for TLS, it takes over from
-/// where a connection is accepted.
+/// The library's server, with connections of ours: as the library's own server for TLS, it takes
+/// over where a connection is accepted.
 class HttpServer::Library final : public httplib::Server {
  public:
   Library(const ServerOptions& options, Answer answer, Log log)
@@ -187,7 +188,7 @@ class HttpServer::Library final : public httplib::Server {
       std::this_thread::yield();
   }
 
-  /// As many as there are to be had, and one at least.
+  /// Starts as many threads as there are to be had; throws if there is none.
   void add_workers() {
     try {
       while (workers_.size() < options_.threads)
@@ -212,14 +213,15 @@ class HttpServer::Library final : public httplib::Server {
   }
 
  private:
-  /// The library gives its socket up for good if accept() tells of trouble in the network.
+  /// Takes connections until the end. The library gives its socket up for good if accept() tells of
+  /// trouble in the network, so it is bound again.
   void run() {
     listen_after_bind();
     while (!is_stopping_ && bind_again())
       listen_after_bind();
   }
 
-  /// False if it is to end, or the port is lost.
+  /// Returns false if it is to end, or the port is lost.
   bool bind_again() {
     try {
       options_.port = port_;
@@ -242,7 +244,7 @@ class HttpServer::Library final : public httplib::Server {
   void set_up() {
     new_task_queue = [] { return new InlineTaskQueue; };
     set_tcp_nodelay(true);
-    // Without this the library's default, by which two servers share a port without knowing.
+    // By the library's default two servers share a port without knowing.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -253,7 +255,7 @@ class HttpServer::Library final : public httplib::Server {
     });
     set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
       response.headers.erase("Keep-Alive");
-      // Where one request ends and the next one begins is not certain any more.
+      // It is not certain any more where one request ends and the next one begins.
       exchange.ends_connection = response.status == 400;
       if (exchange.ends_connection && !response.has_header("Connection"))
         response.set_header("Connection", "close");
@@ -280,7 +282,7 @@ class HttpServer::Library final : public httplib::Server {
           response.content_length_});
   }
 
-  /// Where memory runs out the connection ends, and the server goes on.
+  /// Takes a new connection over. If memory runs out the connection ends, and the server goes on.
   bool process_and_close_socket(socket_t socket) override {
     bool is_owned = false;
     try {
@@ -309,7 +311,8 @@ class HttpServer::Library final : public httplib::Server {
     }
   }
 
-  /// Where memory runs out the connection ends, and the server goes on.
+  /// Does the same as serve_request(), but if memory runs out the connection ends, and the server
+  /// goes on.
   bool serve_request_guarded(Connection& connection) {
     try {
       return serve_request(connection);
@@ -318,7 +321,7 @@ class HttpServer::Library final : public httplib::Server {
     }
   }
 
-  /// One request and its reply; false if it was the last one.
+  /// Reads one request and sends the reply; returns false if it was the last one.
   bool serve_request(Connection& connection) {
     switch (connection.next_request()) {
       case Connection::Next::request:
@@ -346,7 +349,7 @@ class HttpServer::Library final : public httplib::Server {
     return is_sent && !closes && !client_closes && !exchange.ends_connection && !is_stopping_;
   }
 
-  /// What is no request is not shown in the log: "-" stands for it. `why`: for people; may be
+  /// Refuses bytes that are no request, for which "-" stands in the log. `why`: for people; may be
   /// empty.
   bool refuse(Connection& connection, int status, const char* reason, const std::string& why) {
     const std::string body = why.empty() ? "" : why + '\n';

@@ -29,31 +29,35 @@ struct Served {
   std::string method;
   std::string target;  ///< as sent; nobody vouches for it
   int status = 0;
-  std::uint64_t bytes = 0;  ///< of the body, as announced
+  std::uint64_t bytes = 0;  ///< the body's, as announced
 };
 
+/// For one thread; served() and is_lost() may be called by any.
 class HttpServer {
  public:
   using Answer = std::function<Reply(const Request&)>;
   using Log = std::function<void(const Served&)>;
 
-  /// Binds the port; connections are taken from start() on. `answer` and `log`, which may be empty,
-  /// are called by many threads. Throws Error(io) that says what to do if the port is not to be
+  /// Binds the port; connections are taken from start() on. `answer` is called by up to
+  /// options.threads threads at once, and `log`, which may be empty, too. A file in a reply is read
+  /// after `answer` has returned. Throws Error(io) that says what to do if the port is not to be
   /// had.
   HttpServer(const ServerOptions& options, Answer answer, Log log);
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
-  /// Stops.
+  /// Stops, as stop().
   ~HttpServer();
 
   std::uint16_t port() const;
-  /// Connections that a thread serves at this moment.
+  /// Returns how many connections a thread serves at this moment.
   std::size_t served() const;
+  /// Starts the threads, or as many as the system gives, and returns when connections are taken.
+  /// Throws std::system_error if there can be none.
   void start();
   /// Whether the system has taken the port away, and it could not be had again. Nothing is served
   /// then.
   bool is_lost() const;
-  /// Replies under way are cut off. May be called more than once.
+  /// Stops: replies under way are cut off. Waits for the threads. May be called more than once.
   void stop();
 
  private:
@@ -61,7 +65,7 @@ class HttpServer {
   std::unique_ptr<Library> library_;
 };
 
-/// "http://127.0.0.1:8080/"; for a host that stands for all addresses that of the loopback.
+/// Returns "http://127.0.0.1:8080/"; for a host that stands for all addresses, the loopback's.
 std::string url_of(const std::string& host, std::uint16_t port);
 /// Whether `host` is the loopback, so that only this machine reaches a server there: if so, its URL
 /// has one of the names that is_loopback_name() knows.

@@ -30,7 +30,7 @@ std::vector<InboxFile> Inbox::look() {
   return files;
 }
 
-/// Since when it is as it is.
+/// Notes a file, and returns since when it has not changed.
 Inbox::Time Inbox::note(const std::string& name, const InputVersion& version, Time now,
                         SeenFiles& seen) const {
   const auto before = seen_.find(name);
@@ -40,7 +40,8 @@ Inbox::Time Inbox::note(const std::string& name, const InputVersion& version, Ti
   return since;
 }
 
-/// Nothing if it is no mesh's. What may not be read (lost+found) must not hide the rest.
+/// Returns the mesh in a folder; nothing if it is no mesh's folder. One that may not be read
+/// (lost+found) must not hide the rest.
 std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const std::string& folder,
                                           Time now, SeenFiles& seen) const {
   if (options_.folders == Folders::ignored || folder.starts_with('.'))

@@ -1,4 +1,4 @@
-// A folder into which mesh files are dropped: which there are, and which are whole.
+// A folder into which mesh files are dropped: the files that are there, and whether they are whole.
 #pragma once
 
 #include "storage/io/file.h"
@@ -16,7 +16,7 @@
 
 namespace meshhier::server {
 
-/// What tells a mesh with all that belongs to it from what it was before.
+/// The state of a mesh with all that belongs to it: another one as soon as anything is changed.
 struct InputVersion {
   storage::FileVersion mesh;
   std::uint64_t companions = 0;  ///< Companions::mark()
@@ -29,19 +29,18 @@ struct InboxFile {
   bool is_whole = false;
 };
 
-/// Of one thread. Files are looked at, never changed.
+/// For one thread. Files are looked at, never changed.
 class Inbox {
  public:
   using Time = std::chrono::steady_clock::time_point;
   /// A folder with one mesh file in it is a mesh, with all that belongs to it.
   enum class Folders { ignored, taken };
   struct Options {
-    /// A file that was as it is for so long is whole. Copies of others often say so by their names
-    /// as well: with the endings that browsers and programs give unfinished ones, they are no
-    /// meshes' names.
+    /// A file that has not changed for so long is whole. Many programs also give unfinished files
+    /// endings of their own, which are no meshes' names.
     std::chrono::milliseconds settle{2000};
     Folders folders = Folders::ignored;
-    /// InputVersion::companions of a mesh, as far as they are known.
+    /// Returns InputVersion::companions of a mesh, as far as they are known.
     std::function<std::uint64_t(const std::string& name)> mark = [](const std::string&) {
       return 0;
     };
@@ -50,10 +49,10 @@ class Inbox {
 
   Inbox(std::filesystem::path directory, Options options);
 
-  /// The mesh files that are there now. One in a folder is whole when all files there are. Links
-  /// are left out. Throws Error(io).
+  /// Returns the mesh files that are there now. One in a folder is whole when all files there are.
+  /// Links are left out. Throws Error(io).
   std::vector<InboxFile> look();
-  /// That file as it is now, not followed if it has become a link. Null if it is not there, or of
+  /// Opens a file, without following it if it has become a link. Null if it is not there, or of
   /// another version. Throws Error(io).
   std::unique_ptr<storage::File> open(const std::string& name,
                                       const storage::FileVersion& version) const;

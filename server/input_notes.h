@@ -1,5 +1,5 @@
-// Which files the hierarchies of a watched folder were made of: kept beside them, so that a restart
-// need not read the files. A build writes a note when it is done.
+// Notes of the files that the hierarchies of a watched folder were made of: kept beside them, so
+// that a restart need not read the files. A build writes a note when it is done.
 #pragma once
 
 #include "storage/format/input_note.h"
@@ -15,13 +15,13 @@ namespace meshhier::server {
 
 class InputNotes {
  public:
-  /// Beside the hierarchies in `folder`. `files` must outlive this.
+  /// Notes are beside the hierarchies in `folder`. `files` must outlive this.
   InputNotes(storage::FileSystem& files, std::shared_ptr<const storage::Folder> folder);
 
   std::filesystem::path path(const std::string& hierarchy) const;
-  /// Nothing if there is no note, or it is damaged.
+  /// Returns nothing if there is no note, or it is damaged.
   std::optional<storage::InputNote> find(const std::string& hierarchy) const;
-  /// Throws Error(io).
+  /// Writes a note, which is there complete or not at all. Throws Error(io).
   void write(const std::string& hierarchy, const storage::InputNote& note) const;
 
  private:

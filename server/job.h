@@ -13,19 +13,19 @@ namespace meshhier::server {
 enum class JobState { waiting, building, failed };
 
 struct Job {
-  std::string name;  ///< of the mesh file
+  std::string name;  ///< the mesh file's
   JobState state = JobState::waiting;
-  std::string stage{};                   ///< of the build at work: "partition"
-  std::optional<double> progress{};      ///< of the stage, 0 to 1, if it is known
-  std::optional<double> seconds_left{};  ///< of the stage
+  std::string stage{};                   ///< the build is at: "partition"
+  std::optional<double> progress{};      ///< the stage's, 0 to 1, if it is known
+  std::optional<double> seconds_left{};  ///< until the end of the stage
   std::string message{};                 ///< why it waits or failed
-  std::vector<std::string> warnings{};   ///< of the build, each once, the first hundred
+  std::vector<std::string> warnings{};   ///< the build's, each once, the first hundred
 };
 
-/// As in models.json; what is not known is left out.
+/// Returns the object of models.json; unknown facts are left out.
 nlohmann::ordered_json to_json(const Job& job);
 
-/// Takes in one line of what `build --progress json` says; any other line is a message, too.
+/// Takes in one line that `build --progress json` prints; any other line is a message, too.
 void take_line(Job& job, std::string_view line);
 
 }  // namespace meshhier::server

@@ -1,4 +1,4 @@
-// What the page lists of a hierarchy.
+// The facts on a hierarchy that the page lists.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ struct Model {
   std::string source{};  ///< the name of the mesh file
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
-  std::uint64_t bytes = 0;              ///< of its files
-  std::uint64_t mesh_bytes = 0;         ///< of the mesh file alone, without its pictures
+  std::uint64_t bytes = 0;              ///< all of its files
+  std::uint64_t mesh_bytes = 0;         ///< the mesh file alone, without its pictures
   std::uint64_t mesh_checksum = 0;      ///< likewise
   std::uint64_t source_checksum = 0;    ///< as in the manifest
   bool has_preview = false;             ///< a picture of it is one of its files
   bool has_story = false;               ///< a story lies beside it
   std::int64_t modified = 0;            ///< when it was made: seconds since 1970; 0: not known
-  std::string build{};                  ///< its name; "" of a stream
-  std::vector<std::string> warnings{};  ///< of its build, where a watched folder made it
+  std::string build{};                  ///< the build's name; "" for a stream
+  std::vector<std::string> warnings{};  ///< its build's, if a watched folder made it
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -10,15 +10,15 @@
 namespace meshhier::server {
 namespace {
 
-/// Of a part; a file's name has 255 bytes.
+/// The most bytes of a part's head; a file's name has 255.
 constexpr std::size_t kMostPartHeadBytes = 4096;
 constexpr std::size_t kWindowBytes = 64 * 1024;
 constexpr std::size_t kLongestBoundary = 70;
 
 using Parameters = std::map<std::string, std::string>;
 
-/// The value at the front of `text`, quoted or not. A backslash means one thing to some and another
-/// one to others: there may be none.
+/// Takes the value at the front of `text`, quoted or not. A backslash means one thing to some and
+/// another one to others: there may be none.
 std::optional<std::string> take_value(std::string_view& text) {
   const bool is_quoted = text.starts_with('"');
   text.remove_prefix(is_quoted ? 1 : 0);
@@ -32,7 +32,8 @@ std::optional<std::string> take_value(std::string_view& text) {
   return std::string(value);
 }
 
-/// Of `; name=value; name="value"`; names in lower case. Nothing if it is anything else.
+/// Parses `; name=value; name="value"`; names become lower case. Returns nothing if it is anything
+/// else.
 std::optional<Parameters> parse_parameters(std::string_view text) {
   Parameters parameters;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
@@ -48,7 +49,8 @@ std::optional<Parameters> parse_parameters(std::string_view text) {
   return parameters;
 }
 
-/// The parameter of a header whose value begins with `type`; nothing if it does not, or has none.
+/// Returns the parameter of a header whose value begins with `type`; nothing if it does not, or has
+/// none.
 std::optional<std::string> find_parameter(std::string_view value, std::string_view type,
                                           const std::string& name) {
   const std::size_t end = std::min(value.find(';'), value.size());
@@ -78,11 +80,11 @@ std::optional<std::string> form_boundary(std::string_view content_type) {
   return boundary && is_boundary(*boundary) ? std::move(boundary) : std::nullopt;
 }
 
-/// With a line end of its own in front, the first boundary is as all others.
+/// The window begins with a line end, so that the first boundary is as all others.
 MultipartReader::MultipartReader(Body& body, const std::string& boundary)
     : body_(body), delimiter_("\r\n--" + boundary), window_(kLineEnd) {}
 
-/// False if no more comes.
+/// Reads more into the window; returns false if no more comes.
 bool MultipartReader::fill() {
   window_.erase(0, std::exchange(begin_, 0));
   const std::size_t before = window_.size();
@@ -113,7 +115,8 @@ MultipartReader::Next MultipartReader::finish() {
   return (has_line_end || held().empty()) && !hold(1) ? Next::end : Next::malformed;
 }
 
-/// The name of the file, of a head with its empty line. There must be exactly one.
+/// Takes a head with its empty line, and returns the name of the file in it: there must be exactly
+/// one.
 std::optional<std::string> MultipartReader::take_headers() {
   std::size_t end = held().find(kHeadEnd);
   while (end == std::string_view::npos && held().size() < kMostPartHeadBytes + kHeadEnd.size() &&
@@ -151,7 +154,7 @@ MultipartReader::Next MultipartReader::next() {
   return Next::file;
 }
 
-/// Only what cannot be the beginning of a boundary is handed out.
+/// Hands out only bytes that cannot be the beginning of a boundary.
 std::size_t MultipartReader::read(std::span<std::byte> bytes) {
   if (!hold(delimiter_.size()))
     return 0;

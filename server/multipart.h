@@ -19,15 +19,15 @@
 
 namespace meshhier::server {
 
-/// The boundary that a Content-Type tells; nothing if it is another type, or one that RFC 2046
-/// (section 5.1.1) does not allow.
+/// Returns the boundary that a Content-Type tells; nothing if it is another type, or a boundary
+/// that RFC 2046 (section 5.1.1) does not allow.
 std::optional<std::string> form_boundary(std::string_view content_type);
 
-/// Strict: nothing stands before the first boundary or behind the last one, and each part is a
-/// file. Holds a fixed number of bytes, whatever comes.
+/// Reads a form strictly: nothing stands before the first boundary or behind the last one, and each
+/// part is a file. Holds a fixed number of bytes, whatever comes. For one thread; never throws.
 class MultipartReader {
  public:
-  /// `body` must outlive this. Requires a boundary as of form_boundary().
+  /// `body` must outlive this. Requires a boundary that form_boundary() returned.
   MultipartReader(Body& body, const std::string& boundary);
 
   enum class Next {
@@ -35,11 +35,11 @@ class MultipartReader {
     end,       ///< there is no other one
     malformed  ///< or the body has ended too early: its end() says so
   };
-  /// Requires that read() has returned 0 since the last one.
+  /// Goes to the next file. Requires that read() has returned 0 since the last one.
   Next next();
   const std::string& name() const { return name_; }
-  /// Up to bytes.size() of the content; 0 at its end, and if the body has ended too early, which
-  /// next() tells.
+  /// Reads up to bytes.size() of the content and returns how many; 0 at its end, and if the body
+  /// has ended too early, which next() tells.
   std::size_t read(std::span<std::byte> bytes);
 
  private:
@@ -52,7 +52,7 @@ class MultipartReader {
 
   Body& body_;
   std::string delimiter_;  ///< CR LF included: it belongs to no content
-  std::string window_;     ///< what was read of the body, from begin_ on not yet taken
+  std::string window_;     ///< bytes of the body; those from begin_ on are not yet taken
   std::size_t begin_ = 0;
   std::string name_;
 };

@@ -8,7 +8,7 @@
 namespace meshhier::server {
 namespace {
 
-/// RFC 9110, section 5.6.2.
+/// Whether it is a token of RFC 9110, section 5.6.2.
 bool is_token(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -22,7 +22,7 @@ bool has_controls(std::string_view text) {
   });
 }
 
-/// Method, target and version, with one blank between them and none elsewhere.
+/// Whether it is method, target and version, with one blank between them and none elsewhere.
 bool is_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
@@ -33,7 +33,7 @@ bool is_request_line(std::string_view line) {
   return !target.empty() && target.find(' ') == std::string_view::npos && last + 1 < line.size();
 }
 
-/// Not beyond what fits 64 bits.
+/// Whether it is a length of at most 19 digits, so that it fits 64 bits.
 bool is_length(std::string_view text) {
   return !text.empty() && text.size() < 20 &&
          text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -54,7 +54,7 @@ struct Header {
   std::string name;  ///< in lower case
   std::string_view value;
 };
-/// Of a line without its end; nothing if it is none.
+/// Parses a header from a line without its end; returns nothing if it is none.
 std::optional<Header> parse_header(std::string_view line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos || !is_token(line.substr(0, colon)) || has_controls(line))
@@ -62,10 +62,10 @@ std::optional<Header> parse_header(std::string_view line) {
   return Header{lower_case(line.substr(0, colon)), trimmed(line.substr(colon + 1))};
 }
 
-/// What may be there once, and decides how the rest is read.
+/// The headers that may be there once, and decide how the rest is read.
 class Framing {
  public:
-  /// False if it contradicts what was there, or means nothing.
+  /// Takes a header; returns false if it contradicts those before, or means nothing.
   bool take(const Header& header) {
     if (header.name == "host")
       return ++hosts_ == 1;

@@ -24,16 +24,16 @@ constexpr const char* kMethodsWithUploads = "GET, HEAD, OPTIONS, POST, PUT";
 // A hierarchy is never changed, but `build --force` puts another one in its place, under the same
 // names: a client that mixed tiles of the two would show cracks. So it asks each time, and is told
 // within a millisecond that it has the file already; or it names the build, "?build=NAME", and
-// keeps the file for ever: of another build there is none at that address.
+// keeps the file for ever: that address never has one of another build.
 constexpr const char* kRevalidate = "no-cache";
-// Of addresses that name their content.
+// For addresses that name their content.
 constexpr const char* kForever = "public, max-age=31536000, immutable";
 
 Reply not_found() {
   return text_reply(404, "There is no such file.");
 }
 
-/// What is not there now may be there in a moment.
+/// Forbids caches to keep a reply: a file that is not there now may be there in a moment.
 void forbid_keeping(Reply& reply) {
   std::erase_if(reply.headers, [](const auto& header) {
     return header.first == "Cache-Control" || header.first == "ETag";
@@ -41,7 +41,7 @@ void forbid_keeping(Reply& reply) {
   reply.headers.emplace_back("Cache-Control", "no-store");
 }
 
-/// Host is there once, in HTTP/1.1; what names another host was meant for that.
+/// Whether the request was meant for this host. Host is there once, in HTTP/1.1.
 bool is_for_this_host(const Request& request) {
   return request.host && is_loopback_name(*request.host);
 }
@@ -75,7 +75,7 @@ Reply Site::answer(const Request& request) {
   return reply;
 }
 
-/// Clients that come at once are told by their replies; people are told once.
+/// Tells people once; clients are told by their replies.
 void Site::tell_busy(const std::string& cause) {
   if (!told_busy_.exchange(true))
     tell_(cause +

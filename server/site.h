@@ -1,4 +1,4 @@
-// What is answered to which request: the page, the list of models, their files; nothing else.
+// The replies to requests: the page, the list of models, their files; nothing else.
 #pragma once
 
 #include "server/gallery.h"
@@ -19,9 +19,9 @@ namespace meshhier::server {
 
 struct SiteOptions {
   std::shared_ptr<const storage::Folder> viewer{};  ///< the page's files; null: they are not there
-  std::string missing_viewer{};                     ///< what "/" says then
+  std::string missing_viewer{};                     ///< the reply to "/" then
   bool is_loopback = true;  ///< requests must name this machine by its loopback
-  std::string cors{};       ///< an origin, or "*"; empty: pages of others may not read
+  std::string cors{};       ///< an origin whose pages may read, or "*"; empty: none but ours
   PlaceNames places{};
   Uploads* uploads = nullptr;  ///< null: none are taken; must outlive the site
 };
@@ -29,17 +29,21 @@ struct SiteOptions {
 /// Thread-safe.
 class Site {
  public:
-  /// The jobs of a watched folder, as in models.json.
+  /// Returns the jobs of a watched folder, as in models.json.
   using Jobs = std::function<nlohmann::ordered_json()>;
 
-  /// `hierarchies` must outlive this; `jobs` may be empty; `tell` hears what people at the terminal
-  /// are to know.
+  /// `hierarchies` must outlive this; `jobs` may be empty; `tell` hears messages for people at the
+  /// terminal. Both are called by any thread that asks.
   Site(SiteOptions options, Hierarchies& hierarchies, Jobs jobs, Hierarchies::Tell tell);
 
-  /// Never throws: what fails is a reply, too.
+  /// Replies to a request. Never throws: a failure is a reply, too: 503 and Retry-After if it may
+  /// pass, else 500, without names of this machine; the terminal hears why. Caches may keep no
+  /// reply from 400 on. Files and the list have an ETag, so that a client which asks again gets
+  /// 304. A file of a model belongs to the build that the query names ("build"), else the reply is
+  /// 409. Only uploads may have a body.
   Reply answer(const Request& request);
 
-  /// A hierarchy has appeared: from now on it is listed.
+  /// Says that a hierarchy has appeared: from now on it is listed.
   void refresh() { gallery_.refresh(); }
 
  private:

@@ -12,10 +12,10 @@
 namespace meshhier::server {
 namespace {
 
-/// Its files are named as those of any output under way, and tell by this what they belong to.
+/// An upload's files are named as those of any output under way; by this they are known as uploads.
 constexpr const char* kPrefix = "upload-";
 
-/// Another one for each upload, of whatever server: 64 random bits.
+/// Returns another name for each upload, of whatever server: it has 64 random bits.
 std::string new_name() {
   std::random_device random;
   return fmt::format("{}{:08x}{:08x}", kPrefix, random(), random());

@@ -1,4 +1,4 @@
-// A file or folder on its way into an inbox: under a name that nobody looks at until it is whole.
+// A file or folder on its way into an inbox has a name that nobody looks at until it is whole.
 #pragma once
 
 #include "storage/io/file.h"
@@ -10,20 +10,20 @@
 
 namespace meshhier::server {
 
-/// Whatever ends it, it is there complete or not at all. Of one thread.
+/// Whatever ends an upload, it is there complete or not at all. For one thread.
 class StagedUpload {
  public:
-  /// `files` must outlive this. Throws Error(io).
+  /// Locks a name of its own in `inbox`. `files` must outlive this. Throws Error(io).
   StagedUpload(storage::FileSystem& files, std::filesystem::path inbox);
   StagedUpload(const StagedUpload&) = delete;
   StagedUpload& operator=(const StagedUpload&) = delete;
-  /// Removes what was not published.
+  /// Removes an upload that was not published.
   ~StagedUpload();
 
-  /// Where the file or the folder is to be made.
+  /// The path where the file or the folder is to be made.
   const std::filesystem::path& path() const { return path_; }
-  /// Gives it its name in the inbox, for good. False if there is something of that name. Requires
-  /// that what is at path() has been synced. Throws Error(io).
+  /// Gives it its name in the inbox, for good. Returns false if there is something of that name.
+  /// Requires that the content at path() has been synced. Throws Error(io).
   bool publish(const std::string& name);
 
  private:
@@ -32,8 +32,7 @@ class StagedUpload {
   std::unique_ptr<storage::FileLock> lock_;
 };
 
-/// Removes what uploads left whose server was killed; those under way are locked, and stay. Throws
-/// Error(io).
+/// Removes uploads whose server was killed; those under way are locked, and stay. Throws Error(io).
 void remove_stale_uploads(storage::FileSystem& files, const std::filesystem::path& inbox);
 
 }  // namespace meshhier::server

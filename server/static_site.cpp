@@ -28,14 +28,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kListing = "models.json";
 constexpr const char* kPage = "index.html";
-/// GitHub Pages takes the files of a site that has this as they are, whatever their names.
+/// If a site has this file, GitHub Pages takes its files as they are, whatever their names.
 constexpr const char* kAsItIs = ".nojekyll";
-/// Of a picture, in a message.
+/// The longest name of a picture in a message.
 constexpr std::size_t kLongestShown = 200;
-/// Of the viewer's folder, what is not for a site: `meshhier page` puts a hierarchy into it.
+/// The file of the viewer's folder that is not for a site: `meshhier page` puts a hierarchy into
+/// it.
 constexpr std::string_view kSingle = "single.html";
 
-/// Names below a folder, those that `is_wanted` of a path from it.
+/// Returns the names below a folder for which is_wanted(path from it).
 std::vector<std::string> names_below(const storage::Folder& folder, const std::string& start,
                                      const std::function<bool(const std::string&)>& is_wanted) {
   std::vector<std::string> names, left{""};
@@ -92,7 +93,7 @@ class SiteMaker {
   }
 
  private:
-  /// A file of a folder, and where it goes.
+  /// A file of a folder, and the path that it goes to.
   struct Copy {
     const storage::Folder* folder = nullptr;
     std::string name, to;
@@ -120,7 +121,7 @@ class SiteMaker {
       copies.push_back({job_.models.get(), joined(model.path, name), joined(to, name)});
   }
 
-  /// With the pictures beside it that it names.
+  /// Adds a story with the pictures beside it that it names.
   void add_story(const Model& model, std::vector<Copy>& copies) const {
     const fs::path story = storage::story_path(model.path);
     copies.push_back({job_.models.get(), story.generic_string(), story_beside(model)});
@@ -146,8 +147,8 @@ class SiteMaker {
     write(*from, place_ / copy.to);
   }
 
-  /// The manifest comes first of a hierarchy's files: if it is still the one that was copied, all
-  /// are of one build.
+  /// Throws if the manifest, which comes first of a hierarchy's files, is not the one that was
+  /// copied any more: else all files are of one build.
   void require_unchanged(const Copy& copy) const {
     if (fs::path(copy.name).filename() != storage::manifest_path({}))
       return;

@@ -13,17 +13,17 @@
 namespace meshhier::server {
 
 struct SiteJob {
-  std::shared_ptr<const storage::Folder> models;  ///< with the hierarchies
+  std::shared_ptr<const storage::Folder> models;  ///< the folder with the hierarchies
   const storage::Folder& viewer;                  ///< the page
   std::filesystem::path output;
   bool replace = false;  ///< a site that is there
 };
 
 struct SiteProgress {
-  std::function<void()> check;                     ///< before each block; may throw
-  std::function<void(const std::string&)> tell;    ///< what is left out, and why
-  std::function<void(std::uint64_t files)> begin;  ///< how many will be copied, at the most
-  std::function<void()> copied;                    ///< one more
+  std::function<void()> check;                     ///< called before each block; may throw
+  std::function<void(const std::string&)> tell;    ///< hears why a model is left out
+  std::function<void(std::uint64_t files)> begin;  ///< hears how many will be copied, at the most
+  std::function<void()> copied;                    ///< called after each file
 };
 
 /// Copies the page, the hierarchies and their archives, and lists them: a gallery at index.html.

@@ -11,7 +11,7 @@
 namespace meshhier::server {
 namespace {
 
-/// Stories whose pictures are known at once; more are read again.
+/// The pictures of so many stories are remembered; others are read again.
 constexpr std::size_t kMostKnown = 1000;
 
 std::vector<std::string> read_pictures(const storage::File& story) {

@@ -13,14 +13,15 @@
 
 namespace meshhier::server {
 
-/// Remembers what stories name as long as their files stay the same. Thread-safe.
+/// Finds the stories that name a picture. Remembers the names as long as the stories' files stay
+/// the same. Thread-safe.
 class StoryPictures {
  public:
   explicit StoryPictures(std::shared_ptr<const storage::Folder> folder)
       : folder_(std::move(folder)) {}
 
-  /// The hierarchies, by their paths, whose stories name that picture, which is there. Throws
-  /// Error(io).
+  /// Returns the hierarchies, by their paths, whose stories name that picture, which is there.
+  /// Throws Error(io).
   std::vector<std::string> tellers_of(std::string_view picture);
 
  private:

@@ -1,4 +1,4 @@
-// What headers and file names are looked at with.
+// Small functions on the texts of headers and file names.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace meshhier::server {
 
-/// Of HTTP's lines, and of the last one of a head with the empty one behind it.
+/// The end of HTTP's lines, and that of a head: its last line's with the empty one behind it.
 inline constexpr std::string_view kLineEnd = "\r\n";
 inline constexpr std::string_view kHeadEnd = "\r\n\r\n";
 
-/// Without the blanks and tabs around it.
+/// Returns a text without the blanks and tabs around it.
 inline std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos)
@@ -18,7 +18,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Letters of ASCII only, whatever the locale.
+/// Returns a text with letters of ASCII in lower case, whatever the locale.
 inline std::string lower_case(std::string_view text) {
   std::string result(text);
   for (char& c : result)

@@ -23,14 +23,15 @@ namespace meshhier::server {
 namespace {
 
 constexpr std::size_t kStoreBytes = 256 * 1024;
-/// After so many the disk is asked to begin, so that the sync at the end has little left to do.
+/// After so many bytes the disk is asked to begin, so that the sync at the end has little left to
+/// do.
 constexpr std::uint64_t kSyncEvery = 64 * 1024 * 1024;
 /// A photo scan has some hundred pictures.
 constexpr std::size_t kMostFiles = 4096;
 
 using Source = std::function<std::size_t(std::span<std::byte>)>;
 
-/// Null if all has come.
+/// Returns a refusal if the body has ended too early; nothing if all has come.
 std::optional<Reply> refuse_end(const Body& body) {
   switch (body.end()) {
     case Body::End::whole:
@@ -45,8 +46,8 @@ std::optional<Reply> refuse_end(const Body& body) {
   return std::nullopt;
 }
 
-/// Writes what comes, and forces it to the disk. Throws Error(io), and Error(interrupted) if the
-/// server ends.
+/// Writes all that comes, and forces it to the disk. Throws Error(io), and Error(interrupted) if
+/// the server ends.
 void store(storage::File& file, const Body& body, const Source& source) {
   std::vector<std::byte> buffer(kStoreBytes);
   std::uint64_t written = 0, unsynced = 0;
@@ -67,7 +68,8 @@ void store(storage::File& file, const Body& body, const Source& source) {
   });
 }
 
-/// Null if the model of that mesh, "scan.ply" or "house/scan.obj", can be built under its name.
+/// Returns a refusal if the name of a mesh, "scan.ply" or "house/scan.obj", is too long for its
+/// model; nothing if it is not.
 std::optional<Reply> refuse_length(const std::string& name, const std::string& suffix) {
   const std::size_t excess = excess_of_name(name, suffix);
   if (excess == 0)
@@ -80,7 +82,7 @@ std::optional<Reply> refuse_length(const std::string& name, const std::string& s
 /// The files of a form, in a folder that is being made.
 class FolderFiles {
  public:
-  /// `name`: what the folder will be called; `suffix`: of hierarchies.
+  /// `name`: the folder's to be; `suffix`: the hierarchies'.
   FolderFiles(storage::FileSystem& files, std::filesystem::path folder, std::string name,
               std::string suffix)
       : files_(files),
@@ -90,7 +92,7 @@ class FolderFiles {
     files_.make_directories(folder_);
   }
 
-  /// Why not all could be taken, or nothing. Throws as store().
+  /// Takes all files; returns why not all could be taken, or nothing. Throws as store().
   std::optional<Reply> take(Body& body, MultipartReader& form) {
     auto next = form.next();
     for (; next == MultipartReader::Next::file; next = form.next()) {
@@ -145,8 +147,8 @@ Reply publish(StagedUpload& staged, const std::string& name) {
   return text_reply(201, fmt::format("{} is in the inbox.", name));
 }
 
-/// Browsers send the origin of the page with each request that is not just for reading; curl sends
-/// none.
+/// Whether it comes from a page of this server, or from no page: browsers send the origin of the
+/// page with each request that is not just for reading; curl sends none.
 bool is_of_own_page(const Request& request) {
   if (!request.origin)
     return true;
@@ -165,7 +167,7 @@ std::string_view bearer_of(const Request& request) {
 
 }  // namespace
 
-/// One of those that may be under way at once.
+/// Counts an upload among those that may be under way at once.
 class Uploads::Slot {
  public:
   explicit Slot(std::atomic<std::size_t>& count) : count_(count), number_(++count) {}

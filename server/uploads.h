@@ -1,4 +1,4 @@
-// Meshes that clients send into a watched inbox: who may, and what becomes of them.
+// Uploads: meshes that clients send into a watched inbox.
 //
 //   PUT /inbox/scan.ply       a mesh file
 //   POST /inbox/house         a form of files (multipart.h): one mesh with all that belongs to it,
@@ -24,8 +24,8 @@ namespace meshhier::server {
 
 struct UploadOptions {
   std::filesystem::path inbox;                          ///< absolute
-  std::uint64_t limit_bytes = std::uint64_t{20} << 30;  ///< of a request
-  std::string suffix = ".hier";                         ///< of the hierarchies that are made
+  std::uint64_t limit_bytes = std::uint64_t{20} << 30;  ///< a request has at most
+  std::string suffix = ".hier";                         ///< the hierarchies' that are made
   std::string token{};      ///< who sends must know it; empty: there is none
   bool is_loopback = true;  ///< only this machine reaches the server; else nobody sends without a
                             ///< token
@@ -37,14 +37,15 @@ class Uploads {
  public:
   using Tell = std::function<void(const std::string& message)>;
 
-  /// Removes what a killed server left. `files` must outlive this. `tell` hears why a file could
-  /// not be stored. Throws Error(io).
+  /// Removes uploads that a killed server left. `files` must outlive this. `tell` hears why a file
+  /// could not be stored. Throws Error(io).
   Uploads(UploadOptions options, storage::FileSystem& files, Tell tell);
 
-  /// What pages are told; nothing if nobody may send.
+  /// Returns the offer that pages are told; nothing if nobody may send.
   std::optional<UploadOffer> offer() const;
-  /// `place`: the target below /inbox, "/scan.ply". 201, or why not, in one line. Throws nothing
-  /// but storage::Busy.
+  /// Takes an upload. `place`: the target below /inbox, "/scan.ply". Returns 201, or why not, in
+  /// one line. Reads the body in this thread, as long as the client sends it. Throws nothing but
+  /// storage::Busy.
   Reply take(const Request& request, std::string_view place);
 
  private:
@@ -63,7 +64,7 @@ class Uploads {
   std::atomic<std::size_t> at_once_{0};
 };
 
-/// Whether they are equal; how long it takes does not depend on where they differ.
+/// Whether two secrets are equal. The time that it takes does not depend on where they differ.
 bool is_same_secret(std::string_view a, std::string_view b);
 
 }  // namespace meshhier::server

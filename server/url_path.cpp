@@ -9,7 +9,7 @@
 namespace meshhier::server {
 namespace {
 
-// What Linux allows: NAME_MAX and PATH_MAX.
+// The limits of Linux: NAME_MAX and PATH_MAX.
 constexpr std::size_t kLongestPart = 255;
 constexpr std::size_t kLongestPath = 4095;
 
@@ -19,7 +19,7 @@ bool is_plain(char c) {
   return static_cast<unsigned char>(c) >= ' ' && c != '\x7f' && c != '/' && c != '\\';
 }
 
-/// One part between slashes.
+/// Decodes one part between slashes.
 std::optional<std::string> decode_part(std::string_view part) {
   std::optional<std::string> name = percent_decoded(part);
   return name && is_plain_name(*name) ? std::move(name) : std::nullopt;

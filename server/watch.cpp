@@ -18,15 +18,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How soon a build's words are shown, and a request to stop is heard.
+/// A build's words are shown, and a request to stop is heard, within so long.
 constexpr std::chrono::milliseconds kHearFor{50};
 
-/// A build's lines have some hundred bytes; what is longer is no line of its.
+/// A build's lines have some hundred bytes; anything longer is no line of a build.
 constexpr std::size_t kLongestLine = 64 * 1024;
 
 constexpr int kExists = static_cast<int>(ErrorCode::exists);
 
-/// Where things lie on this machine is nobody's business on the network.
+/// Returns a text without the path of a directory: nobody on the network needs to know where things
+/// lie on this machine.
 std::string without(std::string text, const std::string& directory) {
   const std::string start = directory + '/';
   for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start))
@@ -99,7 +100,8 @@ void Watch::sleep() {
   stopped_.wait_for(lock, options_.look_every, [this] { return is_stopping(); });
 }
 
-/// A folder that is away for a while (a network's) comes back.
+/// Looks into the inbox. A folder that is away for a while (a network's) comes back: the failure is
+/// told once.
 void Watch::look() {
   last_look_ = Clock::now();
   try {
@@ -123,9 +125,9 @@ void Watch::look() {
   }
 }
 
-/// After a start most files have their hierarchies, and are not to be shown as if they had not. A
-/// file whose hierarchy cannot be looked at stays fresh, to be looked at again, and the others go
-/// on.
+/// Drops fresh files that have their hierarchies, as most have after a start: they are not to be
+/// shown as if they had none. A file whose hierarchy cannot be looked at stays fresh, to be looked
+/// at again, and the others go on.
 void Watch::drop_what_is_done() {
   for (const std::string& name : names_in(State::fresh)) {
     try {
@@ -166,7 +168,7 @@ std::vector<std::string> Watch::names_in(std::optional<State> state) const {
   return names;
 }
 
-/// Takes in what the inbox says of a file.
+/// Notes the state of a file in the inbox.
 void Watch::note(const InboxFile& file) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[file.name];
@@ -191,7 +193,7 @@ std::string Watch::next_waiting() const {
   return {};
 }
 
-/// Nothing that goes wrong with one file keeps the others waiting.
+/// Builds the hierarchy of a file. A failure with one file does not keep the others waiting.
 void Watch::handle(const std::string& name) {
   try {
     const BuildTarget target = target_of(name, Unknown::is_read);
@@ -218,7 +220,7 @@ BuildTarget Watch::target_of(const std::string& name, Unknown unknown) {
                      [&](const Model& model) { return is_made_of(name, model, unknown); });
 }
 
-/// Of a hierarchy that was built by hand only the mesh is known.
+/// Only the mesh is known of a hierarchy that was built by hand.
 storage::InputNote Watch::note_of(const Model& model) const {
   auto note = notes_.find(model.path);
   if (note && note->content == model.source_checksum)
@@ -243,18 +245,18 @@ bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unkn
   return others.is_same;
 }
 
-/// They lie from the folder of their mesh.
+/// Returns the companions of a mesh, whose paths start at its folder.
 Companions Watch::companions_of(const std::string& name) const {
   return {inbox_files_->input(), (options_.inbox / name).parent_path()};
 }
 
-/// 0 until a hierarchy of it was looked at.
+/// Returns the mark of a mesh's companions; 0 until a hierarchy of it was looked at.
 std::uint64_t Watch::mark_of(const std::string& name) const {
   const auto known = known_.find(name);
   return known == known_.end() ? 0 : companions_of(name).mark(known->second.note);
 }
 
-/// `noted` gets the file's times if it is the one.
+/// Whether the mesh is the noted file; `noted` gets its times then.
 bool Watch::is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown) {
   const storage::FileVersion version = version_of(name).mesh;
   const storage::FileIdentity now{version.bytes, version.modified_ns, version.changed_ns};
@@ -267,7 +269,7 @@ bool Watch::is_mesh_of(const std::string& name, storage::NotedFile& noted, Unkno
   return true;
 }
 
-/// From here on, only what changes after this look counts.
+/// Keeps the present mark: from here on only changes after this look count.
 void Watch::keep_mark(const std::string& name) {
   const auto known = known_.find(name);
   const std::lock_guard lock(mutex_);
@@ -276,7 +278,7 @@ void Watch::keep_mark(const std::string& name) {
     entry->second.version.companions = known->second.mark;
 }
 
-/// That of one file as it lies there, as builds know it.
+/// Reads the checksum of a file in the inbox, as builds compute it.
 std::uint64_t Watch::read_checksum(const std::string& name, const storage::FileVersion& version) {
   const auto file = inbox_.open(name, version);
   const std::uint64_t checksum =
@@ -292,7 +294,7 @@ InputVersion Watch::version_of(const std::string& name) const {
   return found == entries_.end() ? InputVersion() : found->second.version;
 }
 
-/// Not if nobody can tell.
+/// Whether the file is still of that version; false if nobody can tell.
 bool Watch::is_still(const std::string& name, const storage::FileVersion& version) const {
   try {
     return inbox_.open(name, version) != nullptr;
@@ -301,7 +303,7 @@ bool Watch::is_still(const std::string& name, const storage::FileVersion& versio
   }
 }
 
-/// Without the note, files are only read once more.
+/// Writes a note. A failure is told, and no more: without the note, files are only read once more.
 void Watch::keep_note(const std::string& hierarchy, const storage::InputNote& note) {
   try {
     notes_.write(hierarchy, note);
@@ -328,7 +330,7 @@ void Watch::check_target(const std::string& name, const BuildTarget& target) con
   }
 }
 
-/// A build would wait for it as well, but not as long.
+/// Whether another process builds there. A build would wait for it as well, but not as long.
 bool Watch::is_in_hand(const BuildTarget& target) {
   const std::filesystem::path work = storage::work_path(options_.folder / target.name);
   return files_.exists(work) && files_.try_lock(storage::lock_path(work)) == nullptr;
@@ -352,7 +354,8 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   }
   tell_(fmt::format("{}: building {}", name, target.name));
   Outcome outcome = run_build(name, target, false);
-  // What was begun with another config, or from another version of the file, is no use any more.
+  // A build that was begun with another config, or from another version of the file, is of no use
+  // any more.
   if (outcome.code == kExists && !is_stopping())
     outcome = run_build(name, target, true);
   settle(name, target, version, outcome);
@@ -385,8 +388,8 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   return list;
 }
 
-/// Until the build has ended; meanwhile the inbox is looked at as ever, and what is built may go
-/// from it. Returns what the build told last.
+/// Hears a build until it has ended; meanwhile the inbox is looked at as ever, and the file that is
+/// built may go from it. Returns the job as the build told it last.
 Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
   Job job{.name = name, .state = JobState::building};
   std::string text;
@@ -428,8 +431,9 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
     set_state(name, State::failed, outcome.message);
 }
 
-/// Files that are now as they were when the build read them are what was built: whoever changes
-/// one, or puts another one in its place and it back again, changes one of its times.
+/// Settles a build that succeeded. Files that are now as they were when the build read them are
+/// those that it was made of: whoever changes one, or puts another one in its place and it back
+/// again, changes one of its times.
 void Watch::settle_built(const std::string& name, const BuildTarget& target,
                          const InputVersion& version, const std::vector<std::string>& warnings) {
   options_.on_new();
@@ -445,7 +449,7 @@ void Watch::settle_built(const std::string& name, const BuildTarget& target,
   set_state(name, State::growing, kGrowing);
 }
 
-/// Beside the hierarchy, in its note: a server that is started anew lists them, too.
+/// Keeps warnings beside the hierarchy, in its note: a server that is started anew lists them, too.
 void Watch::keep_warnings(const std::string& name, const Model& model,
                           const std::vector<std::string>& warnings) {
   if (warnings.empty())

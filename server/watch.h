@@ -31,43 +31,45 @@ namespace meshhier::server {
 
 struct WatchOptions {
   std::filesystem::path inbox;   ///< absolute
-  std::filesystem::path folder;  ///< absolute; for the hierarchies
+  std::filesystem::path folder;  ///< absolute; the hierarchies'
   std::filesystem::path config;  ///< absolute; empty: all defaults
-  std::string suffix = ".hier";  ///< of the hierarchies' names
-  std::string program;           ///< meshhier
+  std::string suffix = ".hier";  ///< the hierarchies' names end with it
+  std::string program;           ///< path of meshhier
   Inbox::Folders folders = Inbox::Folders::ignored;
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
-  /// Until a build is tried again that another process has in hand.
+  /// A build that another process has in hand is tried again after so long.
   std::chrono::milliseconds try_again{5000};
   std::function<void()> on_new = [] {
   };  ///< called when a hierarchy has appeared, before its job goes
 };
 
 /// Each build is a process of its own: whatever ends it, this goes on. A file whose build failed is
-/// tried again when it has changed. What was going on when this process ended, however it ended, is
-/// gone on with by the next one.
+/// tried again when it has changed. A build that was going on when this process ended, however it
+/// ended, is gone on with by the next one.
 class Watch {
  public:
-  /// `tell` hears how it goes. `files` and `hierarchies`, of the same folder, must outlive this.
-  /// Throws Error(io) if a folder cannot be opened.
+  /// `tell` hears messages for people, from the thread of this object, as `options.on_new` is
+  /// called. `files` and `hierarchies`, of the same folder, must outlive this. Throws Error(io) if
+  /// a folder cannot be opened.
   Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies,
         Hierarchies::Tell tell);
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
-  /// Stops.
+  /// Stops, as stop().
   ~Watch();
 
+  /// Starts the thread that looks and builds.
   void start();
-  /// Asks the build at work to stop, which keeps what it has done, and waits for it.
+  /// Asks the build at work to stop, which keeps its work for the next one, and waits for it.
   void stop();
 
-  /// Of all files that are no hierarchies yet, by name. Thread-safe.
+  /// Returns the jobs of all files that are no hierarchies yet, by name. Thread-safe.
   nlohmann::ordered_json jobs() const;
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  /// fresh: not yet looked for in the folder, or what is there cannot be read.
+  /// fresh: not yet looked for in the folder, or its hierarchy cannot be read.
   enum class State { fresh, growing, waiting, building, failed, done };
   struct Entry {
     InputVersion version;
@@ -75,7 +77,7 @@ class Watch {
     Job job;
     Time not_before;  ///< another process was at work on the output
   };
-  /// What a build ended with.
+  /// The end of a build.
   struct Outcome {
     int code = 0;
     std::string message;
@@ -94,7 +96,7 @@ class Watch {
   /// Whether a file is read whose times are not those that were noted.
   enum class Unknown { is_read, is_another };
   BuildTarget target_of(const std::string& name, Unknown unknown);
-  /// What the hierarchy was made of, as far as anybody has noted it.
+  /// Returns the files that the hierarchy was made of, as far as anybody has noted them.
   storage::InputNote note_of(const Model& model) const;
   bool is_made_of(const std::string& name, const Model& model, Unknown unknown);
   bool is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown);
@@ -126,12 +128,12 @@ class Watch {
 
   WatchOptions options_;
   storage::FileSystem& files_;
-  std::unique_ptr<storage::FileSystem> inbox_files_;  ///< whose input() leads nowhere else
+  std::unique_ptr<storage::FileSystem> inbox_files_;  ///< its input() leads nowhere else
   Hierarchies& hierarchies_;
   Hierarchies::Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
   InputNotes notes_;
-  /// By mesh: what the hierarchy was made of that was looked at last, and what of it was like then.
+  /// By mesh: the note of the hierarchy that was looked at last, and the mark of its files then.
   struct Known {
     storage::InputNote note;
     std::uint64_t mark = 0;
