@@ -37,7 +37,7 @@ struct BuildArguments {
   std::string output;
   std::vector<std::string> settings;
   std::string stats;       ///< file for the account; empty: none
-  std::string input_note;  ///< file for the names of what was read; empty: none
+  std::string input_note;  ///< file for the names of the files that were read; empty: none
   bool force = false;
   bool restart = false;
   bool verbose = false;  ///< also the account
@@ -49,7 +49,8 @@ struct BuildArguments {
   std::string help_formats;  ///< a form of format_references(), or empty
 };
 
-/// Which must not take the place of what the build reads or makes.
+/// Returns the request for a file, which must not take the place of one that the build reads or
+/// makes.
 storage::OutputRequest output_request(const std::string& path, const BuildArguments& arguments,
                                       const config::Config& config) {
   storage::OutputRequest request{path, arguments.force, config::read_by(config)};
@@ -58,7 +59,7 @@ storage::OutputRequest output_request(const std::string& path, const BuildArgume
   return request;
 }
 
-/// What was written to the one would go when the other gets its name.
+/// Throws if both files are one: the first would go when the second gets its name.
 void require_two_files(const BuildArguments& arguments, storage::FileSystem& files) {
   if (arguments.stats.empty() || arguments.input_note.empty())
     return;
@@ -74,7 +75,8 @@ void require_two_files(const BuildArguments& arguments, storage::FileSystem& fil
   }
 }
 
-/// Only an older note, or what --force may replace; checked before the build, and after it.
+/// Returns the request for the note. Only an older note, or a file that --force may replace, is
+/// replaced; that is checked before the build, and after it.
 storage::OutputRequest note_request(const BuildArguments& arguments, const config::Config& config,
                                     storage::FileSystem& files) {
   storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
@@ -93,7 +95,8 @@ storage::OutputRequest note_request(const BuildArguments& arguments, const confi
   return request;
 }
 
-/// When all is done: a build that is killed leaves none that is not finished.
+/// Writes the note, when all is done: a build that is killed leaves none for an unfinished
+/// hierarchy.
 void write_input_note(const BuildArguments& arguments, const config::Config& config,
                       const storage::InputNote& note, Environment& environment) {
   const std::string text = to_json_text(note);
@@ -118,7 +121,7 @@ int run_estimate(const config::Config& config, const BuildArguments& arguments,
   return 0;
 }
 
-/// What shows the hierarchy in the browser.
+/// Returns the line that shows the hierarchy in the browser.
 std::string serve_line(const config::Config& config, const std::string& program) {
   const std::filesystem::path parent = config.output.parent_path();
   std::string folder = parent.empty() ? "." : parent.string();
@@ -136,14 +139,14 @@ std::vector<std::filesystem::path> others_of(const BuildArguments& arguments) {
   return others;
 }
 
-/// Null if all files may be read.
+/// Returns the file system that refuses files which may not be read; null if all may.
 std::unique_ptr<storage::FileSystem> guarded_files(const BuildArguments& arguments) {
   if (!arguments.within.empty())
     return storage::make_posix_file_system({false, arguments.within});
   return arguments.no_links ? storage::make_posix_file_system({false, std::nullopt}) : nullptr;
 }
 
-/// What the account warns of, for programs; people read it there.
+/// Tells programs the warnings of the account; people read them there.
 void tell_warnings(std::string_view account, execution::Progress& progress) {
   constexpr std::string_view kMark = "warning: ";
   while (!account.empty()) {
@@ -205,7 +208,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
 
 using References = std::map<std::string, std::string (*)()>;
 
-/// What --help-config prints.
+/// Returns the forms that --help-config prints.
 const References& key_references() {
   static const References all = {{"text", config::keys_text},
                                  {"schema", config::schema_text},
@@ -213,7 +216,7 @@ const References& key_references() {
   return all;
 }
 
-/// What --help-formats prints.
+/// Returns the forms that --help-formats prints.
 const References& format_references() {
   static const References all = {{"text", config::formats_text},
                                  {"json", config::formats_json},
@@ -221,7 +224,7 @@ const References& format_references() {
   return all;
 }
 
-/// What to print instead of a build; null: nothing.
+/// Returns the text to print instead of a build; null if there is to be a build.
 std::string (*reference_of(const BuildArguments& arguments))() {
   if (!arguments.help_config.empty())
     return key_references().at(arguments.help_config);

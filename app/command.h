@@ -14,17 +14,17 @@
 
 namespace meshhier::app {
 
-/// What a command runs in.
+/// The surroundings that a command runs in.
 struct Environment {
   storage::FileSystem& files;
   const execution::CancelToken& cancel;
   std::ostream& out;             ///< results
   std::ostream& messages;        ///< progress and errors
-  execution::Terminal terminal;  ///< where messages go
-  std::string program;           ///< as it was called, for lines to be typed
+  execution::Terminal terminal;  ///< messages go there
+  std::string program;           ///< its name as it was called, for lines to be typed
 };
 
-/// What the arguments ask for.
+/// The command that the arguments ask for.
 struct Invocation {
   std::function<int(Environment&)> run;  ///< returns the exit code; throws Error
   execution::ProgressMode progress = execution::ProgressMode::automatic;
@@ -46,7 +46,7 @@ void add_serve_command(CLI::App& parser, Invocation& invocation);
 void add_plan_command(CLI::App& parser, Invocation& invocation);
 void add_task_command(CLI::App& parser, Invocation& invocation);
 void add_clean_command(CLI::App& parser, Invocation& invocation);
-/// These two tell what `parser` has when they run.
+/// These two tell of all commands that `parser` has when they run.
 void add_completion_command(CLI::App& parser, Invocation& invocation);
 void add_manual_command(CLI::App& parser, Invocation& invocation);
 

@@ -25,7 +25,7 @@
 namespace meshhier::app {
 namespace {
 
-/// A vertex is farther than the tolerance.
+/// The exit code if a vertex is farther than the tolerance.
 constexpr int kExitFarther = 1;
 constexpr std::uint64_t kMostTransformBytes = 65536;
 
@@ -37,7 +37,7 @@ struct CompareArguments {
   comparing::CompareOptions options;
 };
 
-/// "0.5" or "0.5mm".
+/// Stores "0.5" or "0.5mm".
 void store_tolerance(const std::string& text, comparing::CompareOptions& options) {
   const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
   const auto number = parse_number<double>(std::string_view(text).substr(0, end));
@@ -62,7 +62,7 @@ comparing::PlaceTransform read_transform(storage::FileSystem& files, const std::
                                     path);
 }
 
-/// A hierarchy of the compared vertices, that their distances become an attribute of.
+/// Makes a hierarchy of the compared vertices, with their distances as an attribute.
 class DifferenceHierarchy {
  public:
   DifferenceHierarchy(const comparing::ComparedPlace& from, const std::string& output,
@@ -76,7 +76,7 @@ class DifferenceHierarchy {
     config_.attributes = {};
   }
 
-  /// What was made, for people.
+  /// Builds it and returns a text for people.
   std::string build(execution::Progress& progress, Environment& environment) const {
     pipeline::BuildOptions options{.force = replaces_, .restart = true};
     options.leaves_work = false;  // nobody could go on with it

@@ -1,4 +1,4 @@
-// What compare is given: a hierarchy, or a mesh, of which one is built for as long as it takes.
+// One side of a comparison: a hierarchy, or a mesh, of which one is built for as long as it takes.
 #pragma once
 
 #include "app/command.h"
@@ -22,13 +22,13 @@ class ComparedHierarchy {
                     std::uint64_t memory_budget, execution::Progress& progress);
 
   comparing::ComparedPlace place() const;
-  /// All files that were read: the hierarchy, or the mesh and what belongs to it.
+  /// All files that were read: the hierarchy, or the mesh and the files that belong to it.
   const std::vector<std::filesystem::path>& read() const { return read_; }
-  /// As HierarchyPlace.
+  /// Returns HierarchyPlace::account().
   std::string account() const { return given_.account(); }
 
  private:
-  /// It goes with the object.
+  /// A temporary folder that goes with its object.
   class BuiltFolder {
    public:
     BuiltFolder();
@@ -45,7 +45,7 @@ class ComparedHierarchy {
 
   Environment& environment_;
   HierarchyPlace given_;
-  std::optional<BuiltFolder> folder_;  ///< of what was built
+  std::optional<BuiltFolder> folder_;  ///< only if a hierarchy was built
   std::vector<std::filesystem::path> read_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// What the arguments that are files are called in --help.
+/// The names in --help of arguments that are files.
 constexpr std::array<std::string_view, 9> kFileNames{
     "CONFIG", "DIR", "FILE", "FOLDER", "HIERARCHY", "INBOX", "MESH", "PATH", "STREAM"};
 constexpr std::string_view kConfigKey = "KEY=VALUE";
@@ -23,7 +23,7 @@ bool names_file(std::string_view name) {
   return std::find(kFileNames.begin(), kFileNames.end(), name) != kFileNames.end();
 }
 
-/// All names of an option with their dashes; of -o,--output the long one only.
+/// Returns all names of an option with their dashes; only the long one of -o,--output.
 Words names_of(const CLI::Option& option) {
   Words names;
   for (const std::string& name : option.get_lnames())
@@ -39,7 +39,7 @@ bool is_option_word(std::string_view word) {
   return word.starts_with('-') && word != "-";
 }
 
-/// The option that `word` names: "--output", "-o" or "--output=x"; null if there is none.
+/// Returns the option that `word` names: "--output", "-o" or "--output=x"; null if there is none.
 const CLI::Option* find_option(const Arguments& arguments, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
   const auto found =
@@ -48,7 +48,7 @@ const CLI::Option* find_option(const Arguments& arguments, const std::string& wo
   return found == arguments.options.end() ? nullptr : *found;
 }
 
-/// The option whose value the last word is; null if it is none's.
+/// Returns the option whose value the last word is; null if it is none's.
 const CLI::Option* option_of_value(const Arguments& arguments, const Words& words) {
   const auto last = words.rbegin() + 1;
   const auto named = std::find_if(last, words.rend(), is_option_word);
@@ -83,7 +83,7 @@ class Collector {
     }
   }
 
-  /// `before`: what precedes the value in the same word.
+  /// `before`: the text that precedes the value in the same word.
   void add_values(const CLI::Option& option, const std::string& before = {}) {
     for (const std::string& choice : choices_of(option))
       add(before + choice);

@@ -1,5 +1,5 @@
-// What a shell offers for the word that is being typed: found by walking the parser, so that no
-// list can fall behind it.
+// The suggestions of a shell for the word that is being typed. They are found by walking the
+// parser, so that no list can fall behind it.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ struct Completion {
   bool takes_files = false;             ///< files may stand here, too
 };
 
-/// `words`: what follows the program's name up to the cursor; the last one, perhaps empty, is being
-/// typed.
+/// Returns the suggestions. `words`: those behind the program's name up to the cursor; the last
+/// one, perhaps empty, is being typed.
 Completion complete(const CLI::App& parser, const std::vector<std::string>& words);
 
 }  // namespace meshhier::app

@@ -13,8 +13,8 @@ namespace meshhier::app {
 
 namespace {
 
-// Each script asks "meshhier complete -- WORD..." at every Tab. Its first line of answer is "files"
-// or "words"; then come lines of a word, a tab, and what it means.
+// Each script asks "meshhier complete -- WORD..." at every Tab. The first line of the answer is
+// "files" or "words"; then come lines of a word, a tab, and its meaning.
 
 constexpr const char* kBash = R"(# Completion of meshhier in bash.
 _meshhier() {
@@ -96,7 +96,7 @@ void print(const Completion& completion, std::ostream& out) {
     out << word << '\t' << meaning << '\n';
 }
 
-/// What the scripts call; of no use to people.
+/// Adds the command that the scripts call; it is of no use to people.
 void add_complete_command(CLI::App& parser, Invocation& invocation) {
   const auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command = parser.add_subcommand("complete", "Answer a shell's completion script");

@@ -44,7 +44,7 @@ exporting::ExportSelection selection(const ExportArguments& arguments) {
   return exporting::OutlineSelection{};
 }
 
-/// Of the piece; what was made, for people.
+/// Builds a hierarchy of the piece and returns a text for people.
 std::string make_hierarchy(const HierarchyPlace& place, const exporting::ExportOptions& options,
                            execution::Progress& progress, Environment& environment) {
   const exporting::PieceMesh piece(place.files(), place.path(), options, environment.files,

@@ -18,7 +18,7 @@
 namespace meshhier::app {
 namespace {
 
-/// Of a file with headers.
+/// The most bytes of a file with headers.
 constexpr std::uint64_t kMostHeaderBytes = 65536;
 
 /// A header goes to the host as it is: a line that is none could say something else there. Its

@@ -1,4 +1,4 @@
-// Where a hierarchy lies that a command reads: on the disk, or on the web.
+// The place of a hierarchy that a command reads: on the disk, or on the web.
 #pragma once
 
 #include "app/command.h"
@@ -20,27 +20,29 @@ struct WebOptions {
   std::uint64_t bytes_per_second = 0;
 };
 
-/// Of a temporary file or folder, in TMPDIR, else /tmp. Nothing but names depends on chance.
+/// Returns a path for a temporary file or folder, in TMPDIR, else /tmp. Only names depend on
+/// chance.
 std::filesystem::path temporary_path(std::string_view prefix);
 
-/// --header and --limit-rate
+/// Adds --header and --limit-rate.
 void add_web_options(CLI::App& command, WebOptions& web);
-/// HIERARCHY, and these
+/// Adds HIERARCHY, and these.
 void add_hierarchy_options(
     CLI::App& command, std::string& hierarchy, WebOptions& web,
     const char* help = "A directory, a 3tz archive, or the address of one of them");
 
-/// Throws Error(usage) for a header that is none, Error(io) for a file of some that cannot be read.
+/// A hierarchy's path and the file system to read it with.
 class HierarchyPlace {
  public:
-  /// All must outlive it.
+  /// All must outlive it. Throws Error(usage) for a header that is none, Error(io) for a file of
+  /// headers that cannot be read.
   HierarchyPlace(Environment& environment, const std::string& hierarchy, const WebOptions& web);
 
   storage::FileSystem& files() const { return remote_ ? *remote_ : files_; }
   bool is_remote() const { return remote_ != nullptr; }
-  /// Of the hierarchy, without secrets.
+  /// The hierarchy's path, without secrets.
   const std::filesystem::path& path() const { return path_; }
-  /// What was fetched: a line, "fetched 1.2 MiB in 14 requests"; nothing of a disk.
+  /// Returns a line, "fetched 1.2 MiB in 14 requests"; empty for a disk.
   std::string account() const;
 
  private:

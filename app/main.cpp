@@ -85,7 +85,7 @@ std::vector<std::string> command_names(const CLI::App& parser) {
   return names;
 }
 
-/// Of those that the help lists.
+/// Returns the names of the commands that the help lists.
 std::string listed_commands(const CLI::App& parser) {
   std::vector<std::string> names;
   for (const CLI::App* command :
@@ -94,12 +94,13 @@ std::string listed_commands(const CLI::App& parser) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The parser's own message for a misspelt command is only that one is missing.
+/// Whether the word is a misspelt command: the parser's own message would only be that one is
+/// missing.
 bool is_unknown_command(const std::string& word, const std::vector<std::string>& names) {
   return !word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end();
 }
 
-/// A file in the place of the command is taken for a mesh.
+/// Returns the message for an unknown command; a file in its place is taken for a mesh.
 std::string unknown_command(const std::string& word, const CLI::App& parser) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(word, ignored))
@@ -110,7 +111,8 @@ std::string unknown_command(const std::string& word, const CLI::App& parser) {
                : "; expected one of " + listed_commands(parser));
 }
 
-/// Programs that read the progress get the end of it in the same form.
+/// Tells a failure and returns the exit code. Programs that read the progress get it in the same
+/// form.
 int report_failure(ErrorCode code, const std::string& message, execution::ProgressMode mode) {
   if (mode == execution::ProgressMode::json) {
     const nlohmann::ordered_json event{
@@ -139,7 +141,7 @@ int report_mistake(const std::string& message, bool as_json) {
                         as_json ? execution::ProgressMode::json : execution::ProgressMode::none);
 }
 
-/// A result that did not arrive is a failure, as when the disk behind a redirection is full.
+/// Throws if a result did not arrive, as when the disk behind a redirection is full.
 void flush_results() {
   if (!std::cout.flush())
     throw Error(ErrorCode::io, "standard output could not be written");
@@ -155,8 +157,8 @@ int execute(const Invocation& invocation, const execution::CancelToken& cancel) 
   return code;
 }
 
-/// Whatever command it is: nothing that it is told to write takes the place of what it is told to
-/// read. What its files name, a command knows itself.
+/// Throws if a file that any command is told to write takes the place of one that it is told to
+/// read. The files that those name, a command checks itself.
 void require_inputs_stay(const CLI::App& command, storage::FileSystem& files) {
   const std::vector<std::filesystem::path> read = files_named(command, FileUse::read);
   for (const std::filesystem::path& output : files_named(command, FileUse::written)) {
@@ -190,8 +192,9 @@ int execute_guarded(const Invocation& invocation, const execution::CancelToken& 
   }
 }
 
-/// What cannot be caught, as it left a thread or came while another failure was on its way: the
-/// process ends as if it had been, but for what it leaves on disk, as after a kill.
+/// Ends the process for an exception that cannot be caught, as it left a thread or came while
+/// another failure was on its way: with its message and exit code, but with files on disk as after
+/// a kill.
 [[noreturn]] void end_told() {
   const auto end = [](ErrorCode code, const char* message) {
     std::fprintf(stderr, "meshhier: %s\n", message);

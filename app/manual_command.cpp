@@ -12,7 +12,7 @@ namespace meshhier::app {
 
 namespace {
 
-/// Text that roff prints as it is.
+/// Returns a text that roff prints as it is.
 std::string escaped(std::string_view text) {
   std::string result;
   bool is_line_start = true;
@@ -42,7 +42,7 @@ void print_argument(std::ostream& out, const CLI::Option& option, const std::str
   out << '\n' << escaped(option.get_description()) << '\n';
 }
 
-/// "--help-config" of "--help-config{text}": what it means without a value is in its help.
+/// Returns "--help-config" for "--help-config{text}": the help says what it means without a value.
 std::string name_of(const CLI::Option& option) {
   const std::string name = option.get_name(false, true);
   return name.substr(0, name.find('{'));
@@ -63,7 +63,7 @@ void print_command(std::ostream& out, const CLI::App& command) {
   print_as_is(out, command.get_footer());
 }
 
-/// The manual page, in roff: all that --help tells, of all commands.
+/// Prints the manual page, in roff: all that --help tells, of all commands.
 void print_manual(std::ostream& out, const CLI::App& parser) {
   out << ".TH MESHHIER 1 \"\" \"meshhier " MESHHIER_VERSION "\" \"User Commands\"\n"
       << ".SH NAME\nmeshhier \\- prepare huge triangle meshes for fast display\n"

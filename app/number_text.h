@@ -8,7 +8,7 @@
 
 namespace meshhier::app {
 
-/// All of a text; nothing if it is no number.
+/// Parses a whole text; returns nothing if it is no number.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number number{};

@@ -20,22 +20,21 @@
 
 namespace meshhier::app {
 
-/// A tree over less than 2^32 partitions is at most so deep. Which levels a tree does have, it
-/// knows itself.
+/// A tree over less than 2^32 partitions is at most so deep. The tree itself knows its levels.
 inline constexpr std::uint8_t kDeepestLevel = 32;
 
-/// --progress auto|bar|json|none
+/// Adds --progress auto|bar|json|none.
 void add_progress_option(CLI::App& command, execution::ProgressMode& mode);
 
-/// What is wrong with the name of a file or directory, for CLI::Option::check(): that it is empty.
+/// Returns the fault of a name of a file or directory, for CLI::Option::check(): that it is empty.
 std::string name_fault(const std::string& text);
 
-/// -o FILE and --force, of commands that make one file.
+/// Adds -o FILE and --force, for commands that make one file.
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
                              bool& replace);
 
-/// Where a command that writes `output` tells what it did: not on standard output if that is the
-/// output.
+/// Returns the stream on which a command that writes `output` tells what it did: not standard
+/// output if that is the output.
 std::ostream& account_stream(const Environment& environment, const std::filesystem::path& output);
 
 /// Throws Error(usage) if a mesh would be shown on a terminal.
@@ -45,10 +44,10 @@ void require_no_terminal(const Environment& environment, const std::filesystem::
 /// given back. Throws CLI::RequiredError if there is neither.
 void give_back_files(std::vector<std::string>& settings, std::vector<std::string>& files);
 
-/// An option whose value is a size, not 0. `bytes` is its default, 0 if it has none.
+/// Adds an option whose value is a size, not 0. `bytes` is its default, 0 if it has none.
 CLI::Option* add_size_option(CLI::App& command, const std::string& name, const char* help,
                              std::uint64_t& bytes);
-/// --memory-budget SIZE
+/// Adds --memory-budget SIZE.
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);
 
 /// An option whose value is an integer from `minimum` to `maximum`. Digits only: no sign, no
@@ -62,10 +61,10 @@ struct IntegerOption {
 CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
                                 const std::function<void(std::uint64_t)>& store);
 
-/// --node L/I
+/// Adds --node L/I.
 CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node);
 
-/// --level L and --node L/I, which exclude each other.
+/// The options --level L and --node L/I, which exclude each other.
 struct PlaceOptions {
   CLI::Option* level = nullptr;
   CLI::Option* node = nullptr;
@@ -73,21 +72,21 @@ struct PlaceOptions {
 PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
                                std::optional<NodeId>& node);
 
-/// A group of options of a command, without a --help of its own.
+/// Adds a group of options to a command, without a --help of its own.
 CLI::App* add_group(CLI::App& command, const char* name, const char* help);
 
-/// --error LENGTH: the coarsest tiles that are no farther from the original
+/// Adds --error LENGTH, which asks for the coarsest tiles that are no farther from the original.
 CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
-/// --box X,Y,Z X,Y,Z, --polygon FILE and --crs CRS, as a group.
+/// Adds --box X,Y,Z X,Y,Z, --polygon FILE and --crs CRS, as a group.
 CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region);
 /// Throws Error(usage) if there is none, which `option` needs.
 void require_region(const exporting::RegionRequest& region, const char* option);
 
-/// A result as text, for programs. What is no UTF-8 becomes U+FFFD: a file name on disk may hold
-/// any bytes, JSON may not.
+/// Returns a result as text, for programs. Bytes that are no UTF-8 become U+FFFD: a file name on
+/// disk may hold any bytes, JSON may not.
 std::string pretty_json(const nlohmann::ordered_json& object);
 
-/// "3/17" as level 3, index 17; nothing if the text is anything else.
+/// Parses "3/17" as level 3, index 17; returns nothing if the text is anything else.
 std::optional<NodeId> parse_node(std::string_view text);
 
 }  // namespace meshhier::app

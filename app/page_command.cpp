@@ -46,7 +46,7 @@ ViewerPlace viewer_of(Environment& environment, const PageArguments& arguments) 
   return viewer;
 }
 
-/// The page that a hierarchy is put into.
+/// Returns the page that a hierarchy is put into.
 std::string single_page(const ViewerPlace& viewer) {
   const auto file = viewer.folder->open("single.html");
   if (!file) {
@@ -59,7 +59,7 @@ std::string single_page(const ViewerPlace& viewer) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Whoever gets the page reads the address: it must hold no secret.
+/// Throws if an address holds a secret, as whoever gets the page reads it.
 void require_link(const std::string& link) {
   if (link.empty())
     return;
@@ -73,7 +73,7 @@ void require_link(const std::string& link) {
                 "in the page; give it without");
 }
 
-/// "david" of "models/david.hier/".
+/// Returns "david" for "models/david.hier/".
 std::string name_of(const fs::path& hierarchy) {
   return storage::without_last_slash(hierarchy).stem().string();
 }
@@ -83,7 +83,7 @@ bool is_page_name(const std::string& output) {
   return ending == ".html" || ending == ".htm";
 }
 
-/// Throws Error(usage) for what is said of one HTML file.
+/// Throws Error(usage) for options that are only for one HTML file.
 void require_folder(const PageArguments& arguments) {
   const std::array options{std::pair(!arguments.link.empty(), "--link"),
                            std::pair(arguments.fetches_pictures, "--fetch-pictures"),

@@ -15,11 +15,11 @@ bool is_choice(std::string_view word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
 }
 
-/// Of the type that stands behind an option, those that are files to be read.
+/// The names of types, which stand behind an option, that are files to be read.
 constexpr std::array<std::string_view, 4> kReadTypes{"FILE", "DIR", "MESH", "LINE|@FILE"};
 constexpr std::array<const char*, 4> kWrittenOptions{"output", "stats", "input-note", "work"};
 
-/// The file of "@FILE" where a value may be something else.
+/// Returns the file of "@FILE" if a value may be something else.
 std::string_view file_in(std::string_view value, std::string_view type) {
   if (!type.ends_with("@FILE"))
     return value;

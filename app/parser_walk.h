@@ -1,4 +1,4 @@
-// What the parser has, in the order in which --help lists it.
+// Walks the commands and arguments of the parser, in the order in which --help lists them.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace meshhier::app {
 
-/// The commands that --help lists.
+/// Returns the commands that --help lists.
 std::vector<const CLI::App*> commands_of(const CLI::App& parser);
 
 /// All arguments of a command, those of its option groups included.
@@ -19,18 +19,19 @@ struct Arguments {
 };
 Arguments arguments_of(const CLI::App& command);
 
-/// The words of "auto|bar|json|none", or of the check of a value that is one of a few: what the
-/// program takes as they are. Words in capitals stand for something else and are left out.
+/// Returns the words that an option takes as they are: those of "auto|bar|json|none", or of the
+/// check of a value that is one of a few. Words in capitals stand for something else and are left
+/// out.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
 bool takes_value(const CLI::Option& option);
 
-/// What a command does with the files that an argument names.
+/// The use of the files that an argument names.
 enum class FileUse { none, read, written };
-/// By the name of its type, and by its own if it is written. Requires that `option` is of a command
-/// that writes: of others positionals may be anything.
+/// Returns an argument's use, by the name of its type, and by its own name if it is written.
+/// Requires that `option` belongs to a command that writes: positionals of others may be anything.
 FileUse file_use_of(const CLI::Option& option);
-/// The paths that arguments of that use were given; addresses are none.
+/// Returns the paths that arguments of that use were given; addresses are none.
 std::vector<std::filesystem::path> files_named(const CLI::App& command, FileUse use);
 
 }  // namespace meshhier::app

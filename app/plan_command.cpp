@@ -32,7 +32,7 @@ struct PlanArguments {
   bool force = false;
 };
 
-/// The line that runs a stage.
+/// Returns the line that runs a stage.
 std::string stage_line(const pipeline::TaskStage& stage, const std::string& task) {
   if (stage.tasks == 1)
     return fmt::format("  {} {}\n", task, stage.name);

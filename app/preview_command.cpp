@@ -44,7 +44,7 @@ constexpr std::array<std::pair<std::string_view, Standpoint>, 7> kViews{
      {"bottom", {0, -90}},
      {"iso", {45, 35.26438968}}}};
 
-/// What stands before and behind the first separator.
+/// Returns the parts before and behind the first separator.
 std::pair<std::string_view, std::string_view> halves(std::string_view text, char separator) {
   const std::size_t at = std::min(text.find(separator), text.size());
   return {text.substr(0, at), text.substr(std::min(at + 1, text.size()))};
@@ -98,7 +98,7 @@ std::optional<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
                                      static_cast<std::uint8_t>(number)};
 }
 
-/// Whether a picture of a hierarchy, whose ground may be transparent, can be of it.
+/// Whether a picture of a hierarchy, whose ground may be transparent, can have the format.
 bool is_shown(const ImageFormatRow& row) {
   return row.has_alpha && row.in_browsers;
 }
@@ -109,7 +109,7 @@ std::optional<ImageFormat> format_named(std::string_view name) {
   return found == kImageFormats.end() ? std::nullopt : std::optional(found->value);
 }
 
-/// Their names with something before each and between two: ".png or .webp".
+/// Returns their names with something before each and between two: ".png or .webp".
 std::string all_formats(std::string_view before, std::string_view between) {
   std::string text;
   for (const ImageFormatRow& row : kImageFormats) {
@@ -119,7 +119,7 @@ std::string all_formats(std::string_view before, std::string_view between) {
   return text;
 }
 
-/// By the ending of the output's name, unless it is given.
+/// Returns the format that is given, else that of the ending of the output's name.
 ImageFormat format_of(const PreviewArguments& arguments) {
   if (arguments.format)
     return *arguments.format;
@@ -158,7 +158,7 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
   return 0;
 }
 
-/// An option whose text `store` takes, or refuses by returning false.
+/// Adds an option whose text `store` takes, or refuses by returning false.
 template <class Store>
 CLI::Option* add_parsed_option(CLI::App& command, const char* name, const char* help,
                                const std::string& type, const std::string& expected,

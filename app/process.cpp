@@ -11,10 +11,10 @@ namespace meshhier::app {
 
 namespace {
 
-/// What a signal handler can reach: it gets no argument of ours.
+/// A signal handler gets no argument of ours, so the token is global.
 constinit execution::CancelToken token_to_cancel;
 
-/// Only what POSIX allows in a handler: lock-free atomics and signal().
+/// Uses only what POSIX allows in a handler: lock-free atomics and signal().
 extern "C" void on_signal(int) {
   token_to_cancel.cancel();
   std::signal(SIGINT, SIG_DFL);
@@ -35,13 +35,14 @@ bool is_ignored(int signal_number) {
   return sigaction(signal_number, nullptr, &current) == 0 && current.sa_handler == SIG_IGN;
 }
 
-/// Nothing is set up yet, but for the C library.
+/// Sets up the handlers. Only the C library is set up when it is called.
 void handle_signals() {
   handle(SIGINT);
   handle(SIGTERM);
   if (!is_ignored(SIGHUP))
     handle(SIGHUP);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then a failed write, told and cleaned up
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // so that a file size limit is a failed write, told and cleaned up
 }
 
 // The loader calls what is listed here before all else: OpenSSL reads its configuration before

@@ -1,4 +1,4 @@
-// Which program this is, down to its bytes.
+// The identity of this program, down to its bytes.
 #pragma once
 
 #include "storage/io/file.h"
@@ -7,8 +7,8 @@
 
 namespace meshhier::app {
 
-/// "meshhier 0.1.0 0123456789abcdef": the version and the checksum of the program's file. Throws
-/// Error(io).
+/// Returns "meshhier 0.1.0 0123456789abcdef", the version and the checksum of the program's file.
+/// Throws Error(io).
 std::string program_id(storage::FileSystem& files);
 
 }  // namespace meshhier::app

@@ -23,7 +23,7 @@ struct ReconstructArguments {
   bool stats = false;
 };
 
-/// Seconds that computing takes follow what a file has, its entries.
+/// Prints a line a file. The time to compute follows the number of its entries.
 void print_stats(std::ostream& out, const progressive::ReconstructReport& report) {
   out << fmt::format("{:<14} {:>12} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "file", "bytes",
                      "entries", "vertices", "triangles", "ms", "ns/entry");

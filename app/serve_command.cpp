@@ -47,10 +47,10 @@ struct ServeArguments {
   bool quiet = false;
 };
 
-/// Names and messages of files that nobody vouches for are cut there.
+/// Lines are cut there: names and messages come from files that nobody vouches for.
 constexpr std::size_t kLongestLine = 4096;
 
-/// Lines on standard error, whole ones from any thread.
+/// Prints lines on standard error, whole ones from any thread.
 class Console {
  public:
   Console(std::ostream& out, bool quiet) : out_(out), quiet_(quiet) {}
@@ -70,10 +70,10 @@ class Console {
   std::mutex mutex_;
 };
 
-/// However soon files count as whole.
+/// The inbox is looked at no more often, however soon files count as whole.
 constexpr std::chrono::milliseconds kShortestLook{50};
 
-/// What a client sent is cut and cleaned before a terminal shows it.
+/// A target that a client sent is cut there, and cleaned, before a terminal shows it.
 constexpr std::size_t kLongestTarget = 200;
 
 std::string log_line(const server::Served& served) {
@@ -91,8 +91,8 @@ void check_folder(const std::string& option, const std::string& folder, Environm
   throw Error(ErrorCode::io, fmt::format("{} {}: there is no such directory", option, folder));
 }
 
-/// The config of all builds to come, which is to be told wrong now, not with the first of them.
-/// Returns what hierarchies are called behind the dot.
+/// Checks the config of all builds to come, so that a mistake is told now, not with the first
+/// build. Returns the ending that hierarchies get.
 std::string suffix_of(const std::string& config, Environment& environment) {
   const std::vector<std::string> settings{"input=mesh.ply", "output=mesh.hier"};
   const config::Config checked = config.empty()
@@ -152,7 +152,8 @@ void wait_for_end(const execution::CancelToken& cancel, const server::HttpServer
     std::this_thread::sleep_for(kLook);
 }
 
-/// Whole paths stay on this machine: others get to know the last part.
+/// Returns the name of a folder for the page: whole paths stay on this machine, others get the last
+/// part.
 std::string place_name(const std::string& folder, bool stays_here, storage::FileSystem& files) {
   if (folder.empty())
     return {};
@@ -183,7 +184,7 @@ constexpr const char* kNoUploads =
     "no meshes are taken over the network: --host lets other machines in, and there is no "
     "--upload-token-file; files that are put into the inbox are built as ever";
 
-/// All that runs. What others use comes before them: it ends after them.
+/// All that runs. Members that others use come before them, so that they end after them.
 class Service {
  public:
   Service(const ServeArguments& arguments, Environment& environment)
@@ -234,7 +235,7 @@ class Service {
   }
 
  private:
-  /// A folder that cannot be listed now may be listed later.
+  /// Tells if there are no hierarchies. A folder that cannot be listed now may be listed later.
   void tell_if_empty(const ServeArguments& arguments) {
     try {
       if (hierarchies_.list().empty())
@@ -357,7 +358,7 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
   add_upload_options(command, *inbox, arguments);
 }
 
-/// Options that say how INBOX is looked after are for nothing without one.
+/// Throws for options on the inbox if there is none.
 void check_needs(const CLI::App& command) {
   if (command.count("--watch") + command.count("--inbox") > 0)
     return;

@@ -6,8 +6,8 @@
 
 namespace meshhier::app {
 
-/// `word` as a shell reads it back: as it is if it is plain, else in quotes. Control characters
-/// are escaped ($'...' of bash and zsh), so that a terminal shows them.
+/// Returns a text that a shell reads back as `word`: the word itself if it is plain, else in
+/// quotes. Control characters are escaped ($'...' of bash and zsh), so that a terminal shows them.
 std::string shell_word(std::string_view word);
 
 }  // namespace meshhier::app

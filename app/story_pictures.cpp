@@ -45,7 +45,7 @@ void require_room(std::uint64_t bytes, std::uint64_t most) {
   }
 }
 
-/// "https:" of "https://host/a.png": what addresses begin with that are not relative.
+/// Whether an address begins with a scheme, "https:", and so is not relative.
 bool has_scheme(const std::string& address) {
   return address.find(':') < address.find_first_of("/?#");
 }
@@ -87,7 +87,7 @@ class PictureHosts {
       leave_out("the pictures before took all of the time that there is for fetching");
     deadline_ = began + kForOne;
     try {
-      // Asks for one byte more than there is room for.
+      // One byte more than there is room for tells a picture that is too large.
       const storage::HttpAnswer answer = client_.get({address, ""}, 0, most + 1);
       require_room(std::max<std::uint64_t>(answer.total.value_or(0), answer.bytes.size()), most);
       return answer.bytes;
@@ -97,7 +97,7 @@ class PictureHosts {
   }
 
  private:
-  /// The address, which stands before what the client says, is shown by who asked.
+  /// Returns a message without the address that the client puts before it: who asked shows it.
   static std::string without_address(std::string_view what) {
     return std::string(what.substr(what.starts_with(": ") ? 2 : 0));
   }

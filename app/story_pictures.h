@@ -10,12 +10,12 @@ namespace meshhier::app {
 
 struct StoryPictures {
   std::filesystem::path beside;  ///< the folder of the story
-  bool fetches = false;          ///< pictures of other hosts, else they are refused
+  bool fetches = false;          ///< pictures of other hosts are fetched, else refused
 };
 
-/// Opens what lies in the folder or below it, by relative addresses; no link is followed, no hidden
-/// name is opened. A host gets 20 seconds for a picture, all hosts two minutes. `cancel` must
-/// outlive the result.
+/// Returns a function that opens pictures in the folder or below it, by relative addresses; no link
+/// is followed, no hidden name is opened. A host gets 20 seconds for a picture, all hosts two
+/// minutes. `cancel` must outlive the result.
 exporting::OpenPicture open_story_pictures(const StoryPictures& pictures,
                                            const execution::CancelToken& cancel);
 

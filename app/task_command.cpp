@@ -52,7 +52,7 @@ int list_stages(const pipeline::TaskPlan& plan, Environment& environment) {
   return 0;
 }
 
-/// The first stage that is not complete, for scripts; nothing if all are.
+/// Prints the first stage that is not complete, for scripts; nothing if all are.
 int show_next(const TaskArguments& arguments, const pipeline::TaskPlan& plan,
               Environment& environment) {
   const pipeline::TaskStatus status =

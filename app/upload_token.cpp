@@ -14,7 +14,7 @@
 namespace meshhier::app {
 namespace {
 
-/// 16 random letters and digits have 95 bits.
+/// A token of 16 random letters and digits has 95 bits.
 constexpr std::size_t kFewestCharacters = 16;
 constexpr std::uint64_t kMostBytes = 1024;
 

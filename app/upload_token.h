@@ -1,4 +1,4 @@
-// The secret that who sends meshes from another machine must know.
+// The secret that those must know who send meshes from another machine.
 #pragma once
 
 #include "storage/io/file.h"
@@ -8,8 +8,8 @@
 
 namespace meshhier::app {
 
-/// The one word in that file. Throws Error(usage) if it is none, or so short that it can be
-/// guessed.
+/// Returns the one word in that file. Throws Error(usage) if there is not one word, or if it is so
+/// short that it can be guessed.
 std::string read_upload_token(storage::FileSystem& files, const std::filesystem::path& path);
 
 }  // namespace meshhier::app

@@ -45,7 +45,7 @@ std::string verdict(std::size_t count) {
   return counted(count, "problems") + " found";
 }
 
-/// A manifest may say anything.
+/// Problems are cut there, as a manifest may say anything.
 constexpr std::size_t kLongestProblem = 4096;
 
 std::string plain_text(const verifying::VerifyReport& report) {
@@ -59,7 +59,7 @@ std::string plain_text(const verifying::VerifyReport& report) {
 
 using Measurements = std::vector<verifying::ErrorMeasurement>;
 
-/// One object, or with all levels an object with a list of them.
+/// Returns one object, or with all levels an object with a list of them.
 std::string json_text(const Measurements& measurements, bool all_levels) {
   if (!all_levels)
     return pretty_json(verifying::to_json(measurements.front()));
@@ -131,7 +131,7 @@ Examples:
   meshhier verify david.hier --error --level all --samples 1000000 --json
 )";
 
-/// --level L | all
+/// Stores --level L | all.
 void store_level(const std::string& text, verifying::ErrorOptions& error) {
   if (text == "all") {
     error.selection = verifying::AllLevels{};
@@ -146,7 +146,7 @@ void store_level(const std::string& text, verifying::ErrorOptions& error) {
   error.selection = static_cast<Level>(*level);
 }
 
-/// A thousand times what figures are compared with: hours, but no defect.
+/// A thousand times the samples of usual comparisons: they take hours, but are no defect.
 constexpr std::uint64_t kMostSamples = 400'000'000;
 
 void add_error_options(CLI::App& command, VerifyArguments& arguments,

@@ -12,7 +12,7 @@ namespace meshhier::app {
 
 namespace {
 
-// From the directory of the program: installed, and built in build/PRESET.
+// The places seen from the directory of the program: installed, and built in build/PRESET.
 constexpr std::array kPlaces{"../share/meshhier/viewer", "../../viewer/dist/page"};
 
 constexpr const char* kRemedy =

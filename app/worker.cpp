@@ -28,14 +28,15 @@ std::optional<std::uint32_t> number(const Variables& variables, const char* name
   return value;
 }
 
-/// The worker of that number, of so many that there is one of the largest number too.
+/// Returns the worker of that number, among as many as the largest number needs.
 pipeline::Share with_number(std::uint32_t index, std::uint32_t largest) {
   constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
   return {index, largest < kMost ? largest + 1 : kMost};
 }
 
-/// An array from 0 or 1 on is one of workers. Of another, or one that has only some indices, as
-/// when a few are run again, each has the number of its task.
+/// Returns the worker in a Slurm array. An array from 0 or 1 on is one of workers. In another, or
+/// one that has only some indices, as when a few are run again, the index is the number of the
+/// task.
 std::optional<pipeline::Share> slurm_array(const Variables& variables, std::uint32_t tasks) {
   const auto id = number(variables, "SLURM_ARRAY_TASK_ID");
   if (!id)
@@ -50,7 +51,8 @@ std::optional<pipeline::Share> slurm_array(const Variables& variables, std::uint
   return with_number(*id, std::max({most, *id, tasks - 1}));
 }
 
-/// Of srun. A batch script has these variables too, but is not one of so many processes.
+/// Returns the worker in a step of srun. A batch script has these variables too, but is not one of
+/// so many processes.
 std::optional<pipeline::Share> slurm_step(const Variables& variables) {
   const auto index = number(variables, "SLURM_PROCID");
   const auto of = number(variables, "SLURM_NTASKS");
@@ -60,7 +62,8 @@ std::optional<pipeline::Share> slurm_step(const Variables& variables) {
   return pipeline::Share{*index, *of};
 }
 
-/// `count`: null if the scheduler does not tell how many there are.
+/// Returns the worker that two variables tell. `count`: null if the scheduler does not tell how
+/// many there are.
 std::optional<pipeline::Share> indexed(const Variables& variables, const char* index,
                                        const char* count, std::uint32_t tasks) {
   const auto value = number(variables, index);

@@ -1,4 +1,4 @@
-// Which part of a stage's tasks a process does, from the variables that schedulers set.
+// The part of a stage's tasks that a process does, from the variables that schedulers set.
 #pragma once
 
 #include "pipeline/plan/share.h"
@@ -10,19 +10,19 @@
 
 namespace meshhier::app {
 
-/// What the command line says.
+/// The worker that the command line asks for.
 struct AskedWorker {
   std::optional<std::uint32_t> index, of;
 };
 
-/// The value of a variable of the environment; none if it is not set.
+/// Returns the value of a variable of the environment; nothing if it is not set.
 using Variables = std::function<std::optional<std::string>(const char* name)>;
 Variables process_environment();
 
-/// Of the command line, or else of a Slurm array or step, an Indexed Job of Kubernetes, or an array
-/// of AWS Batch; without any, all tasks. Where the count is not known, `tasks`: each does one.
-/// Throws Error(usage) for an index that is not below the count, and for a variable that is no
-/// number.
+/// Returns the worker of the command line, or else of a Slurm array or step, an Indexed Job of
+/// Kubernetes, or an array of AWS Batch; without any, one that does all tasks. If the count is not
+/// known, there are `tasks` workers: each does one. Throws Error(usage) for an index that is not
+/// below the count, and for a variable that is no number.
 pipeline::Share find_worker(const AskedWorker& asked, std::uint32_t tasks,
                             const Variables& variables);
 

@@ -57,7 +57,7 @@ std::string with_key(const std::string& section, const std::string& key) {
   return section.empty() ? key : section + '.' + key;
 }
 
-/// The last name of a dotted path.
+/// Returns the last name of a dotted path.
 std::string leaf_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   return std::string(dot == std::string_view::npos ? path : path.substr(dot + 1));
@@ -67,7 +67,7 @@ std::string in_quotes(std::string_view text) {
   return '"' + plain_text(text, kLongestQuote) + '"';
 }
 
-/// A value for a message: "the string "abc"", "an object".
+/// Returns a value for a message: "the string "abc"", "an object".
 std::string described(const Json& value) {
   if (value.is_null())
     return "null";
@@ -85,8 +85,8 @@ std::string did_you_mean(const std::optional<std::string>& word) {
   return word ? fmt::format("; did you mean \"{}\"?", *word) : std::string();
 }
 
-/// The known key nearest to an unknown one: by its whole path, or else by its last name, which
-/// finds keys that were written in the wrong section.
+/// Returns the known key nearest to an unknown one: by its whole path, or else by its last name,
+/// which finds keys that were written in the wrong section.
 std::optional<std::string> nearest_key(const std::string& path) {
   std::vector<std::string> paths;
   std::vector<std::string> leaves;
@@ -139,8 +139,8 @@ class ParseGuard {
   }
 
   std::string name_;
-  std::size_t count_ = 0;                    ///< of all keys so far
-  std::vector<std::set<std::string>> keys_;  ///< of each open object
+  std::size_t count_ = 0;                    ///< all keys so far
+  std::vector<std::set<std::string>> keys_;  ///< those of each open object
   std::vector<std::string> path_;            ///< the current key of each
 };
 
@@ -176,7 +176,8 @@ Override split_override(const std::string& setting) {
   return {setting.substr(0, sign), setting.substr(sign + 1)};
 }
 
-/// A key that wants text takes it as it stands: --set output=2024 is a directory, not a number.
+/// Returns the value of a setting. A key that wants text takes it as it stands: --set output=2024
+/// is a directory, not a number.
 Json override_value(const Override& setting) {
   const ConfigKey* key = find_config_key(setting.path);
   const bool wants_text =
@@ -192,7 +193,7 @@ Json override_value(const Override& setting) {
   return value;
 }
 
-/// The document with its overrides, and where each value comes from.
+/// The document with its overrides, and the source of each value.
 class Draft {
  public:
   Draft(Json document, std::string name) : document_(std::move(document)), name_(std::move(name)) {}
@@ -201,7 +202,7 @@ class Draft {
 
   void apply(const Override& setting) { put(setting.path, override_value(setting), "--set"); }
 
-  /// `source`: which words of the command line say so.
+  /// `source`: the words of the command line that say so.
   void put(const std::string& path, Json value, const std::string& source) {
     const auto [before, is_new] = overridden_.emplace(path, source);
     if (before->second != source) {
@@ -243,7 +244,7 @@ class Draft {
     return overriding(path) != overridden_.end();
   }
 
-  /// For messages: "config.json: partition.vertices" or "--set partition.vertices".
+  /// Returns a key for messages: "config.json: partition.vertices" or "--set partition.vertices".
   std::string origin_of(const std::string& path) const {
     return is_overridden(path) ? source_of(path) + ' ' + path : name_ + ": " + path;
   }
@@ -269,7 +270,7 @@ class Draft {
     return overridden_.find(path);
   }
 
-  /// The object of that dotted path, made if it is not there.
+  /// Returns the object of that dotted path, and makes it if it is not there.
   Json& open_section(const std::string& path) {
     Json* object = &document_;
     for (std::size_t end = 0; end != std::string::npos;) {
@@ -286,10 +287,11 @@ class Draft {
 
   Json document_;
   std::string name_;
-  std::map<std::string, std::string> overridden_;  ///< by what
+  std::map<std::string, std::string> overridden_;  ///< paths, and the words that override them
 };
 
-/// A wrong list for KeyKind::levels: an entry is told by its level, else it is the length.
+/// Refuses a wrong list for KeyKind::levels: for an entry, which is told by its level, or for its
+/// length.
 [[noreturn]] void refuse_levels(const std::string& where, const ConfigKey& key, const Json& list) {
   const ConfigKey entry = level_entry(key);
   for (std::size_t level = 0; level < list.size(); ++level) {
@@ -354,7 +356,7 @@ std::filesystem::path resolved_path(const Draft& draft, const std::string& key,
   return storage::without_last_slash(normal);
 }
 
-/// Replacing the output would destroy an input that is, or lies in, that directory.
+/// Refuses an output whose replacing would destroy an input that is, or lies in, that directory.
 void check_output(const Config& config, const Draft& draft) {
   const std::filesystem::path name = config.output.filename();
   if (name.empty() || name == "." || name == "..") {
@@ -377,12 +379,12 @@ void check_output(const Config& config, const Draft& draft) {
       "that `meshhier export` makes meshes, `meshhier page` an HTML file");
 }
 
-/// Whether what is moved by it has no volume left, but for rounding.
+/// Whether a transform leaves no volume, but for rounding.
 bool is_flat(const Transform& m) {
   return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
 }
 
-/// There are three ways to place a model; each stands alone.
+/// Refuses keys of more than one of the three ways to place a model.
 void check_placement(const Config& config, const Draft& draft) {
   const PlacementConfig& place = config.placement;
   const bool by_degrees = place.longitude || place.latitude || place.height;
@@ -413,7 +415,7 @@ void check_crop(const Config& config, const Draft& draft) {
   }
 }
 
-/// One angle alone says no side.
+/// Refuses one angle alone.
 void check_first_view(const Config& config, const Draft& draft) {
   if (config.first_view.azimuth.has_value() != config.first_view.elevation.has_value())
     refuse(draft.origin_of("first_view"), "expected both \"azimuth\" and \"elevation\"");
@@ -432,14 +434,14 @@ void put_meshes(Draft& draft, const CommandLine& words) {
   draft.put("input", std::move(paths), kMeshWords);
 }
 
-/// "models/scan.hier" of "models/scan.ply.gz".
+/// Returns "models/scan.hier" for "models/scan.ply.gz".
 std::filesystem::path beside(const std::filesystem::path& mesh, const std::string& ending) {
   const std::string name = mesh.filename().string();
   const std::string stem = mesh_io::mesh_stem(name);
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
 }
 
-/// Fills in what is not given: the name from the mesh, the container from the name.
+/// Fills in the output where it is not given: the name from the mesh, the container from the name.
 void put_output(Draft& draft, const CommandLine& words) {
   if (!words.output.empty()) {
     draft.put("output", words.output.string(), kOutputWord);
@@ -469,7 +471,7 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
   return text;
 }
 
-/// Whether the key has paths: what lies there decides, not the path.
+/// Whether the key has paths: the files that lie there decide the result, not the paths.
 bool is_of_paths(const ConfigKey& key) {
   return key.kind == KeyKind::path || key.kind == KeyKind::paths;
 }
@@ -525,7 +527,7 @@ Json resolved_json(const Config& config) {
     if (!value.is_null())
       result[json_pointer_to(key.path)] = std::move(value);
   }
-  // "vertices" has a value even where "count" overrules it.
+  // "vertices" has a value even if "count" overrules it.
   if (resolved.partition.count)
     result["partition"].erase("vertices");
   return result;

@@ -1,6 +1,6 @@
-// The config: what a build is asked to do, as values.
+// The config of a build, as values.
 //
-// The keys, their ranges and what they mean are listed once, in config_schema.cpp.
+// The keys, their ranges and their meanings are listed once, in config_schema.cpp.
 #pragma once
 
 #include "cluster_simplify/contraction.h"
@@ -34,7 +34,7 @@
 
 namespace meshhier::config {
 
-/// How a node's split direction is chosen.
+/// The rule by which a node's split direction is chosen.
 using AxisRule = partition::Axis;
 inline constexpr std::array kAxisRules{NamedValue{"compactness", AxisRule::compactness},
                                        NamedValue{"longest", AxisRule::longest}};
@@ -47,7 +47,7 @@ struct PartitionConfig {
   friend bool operator==(const PartitionConfig&, const PartitionConfig&) = default;
 };
 
-/// How a tile is contracted. A new method has its name here.
+/// The method by which a tile is contracted. A new method has its name here.
 using SimplifyMethod = cluster_simplify::Method;
 inline constexpr std::array kSimplifyMethods{
     NamedValue{"edge_collapse", SimplifyMethod::edge_collapse},
@@ -66,7 +66,7 @@ inline constexpr std::array kHalfEdgeCosts{NamedValue{"quadric", HalfEdgeCost::q
 struct SimplifyConfig {
   SimplifyMethod method = SimplifyMethod::edge_collapse;
   std::optional<TargetVertexCounts>
-      vertices;  ///< of a simplified tile, 4 to 32768 each; not set: as a partition has
+      vertices;  ///< a simplified tile's, 4 to 32768 each; not set: as many as a partition has
   Representative representative = Representative::quadric;  ///< used by `cluster`
   HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< used by `half_edge`
   friend bool operator==(const SimplifyConfig&, const SimplifyConfig&) = default;
@@ -78,7 +78,7 @@ struct OutlineConfig {
   friend bool operator==(const OutlineConfig&, const OutlineConfig&) = default;
 };
 
-/// From where the model is looked at first, degrees as of a Standpoint: both or none, then the
+/// The view that the model is shown with first, in degrees as a Standpoint: both or none, then the
 /// build chooses.
 struct FirstViewConfig {
   std::optional<double> azimuth, elevation;
@@ -113,8 +113,8 @@ constexpr bool makes_maps(Normals normals) {
 struct StorageConfig {
   Container container = Container::files;  ///< decides nothing of the files themselves
   Compression compression = Compression::none;
-  std::optional<std::uint32_t>
-      position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
+  std::optional<std::uint32_t> position_bits;  ///< bits of the lattice that positions are rounded
+                                               ///< to, 8 to 24; not set: exact
   Normals normals = Normals::smooth;
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
@@ -134,7 +134,7 @@ struct TextureConfig {
   bool use = true;  ///< else textures are left out, and coordinates kept as attributes
   std::uint32_t texels =
       512;               ///< a simplified tile's picture has at most so many squared, 64 to 4096
-  TextureFormat format;  ///< of tiles' pictures
+  TextureFormat format;  ///< the tiles' pictures
   friend bool operator==(const TextureConfig&, const TextureConfig&) = default;
 };
 
@@ -149,22 +149,23 @@ inline constexpr std::array kMissingImages{NamedValue{"warn", MissingImages::war
 inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
                                     NamedValue{name_of(UpAxis::z), UpAxis::z}};
 
-/// Where the model is for viewers of the tileset: on the globe, or anywhere, or nowhere in
+/// The place of the model for viewers of the tileset: on the globe, or anywhere, or nowhere in
 /// particular.
 struct PlacementConfig {
   std::optional<double> longitude, latitude, height;  ///< degrees, degrees, metres
-  /// Instead: of the map that the z-up coordinates of the model belong to, for PROJ.
+  /// Instead of these: the reference system, for PROJ, of the map that the z-up coordinates of the
+  /// model belong to.
   std::optional<std::string> crs;
   std::optional<std::array<double, 3>> offset;  ///< from z-up coordinates to the map's; else 0
   std::filesystem::path metadata;               ///< the file that crs and offset are in, or empty
-  /// Which point is there, input coordinates; else 0. Of a map: where the transform is exact; else
-  /// the middle of the input.
+  /// The point that is there, in input coordinates; else 0. With a crs the point where the
+  /// transform is exact; else the middle of the input.
   std::optional<std::array<double, 3>> anchor;
   std::optional<Transform> transform;  ///< instead of all these
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 
-/// How the tileset is told to viewers of 3D Tiles.
+/// Options of the tileset, for viewers of 3D Tiles.
 struct TilesetConfig {
   /// Its geometric errors are the tiles' errors times this. CesiumJS, 3d-tiles-renderer and iTowns
   /// allow for 16 pixels by default: then the error is one.
@@ -179,11 +180,11 @@ struct Config {
   mesh_io::InputPaths input;  ///< not empty
   /// Two corners: only triangles that touch the box between them are built.
   std::optional<std::array<double, 6>> crop;
-  mesh_io::AttributeChoice attributes;  ///< that are read besides those that are shown
+  mesh_io::AttributeChoice attributes;  ///< those that are read besides those that are shown
   bool weld = false;                    ///< vertices of equal position and attributes become one
   Topology topology = Topology::place;  ///< which vertices are one point of the surface
   std::filesystem::path output;         ///< a directory or file, without a slash at its end
-  /// Bytes, > 0; none: what pipeline::memory_budget() says of the machine.
+  /// Bytes, > 0; none: pipeline::memory_budget() chooses by the machine.
   std::optional<std::uint64_t> memory_budget;
   std::uint32_t threads = 0;  ///< 0: all
   PartitionConfig partition;
@@ -195,12 +196,12 @@ struct Config {
   TextureConfig texture;
   NormalMapConfig normal_map;
   MissingImages missing_images = MissingImages::warn;
-  /// Which axis of the input points up; none: z of a tileset, else y (with_input_frame()).
+  /// The axis of the input that points up; none: z for a tileset, else y (with_input_frame()).
   std::optional<UpAxis> up;
-  std::optional<Unit> units;  ///< of the input's coordinates; none: as the format says, or unknown
+  std::optional<Unit> units;  ///< the input's coordinates; none: as the format says, or unknown
   PlacementConfig placement;
   TilesetConfig tileset;
-  std::string licence;  ///< of the model; for the tileset; may be empty
+  std::string licence;  ///< the model's; for the tileset; may be empty
   std::optional<BoundsD> crop_box() const {
     if (!crop)
       return std::nullopt;
@@ -211,7 +212,7 @@ struct Config {
   friend bool operator==(const Config&, const Config&) = default;
 };
 
-/// Where the text of a config comes from.
+/// The origin of a config's text.
 struct ConfigOrigin {
   std::string name;                 ///< for messages
   std::filesystem::path directory;  ///< relative paths of the text start here; may be empty
@@ -229,23 +230,23 @@ struct CommandLine {
   std::vector<std::string> settings;  ///< "key=value", in order
 };
 
-/// Reads a config: JSON with // and /* */ comments, then what the command line says on top.
+/// Reads a config: JSON with // and /* */ comments, then the words of the command line on top.
 ///
-/// A setting is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a
-/// plain string. One of partition.vertices or partition.count replaces whichever of the two the
-/// text has. `output` also decides the container by its ending, ".3tz", unless a key does; without
-/// any output, that of one mesh is beside it: scan.hier of scan.ply.gz.
+/// A setting is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a plain
+/// string. One of partition.vertices or partition.count replaces whichever of the two the text has.
+/// `output` also decides the container by its ending, ".3tz", unless a key does; without any
+/// output, that of one mesh is beside it: scan.hier for scan.ply.gz.
 ///
 /// Pure: looks at no file. Throws Error(usage) naming origin, key, what was expected, what was
 /// found and the nearest known key.
 Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words);
 
-/// parse_config() of a file, whole; its paths are relative to the file's directory. Throws also
-/// Error(io).
+/// Reads a config from a whole file, as parse_config() does; its paths are relative to the file's
+/// directory. Throws also Error(io).
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words);
 
-/// All files that a build of that config reads.
+/// Returns all files that a build of that config reads.
 std::vector<std::filesystem::path> read_by(const Config& config);
 
 /// Returns all that decides the result: weld, topology, partition, simplify, outline, storage,
@@ -253,9 +254,9 @@ std::vector<std::filesystem::path> read_by(const Config& config);
 /// simplify.vertices is absent if it follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
-/// All of a config, for another process in whatever directory: parse_config() of it gives the same
-/// config, its paths absolute as seen from `directory`. Throws Error(usage) if a path or text is
-/// not UTF-8.
+/// Returns a text of the whole config, for another process in whatever directory: parse_config()
+/// makes the same config of it, its paths absolute as seen from `directory`. Throws Error(usage) if
+/// a path or text is not UTF-8.
 std::string complete_text(const Config& config, const std::filesystem::path& directory);
 
 }  // namespace meshhier::config

@@ -43,14 +43,14 @@ std::string as_sentence(const std::string& meaning) {
   return text + '.';
 }
 
-/// Without ".0" where there is no fraction.
+/// Returns a number without ".0" if it has no fraction.
 Json plain_number(double value) {
   return value == std::trunc(value) ? Json(static_cast<std::int64_t>(value)) : Json(value);
 }
 
 // ---- the JSON schema
 
-/// The schema of a key's value.
+/// Returns the schema of a key's value.
 Json value_schema(const ConfigKey& key) {
   const Json path{{"type", "string"}, {"minLength", 1}};
   const Json integer{{"type", "integer"},
@@ -100,7 +100,7 @@ Json key_schema(const ConfigKey& key) {
   return schema;
 }
 
-/// Without the key `name`, or with one of `others`.
+/// Returns the rule that there is no key `name`, or one of `others`, too.
 Json needs_one(const std::string& name, const std::vector<std::string>& others) {
   Json ways = Json::array({{{"not", {{"required", Json::array({name})}}}}});
   for (const std::string& other : others)
@@ -108,7 +108,8 @@ Json needs_one(const std::string& name, const std::vector<std::string>& others) 
   return {{"anyOf", ways}};
 }
 
-/// An object without description; `prefix`: of its keys' paths, "" or "partition.".
+/// Returns the schema of an object, without description. `prefix`: that of its keys' paths, "" or
+/// "partition.".
 Json object_schema(const std::string& prefix) {
   Json required = Json::array();
   Json rules = Json::array();
@@ -153,14 +154,14 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-/// Both keys are of the section `section`, which ends in a dot or is empty.
+/// Whether two keys of `section`, which ends in a dot or is empty, exclude each other.
 bool exclude_each_other(const ConfigKey& one, const ConfigKey& other, const std::string& section) {
   const auto leaf = [&](const ConfigKey& key) { return key.path.substr(section.size()); };
   return other.path.starts_with(section) &&
          (has(one.excludes, leaf(other)) || has(other.excludes, leaf(one)));
 }
 
-/// The meaning, with the keys that it excludes or needs.
+/// Returns the meaning, with the keys that it excludes or needs.
 std::string whole_meaning(const ConfigKey& key) {
   const std::string section = key.path.substr(0, key.path.rfind('.') + 1);
   std::string text = key.meaning;
@@ -176,7 +177,7 @@ std::string whole_meaning(const ConfigKey& key) {
   return text;
 }
 
-/// A key's default; where it has none, what holds instead: "required", "none: exact".
+/// Returns a key's default; if it has none, what holds instead: "required", "none: exact".
 std::string default_text(const ConfigKey& key, const char* quote) {
   const Json value = key.show(Config{});
   if (value.is_null())
@@ -196,7 +197,7 @@ std::string wrapped(std::string_view text, const std::string& indent) {
   return lines;
 }
 
-/// The endings of all kinds of a format, as code of Markdown: "`.gltf`, `.glb`".
+/// Returns the endings of all kinds of a format, as code of Markdown: "`.gltf`, `.glb`".
 std::string endings_of(std::string_view format) {
   std::vector<std::string> all;
   for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
@@ -207,7 +208,7 @@ std::string endings_of(std::string_view format) {
   return all.empty() ? "`tileset.json`" : fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// In one line: { "vertices": 8192, "axis": "compactness" }
+/// Returns a value in one line: { "vertices": 8192, "axis": "compactness" }
 std::string in_one_line(const Json& value) {
   std::string line;
   for (const char letter : storage::json_text(value, {.indent = 1})) {

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 /// ghosts.
 constexpr double kFewestTileVertices = 4;
 constexpr double kMostTileVertices = 32768;
-/// 2^32 vertices at the fewest a partition.
+/// A mesh of 2^32 vertices has so many partitions at the fewest vertices.
 constexpr double kMostPartitions = 1073741824;
 /// A sector needs its own lines within the outline's 32 kB: beyond this no line would be left to
 /// draw.
@@ -35,14 +35,14 @@ constexpr double kMostThreads = 4096;
 constexpr double kMostInputs = 100000;
 /// A mesh has no more.
 constexpr double kMostAttributes = kMaxValueChannels;
-/// Of texts that the manifest repeats, which has 1 MiB.
+/// The most bytes of a text that the manifest repeats, which has 1 MiB.
 constexpr double kMostTextBytes = 32768;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
 
-/// Degrees.
+/// A half turn in degrees.
 constexpr double kHalfTurn = 180;
-/// Beyond any orbit; what is meant is in other units.
+/// Beyond any orbit: such a number is in other units.
 constexpr double kMostMetres = 1e9;
 
 struct Limits {
@@ -139,7 +139,7 @@ ConfigKey bytes(ConfigKey key, Field field) {
   return key;
 }
 
-/// An integer or, for a field of floating point, a number.
+/// A key for an integer or, for a field of floating point, a number.
 template <class Field>
 ConfigKey number(ConfigKey key, Limits limits, Field field) {
   using Member = std::remove_reference_t<decltype(field(std::declval<Config&>()))>;
@@ -167,7 +167,7 @@ ConfigKey text(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of an optional string, for which an empty one is a value.
+/// A key for an optional string, of which an empty one is a value.
 template <class Field>
 ConfigKey optional_text(ConfigKey key, Field field) {
   key.kind = KeyKind::text;
@@ -179,7 +179,7 @@ ConfigKey optional_text(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of an optional array.
+/// A key for an optional array.
 template <class Field>
 ConfigKey numbers(ConfigKey key, Field field) {
   using Array =
@@ -191,7 +191,7 @@ ConfigKey numbers(ConfigKey key, Field field) {
   return key;
 }
 
-/// Of optional TargetVertexCounts. A list of one is the number: it means the same.
+/// A key for optional TargetVertexCounts. A list of one is the number: it means the same.
 template <class Field>
 ConfigKey levels(ConfigKey key, Limits limits, Field field) {
   key.kind = KeyKind::levels;

@@ -1,5 +1,5 @@
-// Every key of the config, described once: for the parser, its messages, resolved_json(), and all
-// that is told of the keys (config_reference.h).
+// Every key of the config, described once: for the parser, its messages, resolved_json(), and the
+// references of the keys (config_reference.h).
 #pragma once
 
 #include "config/config.h"
@@ -32,10 +32,10 @@ enum class KeyKind {
 struct ConfigKey {
   std::string path;            ///< dotted
   std::string meaning;         ///< for people: no capital, no full stop, names in `backticks`
-  std::string unset = "none";  ///< for people: what holds if there is neither value nor default
+  std::string unset = "none";  ///< for people: holds if there is neither value nor default
   std::vector<std::string> excludes{};  ///< keys of the same section that must not be there too
   std::vector<std::string> needs{};     ///< keys of the same section of which one must be there too
-  bool takes_minimum = false;           ///< of a number: the minimum itself is one, too
+  bool takes_minimum = false;           ///< the minimum itself is allowed, too, for a number
   bool required = false;
   bool decides_result = false;
   KeyKind kind{};
@@ -45,7 +45,7 @@ struct ConfigKey {
   std::vector<std::string> choices{};
   /// Stores an acceptable value.
   std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
-  /// The config's value as it would be written; null if it is not set.
+  /// Returns the config's value as it would be written; null if it is not set.
   std::function<nlohmann::ordered_json(const Config&)> show{};
 };
 
@@ -54,19 +54,19 @@ struct ConfigSection {
   std::string meaning;  ///< as that of a key
 };
 
-/// In the order in which they are listed to people. Thread-safe.
+/// Returns all keys, in the order in which they are listed to people. Thread-safe.
 const std::vector<ConfigKey>& config_keys();
 
-/// All inner nodes of the keys' paths. Thread-safe.
+/// Returns all inner nodes of the keys' paths. Thread-safe.
 const std::vector<ConfigSection>& config_sections();
 
-/// The key of that dotted path, or null.
+/// Returns the key of that dotted path, or null.
 const ConfigKey* find_config_key(std::string_view path);
 
-/// True for an inner node of the keys' paths: "partition".
+/// Whether it is an inner node of the keys' paths: "partition".
 bool is_config_section(std::string_view path);
 
-/// Where a dotted path leads in a document.
+/// Returns the place in a document that a dotted path leads to.
 nlohmann::ordered_json::json_pointer json_pointer_to(std::string path);
 
 bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);

@@ -10,8 +10,8 @@
 namespace meshhier::config {
 namespace {
 
-/// A file that is not there is told when it is read; one with the name of a mesh is not looked
-/// into.
+/// Whether the file is a tileset. One that is not there is told when it is read; one with the name
+/// of a mesh is not looked into.
 bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
   if (mesh_io::is_mesh_name(path.filename().string()) ||
       files.kind(path) != storage::FileKind::regular)

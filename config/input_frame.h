@@ -6,12 +6,12 @@
 
 namespace meshhier::config {
 
-/// The config with `up` set: if it does not say so, z if an input named *.json or *.json.gz is a
-/// tileset of 3D Tiles, else y. A tileset on the globe is placed where it stands, unless the config
-/// places it. Throws as mesh_io::globe_frame().
+/// Returns the config with `up` set: if it does not say so, z if an input named *.json or *.json.gz
+/// is a tileset of 3D Tiles, else y. A tileset on the globe is placed where it stands, unless the
+/// config places it. Throws as mesh_io::globe_frame().
 Config with_input_frame(storage::FileSystem& files, Config config);
 
-/// With all that its files say: with_input_frame(), then with_map().
+/// Returns the config with all that its files say: with_input_frame(), then with_map().
 Config with_files(storage::FileSystem& files, Config config);
 
 }  // namespace meshhier::config

@@ -37,7 +37,7 @@ std::string_view take(std::string_view& text, std::string_view separators) {
   return part;
 }
 
-/// The first line that is not blank, without blanks around it.
+/// Takes the first line that is not blank, without blanks around it.
 std::string_view take_line(std::string_view& text) {
   std::string_view line;
   while (line.empty() && !text.empty())
@@ -47,7 +47,7 @@ std::string_view take_line(std::string_view& text) {
 
 // ---- numbers
 
-/// Two or three finite numbers and nothing else.
+/// Parses two or three finite numbers and nothing else.
 std::optional<Numbers> find_numbers(std::string_view text) {
   Numbers numbers{};
   std::size_t count = 0;
@@ -84,7 +84,7 @@ std::optional<std::string_view> find_element(std::string_view xml, const std::st
   return trimmed(xml.substr(0, end));
 }
 
-/// The five entities that every XML has, as what they stand for.
+/// Replaces the five entities that every XML has by the characters that they stand for.
 std::string without_entities(std::string_view text) {
   static constexpr std::array<std::pair<std::string_view, char>, 5> kEntities{
       {{"&quot;", '"'}, {"&apos;", '\''}, {"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}}};
@@ -120,7 +120,7 @@ bool is_wkt(std::string_view text) {
          });
 }
 
-/// The code of the zone that OpenDroneMap calls "WGS84 UTM 32N"; any other line as it is.
+/// Returns the code of the zone that OpenDroneMap calls "WGS84 UTM 32N"; any other line as it is.
 std::string crs_of_line(std::string_view line) {
   constexpr std::string_view kUtm = "WGS84 UTM ";
   constexpr int kMostZones = 60;

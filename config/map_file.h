@@ -1,5 +1,5 @@
 // The files that photogrammetry programs write beside a model whose coordinates they have shifted:
-// the map's reference system (CRS), and what was taken off each coordinate.
+// the map's reference system (CRS), and the offset that was taken off each coordinate.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct MapFile {
 ///   metadata.xml   <SRS>EPSG:32633</SRS> and <SRSOrigin>500000,5300000,0</SRSOrigin>; WKT in SRS
 ///                  may have the five entities of XML, no others
 ///   coords.txt     a line "WGS84 UTM 32N", or one that PROJ takes, then one of two or three
-///                  numbers; what follows is not read
+///                  numbers; the rest is not read
 ///   offset.xyz     three numbers
 ///   scan.prj       WKT
 ///

@@ -18,7 +18,7 @@ Vec3d to_globe(const Transform& m, Vec3d p) {
   return column_of(m, 0) * p.x + column_of(m, 1) * p.y + column_of(m, 2) * p.z + column_of(m, 3);
 }
 
-/// The inverse of to_globe(), by Cramer's rule.
+/// Inverts to_globe(), by Cramer's rule.
 Vec3d from_globe(const Transform& m, Vec3d place) {
   const Vec3d x = column_of(m, 0), y = column_of(m, 1), z = column_of(m, 2);
   const Vec3d from = place - column_of(m, 3);

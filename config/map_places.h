@@ -12,22 +12,22 @@
 
 namespace meshhier::config {
 
-/// For a hierarchy that its config places on a map, that map; for one that stands on the globe
-/// otherwise, its tileset's transform, at the middle height of the input.
+/// Turns places into coordinates: by the map that a config places its hierarchy on, or, if it
+/// stands on the globe otherwise, by its tileset's transform, at the middle height of the input.
 class MapPlaces {
  public:
-  /// `crs`: of the places. `bounds`: of the input. `transform`: of the tileset's root. Throws
+  /// `crs`: the places'. `bounds`: the input's. `transform`: the tileset's root's. Throws
   /// Error(usage) if the hierarchy stands nowhere, and as geodesy::MapChange.
   MapPlaces(const Config& config, const BoundsD& bounds, const std::optional<Transform>& transform,
             const std::string& crs);
 
-  /// Easting and northing, or longitude and latitude, as z-up coordinates of the input; the third
-  /// one means nothing. Throws as geodesy::MapChange.
+  /// Returns easting and northing, or longitude and latitude, as z-up coordinates of the input; the
+  /// third one means nothing. Throws as geodesy::MapChange.
   Vec3d to_input(double x, double y) const;
 
  private:
   geodesy::MapChange change_;
-  geodesy::MappedModel model_;  ///< of what has a crs
+  geodesy::MappedModel model_;  ///< only if the config has a crs
   /// A model that is placed by a transform.
   struct OnGlobe {
     geodesy::MapChange to_geocentric;

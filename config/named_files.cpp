@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first bytes behind blanks and the mark of UTF-8.
+/// Returns the first bytes behind blanks and the mark of UTF-8.
 std::string first_bytes(const storage::File& file) {
   constexpr std::size_t kLookedAt = 1024;
   std::string start(kLookedAt, '\0');
@@ -63,14 +63,14 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
     return true;
   if (mesh_io::is_mesh_name(path.filename().string()))
     return false;
-  files.input().open(path);  // what must not be read is not quoted
+  files.input().open(path);  // throws for a file that must not be read, so that none is quoted
   throw Error(ErrorCode::usage,
               fmt::format("{}: expected a mesh ({}, perhaps in gzip) or a config (JSON), found {}",
                           path.string(), mesh_io::format_names(),
                           start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
 }
 
-/// As other programs take it: behind the meshes.
+/// Throws if the output stands behind the meshes, as other programs take it.
 void require_no_output_among(const std::vector<fs::path>& named) {
   const std::string ending = named.empty() ? "" : named.back().extension().string();
   if (named.size() > 1 && (ending == ".hier" || ending == ".3tz")) {

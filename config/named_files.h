@@ -9,7 +9,7 @@
 
 namespace meshhier::config {
 
-/// The config of a build that is given these files; without any, what `words` say must do.
+/// Returns the config of a build that is given these files; without any, `words` must say all.
 /// Requires words.meshes to be empty.
 ///
 /// A mesh is known by its content, a config by its content or the ending ".json". Throws

@@ -24,7 +24,7 @@ Vec3d to_vec(const std::array<double, 3>& p) {
   return {p[0], p[1], p[2]};
 }
 
-/// `work`, whose failures are told with the key that they are about.
+/// Does `work`; its failures are told with the key that they are about.
 template <class Work>
 auto about(const char* key, const Work& work) {
   try {
@@ -57,7 +57,7 @@ geodesy::MapProjection projection_of(const PlacementConfig& place) {
   return about("placement.crs", [&] { return geodesy::MapProjection(*place.crs); });
 }
 
-/// The box in z-up coordinates.
+/// Returns the box in z-up coordinates.
 BoundsD z_up_box(const BoundsD& bounds, UpAxis up) {
   BoundsD box;
   box.add(to_z_up(bounds.min, up));
@@ -65,7 +65,7 @@ BoundsD z_up_box(const BoundsD& bounds, UpAxis up) {
   return box;
 }
 
-/// Metres that a unit of the input is, as the config says it.
+/// Returns how many metres a unit of the input is, as the config says it.
 double metres(const Config& config) {
   return config.units ? metres_of(*config.units) : 1;
 }
@@ -88,7 +88,7 @@ Transform map_transform(const Config& config, const BoundsD& bounds) {
                [&] { return geodesy::map_transform(mapped.projection, mapped.model); });
 }
 
-/// Rounded up.
+/// Returns a length for people, rounded up.
 std::string length_text(double metres) {
   return metres < 1 ? fmt::format("{:.0f} cm", std::max(1.0, std::ceil(metres * 100)))
                     : fmt::format("{:.1f} m", std::ceil(metres * 10) / 10);
@@ -103,7 +103,7 @@ std::string exactness_text(const geodesy::MapProjection& projection, double larg
   return text;
 }
 
-/// No ground lies so low or so high; what does was given by another CRS or in other units.
+/// Returns a warning if no ground lies so low or so high: then the CRS or the units are others.
 std::string height_warning(double height, bool is_geocentric) {
   constexpr double kLowest = -15'000, kHighest = 50'000;
   if (height >= kLowest && height <= kHighest)
@@ -117,7 +117,7 @@ std::string height_warning(double height, bool is_geocentric) {
                     : "");
 }
 
-/// And how the input's heights were taken.
+/// Returns how the input's heights were taken, as the end of a line.
 std::string heights_text(const geodesy::MapProjection& projection) {
   const std::string heights = projection.heights();
   if (heights.empty())
@@ -127,7 +127,8 @@ std::string heights_text(const geodesy::MapProjection& projection) {
              : "above the ellipsoid, the input's heights being " + heights;
 }
 
-/// A model in map coordinates whose point 0 0 0 stands there.
+/// Returns a warning if the middle of the model is far from its anchor, as that of a model in map
+/// coordinates is from the point 0 0 0.
 std::string anchor_warning(const BoundsD& box, Vec3d anchor, double metres) {
   constexpr double kFar = 100'000;
   const double away = length((box.min + box.max) * 0.5 - anchor) * metres;
@@ -139,7 +140,7 @@ std::string anchor_warning(const BoundsD& box, Vec3d anchor, double metres) {
       away / 1000);
 }
 
-/// The text for a model that the config puts on the globe itself.
+/// Returns the text for a model that the config puts on the globe itself.
 std::string globe_text(const Config& config, const BoundsD& bounds) {
   const PlacementConfig& place = config.placement;
   const BoundsD box = z_up_box(bounds, config.up_axis());

@@ -18,27 +18,26 @@ namespace meshhier::config {
 /// of them for its libraries.
 inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 
-/// The config with what `placement.metadata` says of crs and offset, which it needs from then on;
-/// what the config says itself wins. Looks whether PROJ knows the crs. Throws Error(usage), and
-/// Error(io) if a file or PROJ's database cannot be read.
+/// Returns the config with the crs and offset of `placement.metadata`, which is not needed from
+/// then on; those that the config says itself win. Looks whether PROJ knows the crs. Throws
+/// Error(usage), and Error(io) if a file or PROJ's database cannot be read.
 Config with_map(storage::FileSystem& files, Config config);
 
-/// Places a model with a crs, whose projection is given. `bounds`: of the input.
+/// Places a model with a crs, whose projection is given. `bounds`: the input's.
 geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
                                   const geodesy::MapProjection& projection);
 
-/// Returns the transform of the tileset's root, if it needs one. `bounds`: of the input. Throws
+/// Returns the transform of the tileset's root, if it needs one. `bounds`: the input's. Throws
 /// Error(usage) if the model has no place on the globe.
 std::optional<Transform> tileset_transform(const Config& config, const BoundsD& bounds);
 
-/// Whether `transform` is within metres of what PROJ says of a model with a crs. The last bits are
-/// those of one version of PROJ, and other versions have other changes of datum, which are some
-/// metres apart. True if this PROJ cannot tell.
+/// Whether `transform` is within metres of the one that PROJ finds for a model with a crs. The last
+/// bits are those of one version of PROJ, and other versions have other changes of datum, which are
+/// some metres apart. True if this PROJ cannot tell.
 bool fits_map(const Config& config, const BoundsD& bounds, const Transform& transform);
 
-/// For people, of a model with a place: where it stands, and how large it is there or how exactly;
-/// else "". Each line ends.
-/// `transform`: tileset_transform().
+/// Returns lines for people on a model with a place: where it stands, and how large it is there or
+/// how exactly; else "". `transform`: tileset_transform().
 std::string placement_text(const Config& config, const BoundsD& bounds, const Transform& transform);
 
 }  // namespace meshhier::config

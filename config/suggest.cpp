@@ -18,8 +18,8 @@ bool same_letter(char a, char b) {
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows i-2, i-1 and i of the table of distances between the first i letters of a and the first j
-  // of b.
+  // These are the rows i-2, i-1 and i of the table of distances between the first i letters of a
+  // and the first j of b.
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);

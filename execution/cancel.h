@@ -1,4 +1,4 @@
-// How a running job is asked to stop: Ctrl-C sets a token, long loops look at it.
+// A running job is asked to stop by a token: Ctrl-C sets it, long loops look at it.
 #pragma once
 
 #include "hierarchy/error.h"

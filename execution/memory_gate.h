@@ -13,7 +13,7 @@ class MemoryGate {
  public:
   explicit MemoryGate(std::uint64_t limit_bytes) : limit_(limit_bytes) {}
 
-  /// Held as long as the object is there.
+  /// Memory that is held as long as the object is there.
   class Share {
    public:
     Share(MemoryGate& gate, std::uint64_t bytes) : gate_(gate), bytes_(bytes) {}
@@ -26,7 +26,8 @@ class MemoryGate {
     std::uint64_t bytes_;
   };
 
-  /// Waits until there is room. What exceeds the limit by itself goes in when nothing else is held.
+  /// Waits until there is room. An item that exceeds the limit by itself goes in when nothing else
+  /// is held.
   [[nodiscard]] Share enter(std::uint64_t bytes) {
     std::unique_lock lock(mutex_);
     freed_.wait(lock, [&] { return held_ == 0 || held_ + bytes <= limit_; });

@@ -70,7 +70,7 @@ class Pipeline {
   };
   Item& item(std::size_t i) { return items_[i % items_.size()]; }
 
-  /// Runs a step of an item; whether it did not fail.
+  /// Runs a step of an item; returns whether it did not fail.
   template <class Step>
   static bool succeeds(Item& item, const Step& step) {
     try {

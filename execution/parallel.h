@@ -1,5 +1,5 @@
 // Bounded parallelism: serial in, parallel work, serial out in order. Results never depend on
-// completion order. All run on the caller's TBB arena; what waits may do other work of it
+// completion order. All run on the caller's TBB arena; a thread that waits may do other work of it
 // meanwhile, so a caller must hold no lock that any of it takes. Each call returns, or throws, when
 // all of its own work has ended.
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace meshhier::execution {
 
-/// How many blocks of `block_bytes` to have in flight within `memory_bytes`: one at least, and no
-/// more than there are threads for.
+/// Returns how many blocks of `block_bytes` to have in flight within `memory_bytes`: one at least,
+/// and no more than twice the threads.
 std::size_t useful_blocks(std::uint64_t memory_bytes, std::uint64_t block_bytes);
 
 /// Returns how many items to let in where there is memory for so many, if they hold it only while
@@ -42,7 +42,8 @@ struct OrderedSteps {
 /// cancelled.
 void ordered_steps(std::size_t in_flight, const CancelToken& cancel, const OrderedSteps& steps);
 
-/// work(i) for all i in [0, count), each result to sink(i, result), as ordered_steps.
+/// Runs work(i) for all i in [0, count) and gives each result to sink(i, result), by
+/// ordered_steps().
 template <class Work, class Sink>
 void ordered_for(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
                  const Work& work, const Sink& sink) {
@@ -56,9 +57,9 @@ void ordered_for(std::size_t count, std::size_t in_flight, const CancelToken& ca
                  }});
 }
 
-/// As ordered_for, for many small items: work(i, slot) leaves its result in one of `in_flight`
-/// slots, whose memory is used again and again, sink(slot) returns whether to go on, and
-/// after(slot) may follow it in parallel.
+/// Does what ordered_for() does, for many small items: work(i, slot) leaves its result in one of
+/// `in_flight` slots, whose memory is used again and again, sink(slot) returns whether to go on,
+/// and after(slot) may follow it in parallel.
 template <class Slot, class Work, class Sink>
 void ordered_blocks(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
                     const Work& work, const Sink& sink,
@@ -72,8 +73,8 @@ void ordered_blocks(std::size_t count, std::size_t in_flight, const CancelToken&
   ordered_steps(in_flight, cancel, steps);
 }
 
-/// As ordered_blocks, of as many items as there are: read(slot), in order, fills a slot or returns
-/// false; its failure comes behind the sinks of all items before.
+/// Does what ordered_blocks() does, for as many items as there are: read(slot), in order, fills a
+/// slot or returns false; its failure comes behind the sinks of all items before.
 template <class Slot, class Read, class Work, class Sink>
 void ordered_read_blocks(std::size_t in_flight, const CancelToken& cancel, const Read& read,
                          const Work& work, const Sink& sink) {
@@ -98,7 +99,7 @@ class BatchedWork {
   BatchedWork(std::size_t batch, Step work, Step sink, Step after = {})
       : slots_(batch), work_(std::move(work)), sink_(std::move(sink)), after_(std::move(after)) {}
 
-  /// The slot for the next item, as its last use left it. Fill it before the next call.
+  /// Returns the slot for the next item, as its last use left it. Fill it before the next call.
   Slot& next() {
     if (filled_ == slots_.size())
       finish();

@@ -26,7 +26,7 @@ namespace {
 constexpr double kBarInterval = 0.1;
 constexpr double kJsonInterval = 0.5;
 constexpr std::size_t kBarWidth = 24;
-/// A shorter bar says less than the percentage beside it.
+/// The least width of a bar; a shorter one says less than the percentage beside it.
 constexpr std::size_t kLeastBarWidth = 8;
 /// The width of a terminal that does not say it.
 constexpr std::size_t kUsualColumns = 80;
@@ -53,7 +53,7 @@ void write_warning(std::ostream& out, std::string_view message) {
   out << "warning: " << message << '\n' << std::flush;
 }
 
-/// Counts and keeps time; says what is to be shown, and when.
+/// Counts and keeps time; decides when something is shown.
 class PacedProgress : public Progress {
  public:
   PacedProgress(std::ostream& out, double interval, Clock clock)
@@ -85,7 +85,7 @@ class PacedProgress : public Progress {
     const double now = clock_();
     if (now < due_)
       return;
-    // Whoever is late finds another thread drawing already and goes back to work.
+    // A thread that comes late finds another one drawing already and goes back to work.
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || now < due_ || !in_stage_)
       return;
@@ -149,7 +149,7 @@ class PacedProgress : public Progress {
   std::atomic<double> due_{0};  ///< when the next picture may be shown
 };
 
-/// Three digits and a letter: "980", "12.3 k", "1.23 M".
+/// Returns three digits and a letter: "980", "12.3 k", "1.23 M".
 std::string short_number(double number) {
   constexpr std::array kLetters{"", " k", " M", " G", " T"};
   std::size_t letter = 0;
@@ -163,7 +163,7 @@ std::string short_number(double number) {
   return fmt::format("{:.{}f}{}", number, decimals, kLetters[letter]);
 }
 
-/// One line of a terminal for the whole job.
+/// Shows one line of a terminal for the whole job.
 class BarProgress final : public PacedProgress {
  public:
   BarProgress(std::ostream& out, Terminal terminal, Clock clock)
@@ -240,7 +240,7 @@ class QuietProgress final : public Progress {
   std::ostream& out_;
 };
 
-/// For files and pipes: a line a stage.
+/// Shows a line a stage, for files and pipes.
 class PlainProgress final : public PacedProgress {
  public:
   PlainProgress(std::ostream& out, Clock clock)
@@ -282,7 +282,7 @@ class JsonProgress final : public PacedProgress {
  private:
   using Json = nlohmann::ordered_json;
 
-  /// Finer times are noise.
+  /// Rounds to milliseconds, as finer times are noise.
   static double milliseconds(double seconds) { return std::round(seconds * 1000) / 1000; }
 
   static Json rounded(std::optional<double> number) {

@@ -1,4 +1,4 @@
-// How far a job is, told while it runs: to people as a bar, to programs as JSON lines.
+// The progress of a job, told while it runs: to people as a bar, to programs as JSON lines.
 #pragma once
 
 #include "execution/job_progress.h"
@@ -29,12 +29,12 @@ class Progress {
   /// the same time.
   virtual void stage(std::string_view name, std::uint64_t total, std::string_view unit) = 0;
 
-  /// So many more units of the current stage are done. Thread-safe and cheap, but meant for tiles
-  /// and blocks, not for single vertices. Does nothing before the first stage().
+  /// Says that so many more units of the current stage are done. Thread-safe and cheap, but meant
+  /// for tiles and blocks, not for single vertices. Does nothing before the first stage().
   virtual void advance(std::uint64_t count) = 0;
 
-  /// Something to know before the end, one line without its end; shown in every mode. No advance()
-  /// may run at the same time.
+  /// Tells something to know before the end, one line without its end; shown in every mode. No
+  /// advance() may run at the same time.
   virtual void warn(std::string_view /*message*/) {}
 
   /// Ends the last stage and the job. `summary`: one line for people, may be empty. No advance()
@@ -59,27 +59,28 @@ enum class ProgressMode {
   none   ///< nothing but warnings
 };
 
-/// Where progress is shown.
+/// The place where progress is shown.
 struct Terminal {
   // NOLINTNEXTLINE(google-explicit-constructor): most say no more
   Terminal(bool there = false, std::function<std::size_t()> width = {})
       : is_terminal(there), columns(std::move(width)) {}
 
   bool is_terminal;
-  std::function<std::size_t()> columns;  ///< now; none, or 0 if it is unknown
+  std::function<std::size_t()> columns;  ///< returns the width now; none, or 0, if it is unknown
 };
 
-/// Seconds since some moment; never decreases.
+/// Returns seconds since some moment; never decreases.
 using Clock = std::function<double()>;
 Clock steady_clock();
 
-/// `out` (usually standard error) must outlive the result; `terminal` is what it is.
+/// Makes a Progress that writes to `out` (usually standard error), which must outlive it.
+/// `terminal` describes `out`.
 ///
 /// The JSON objects have "event": "stage_start" | "progress" | "stage_end", each with "stage",
 /// "done", "total" (null if unknown), "unit", "rate" (units a second since the start of the stage),
 /// "seconds" (likewise), "eta_seconds" (null if unknown), "job_done" (0 to 1) and "job_eta_seconds"
-/// of the whole job (null if unknown); "event": "warning" with "message"; at the end "event":
-/// "finish" with "seconds" (of the whole job) and "summary".
+/// for the whole job (null if unknown); "event": "warning" with "message"; at the end "event":
+/// "finish" with "seconds" (the whole job's) and "summary".
 std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out,
                                         const Terminal& terminal, Clock clock = steady_clock());
 

@@ -1,5 +1,5 @@
-// Measures how much of a computation goes one step after another: time that more threads cannot
-// shorten.
+// Measures the part of a computation that goes one step after another: time that more threads
+// cannot shorten.
 #pragma once
 
 #include <algorithm>
@@ -7,18 +7,18 @@
 
 namespace meshhier::execution {
 
-/// CPU seconds of this thread's work that went one step after another: its own outside of parallel
-/// calls (parallel.h), and of each such call the longest chain: its reads, its sinks or one piece
-/// of its work. By Amdahl's law no number of threads does the work in less.
+/// Returns the CPU seconds of this thread's work that went one step after another: its own outside
+/// of parallel calls (parallel.h), and the longest chain of each such call: its reads, its sinks or
+/// one piece of its work. By Amdahl's law no number of threads does the work in less.
 double serial_seconds();
 
-/// CPU seconds of the calling thread.
+/// Returns the CPU seconds of the calling thread.
 double thread_cpu_seconds();
 
-/// Steps that go one after another; or, by count_longest(), beside each other.
+/// The time of steps that go one after another; or, by count_longest(), beside each other.
 class StepTime {
  public:
-  /// Runs step() and adds what it took.
+  /// Runs step() and adds the time that it took.
   template <class Step>
   auto count(const Step& step) {
     const Measured measured(*this, &StepTime::add);
@@ -57,7 +57,8 @@ class StepTime {
   std::atomic<double> seconds_ = 0;
 };
 
-/// A parallel call while it is there. Of calls within calls on one thread the outermost counts.
+/// Stands for a parallel call while it lives. If calls are within calls on one thread, the
+/// outermost counts.
 class ParallelCall {
  public:
   ParallelCall();

@@ -1,4 +1,4 @@
-// A spool's records, one after another.
+// Reads a spool's records, one after another.
 #pragma once
 
 #include "execution/cancel.h"

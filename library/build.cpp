@@ -14,7 +14,8 @@
 namespace meshhier::v1 {
 namespace {
 
-/// Tells the caller, from whatever thread, and asks the job to stop if the caller says so.
+/// Tells the caller the progress, from whatever thread, and asks the job to stop if the caller says
+/// so.
 class Told final : public execution::Progress {
  public:
   Told(const BuildRequest& request, execution::CancelToken& cancel)

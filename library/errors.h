@@ -9,7 +9,7 @@
 
 namespace meshhier::v1 {
 
-/// Calls `run` and returns what it does; what it throws becomes v1::Error.
+/// Calls `run` and returns what it does; any exception that it throws becomes a v1::Error.
 template <class Run>
 auto translated(const Run& run) {
   try {

@@ -109,7 +109,7 @@ std::size_t most_bytes(std::uint32_t list, const AttributeLayout& layout) {
   return bytes;
 }
 
-/// Takes what is in a run's gzip member apart.
+/// Takes the content of a run's gzip member apart.
 class Unpacker {
  public:
   Unpacker(std::span<const std::byte> bytes, std::size_t entries, std::uint64_t first,

@@ -43,7 +43,7 @@ class RunWriter {
     slot.first = first;
   }
 
-  /// Ends the file; its size and checksum.
+  /// Ends the file; returns its size and checksum.
   progressive::ProgressiveFile finish() {
     packing_.finish();
     progressive::ProgressiveFile sealed;
@@ -74,7 +74,7 @@ class ListWriter {
 
   bool begins_run() const { return run_.indices.empty(); }
 
-  /// `fill(run)` appends what else the entry has.
+  /// Adds an entry; `fill(run)` appends the rest of it.
   template <class Fill>
   void add(std::uint64_t index, const Fill& fill) {
     run_.indices.push_back(static_cast<typename decltype(run_.indices)::value_type>(index));
@@ -83,7 +83,7 @@ class ListWriter {
       end_run();
   }
 
-  /// How many entries there were.
+  /// Ends the list; returns how many entries there were.
   std::uint64_t finish() {
     end_run();
     return count_;
@@ -107,7 +107,7 @@ class ListWriter {
   std::uint64_t count_ = 0;
 };
 
-/// Ascending lists of several levels as one.
+/// Merges ascending lists of several levels into one.
 template <class Record>
 class MergedLists {
  public:
@@ -115,7 +115,7 @@ class MergedLists {
     lists_.push_back({execution::SpoolCursor<Record>(list, cancel), 0});
   }
 
-  /// The list whose next entry is the least by `key`; none at the end.
+  /// Returns the list whose next entry is the least by `key`; nothing at the end.
   template <class Key>
   std::optional<std::size_t> least(const Key& key) {
     std::optional<std::size_t> found;
@@ -136,7 +136,7 @@ class MergedLists {
   std::vector<List> lists_;
 };
 
-/// Values of entries that are asked for in their order.
+/// Reads the values of entries that are asked for in their order.
 class ValueCursor {
  public:
   ValueCursor(const storage::RecordSpool<float>& values, std::size_t width,
@@ -155,13 +155,13 @@ class ValueCursor {
   std::vector<float> entry_;
 };
 
-/// Finds what stands for corners on a level, asked for in ascending order.
+/// Finds the vertices that stand for corners on a level, asked for in ascending order.
 class StandInCursor {
  public:
   StandInCursor(const LevelLists& level, std::size_t width, const execution::CancelToken& cancel)
       : entries_(level.stand_ins, cancel), values_(level.stand_in_values, width, cancel) {}
 
-  /// The rank of what stands for the corner; none if nothing does.
+  /// Returns the rank of the vertex that stands for the corner; nothing if none does.
   std::optional<std::uint32_t> find(std::uint32_t rank) {
     while (next_ < entries_.size() && entries_.at(next_).rank < rank)
       ++next_;
@@ -169,7 +169,7 @@ class StandInCursor {
       return std::nullopt;
     return entries_.at(next_).stands;
   }
-  /// The values of what was found last.
+  /// Returns the values of the vertex that was found last.
   std::span<const float> values() { return values_.at(next_); }
 
  private:
@@ -189,7 +189,8 @@ class DetailWriter {
         progress_(progress),
         cancel_(cancel) {}
 
-  /// List 1: what the levels of the span lost; then the foreign corners that have moved.
+  /// Writes list 1: the vertices that the levels of the span lost; then the foreign corners that
+  /// have moved.
   std::uint64_t write_vertices() {
     ListWriter<VertexRun> list(writer_, progress_);
     before_.assign(width_, 0);
@@ -226,7 +227,8 @@ class DetailWriter {
     return list.finish();
   }
 
-  /// List 3: corners that something else stands for than before, or that were no corners before.
+  /// Writes list 3: corners that another vertex stands for than before, or that were no corners
+  /// before.
   std::uint64_t write_merges() {
     ListWriter<MergeRun> list(writer_, progress_);
     execution::SpoolCursor<StandIn> now(source_.lists[raw(span_.fine)].stand_ins, cancel_);
@@ -246,7 +248,7 @@ class DetailWriter {
     return span_.coarse ? raw(*span_.coarse) + std::size_t{1} : raw(span_.fine);
   }
 
-  /// Stand-ins of the corners with the files before this one; none for the base.
+  /// Returns the stand-ins of the corners with the files before this one; nothing for the base.
   std::optional<StandInCursor> known_before() const {
     if (!span_.coarse)
       return std::nullopt;
@@ -254,7 +256,7 @@ class DetailWriter {
                                         cancel_);
   }
 
-  /// In the stream: own vertices by rank, then foreign ones.
+  /// Returns a vertex's index in the stream: own vertices by rank, then foreign ones.
   std::uint32_t index_of(std::uint32_t rank) const {
     const progressive::Sector& sector = source_.sector;
     const auto first = static_cast<std::uint32_t>(sector.ranks.begin);
@@ -263,7 +265,7 @@ class DetailWriter {
     return static_cast<std::uint32_t>(sector.ranks.size() + source_.all_foreign.find(rank));
   }
 
-  /// `known`: what the client has in the vertex's slot; empty: nothing.
+  /// Adds a vertex. `known`: the values that the client has in its slot; empty: none.
   void add_vertex(ListWriter<VertexRun>& list, std::uint32_t index, std::span<const float> values,
                   std::span<const float> known) {
     if (list.begins_run())

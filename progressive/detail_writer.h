@@ -23,20 +23,21 @@ struct DetailSpan {
   Level fine{};
 };
 
-/// Vertices that the client knows of at a level: those of the level, and those that stand for
-/// others. What is in neither is first heard of with the next file.
+/// The sources of a file. At a level the client knows the vertices of the level, and those that
+/// stand for others; it hears of a vertex that is neither with the next file.
 struct DetailSource {
   const std::vector<LevelLists>& lists;  ///< by level
   const progressive::Sector& sector;
   const AttributeLayout& layout;
-  const ForeignCorners& all_foreign;     ///< of the last level: they number the foreign vertices
+  const ForeignCorners& all_foreign;     ///< the last level's: they number the foreign vertices
   const ForeignCorners& coarse_foreign;  ///< empty for the base
   const ForeignCorners& fine_foreign;
   std::size_t runs_in_flight = 1;
 };
 
-/// Writes the file; `shown_*` of the result are left 0. Lists of several levels are merged as they
-/// are read: memory for a few runs a thread. Deterministic. Throws Error(io).
+/// Writes the file and returns its line of the index, in which `shown_*` are left 0. Lists of
+/// several levels are merged as they are read: memory for a few runs a thread. Deterministic.
+/// Throws Error(io | interrupted).
 progressive::ProgressiveFile write_detail(storage::FileSystem& files,
                                           const std::filesystem::path& path, const DetailSpan& span,
                                           const DetailSource& source, execution::Progress& progress,

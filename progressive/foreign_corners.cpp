@@ -6,7 +6,7 @@
 namespace meshhier::progressive {
 
 std::uint64_t ForeignCorners::memory_bytes(const LevelLists& level, std::size_t width) {
-  // A rank as it came and as it stays, a place twice, the values.
+  // Each has a rank as it came and as it stays, a place twice, and its values.
   return level.foreign_ranks.size() * (24 + width * sizeof(float));
 }
 

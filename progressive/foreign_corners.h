@@ -10,22 +10,22 @@
 
 namespace meshhier::progressive {
 
-/// Those of one level, in memory: a border has few beside its sector.
+/// Holds those of one level in memory: a border has few beside its sector.
 class ForeignCorners {
  public:
   ForeignCorners() = default;
-  /// `width`: values of each.
+  /// `width`: the number of values of each.
   ForeignCorners(const LevelLists& level, std::size_t width);
-  /// The memory that this takes, at most.
+  /// Returns the memory that this takes, at most.
   static std::uint64_t memory_bytes(const LevelLists& level, std::size_t width);
 
   std::size_t size() const { return ranks_.size(); }
   std::uint32_t rank(std::size_t number) const { return ranks_[number]; }  ///< ascending
-  /// The values of what stands for it on the level.
+  /// Returns the values of the vertex that stands for it on the level.
   std::span<const float> values(std::size_t number) const {
     return std::span(values_).subspan(places_[number] * width_, width_);
   }
-  /// size() if it is none of them.
+  /// Returns the number of a rank; size() if it is none of them.
   std::size_t find(std::uint32_t rank) const;
 
  private:

@@ -75,7 +75,8 @@ class Tracer {
         progress_(progress),
         cancel_(cancel) {}
 
-  /// The tile of `node` and what it left below; triangles are counted from `first_index` on.
+  /// Traces the tile of `node` and adds the losses below it; triangles are counted from
+  /// `first_index` on.
   TracedTile trace(NodeId node, std::uint64_t first_index, std::vector<LevelPart>& levels) const {
     if (tree_.is_partition(node))
       return trace_partition(node, first_index, levels);
@@ -87,7 +88,7 @@ class Tracer {
     return raise(std::move(left), trace(children.nodes[1], middle, levels), levels);
   }
 
-  /// Two complete siblings.
+  /// Lifts two complete siblings into their parent.
   TracedTile raise(TracedTile left, TracedTile right, std::vector<LevelPart>& levels) const {
     const NodeId node = tree_.parent(left.node);
     const PublishedTile parent = read(node);
@@ -139,8 +140,8 @@ class Tracer {
     part.foreign_values.append(vertices.attributes_of(vertex));
   }
 
-  /// Adds a tile to the lists of its level. Values of what stands for foreign corners are taken
-  /// from the tile's own file.
+  /// Adds a tile to the lists of its level. Values of the vertices that stand for foreign corners
+  /// are taken from the tile's own file.
   void list(const TracedTile& tile, const PublishedTile& published,
             std::vector<LevelPart>& levels) const {
     if (!is_listed(tile))
@@ -159,7 +160,7 @@ class Tracer {
     }
   }
 
-  /// An early node has no file, so its neighbours' are asked.
+  /// Adds an early node to the lists. It has no file, so its neighbours' are read.
   void list_early(const TracedTile& tile, std::vector<LevelPart>& levels) const {
     if (!is_listed(tile))
       return;
@@ -188,7 +189,7 @@ class Tracer {
   const execution::CancelToken& cancel_;
 };
 
-/// Subtrees come from left to right; what is complete is lifted at once.
+/// Joins subtrees, which come from left to right; siblings that are complete are lifted at once.
 class TopOfTree {
  public:
   TopOfTree(const Tree& tree, const Sector& sector, const Tracer& tracer,
@@ -207,7 +208,8 @@ class TopOfTree {
   }
 
  private:
-  /// Triangles that a subtree counts start from 0 there, those of the levels above from 0 at all.
+  /// Appends parts to the lists. Triangles that a subtree counts start from 0 in it; `first_index`
+  /// is added to them. Those of the levels above are final.
   void flush(std::vector<LevelPart>& levels, std::uint64_t first_index) {
     for (std::size_t level = 0; level < levels.size(); ++level)
       append(lists_[level], levels[level], first_index);

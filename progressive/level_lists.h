@@ -1,5 +1,5 @@
-// Lists of what the levels of a sector lose and stand for, on the way into the files of a
-// progressive stream.
+// Lists of the vertices and triangles that the levels of a sector lose, and of vertices that stand
+// for others, on the way into the files of a progressive stream.
 #pragma once
 
 #include "execution/cancel.h"
@@ -15,7 +15,7 @@
 
 namespace meshhier::progressive {
 
-/// A triangle of the original mesh. Its index in two halves: no padding.
+/// A triangle of the original mesh. Its index is in two halves, so that there is no padding.
 struct LostTriangle {
   std::uint32_t index_low = 0;
   std::uint32_t index_high = 0;
@@ -34,26 +34,26 @@ struct StandIn {
 struct LevelLists {
   explicit LevelLists(storage::ScratchFile& scratch);
 
-  // Ascending. Of the sector's own level: what is left there.
+  // These ascend. The sector's own level has all that is left there.
   storage::RecordSpool<std::uint32_t> lost_ranks;  ///< vertices that the next coarser level has not
   storage::RecordSpool<float> lost_values;
   storage::RecordSpool<LostTriangle> lost_triangles;
   storage::RecordSpool<StandIn> stand_ins;  ///< of corners that the level has not
   storage::RecordSpool<float> stand_in_values;
-  // As the tiles tell of them, with repeats.
+  // These come as the tiles tell of them, with repeats.
   storage::RecordSpool<std::uint32_t> foreign_ranks;  ///< corners that are not the sector's
-  storage::RecordSpool<float> foreign_values;         ///< of what stands for them
+  storage::RecordSpool<float> foreign_values;         ///< those of the vertices in their stead
 };
 
 struct TraceOptions {
   std::vector<bool> listed;  ///< by level: whether its stand-ins and foreign corners are wanted
-  Level subtrees{};          ///< whose nodes are worked on in parallel; complete
+  Level subtrees{};          ///< a complete level, whose nodes are worked on in parallel
   std::size_t in_flight = 1;
 };
 
 /// Follows all tiles of `sector` up (progressive/traced_tile.h), and fills `lists`, one for each
 /// level of the tree. Each tile is read once, in parallel. Deterministic. Throws Error(corrupt) if
-/// the hierarchy was not made by half_edge.
+/// the hierarchy was not made by half_edge, Error(io | interrupted).
 void trace_sector(const storage::HierarchyReader& reader, const progressive::Sector& sector,
                   const TraceOptions& options, std::vector<LevelLists>& lists,
                   execution::Progress& progress, const execution::CancelToken& cancel);

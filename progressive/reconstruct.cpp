@@ -48,7 +48,7 @@ void require_memory(const StreamSize& size, const AttributeLayout& layout, std::
   }
 }
 
-/// A file's runs, counted by list.
+/// Counts a file's runs by list.
 struct ListCounts {
   std::array<std::uint64_t, 3> entries{};
   void add(const DetailRun& run) {
@@ -123,7 +123,7 @@ class Client {
   Reconstruction mesh_;
 };
 
-/// Vertices as the writer takes them.
+/// Splits vertices into the parts that the writer takes.
 class VertexSplitter {
  public:
   VertexSplitter(const ProgressiveIndex& index, mesh_io::PlyWriter& writer)

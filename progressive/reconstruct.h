@@ -24,15 +24,15 @@ struct ReconstructOptions {
 struct ReconstructedStep {
   std::string file;
   std::uint64_t bytes = 0;
-  std::uint64_t vertices = 0;   ///< of the mesh with it
+  std::uint64_t vertices = 0;   ///< that the mesh has with it
   std::uint64_t triangles = 0;  ///< likewise
-  std::uint64_t entries = 0;    ///< of its three lists
+  std::uint64_t entries = 0;    ///< in its three lists
   double seconds = 0;           ///< to read it, and to put it in its places
 };
 
 struct ReconstructReport {
   std::vector<ReconstructedStep> steps;  ///< the base first
-  std::uint64_t array_bytes = 0;         ///< of the two arrays
+  std::uint64_t array_bytes = 0;         ///< size of the two arrays
   std::string summary;                   ///< a line for people
 };
 

@@ -41,7 +41,7 @@ void Reconstruction::apply(const DetailRun& run) {
 }
 
 void Reconstruction::apply(const VertexRun& run) {
-  std::vector<float> before(width_);  // of the run's last vertex
+  std::vector<float> before(width_);  // the run's last vertex
   std::vector<float> values(width_);
   for (std::size_t i = 0; i < run.indices.size(); ++i) {
     const std::uint32_t vertex = run.indices[i];

@@ -1,4 +1,4 @@
-// The client of a progressive stream: two arrays, and what each file's lists put into them.
+// The client of a progressive stream has two arrays, into which each file's lists put entries.
 //
 // Lin & Luo, "Progressive Display Method for Interactive Mobile 3D Graphics": vertices and
 // triangles are put into their places; then each merge copies one vertex's slot to another's.
@@ -15,33 +15,35 @@
 
 namespace meshhier::progressive {
 
-/// How large the original mesh is.
+/// The size of the original mesh.
 struct StreamSize {
   std::uint64_t vertices = 0;      ///< slots, < 2^32
   std::uint64_t own_vertices = 0;  ///< <= vertices; the others may move from file to file
   std::uint64_t triangles = 0;
 };
 
+/// For one thread.
 class Reconstruction {
  public:
+  /// Takes memory for both arrays.
   Reconstruction(const StreamSize& size, const AttributeLayout& layout);
 
-  /// Bytes that both arrays take.
+  /// Returns the bytes that both arrays take.
   static std::uint64_t memory_bytes(const StreamSize& size, const AttributeLayout& layout);
 
-  /// The next run of the stream. Throws Error(corrupt) if it contradicts those before: an index
-  /// beyond the mesh, a vertex or triangle that is there already, a place that is not finite, a
-  /// merge with a vertex that is nowhere. Runs of a list share what they predict from: the first
-  /// vertex of a run has none before it.
+  /// Applies the next run of the stream. Throws Error(corrupt) if it contradicts those before: an
+  /// index beyond the mesh, a vertex or triangle that is there already, a place that is not finite,
+  /// a merge with a vertex that is nowhere. A vertex is predicted from the one before it in its
+  /// run; the first has none.
   void apply(const DetailRun& run);
 
   std::uint64_t shown_vertices() const { return shown_vertices_; }
   std::uint64_t shown_triangles() const { return shown_triangles_; }
 
-  /// The mesh as it is now: vertices that are there, in the order of their indices, each as its
-  /// values; then triangles, in theirs, as numbers of these vertices. Both are handed out in
-  /// blocks. Throws Error(corrupt) if a triangle's corner is nowhere. It can be done once, and ends
-  /// the reconstruction: the numbers take the vertices' place in memory.
+  /// Hands out the mesh as it is now: vertices that are there, in the order of their indices, each
+  /// as its values; then triangles, in theirs, as numbers of these vertices. Both come in blocks.
+  /// Throws Error(corrupt) if a triangle's corner is nowhere. It can be done once, and ends the
+  /// reconstruction: the numbers take the vertices' place in memory.
   void hand_out(const std::function<void(std::span<const float> values)>& vertices,
                 const std::function<void(std::span<const Triangle<std::uint32_t>>)>& triangles) &&;
 
@@ -57,7 +59,7 @@ class Reconstruction {
   StreamSize size_;
   AttributeLayout layout_;
   std::size_t width_;
-  // The vertex array, in two columns: a slot has the values of a vertex, and says which one's.
+  // The vertex array has two columns: a slot has the values of a vertex, and says whose they are.
   std::vector<float> values_;
   std::vector<std::uint32_t> origins_;
   std::vector<Triangle<std::uint32_t>> corners_;  ///< the triangle array

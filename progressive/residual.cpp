@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kSign = 0x80000000U;
 
-/// Ascends with the float, by one from each to the next.
+/// Returns a number that ascends with the float, by one from each to the next.
 std::uint32_t ordered(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   return (bits & kSign) != 0 ? ~bits : bits | kSign;
@@ -32,7 +32,7 @@ constexpr std::uint32_t mask_of(int bytes) {
   return 0xFFFFFFFFU >> (32 - 8 * bytes);
 }
 
-/// 0, -1, 1, -2, ... as 0, 1, 2, 3, ... of so many bytes.
+/// Returns 0, 1, 2, 3, ... for 0, -1, 1, -2, ..., of so many bytes.
 std::uint32_t fold(std::uint32_t difference, int bytes) {
   const std::uint32_t mask = mask_of(bytes);
   const bool negative = (difference >> (8 * bytes - 1) & 1) != 0;

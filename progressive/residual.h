@@ -1,4 +1,4 @@
-// Residuals: what is left of a vertex's values when another vertex's are known.
+// Residuals are the differences of a vertex's values from those of another vertex, which are known.
 //
 // Nothing is lost: values are compared as integers of value_bytes() bytes. Floats become integers
 // that ascend with them (sign and magnitude turned to one scale, as in Lindstrom & Isenburg, "Fast
@@ -14,11 +14,12 @@
 
 namespace meshhier::progressive {
 
-/// `values`, `predicted` and `residuals`: vertex_values(layout) each.
+/// Computes the residuals of one vertex. `values`, `predicted` and `residuals`:
+/// vertex_values(layout) each.
 void find_residuals(const AttributeLayout& layout, std::span<const float> values,
                     std::span<const float> predicted, std::span<std::uint32_t> residuals);
 
-/// The inverse: bit for bit the values. A residual's bits beyond value_bytes() do not count.
+/// Returns the values, bit for bit. A residual's bits beyond value_bytes() do not count.
 void add_residuals(const AttributeLayout& layout, std::span<const std::uint32_t> residuals,
                    std::span<const float> predicted, std::span<float> values);
 

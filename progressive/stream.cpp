@@ -69,7 +69,7 @@ void require_one_vertex_a_place(const storage::HierarchyReader& reader) {
                           reader.directory().string()));
 }
 
-/// The levels that the stream shows, one a file, from the sector's own to the last.
+/// Returns the levels that the stream shows, one a file, from the sector's own to the last.
 std::vector<Level> shown_levels(const Tree& tree, NodeId node,
                                 const std::optional<std::uint32_t>& steps) {
   const int top = raw(node.level);
@@ -88,7 +88,7 @@ std::vector<Level> shown_levels(const Tree& tree, NodeId node,
   return levels;
 }
 
-/// Bytes for scratch files and output, at most.
+/// Returns the bytes for scratch files and output, at most.
 std::uint64_t disk_need(const storage::HierarchyReader& reader, const Sector& sector) {
   const Tree& tree = reader.tree();
   const auto width = static_cast<std::uint64_t>(vertex_values(reader.tile_format().attributes));
@@ -99,8 +99,8 @@ std::uint64_t disk_need(const storage::HierarchyReader& reader, const Sector& se
     if (!inside)
       continue;
     const std::uint64_t triangles = std::uint64_t{record.interior_count} + record.border_count;
-    // Three corners a triangle that something stands for; partitions hold what is lost at all, and
-    // what is in the files.
+    // At most three corners a triangle have stand-ins; partitions hold all that is lost at all, and
+    // that is in the files.
     bytes += std::min(3 * triangles, tree.ranks(record.node).size() + record.ghost_count) *
              (sizeof(StandIn) + 4 * width);
     if (tree.is_partition(record.node))
@@ -204,7 +204,7 @@ class StreamWriter {
     return index;
   }
 
-  /// Stand-ins that do not change are no entries, so it is a little less in the end.
+  /// Returns the number of entries, a little too many: stand-ins that do not change are none.
   std::uint64_t entries_of(const std::vector<LevelLists>& lists) const {
     std::uint64_t entries = 0;
     for (const LevelLists& level : lists)
@@ -229,7 +229,7 @@ class StreamWriter {
     return index;
   }
 
-  /// Own vertices of the tiles that stand for the sector's nodes of a level.
+  /// Returns the number of own vertices of the tiles that stand for the sector's nodes of a level.
   std::uint64_t own_vertices(Level level) const {
     std::uint64_t vertices = 0;
     const Tree& tree = reader_.tree();

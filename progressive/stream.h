@@ -22,13 +22,13 @@ struct ProgressiveOptions {
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
 };
 
-/// The stream shows a level of the hierarchy with each file, exactly: the same triangles as sets of
-/// places. With the last it is the original mesh bit for bit: vertices by rank, triangles in the
-/// order of progressive/traced_tile.h; of a sector also the corners of its border that belong to
-/// others, behind its own. The output appears complete or not at all. Returns a line for people.
-/// Deterministic: the bytes do not depend on threads or budget. Throws Error(usage) if the
-/// hierarchy was not made by half_edge, has copies (hierarchy/tile_mesh.h), or has no such node or
-/// so many levels; Error(exists | io | corrupt), Error(budget) for memory or disk.
+/// Writes the stream. With each file it shows a level of the hierarchy exactly: the same triangles
+/// as sets of places. With the last it is the original mesh bit for bit: vertices by rank,
+/// triangles in the order of progressive/traced_tile.h; a sector also has the corners of its border
+/// that belong to others, behind its own. The output appears complete or not at all. Returns a line
+/// for people. Deterministic: the bytes do not depend on threads or budget. Throws Error(usage) if
+/// the hierarchy was not made by half_edge, has copies (hierarchy/tile_mesh.h), or has no such node
+/// or so many levels; Error(exists | io | corrupt), Error(budget) for memory or disk.
 std::string write_progressive(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                               const ProgressiveOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel);

@@ -18,11 +18,11 @@ using Json = nlohmann::ordered_json;
 constexpr storage::SealedFormat kStreamFormat{"meshhier-progressive", 2,
                                               "make it again from its hierarchy"};
 
-/// Their array's bytes are countable; no disk holds so many.
+/// No disk holds so many, and the bytes of their array can still be counted in 64 bits.
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;
 
-/// An entry that is alone in its run takes no more: the run's head, gzip's frame, all values of a
-/// vertex.
+/// The most bytes of an entry, one that is alone in its run: the run's head, gzip's frame, all
+/// values of a vertex.
 constexpr std::uint64_t kMostEntryBytes = 128;
 
 /// A tree over less than 2^32 partitions has no more levels.

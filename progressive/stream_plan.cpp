@@ -27,7 +27,7 @@ constexpr std::uint64_t kListsOfALevel = 7;
 /// Items in flight beyond twice the threads only wait.
 constexpr std::size_t kItemsAThread = 2;
 
-/// Memory of tiles and lists, by the counts of the index.
+/// Computes the memory of tiles and lists from the counts of the index.
 class Needs {
  public:
   Needs(const storage::HierarchyReader& reader, const progressive::Sector& sector)
@@ -36,14 +36,15 @@ class Needs {
         sector_(sector),
         width_(static_cast<std::uint64_t>(vertex_values(reader.tile_format().attributes))) {}
 
-  /// Whatever is in flight.
+  /// Returns the memory that is taken whatever is in flight.
   std::uint64_t fixed() const {
     const std::uint64_t levels = raw(tree_.depth()) + std::uint64_t{1};
     return kProgramBytes + reader_.records().size() * sizeof(TileRecord) +
            levels * kListsOfALevel * kListBlockBytes;
   }
 
-  /// While the trace is above `level`: a tile that waits on each level, and one that is made.
+  /// Returns the memory while the trace is above `level`: a tile waits on each level, and one is
+  /// made.
   std::uint64_t top(Level level) const {
     std::uint64_t largest = 0;
     std::uint64_t step = 0;
@@ -56,7 +57,7 @@ class Needs {
     return static_cast<std::uint64_t>(raw(level) - raw(sector_.node.level) + 1) * largest + step;
   }
 
-  /// The largest item of work of that level.
+  /// Returns the memory of the largest item of work of that level.
   std::uint64_t subtree(Level level) const {
     const int below = raw(level) - raw(sector_.node.level);
     std::uint64_t largest = 0;
@@ -69,12 +70,12 @@ class Needs {
     return largest;
   }
 
-  /// A run, its bytes, and what they are packed into.
+  /// Returns the memory of a run, its bytes, and the packed ones.
   std::uint64_t run() const {
     return kRunEntries * std::max<std::uint64_t>(4 + 12 * width_, 20 + 2 * 24);
   }
 
-  /// Cursors of a file: of each level three lists, and two levels' stand-ins.
+  /// Returns the memory of a file's cursors: three lists for each level, and two levels' stand-ins.
   std::uint64_t cursors() const {
     const std::uint64_t levels = raw(tree_.depth()) + std::uint64_t{1};
     return (2 * levels + 4) * execution::SpoolCursor<float>::kBufferBytes;
@@ -94,13 +95,13 @@ class Needs {
     return triangles_of(record) * sizeof(progressive::TracedTriangle) +
            record.own_count * (6 + 4 * width_) + record.ghost_count * std::uint64_t{24};
   }
-  /// A tile as its children become it: of each triangle of a child, of which there are twice as
-  /// many, what is sorted; what is decoded of the file; stand-ins of three corners a triangle.
+  /// Returns the memory of a tile as its children become it: the keys by which the children's
+  /// triangles, twice as many, are sorted; the decoded file; stand-ins of three corners a triangle.
   std::uint64_t step_bytes(const TileRecord& record) const {
     return triangles_of(record) * (2 * 120 + 60 + 48) +
            (std::uint64_t{record.own_count} + record.ghost_count) * (64 + 12 * width_);
   }
-  /// Bytes that a tile leaves behind: losses of a partition, of others what stands for corners.
+  /// Returns the bytes that a tile leaves behind: a partition's losses, others' stand-ins.
   std::uint64_t list_bytes(const TileRecord& record) const {
     if (tree_.is_partition(record.node))
       return triangles_of(record) * 24 + record.own_count * (8 + 8 * width_);
@@ -123,14 +124,15 @@ class Needs {
   std::uint64_t width_;
 };
 
-/// A level whose nodes may be items of work, and what it takes to have one of them in flight.
+/// A level whose nodes may be items of work, and the memory to have one of them in flight.
 struct Choice {
   Level level{};
   std::uint64_t subtree = 0;
   std::uint64_t least = 0;
 };
 
-/// The level above the last is complete, the last one is not.
+/// Chooses the level whose nodes are items of work. It is above the last one, which is not
+/// complete.
 Choice choose_level(const Tree& tree, const progressive::Sector& sector, const Needs& needs,
                     std::uint64_t budget_bytes, std::size_t threads) {
   const int top = raw(sector.node.level);

@@ -47,7 +47,7 @@ struct RaisedGhost {
   std::size_t ghost = 0;
 };
 
-/// Where the vertices of up to two children go: the map from their vertices to the parent's.
+/// Maps the vertices of up to two children to the parent's.
 class Raiser {
  public:
   Raiser(const Tree& tree, NodeId parent, std::vector<TracedTile> children, bool keep)
@@ -67,7 +67,7 @@ class Raiser {
       map_vertices(child, to.ghosts);
   }
 
-  /// The image of a triangle of a child.
+  /// Returns the image of a triangle of a child.
   TileTriangle image_of(std::size_t child, const TileTriangle& t) const {
     return {maps_[child][raw(t[0])], maps_[child][raw(t[1])], maps_[child][raw(t[2])]};
   }
@@ -88,7 +88,7 @@ class Raiser {
     return {tile, chain[1]};
   }
 
-  /// The image of a vertex of the child's sibling.
+  /// Returns the image of a vertex of the child's sibling.
   std::uint32_t own_image_in(NodeId sibling, std::uint32_t vertex) const {
     for (std::size_t i = 0; i < children_.size(); ++i) {
       if (children_[i].node == sibling && vertex < children_[i].ranks.size())
@@ -246,7 +246,7 @@ void require_map(const TracedTile& child, std::size_t own_count) {
     fail(child.node, "its parent map does not fit the parent tile");
 }
 
-/// The ranks of all vertices of a partition's tile.
+/// Returns the ranks of all vertices of a partition's tile.
 std::vector<std::uint32_t> ranks_of(const Tree& tree, const PublishedTile& tile) {
   std::vector<std::uint32_t> ranks;
   const auto first = static_cast<std::uint32_t>(tree.ranks(tile.node).begin);

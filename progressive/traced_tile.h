@@ -51,22 +51,23 @@ struct Sector {
   }
 };
 
-/// Own vertices of the sector first, then those of others, each in the order of ranks.
+/// Returns a number by which own vertices of the sector come first, then those of others, each in
+/// the order of ranks.
 inline std::uint64_t order_of(const Sector& sector, std::uint32_t rank) {
   return sector.has_rank(rank) ? rank : std::uint64_t{rank} + (std::uint64_t{1} << 32);
 }
 
-/// canonical(), but by order_of().
+/// Returns what canonical() does, but by order_of().
 Triangle<std::uint32_t> sorted_corners(const Sector& sector,
                                        const Triangle<std::uint32_t>& corners);
 
 struct TracedTriangle {
-  Triangle<std::uint32_t> corners;  ///< of the original triangle, sorted_corners()
+  Triangle<std::uint32_t> corners;  ///< the original triangle's, sorted_corners()
   TileTriangle image;               ///< the tile's vertices that stand for them, one for each
   std::uint64_t index = 0;          ///< in the original mesh, or kCountedElsewhere
 };
 
-/// Vertices of an array of values: x, y, z, attributes.
+/// An array of the vertices' values: x, y, z, attributes.
 struct Values {
   std::vector<float> values;  ///< width each
   std::size_t width = 3;
@@ -81,10 +82,10 @@ struct Values {
 
 struct TracedTile {
   NodeId node;
-  std::vector<std::uint32_t> ranks;       ///< which vertex of the original each own vertex is
-  Values values;                          ///< theirs
+  std::vector<std::uint32_t> ranks;       ///< the original vertex that each own vertex is
+  Values values;                          ///< the own vertices'
   std::vector<GhostRef> ghosts;           ///< ascending; tile vertices from ranks.size() on
-  GhostChains chains;                     ///< of each ghost, from this tile's level up
+  GhostChains chains;                     ///< one for each ghost, from this tile's level up
   std::vector<std::uint16_t> parent_map;  ///< empty for the root
   std::vector<TracedTriangle> triangles;  ///< all that touch the tile
   std::uint64_t end_index = 0;            ///< behind the last triangle that its partitions count
@@ -98,8 +99,8 @@ struct Losses {
   std::vector<Triangle<std::uint32_t>> corners;
 };
 
-/// A partition; its triangles are counted from `first_index` on. Throws Error(corrupt) if it
-/// contradicts itself.
+/// Returns the traced tile of a partition; its triangles are counted from `first_index` on. Throws
+/// Error(corrupt) if it contradicts itself.
 TracedTile trace_partition(const Tree& tree, const Sector& sector, const PublishedTile& tile,
                            std::uint64_t first_index);
 
@@ -109,19 +110,19 @@ struct Lifted {
   Losses losses;
 };
 
-/// An early node from its partition: the same vertices, neighbours one level coarser.
+/// Lifts a partition to its early node: the same vertices, neighbours one level coarser.
 Lifted lift_early(const Tree& tree, const Sector& sector, TracedTile partition);
 
-/// A tile from its children, left and right. Throws Error(corrupt) if `parent` is not made of
-/// `left` and `right` by moving vertices onto others. O(t log t).
+/// Lifts two children to their parent. Throws Error(corrupt) if `parent` is not made of `left` and
+/// `right` by moving vertices onto others. O(t log t).
 Lifted lift(const Tree& tree, const Sector& sector, TracedTile left, TracedTile right,
             const PublishedTile& parent);
 
-/// All that is left in the tile, as if the next coarser level had nothing.
+/// Returns all that is left in the tile, as if the next coarser level had nothing.
 Losses all_of(const TracedTile& tile);
 
-/// The vertices of the original mesh that the tile's triangles have for corners, and that are no
-/// vertices of the tile themselves: which tile vertex stands for each. Both lists ascend.
+/// The tile vertices that stand for vertices of the original mesh which the tile's triangles have
+/// for corners, and which are no vertices of the tile themselves. Both lists ascend.
 struct StandIns {
   struct Own {
     std::uint32_t rank = 0;
