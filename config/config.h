@@ -182,7 +182,7 @@ struct Config {
   std::optional<std::array<double, 6>> crop;
   mesh_io::AttributeChoice attributes;  ///< those that are read besides those that are shown
   bool weld = false;                    ///< vertices of equal position and attributes become one
-  Topology topology = Topology::place;  ///< which vertices are one point of the surface
+  Topology topology = Topology::place;  ///< decides which vertices are one point of the surface
   std::filesystem::path output;         ///< a directory or file, without a slash at its end
   /// Bytes, > 0; none: pipeline::memory_budget() chooses by the machine.
   std::optional<std::uint64_t> memory_budget;

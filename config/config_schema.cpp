@@ -29,7 +29,7 @@ constexpr double kMostPartitions = 1073741824;
 /// A sector needs its own lines within the outline's 32 kB: beyond this no line would be left to
 /// draw.
 constexpr double kMostSectors = 65536;
-/// More than any machine has; catches a size that was meant for the budget.
+/// No machine has more threads: this catches a size that was meant for the budget.
 constexpr double kMostThreads = 4096;
 /// Each is a line of the manifest and of the journal, which have a MiB.
 constexpr double kMostInputs = 100000;

@@ -18,8 +18,8 @@ namespace meshhier::config {
 /// of them for its libraries.
 inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 
-/// Returns the config with the crs and offset of `placement.metadata`, which is not needed from
-/// then on; those that the config says itself win. Looks whether PROJ knows the crs. Throws
+/// Returns the config with the crs and offset of the file `placement.metadata`, which all below
+/// need; those that the config says itself win. Looks whether PROJ knows the crs. Throws
 /// Error(usage), and Error(io) if a file or PROJ's database cannot be read.
 Config with_map(storage::FileSystem& files, Config config);
 

@@ -84,7 +84,7 @@ struct BlockPlaces {
 /// A block of vertices on its way to the chunks.
 struct DistributedBlock {
   ChunkedVertices sorted;  ///< the places' first vertices
-  // With copies only:
+  // The rest is filled only if the mesh has copies.
   std::uint64_t first = 0;  ///< id
   BlockPlaces places;
   std::vector<float> copy_rows;

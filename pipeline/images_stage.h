@@ -22,8 +22,8 @@ DiskVolumes images_disk(const JobSize& job, const TilePopulation& tiles, const M
 std::vector<std::string> broken_pictures(const TexturePlan& plan, const BuildJournal& journal);
 
 /// Decodes all pictures that the journal does not have, and notes them; throws Error(input) if one
-/// is not what it was when the input was read. Of a picture that turns out to be broken the journal
-/// notes why, if `missing_images` is ignore; else throws Error(input) that names one.
+/// is not what it was when the input was read. If a picture turns out to be broken, the journal
+/// notes why with `missing_images` ignore; else throws Error(input) that names one.
 void decode_images(images::ImageStore& pictures, BuildJournal& journal,
                    const StageContext& context);
 

@@ -172,7 +172,7 @@ StageMemory partition_memory(const JobSize& job) {
   const std::uint64_t splits =
       2 * block + sample_bytes(job) + most_chunks(job.place_count) * kNodeBytes;
   const std::uint64_t distribution = 2 * block + 12 * kMiB + spools.bytes(ChunkSpools::kLeastBlock);
-  // With so much the table of ranks is in memory as a whole, beside the spools of chunks.
+  // So much lets the whole table of ranks be in memory, beside the spools of chunks.
   const std::uint64_t beside =
       2 * job.threads * block + spools.index_bytes(4 * ChunkSpools::kLeastBlock);
   const std::uint64_t table = (rank_bytes(job) * job.vertex_count + beside) /

@@ -28,7 +28,7 @@ inline constexpr double kPreviewSeconds = 0.2;
 Standpoint choose_first_view(const PublishedTile& root, const storage::TileFormat& format);
 
 struct PreviewInput {
-  const std::filesystem::path& directory;  ///< that the tiles are in
+  const std::filesystem::path& directory;  ///< has the tiles
   const storage::TileFormat& format;
   std::span<const TileRecord> records;  ///< all tiles', ascending by node
 };

@@ -25,7 +25,7 @@ class InputSlices;
 struct Making {
   Workshop& workshop;
   TileFiles to;                  ///< where the tiles' files go
-  DiskNeed disk{};               ///< of the build, as well as it is known
+  DiskNeed disk{};               ///< the build's, as well as it is known
   OutlineStageResult outline{};  ///< when it is made
   std::future<void> settled{};   ///< when the partitions have reached the disk
 };
@@ -45,7 +45,7 @@ struct Stage {
   StageMemory (*memory)(const JobSize& job) = nullptr;
   DiskVolumes (*disk)(const JobSize& job, const TilePopulation& tiles,
                       const MemoryPlan& memory) = nullptr;
-  StageTimes (*time)(const JobSize& job, const TilePopulation& tiles) = nullptr;       ///< of CPUs
+  StageTimes (*time)(const JobSize& job, const TilePopulation& tiles) = nullptr;       ///< CPUs'
   StageTimes (*disk_time)(const JobSize& job, const TilePopulation& tiles) = nullptr;  ///< waiting
 
   /// Throws if something is damaged that the stage needs and other processes have made.
@@ -80,10 +80,10 @@ enum class TaskCut {
 /// Tells what a task reads of those before it.
 enum class Takes {
   nothing,   ///< it reads the input
-  input,     ///< what was learnt of the input
+  input,     ///< the facts that were learnt of the input
   slices,    ///< that, and all that was made of the input
   chunks,    ///< likewise, but only its share of the chunks
-  level,     ///< what was learnt of the input, and the tasks right before
+  level,     ///< these facts, and the tasks right before
   tiles,     ///< all but chunks
   pictures,  ///< likewise, and it looks at decoded pictures
 };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kWindow = std::uint64_t{1} << 27;
 constexpr std::uint64_t kMostSample = 65536;
-/// Enough for a median that is off by a fiftieth at most.
+/// So many triangles give a median that is off by a fiftieth at most.
 constexpr std::uint64_t kEdgeTriangles = 4096;
 /// The most, as faces with many corners are many triangles.
 constexpr std::uint64_t kMostEdgeTriangles = 4 * kEdgeTriangles;
@@ -48,7 +48,8 @@ class UsedVertices {
   std::vector<bool> used_;
 };
 
-/// Some triangles from all over the file, by their number alone, and where their corners are.
+/// Takes some triangles from all over the file, by their number alone, and finds where their
+/// corners are.
 class EdgeSample {
  public:
   explicit EdgeSample(std::uint64_t faces)

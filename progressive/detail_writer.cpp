@@ -143,7 +143,7 @@ class ValueCursor {
               const execution::CancelToken& cancel)
       : cursor_(values, cancel), entry_(width) {}
 
-  /// Valid until the next call.
+  /// Returns the values of an entry, valid until the next call.
   std::span<const float> at(std::uint64_t entry) {
     for (std::size_t i = 0; i < entry_.size(); ++i)
       entry_[i] = cursor_.at(entry * entry_.size() + i);

@@ -38,7 +38,7 @@ struct LevelLists {
   storage::RecordSpool<std::uint32_t> lost_ranks;  ///< vertices that the next coarser level has not
   storage::RecordSpool<float> lost_values;
   storage::RecordSpool<LostTriangle> lost_triangles;
-  storage::RecordSpool<StandIn> stand_ins;  ///< of corners that the level has not
+  storage::RecordSpool<StandIn> stand_ins;  ///< for corners that the level has not
   storage::RecordSpool<float> stand_in_values;
   // These come as the tiles tell of them, with repeats.
   storage::RecordSpool<std::uint32_t> foreign_ranks;  ///< corners that are not the sector's

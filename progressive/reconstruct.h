@@ -14,7 +14,7 @@
 namespace meshhier::progressive {
 
 struct ReconstructOptions {
-  std::optional<std::uint32_t> details{};  ///< how many, in their order; not set: all
+  std::optional<std::uint32_t> details{};  ///< number of those applied, in order; not set: all
   std::filesystem::path output;            ///< PLY; a file or a stream (storage::OutputFile)
   std::uint64_t memory_budget = 1U << 30;  ///< bytes; the two arrays must fit
   bool replace = false;                    ///< a file that is there
@@ -24,7 +24,7 @@ struct ReconstructOptions {
 struct ReconstructedStep {
   std::string file;
   std::uint64_t bytes = 0;
-  std::uint64_t vertices = 0;   ///< that the mesh has with it
+  std::uint64_t vertices = 0;   ///< the mesh's with this file
   std::uint64_t triangles = 0;  ///< likewise
   std::uint64_t entries = 0;    ///< in its three lists
   double seconds = 0;           ///< to read it, and to put it in its places

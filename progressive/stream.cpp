@@ -295,7 +295,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
                             work.path().string(), output.path.string()));
   }
   require_disk(files, work.path(), disk_need(reader, sector));
-  work.clear();  // what a killed run may have left
+  work.clear();  // a killed run may have left files
   files.make_directories(work.built());
   StreamWriter writer(files, reader, sector, std::move(levels), plan);
   const progressive::ProgressiveIndex index =

@@ -19,7 +19,7 @@ struct ProgressiveFile {
   std::uint64_t vertices = 0;        ///< entries of list 1
   std::uint64_t triangles = 0;       ///< entries of list 2
   std::uint64_t merges = 0;          ///< entries of list 3
-  std::uint64_t shown_vertices = 0;  ///< that the mesh has with this file and all before it
+  std::uint64_t shown_vertices = 0;  ///< the mesh's with this file and all before
   std::uint64_t shown_triangles = 0;  ///< likewise
   std::uint64_t bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64 of the file

@@ -14,7 +14,7 @@
 //              parent                ranks and numbers of what is left
 //
 // Invariants. Each vertex of the sector is lost once, or is left at its node; so is each triangle,
-// by the first partition that it touches. Of triangles with one image the first original stays,
+// by the first partition that it touches. If triangles have one image, the first original stays,
 // seen from every tile that has them. As many triangles are left as the parent's file has, and each
 // vertex is at the place of one that it stands for: else the hierarchy is corrupt.
 //

@@ -15,7 +15,7 @@
 
 namespace meshhier::server {
 
-/// Thread-safe.
+/// Holds the pending connections and hands them out. Thread-safe.
 class ConnectionQueue {
  public:
   /// `size.threads` call next().

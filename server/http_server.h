@@ -17,8 +17,8 @@ struct ServerOptions {
   std::uint16_t port = 8080;       ///< 0: any that is free
   // A thread waits for the disk or the network most of its time, and takes some 100 KiB.
   std::size_t threads = 64;
-  /// With a file for each thread, below the 1024 open files of a process. Where it may have fewer
-  /// (ulimit -n), there are fewer threads and connections.
+  /// The most connections: with a file for each thread they are below the 1024 open files of a
+  /// process. If it may have fewer (ulimit -n), there are fewer threads and connections.
   std::size_t most_connections = 512;
   ConnectionLimits limits{};
 };

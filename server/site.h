@@ -26,7 +26,7 @@ struct SiteOptions {
   Uploads* uploads = nullptr;  ///< null: none are taken; must outlive the site
 };
 
-/// Thread-safe.
+/// Makes the reply to each request. Thread-safe.
 class Site {
  public:
   /// Returns the jobs of a watched folder, as in models.json.

@@ -32,7 +32,7 @@ struct UploadOptions {
   std::size_t most_at_once = 8;  ///< each holds a thread
 };
 
-/// Thread-safe.
+/// Takes uploads. Thread-safe.
 class Uploads {
  public:
   using Tell = std::function<void(const std::string& message)>;

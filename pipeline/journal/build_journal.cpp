@@ -162,7 +162,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       cancel_(cancel) {
   make_room();
   look_ahead(storage::journal_path(work), use);
-  std::optional<Value> build;  // whose journal is there
+  std::optional<Value> build;  // the one that the journal belongs to
   bool is_same = true;
   bool has_other_work = false;
   const auto read = [&](const Entry& entry) {

@@ -30,7 +30,7 @@ double triangle_rate(const BuildStats& stats, const StageStats& stage) {
   return ratio(static_cast<double>(stats.triangles), stage.wall_seconds);
 }
 
-// As text.
+// ---- text
 
 std::string bytes_cell(std::uint64_t bytes) {
   return bytes == 0 ? "-" : execution::rounded_size_text(bytes);
@@ -51,7 +51,7 @@ std::string row(const BuildStats& stats, const StageStats& stage) {
       bytes_cell(stage.peak_resident_bytes), rate_cell(triangle_rate(stats, stage)));
 }
 
-// As JSON.
+// ---- JSON
 
 Json stage_json(const BuildStats& stats, const StageStats& stage) {
   return {{"name", stage.name},

@@ -10,9 +10,9 @@
 
 namespace meshhier::pipeline {
 
-/// Bytes on disk. Expected ones for a surface, whose tiles have borders as scans have them: a few
-/// per cent above what was measured. How triangles refer to vertices, in order or at random, makes
-/// no difference that counts.
+/// Bytes on disk. They are expected ones for a surface, whose tiles have borders as scans have
+/// them: a few per cent above measured ones. It makes no difference that counts whether triangles
+/// refer to vertices in order or at random.
 struct DiskNeed {
   std::uint64_t temporary_bytes = 0;  ///< the most that lies in temporary files at once
   std::uint64_t output_bytes = 0;     ///< the published files'

@@ -30,7 +30,7 @@ class TileRoom {
   /// The bytes that the heaviest item takes at work.
   struct Heaviest {
     std::uint64_t now = 0;
-    std::uint64_t ahead = 0;  ///< of those that come in the same stage, as far as it is known
+    std::uint64_t ahead = 0;  ///< among those to come in the same stage, as far as they are known
   };
   /// Throws Error(budget) if there is no room for the items of now; names a budget that would do
   /// for all.

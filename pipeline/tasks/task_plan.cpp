@@ -98,7 +98,7 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
 /// Returns an upper bound of the vertices of an input that must be read to count them.
 std::uint64_t most_vertices(const importing::MeshInput& input) {
   constexpr std::uint64_t kBestPacking =
-      1032;  // of deflate; no format has less than a byte a vertex
+      1032;  // deflate's; no format has less than a byte a vertex
   std::uint64_t most = 1;
   for (const importing::InputFileFacts& file : input.files().all())
     most += file.identity.bytes * (file.format.is_gzip ? kBestPacking : 1);

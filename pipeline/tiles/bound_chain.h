@@ -16,7 +16,7 @@ namespace meshhier::pipeline {
 /// all of them neighbours of each other, and their number squared would be held.
 class TileSet {
  public:
-  /// Scans stay below a third of it.
+  /// The most tiles that are kept one by one; scans stay below a third of it.
   static constexpr std::size_t kMost = 1024;
 
   TileSet() = default;

@@ -81,7 +81,7 @@ struct ChunkedTriangles {
   WideCounts wide{};
 
   void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
-  /// After sort(): triangles that name copies.
+  /// Sorts triangles that name copies; to be called after sort().
   void sort_wedged(std::span<const WedgedTriangle> triangles, const partition::ChunkMap& map);
 
  private:

@@ -49,7 +49,7 @@ class Archive {
 
   std::shared_ptr<const File> file_;
   ArchiveEnd end_;
-  std::vector<Slot> slots_;  ///< by name's MD5
+  std::vector<Slot> slots_;  ///< sorted by the MD5 of names
 };
 
 /// Whether the path is a file that begins as the archive of a hierarchy does, with a manifest;

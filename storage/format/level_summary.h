@@ -29,7 +29,7 @@ struct CountRange {
 
 /// The pictures of tiles.
 struct PictureSummary {
-  std::uint32_t tiles = 0;       ///< that have one
+  std::uint32_t tiles = 0;       ///< those that have one
   std::uint64_t texels = 0;      ///< all pictures together
   double width = 0, height = 0;  ///< mean
   double texel = 0;  ///< mean size of their texels on the surface, input units, of those with area

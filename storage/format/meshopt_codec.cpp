@@ -16,7 +16,7 @@
 namespace meshhier::storage {
 namespace {
 
-constexpr int kExponentLimit = 100;             // of the extension's specification
+constexpr int kExponentLimit = 100;             // as the extension's specification has it
 constexpr std::int32_t kMantissaEnd = 1 << 23;  // 24 bits, signed
 
 // The most steps_by_score() a corner. Scans have 6; with 128 a million triangles still take 2 s. A

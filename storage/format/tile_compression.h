@@ -18,7 +18,7 @@ enum class Compression { none, zlib, meshopt, meshopt_zlib };
 struct CompressionRow {
   Compression value;
   std::string_view name;  ///< in configs and manifests
-  bool packs_sections;    ///< by EXT_meshopt_compression
+  bool packs_sections;    ///< the file uses EXT_meshopt_compression
   /// Packs the file as a whole; null: it stays as it is.
   std::vector<std::byte> (*pack_file)(std::span<const std::byte> glb);
   /// Unpacks bytes that nobody vouches for. Throws Error(corrupt) that starts with `name`.

@@ -115,7 +115,7 @@ ViewMode mode_of(Part part);
 /// The BIN chunk of a tile of compressed sections: these, each at the next multiple of 4, in the
 /// order of the parts.
 struct Packing {
-  std::array<std::uint64_t, kPartCount> bytes{};  ///< that each section has in the file
+  std::array<std::uint64_t, kPartCount> bytes{};  ///< size of each section in the file
   bool exponential = false;                       ///< positions went through the filter EXPONENTIAL
 
   std::uint64_t offset(Part part) const;

@@ -29,7 +29,7 @@ struct TilesetFile {
   std::string text;
 };
 
-/// Visits every file, tileset.json first. Of the manifest it needs generator, source, origin, up,
+/// Visits every file, tileset.json first. It needs from the manifest generator, source, origin, up,
 /// transform, units, licence and tileset_pixels. Deterministic, O(tiles). `records`: all of the
 /// tree's, ascending by node.
 void for_each_tileset(const Manifest& manifest, const Tree& tree,

@@ -77,7 +77,7 @@ fs::path existing_directory(FileSystem& files, const fs::path& output) {
 }
 
 void check_place(FileSystem& files, const fs::path& output) {
-  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
+  constexpr std::size_t kLongestName = 255;  // on Linux's file systems
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorCode::io, fmt::format("cannot make {}: {}", output.string(), why));
   };

@@ -171,7 +171,7 @@ class PosixFileSystem : public FileSystem {
     for (int i = 0; i < kMostLinks && !error; ++i) {
       result = std::filesystem::weakly_canonical(result, error);
       if (error || !std::filesystem::is_symlink(std::filesystem::symlink_status(result)))
-        break;  // what is still a link leads to nothing
+        break;  // a path that is still a link leads to nothing
       result = result.parent_path() / std::filesystem::read_symlink(result, error);
     }
     if (error)

@@ -112,7 +112,7 @@ enum class FileKind {
   regular,
   directory,
   stream,           ///< a FIFO or a character device
-  standard_output,  ///< of this process, whatever it is
+  standard_output,  ///< this process's, whatever it is
   other
 };
 
@@ -208,8 +208,8 @@ class FileSystem {
 /// The files that FileSystem::input() opens and looks at.
 struct InputRule {
   bool follows_links = true;  ///< else no part of a path may be a link, at whatever moment
-  /// Nothing that lies elsewhere, and no link below it; the folder itself may be one, its path is
-  /// taken without "..", and so are those of files.
+  /// If it is set, nothing that lies elsewhere is opened, and no link below it; the folder itself
+  /// may be one. Its path is taken without "..", and so are those of files.
   std::optional<std::filesystem::path> within{};
 };
 

@@ -89,7 +89,7 @@ struct Head {
   std::optional<std::uint64_t> total;
   std::optional<std::uint64_t> length;
   std::string impossible;    ///< a length that no file has
-  std::size_t bytes = 0;     ///< that have come of the header so far
+  std::size_t bytes = 0;     ///< size of the header so far
   bool is_complete = false;  ///< all of it has come
 
   void add(std::string_view line) {
@@ -231,7 +231,7 @@ const char* other_authorities() {
   return nullptr;
 }
 
-/// Once a process, before there are threads that use it.
+/// Sets libcurl up, once a process, before there are threads that use it.
 void set_up() {
   static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
   if (code != CURLE_OK)
@@ -291,7 +291,7 @@ class HttpClient::Connection {
     return is_there;
   }
 
-  std::uint64_t bytes = 0;     ///< that have come since this was set to 0
+  std::uint64_t bytes = 0;     ///< count since this was set to 0
   std::uint64_t requests = 0;  ///< likewise
 
  private:

@@ -16,7 +16,7 @@ namespace meshhier::storage {
 
 struct HttpOptions {
   std::vector<std::string> headers;    ///< "Name: value"; Authorization never goes to another host
-  std::uint64_t bytes_per_second = 0;  ///< of all that comes; 0: no limit
+  std::uint64_t bytes_per_second = 0;  ///< for all that comes; 0: no limit
   std::chrono::milliseconds first_wait{500};  ///< before the second try; twice as long each time
   std::chrono::seconds silence{30};  ///< without a byte: then a try is over, answered or not
 };

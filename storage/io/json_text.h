@@ -61,7 +61,7 @@ class JsonVisitor : public nlohmann::json_sax<nlohmann::json> {
   }
 
  protected:
-  std::size_t depth() const { return depth_; }  ///< of open objects and arrays
+  std::size_t depth() const { return depth_; }  ///< number of open objects and arrays
 
  private:
   static constexpr std::size_t kMostDepth = 1000;

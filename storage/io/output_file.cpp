@@ -34,7 +34,7 @@ void require_parent(FileSystem& files, const OutputRequest& request, const fs::p
 
 /// The files beside the target have longer names than it, and they must be possible, too.
 void require_short_name(const OutputRequest& request, const fs::path& target) {
-  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
+  constexpr std::size_t kLongestName = 255;  // on Linux's file systems
   const std::size_t length = scratch_path(target).filename().native().size();
   if (length > kLongestName) {
     throw Error(ErrorCode::io, fmt::format("cannot write {}: its name is too long, by {} bytes",
@@ -177,7 +177,7 @@ void OutputFile::open_regular(const OutputRequest& request) {
   target_ = target;
   temporary_ = unfinished_path(target);
   scratch_ = scratch_path(target);
-  files_.remove_all(temporary_);  // what a killed command may have left
+  files_.remove_all(temporary_);  // a killed command may have left it
   file_ = files_.create(temporary_);
 }
 

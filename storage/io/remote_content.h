@@ -75,7 +75,7 @@ class RemoteContent {
   std::uint64_t size_ = 0;
   std::string version_;
   mutable std::mutex mutex_;
-  std::map<std::uint64_t, Part> there_;  ///< by where they begin in the file
+  std::map<std::uint64_t, Part> there_;  ///< keys: where they begin in the file
   ReadAhead<File::Range, std::uint64_t> ahead_;
 };
 

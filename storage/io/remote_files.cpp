@@ -92,7 +92,7 @@ RemoteFiles::RemoteFiles(FileSystem& others, const std::string& address, const f
       [](const Content& content) { return content ? std::min(content->size(), kStart) : 0; });
 }
 RemoteFiles::~RemoteFiles() {
-  client_->stop();  // what was fetched ahead and not asked for
+  client_->stop();  // nobody asks any more for files that are fetched ahead
 }
 
 bool RemoteFiles::is_remote(const fs::path& path) const {

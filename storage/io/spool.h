@@ -1,8 +1,8 @@
 // Append-only scratch bytes: in memory while the budget lasts, on disk from there on.
 //
 // This is what makes one algorithm serve meshes smaller and larger than memory: stages append to
-// spools and read them back, and only the memory pool decides what touches the disk. What is read
-// never depends on it.
+// spools and read them back, and only the memory pool decides what touches the disk. The bytes that
+// are read never depend on it.
 #pragma once
 
 #include "hierarchy/error.h"
@@ -118,7 +118,7 @@ class ScratchFile {
 
  private:
   static constexpr int kPlaceBits = 44;  // 16 TiB
-  static constexpr int kFileBits = 40;   // of them, for each file where there are several
+  static constexpr int kFileBits = 40;   // 1 TiB for each file if there are several
   static constexpr std::size_t kMostFiles = std::size_t{1} << (kPlaceBits - kFileBits);
   static constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kPlaceBits) - 1;
   static constexpr std::uint64_t kMostMounted = std::uint64_t{1}
@@ -238,8 +238,8 @@ class Spool {
   std::byte* end_ = nullptr;  ///< where the next byte goes, while the last block has room
   std::size_t room_ = 0;
   std::uint64_t size_ = 0;
-  std::uint64_t checksum_ = 0;  ///< of all blocks, each seeded with those before; without the last
-                                ///< one as long as it is open
+  std::uint64_t checksum_ = 0;  ///< chain over all blocks, each seeded with those before; the last
+                                ///< one is left out as long as it is open
   std::vector<Block> blocks_;   ///< in memory: counted in the pool, but for the last, open one
 };
 

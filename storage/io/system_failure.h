@@ -8,8 +8,8 @@
 
 namespace meshhier::storage {
 
-/// Error(io) that says nothing of the file: the process or the system has too many files open, or
-/// no memory, at this moment.
+/// An Error(io) that says nothing about the file: the process or the system has too many files
+/// open, or no memory, at this moment.
 class Busy final : public Error {
  public:
   explicit Busy(const std::string& message) : Error(ErrorCode::io, message) {}
