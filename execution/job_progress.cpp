@@ -33,6 +33,7 @@ void JobProgress::begin(std::string_view name, std::string_view unit, std::uint6
       [&](const ExpectedStage& stage) { return stage.name == name && stage.unit == unit; });
   if (found == stages_.end())
     return;
+  // Stages between that did not come had nothing to do.
   const auto index = static_cast<std::size_t>(found - stages_.begin());
   for (; next_ < index; ++next_)
     passed_ += stages_[next_].seconds;

@@ -33,6 +33,7 @@ ParallelCall::ParallelCall() : begun_(thread_cpu_seconds()) {
 ParallelCall::~ParallelCall() {
   if (--account.calls > 0)
     return;
+  // The chains overlap: whichever is the longest, the call cannot take less.
   account.inside += thread_cpu_seconds() - begun_;
   account.chains += std::max({reads.seconds(), work.seconds(), sinks.seconds()});
 }

@@ -186,6 +186,8 @@ class MapStage {
   bool pays(const Gain& gain, const TileMesh& mesh, const TileTexture& texture) const {
     if (config_.storage.normals == config::Normals::map)
       return true;
+    // As many bytes of triangles as the map takes would make `growth` times the tile's, which is
+    // then off by 1 / sqrt(growth) as much.
     const double without = plain_bytes(mesh);
     const double growth = 1 + map_bytes_of(gain, mesh, texture) / without;
     return gain.own_degrees >= kLeastDegrees &&

@@ -42,6 +42,8 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   step.finer_neighbours.settle();
   const SeamStrip& seam_strip = own.seam_strip;
   step.certain = std::max(double{seam_strip.interior_deviation}, seam);
+  // A piece that is drawn no more is near the surface that was drawn beside it, which may have
+  // moved at the seam, too.
   if (seam_strip.lost > 0)
     step.certain = std::max(step.certain, double{seam_strip.lost} + seam);
   step.mean_square = seam_strip.mean_square;
@@ -186,6 +188,8 @@ void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attr
   for (int l = end - 1; l >= levels.top; --l) {
     const std::vector<NodeId>& nodes = left[l - levels.top];
     TileRoom::Heaviest heaviest{heaviest_contracted(forest, nodes)};
+    // Only a tile that may be refused asks for the levels above: the message names a budget for
+    // all.
     if (heaviest.now > context.memory().work_bytes) {
       heaviest.ahead = heaviest_contracted_above(forest, static_cast<Level>(l + 1),
                                                  static_cast<Level>(levels.top), context.plan.job);

@@ -66,6 +66,8 @@ class NamedIds {
 NamedIds ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
   const std::uint64_t vertices = mesh.summary().vertices;
   NamedIds all(vertices);
+  // Faces of a slice name vertices near each other, as a rule: then far fewer ranks than all are
+  // read, which is worth reading the faces twice.
   mesh.read_triangle_blocks<NamedIds>(
       share, context.memory().blocks_in_flight, context.cancel,
       [&](std::span<const Triangle<VertexId>> triangles, NamedIds& ids) {

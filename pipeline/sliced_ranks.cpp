@@ -80,6 +80,8 @@ void SlicedRanks::read(std::uint64_t id, std::span<std::uint32_t> ranks) const {
 
 void SlicedRanks::correct(std::uint32_t slice, std::span<std::uint32_t> ranks) const {
   const std::vector<std::uint32_t>& before = before_[slice];
+  // A rank was given as if its slice were the first: the places of the slices before, in the same
+  // chunk, come in front. Nobody vouches for what other tasks wrote, so all is checked.
   const std::uint32_t last = map_->count() - 1;
   const std::uint64_t places = std::uint64_t{map_->first_rank(last)} + map_->size(last);
   const bool has_copies = places < vertex_count_;

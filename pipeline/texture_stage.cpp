@@ -211,6 +211,7 @@ class TextureMaker {
     const LeafPicture picture(atlas, source.corners, input_);
     source.alpha = picture.alpha();
     const images::WrittenImage written = written_as(source.alpha, atlas.width, atlas.height);
+    // The size of a picture is known only now: tiles wait here until there is memory for theirs.
     const execution::MemoryGate::Share share = gate_.enter(cut_bytes(written, side_));
     const TileTexture texture = painted(picture, written, source);
     const float texel = texture::texel_size(source.surface(), atlas.width, atlas.height);
@@ -342,6 +343,7 @@ TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& 
       own.error = std::max({own.error, texels.own, texels.lost});
     if (node->level == Level{0})
       continue;
+    // Errors must still grow strictly towards the root.
     TileError& parent = errors[tree.parent_tile(*node)];
     if (parent.error <= own.error)
       parent.error = std::nextafter(own.error, std::numeric_limits<float>::infinity());

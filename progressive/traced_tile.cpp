@@ -81,6 +81,7 @@ class Raiser {
     const GhostChain chain = child.chains[ghost];
     const NodeId neighbour{child.node.level, child.ghosts[ghost].tile};
     const std::uint32_t tile = tree_.parent(neighbour).index;
+    // The sibling's vertices become the parent's own.
     if (tile == parent_.index)
       return {tile, own_image_in(neighbour, chain[0])};
     if (chain.size() < 2)
@@ -179,6 +180,8 @@ void raise_triangles(const Sector& sector, Raiser& raiser, Lifted& lifted) {
   std::sort(raised.begin(), raised.end());
   std::vector<TracedTriangle>& kept = lifted.tile.triangles;
   for (std::size_t i = 0; i < raised.size(); ++i) {
+    // A triangle that both children have comes twice, the one with its number first; the other one
+    // is no loss.
     if (i == 0 || raised[i].key != raised[i - 1].key) {
       kept.push_back(raised[i].triangle);
     } else if (raised[i].triangle.index != kCountedElsewhere) {
@@ -203,6 +206,8 @@ std::vector<ChildVertex> find_survivors(Raiser& raiser, const PublishedTile& par
     const TracedTile& from = raiser.children()[child];
     for (std::size_t vertex = 0; vertex < from.ranks.size(); ++vertex) {
       const std::uint16_t to = from.parent_map[vertex];
+      // half_edge moves vertices onto one of their own, so the parent's vertex is at the place of
+      // one that it stands for. If several were there, the least rank is the same for all who look.
       const bool stays = same_bits(parent.mesh.vertices.positions[to], from.values[vertex]);
       if (stays && from.ranks[vertex] < survivors[to].rank)
         survivors[to] = {from.ranks[vertex], child, vertex};

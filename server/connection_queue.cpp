@@ -150,6 +150,7 @@ void ConnectionQueue::poll_pending() {
       ids.push_back(id);
     }
   }
+  // Without the lock: others take and add connections meanwhile, and wake this thread for new ones.
   if (::poll(sockets.data(), sockets.size(), static_cast<int>(kPollTime.count())) <= 0)
     return;
   eventfd_t count = 0;

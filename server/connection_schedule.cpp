@@ -41,6 +41,7 @@ void ConnectionSchedule::release(const std::string& client) {
 }
 
 bool ConnectionSchedule::must_yield(const std::string& client) const {
+  // A client with more threads than this one has no claim on one of its.
   const std::size_t own = served_to(client);
   return std::any_of(pending_.begin(), pending_.end(), [&](const auto& entry) {
     const PendingConnection& other = entry.second;

@@ -161,6 +161,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       pictures_(pieces.pictures),
       cancel_(cancel) {
   make_room();
+  // Before any entry is taken: in a complete build those of scratch files are passed over.
   look_ahead(storage::journal_path(work), use);
   std::optional<Value> build;  // the one that the journal belongs to
   bool is_same = true;

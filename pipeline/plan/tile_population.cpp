@@ -41,6 +41,8 @@ double simplified_ratio(const JobSize& job) {
 
 /// Returns the nodes of all levels, from the root down to the partitions.
 std::vector<LevelNodes> count_nodes(const JobSize& job) {
+  // Each node halves its partitions, so a level has at most two kinds of nodes: counts of kinds are
+  // enough for a tree of any size.
   std::vector<LevelNodes> levels(1);
   levels[0][job.partition_count].count = 1;
   while (levels.back().rbegin()->first > 1) {

@@ -128,6 +128,8 @@ std::uint64_t heaviest_contracted_above(const Forest& forest, Level made, Level 
                                         const JobSize& job) {
   const std::uint64_t usual_share = usual_bytes(job);
   const Tree& tree = forest.tree();
+  // Triangles of a surface go with the vertices that go: above, tiles have the usual ones again.
+  // The surplus around a few vertices may all stay, so it is added up towards the root.
   std::vector<std::uint64_t> surplus(tree.node_count(made));
   std::uint64_t usual = job.largest_tile * usual_share;
   for (std::uint32_t i = 0; i < surplus.size(); ++i) {

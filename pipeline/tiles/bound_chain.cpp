@@ -70,6 +70,8 @@ double BoundChain::farthest_back(const TileSet& tiles) const {
 BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) const {
   const Step& step = steps[node.index];
   Sum sum;
+  // The surface was measured against its children's and its neighbours' children's: a point's way
+  // back may lead through any of them.
   sum.back = farthest_back(step.finer_neighbours);
   TileSet landed;  // in tiles of this level
   const auto add_parents = [&](const TileSet& finer_tiles, TileSet& to) {
@@ -85,6 +87,8 @@ BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) con
     add_parents(below.reached, landed);
   }
   landed.settle();
+  // A point from under this node may lie in any tile of `landed`, whose step moves it now: into
+  // that tile or one beside it, which is where the next level finds it.
   sum.reached = landed;
   double farthest = 0;
   if (landed.is_all()) {
@@ -113,6 +117,7 @@ void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
     own = below;
     return;
   }
+  // Both must grow strictly towards the root, also where a step moved nothing: viewers rely on it.
   own.error = above(below.error, std::min(below.error + std::sqrt(step.mean_square), diagonal_));
   own.bound =
       std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), own.error);

@@ -69,6 +69,7 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
       ++starts[a + 1];
       continue;
     }
+    // Each chunk is split on its own, so it needs all triangles that touch it.
     chunk_of_[i] = kShared;
     shared.add(a, t);
     if (b != a)

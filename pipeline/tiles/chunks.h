@@ -142,8 +142,8 @@ class Chunks {
   /// The count of numbers that a vertex has: its position and attributes.
   std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
 
-  /// These append blocks, in any order, once they are ranked. Thread-safe. take() returns triangles
-  /// in the order in which they came.
+  /// These append blocks, in any order, once they are ranked. Thread-safe. As threads append in any
+  /// order, nothing may depend on the order of triangles in take().
   void append(const ChunkedVertices& block);
   void append(const ChunkedTriangles& block);
   /// Appends a copy of the place that has this provisional rank, after all copies before it. `row`:

@@ -178,6 +178,9 @@ SeamStrip Forest::seam_strip(NodeId node) const {
 std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const FinerGhost> foreign) const {
   std::vector<GhostRef> result;
   result.reserve(foreign.size());
+  // A foreign corner is a vertex of a tile one level finer: the map of that tile tells which vertex
+  // of its parent it has become. References are sorted, so the last one tells how much of it is
+  // needed.
   for_each_owner(foreign, [&](std::size_t begin, std::size_t end) {
     const NodeId child{finer(node.level), foreign[begin].ref.tile};
     const std::uint32_t parent = tree_.parent(child).index;

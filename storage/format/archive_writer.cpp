@@ -32,6 +32,7 @@ void ArchiveWriter::append(std::string_view name, std::uint64_t bytes, const Rea
     entry.crc = crc32(block_, entry.crc);
     archive_.write_at(entry.content() + done, block_);
   }
+  // The header stands before the content, but has its CRC: so it is written after it.
   std::vector<std::byte> header;
   append_local_header(header, entry);
   archive_.write_at(entry.offset, header);

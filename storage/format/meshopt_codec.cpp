@@ -77,6 +77,8 @@ std::vector<std::uint32_t> completion_order(std::span<const std::uint32_t> corne
   const auto youngest = [&](std::size_t t, const auto& age_of) {
     return std::max({age_of(corners[t]), age_of(corners[t + 1]), age_of(corners[t + 2])});
   };
+  // Vertices behind the boundary are numbered as they are first used, so the number is the age. A
+  // vertex of the boundary has the age of the oldest triangle that joins it to one of those.
   const auto inner_age = [&](std::uint32_t v) { return v < counts.boundary ? 0 : v; };
   std::vector<std::uint32_t> age(counts.all, UINT32_MAX);
   for (std::size_t t = 0; t < corners.size(); t += 3) {

@@ -252,6 +252,8 @@ void WorkDirectory::give_name(const fs::path& from) {
 }
 
 bool WorkDirectory::exchange(const fs::path& from) {
+  // Killed at any moment, the output is the old hierarchy or the new one, and the journal is found
+  // again only if the directory still has the hierarchy that it is about.
   const fs::path journal = journal_path(path_);
   const fs::path aside = files_.exists(journal) ? set_aside() : fs::path();
   const auto take_back = [&] {

@@ -61,6 +61,7 @@ void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byt
 void BlobStore::copy(std::size_t index, std::span<std::byte> bytes) const {
   if (!ScratchFile::is_mounted(blobs_[index].stored.offset))
     return read(index, 0, bytes);
+  // Threads that come at once may all check the blob: they find the same, and no order matters.
   const std::atomic_ref<char> checked(checked_[index]);
   if (checked.load(std::memory_order_relaxed) != 0)
     return read(index, 0, bytes);
