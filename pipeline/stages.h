@@ -45,8 +45,9 @@ struct Stage {
   StageMemory (*memory)(const JobSize& job) = nullptr;
   DiskVolumes (*disk)(const JobSize& job, const TilePopulation& tiles,
                       const MemoryPlan& memory) = nullptr;
-  StageTimes (*time)(const JobSize& job, const TilePopulation& tiles) = nullptr;       ///< CPUs'
-  StageTimes (*disk_time)(const JobSize& job, const TilePopulation& tiles) = nullptr;  ///< waiting
+  // Seconds of CPUs, and seconds that are spent waiting for the disk.
+  StageTimes (*time)(const JobSize& job, const TilePopulation& tiles) = nullptr;
+  StageTimes (*disk_time)(const JobSize& job, const TilePopulation& tiles) = nullptr;
 
   /// Throws if something is damaged that the stage needs and other processes have made.
   void (*check)(Making& of, const LevelRange& part, const StageContext& context) = nullptr;

@@ -182,8 +182,8 @@ struct Progress {
 };
 
 struct BuildRequest {
-  std::vector<std::string> meshes;  ///< files of any format, which are joined; or a config
-  std::string output;               ///< "scan.hier", or "scan.3tz" for one file
+  std::vector<std::string> meshes;              ///< mesh files, which are joined; or one config
+  std::string output;                           ///< "scan.hier", or "scan.3tz" for one file
   std::map<std::string, std::string> settings;  ///< {"memory_budget", "2GiB"}; docs/config.md
   bool replace = false;                         ///< replaces an output that is there
   /// Is called at the start of each stage and then at most four times a second, on any thread, one
