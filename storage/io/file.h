@@ -1,5 +1,6 @@
-// The one I/O seam: every system call for files is behind these two classes, and behind Folder
-// (folder.h).
+// The I/O seam: all data of users, hierarchies and scratch files moves through these two classes,
+// and through Folder (folder.h). Beside them there are only system calls that move none of it: for
+// processes, temporary directories, names of places and limits of the machine.
 //
 // Tests derive from them to inject a full disk, a short write or a failed sync.
 #pragma once
