@@ -3,6 +3,7 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/value_channels.h"
 #include "library/errors.h"
+#include "storage/format/archive_files.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/file.h"
@@ -48,7 +49,7 @@ Error::Error(Failure failure, const std::string& message)
 
 struct Hierarchy::Parts {
   explicit Parts(const std::string& path)
-      : files(storage::make_posix_file_system()), reader(*files, path) {
+      : files(storage::make_posix_file_system()), place(*files, path), reader(place.files(), path) {
     const storage::Manifest& manifest = reader.manifest();
     for (const TileRecord& record : reader.records())
       tiles.push_back(facts_of(record, manifest.origin));
@@ -59,6 +60,7 @@ struct Hierarchy::Parts {
   const SourceSummary& source() const { return reader.manifest().source; }
 
   std::unique_ptr<storage::FileSystem> files;
+  storage::HierarchyFiles place;
   storage::HierarchyReader reader;
   std::vector<TileFacts> tiles;
   std::vector<AttributeFacts> attributes;
