@@ -46,7 +46,7 @@ namespace meshhier::comparing {
 /// not depend on threads or budget, so neither may this.
 inline constexpr std::size_t kSearchedPoints = 256;
 /// The number of tiles that are searched at the same time: their trees are held beside the cache's,
-/// 60 MiB with 32,768 vertices a tile. It is fixed, as distances found in one batch prune the next
+/// 40 MiB with 32,768 vertices a tile. It is fixed, as distances found in one batch prune the next
 /// one.
 inline constexpr std::size_t kSearchedTiles = 8;
 

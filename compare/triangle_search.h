@@ -1,18 +1,14 @@
-// The distance of points to a set of triangles, by CGAL's tree of axis-aligned boxes.
+// The distance of points to a set of triangles.
 #pragma once
 
+#include "hierarchy/triangle_tree.h"
 #include "hierarchy/vec.h"
 #include "hierarchy/widest_corner.h"
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace meshhier::comparing {
-
-/// Corners of a triangle; may have no area.
-using SurfaceTriangle = std::array<Vec3f, 3>;
 
 inline double doubled_area(const SurfaceTriangle& triangle) {
   return meshhier::doubled_area(triangle[0], triangle[1], triangle[2]);
@@ -25,13 +21,10 @@ double squared_distance(Vec3d point, const SurfaceTriangle& triangle);
 /// Triangles in a tree. Immutable; thread-safe.
 class TriangleSearch {
  public:
-  /// O(n log n). Fewer than 2^32 triangles.
+  /// O(n log n). Fewer than 2^31 triangles.
   explicit TriangleSearch(std::vector<SurfaceTriangle> triangles);
-  TriangleSearch(TriangleSearch&&) noexcept;
-  TriangleSearch& operator=(TriangleSearch&&) noexcept;
-  ~TriangleSearch();
 
-  std::size_t size() const;
+  std::size_t size() const { return triangles_.size(); }
   /// About what it holds in memory.
   std::uint64_t memory_bytes() const;
 
@@ -40,13 +33,13 @@ class TriangleSearch {
   /// one if it is within the limit. The hint decides the time alone: O(log n) with a good one.
   double nearest(Vec3d point, double limit, std::uint32_t& hint) const;
 
-  const SurfaceTriangle& operator[](std::uint32_t triangle) const;
+  const SurfaceTriangle& operator[](std::uint32_t triangle) const { return triangles_[triangle]; }
   /// All triangles with a corner there, in their order. O(log n) and what it returns.
   std::vector<SurfaceTriangle> around(Vec3f corner) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  std::vector<SurfaceTriangle> triangles_;
+  TriangleTree tree_;
 };
 
 }  // namespace meshhier::comparing

@@ -4,6 +4,7 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/tile_mesh.h"
+#include "hierarchy/triangle_tree.h"
 #include "hierarchy/vec.h"
 #include "texture/chart_layout.h"
 #include "texture/nearest_triangle.h"
@@ -25,7 +26,7 @@ inline constexpr double kFacingReach = 32;
 /// asked.
 template <class Surface>
 NearestTriangle nearest_among(std::span<const Surface> surfaces, std::span<const Vec3f> tile) {
-  std::vector<NearestTriangle::Corners> triangles;
+  std::vector<SurfaceTriangle> triangles;
   for (const Surface& surface : surfaces) {
     for (const TileTriangle& t : surface.triangles)
       triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],

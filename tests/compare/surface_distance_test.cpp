@@ -133,6 +133,21 @@ TEST(TriangleSearchTest, FindsWhatTryingAllFinds) {
   }
 }
 
+TEST(TriangleSearchTest, FarFromTheOriginFindsWhatTryingAllFinds) {
+  const Vec3d there{1e6, -3e5, 7e4};  // where the points are in no float
+  std::vector<SurfaceTriangle> triangles = scattered(700, 0.2);
+  for (SurfaceTriangle& triangle : triangles) {
+    for (Vec3f& corner : triangle)
+      corner = to_float(to_double(corner) + there);
+  }
+  const TriangleSearch search(triangles);
+  std::uint32_t chained = 0;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const Vec3d point = noise_point(i, 21) * 1.5 + there;
+    EXPECT_EQ(search.nearest(point, kInfinity, chained), brute_force(point, triangles));
+  }
+}
+
 TEST(TriangleSearchTest, NeverExceedsTheLimit) {
   const TriangleSearch search(scattered(50, 0.1));
   std::uint32_t hint = 7;

@@ -14,12 +14,10 @@
 namespace meshhier::texture {
 namespace {
 
-using TreeCorners = NearestTriangle::Corners;
-
 constexpr int kSquares = 24;
 
 /// A rough sheet over [0, 24]^2, and the same again below it, turned over.
-std::vector<TreeCorners> two_sheets() {
+std::vector<SurfaceTriangle> two_sheets() {
   RandomNumbers random(7);
   std::vector<float> heights;
   for (int i = 0; i < (kSquares + 1) * (kSquares + 1); ++i)
@@ -28,7 +26,7 @@ std::vector<TreeCorners> two_sheets() {
     const auto i = static_cast<std::size_t>(y * (kSquares + 1) + x);
     return Vec3f{static_cast<float>(x), static_cast<float>(y), heights[i] - below};
   };
-  std::vector<TreeCorners> triangles;
+  std::vector<SurfaceTriangle> triangles;
   for (int y = 0; y < kSquares; ++y) {
     for (int x = 0; x < kSquares; ++x) {
       triangles.push_back({corner(x, y, 0), corner(x + 1, y, 0), corner(x, y + 1, 0)});
@@ -39,19 +37,19 @@ std::vector<TreeCorners> two_sheets() {
   return triangles;
 }
 
-NearestTriangle tree_of(const std::vector<TreeCorners>& triangles) {
+NearestTriangle tree_of(const std::vector<SurfaceTriangle>& triangles) {
   return {triangles, {kSquares / 2.0, kSquares / 2.0, 0}, 2 * kSquares};
 }
 
-double distance_to(const TreeCorners& t, const Vec3d& point) {
+double distance_to(const SurfaceTriangle& t, const Vec3d& point) {
   return std::sqrt(squared_distance(point, {to_double(t[0]), to_double(t[1]), to_double(t[2])}));
 }
 
 /// Returns the least distance to triangles that face as asked within reach, else to all.
-double least_distance(const std::vector<TreeCorners>& triangles, const Vec3d& point,
+double least_distance(const std::vector<SurfaceTriangle>& triangles, const Vec3d& point,
                       const Vec3d& facing, double reach) {
   double alike = std::numeric_limits<double>::infinity(), any = alike;
-  for (const TreeCorners& t : triangles) {
+  for (const SurfaceTriangle& t : triangles) {
     const double distance = distance_to(t, point);
     any = std::min(any, distance);
     if (dot(to_double(cross(t[1] - t[0], t[2] - t[0])), facing) > 0)
@@ -68,7 +66,7 @@ struct Asking {
 
 /// Asks for points of blocks, and of everywhere between them.
 void expect_nearest(const Asking& asking) {
-  const std::vector<TreeCorners> triangles = two_sheets();
+  const std::vector<SurfaceTriangle> triangles = two_sheets();
   NearestTriangle nearest = tree_of(triangles);
   RandomNumbers random(3);
   for (int block = 0; block < 40; ++block) {
@@ -102,7 +100,7 @@ TEST(NearestTriangle, IsAnyBeyondReach) {
 
 // Answers become farther from block to block, so that more than was looked up is needed.
 TEST(NearestTriangle, IsFoundHoweverLittleIsAround) {
-  const std::vector<TreeCorners> triangles = two_sheets();
+  const std::vector<SurfaceTriangle> triangles = two_sheets();
   NearestTriangle nearest = tree_of(triangles);
   for (const double height : {0.5, 3.0, 10.0, 1e3, 0.5, 1e6}) {
     nearest.look_around({{3, 3, height}, {4, 4, height}});
@@ -114,7 +112,7 @@ TEST(NearestTriangle, IsFoundHoweverLittleIsAround) {
 }
 
 TEST(NearestTriangle, OfFewTrianglesOrNone) {
-  const std::vector<TreeCorners> one{{Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}};
+  const std::vector<SurfaceTriangle> one{{Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}};
   NearestTriangle nearest = tree_of(one);
   nearest.look_around({{0, 0, 0}, {1, 1, 1}});
   EXPECT_EQ(nearest({0.25, 0.25, 0.5}, {0, 0, 1}, 1).triangle, 0U);
@@ -125,7 +123,7 @@ TEST(NearestTriangle, OfFewTrianglesOrNone) {
 }
 
 TEST(NearestTriangle, OfEquallyNearOnesTheFirst) {
-  std::vector<TreeCorners> triangles = two_sheets();
+  std::vector<SurfaceTriangle> triangles = two_sheets();
   const std::size_t count = triangles.size();
   for (std::size_t i = 0; i < count; ++i)
     triangles.push_back(triangles[i]);

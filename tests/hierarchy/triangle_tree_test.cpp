@@ -1,0 +1,97 @@
+#include "hierarchy/triangle_tree.h"
+
+#include "hierarchy/bounds.h"
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace meshhier {
+namespace {
+
+Vec3f noise_point(std::uint64_t index, float size) {
+  const auto at = [&](std::uint64_t stream) {
+    return static_cast<float>(tests::hash_noise(index, stream)) * size;
+  };
+  return {at(1), at(2), at(3)};
+}
+
+/// Small ones in [-1, 1]^3.
+std::vector<SurfaceTriangle> scattered(std::size_t count) {
+  std::vector<SurfaceTriangle> triangles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3f a = noise_point(i, 1);
+    triangles.push_back({a, a + noise_point(i + 1000, 0.1F), a + noise_point(i + 2000, 0.1F)});
+  }
+  return triangles;
+}
+
+float squared_distance(Vec3f point, const SurfaceTriangle& triangle) {
+  Bounds box;
+  for (const Vec3f corner : triangle)
+    box.add(corner);
+  float sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float away = std::max({box.min[axis] - point[axis], point[axis] - box.max[axis], 0.0F});
+    sum += away * away;
+  }
+  return sum;
+}
+
+TEST(TriangleTreeTest, EachTriangleIsInOneLeaf) {
+  for (const std::size_t leaf_size : {1, 4}) {
+    for (const std::size_t count : {0, 1, 2, 3, 4, 5, 16, 17, 700}) {
+      const TriangleTree tree(scattered(count), leaf_size);
+      std::multiset<std::uint32_t> found;
+      for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+        EXPECT_LE(tree.triangles(leaf).size(), leaf_size);
+        found.insert(tree.triangles(leaf).begin(), tree.triangles(leaf).end());
+      }
+      EXPECT_EQ(found.size(), count);
+      EXPECT_EQ(std::set<std::uint32_t>(found.begin(), found.end()).size(), count);
+    }
+  }
+}
+
+TEST(TriangleTreeTest, LooksAtAllThatIsWithinReach) {
+  const std::vector<SurfaceTriangle> triangles = scattered(700);
+  for (const std::size_t leaf_size : {1, 4}) {
+    const TriangleTree tree(triangles, leaf_size);
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Vec3f point = noise_point(i + 5000, 1.5F);
+      constexpr float kReach = 0.04F;
+      std::set<std::uint32_t> looked_at, taken;
+      const auto add = [&](std::set<std::uint32_t>& to, std::uint32_t leaf) {
+        to.insert(tree.triangles(leaf).begin(), tree.triangles(leaf).end());
+      };
+      tree.look_nearest(TriangleTree::Query(point), kReach,
+                        [&](std::uint32_t leaf) { add(looked_at, leaf); });
+      EXPECT_TRUE(tree.take_within(TriangleTree::Query(point), kReach,
+                                   [&](const TriangleTree::Node& node, std::size_t child) {
+                                     add(taken, node.leaf(child));
+                                     return true;
+                                   }));
+      EXPECT_EQ(looked_at, taken);
+      for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        EXPECT_TRUE(taken.contains(t) || squared_distance(point, triangles[t]) > kReach) << t;
+      }
+      EXPECT_LT(taken.size(), triangles.size() / 4);
+    }
+  }
+}
+
+TEST(TriangleTreeTest, TakesNoMoreThanIsWanted) {
+  const TriangleTree tree(scattered(100), 1);
+  int count = 0;
+  EXPECT_FALSE(
+      tree.take_within(TriangleTree::Query({-2, -2, -2}, {2, 2, 2}), 0,
+                       [&](const TriangleTree::Node&, std::size_t) { return ++count < 7; }));
+  EXPECT_EQ(count, 7);
+}
+
+}  // namespace
+}  // namespace meshhier
