@@ -154,7 +154,7 @@ class Amplified final : public GeneratedMesh {
   const mesh_io::PlyContent& content() const override { return content_; }
 
   void visit_vertices(std::size_t block_size, const VertexBlockVisitor& visit) const override {
-    VertexBlocks blocks(block_size, visit);
+    VertexCollector blocks(block_size, visit);
     for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v)
       add(original(v), blocks);
     std::vector<Point> points(cells_ + 1);
@@ -177,7 +177,7 @@ class Amplified final : public GeneratedMesh {
   }
 
   void visit_triangles(std::size_t block_size, const TriangleBlockVisitor& visit) const override {
-    TriangleBlocks blocks(block_size, visit);
+    TriangleCollector blocks(block_size, visit);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const auto at = [&](std::uint32_t column, std::uint32_t row) {
         return static_cast<std::uint32_t>(number(t, column, row));
@@ -291,7 +291,7 @@ class Amplified final : public GeneratedMesh {
         between(points[first], points[second], number(triangle, column, row));
   }
 
-  void add(const Point& point, VertexBlocks& blocks) const {
+  void add(const Point& point, VertexCollector& blocks) const {
     const auto channels = static_cast<std::size_t>(mesh_.attributes.channels());
     blocks.add(mesh_.double_coordinates ? point.position : rounded_to_float(point.position),
                std::span<const float>(point.attributes).first(channels));

@@ -11,11 +11,11 @@
 namespace meshhier::bench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Shape>, 4> kShapeNames{
-    {{"sphere", Shape::sphere},
-     {"torus", Shape::torus},
-     {"genus5", Shape::genus5},
-     {"shells", Shape::shells}}};
+constexpr std::array<std::pair<std::string_view, BaseShape>, 4> kShapeNames{
+    {{"sphere", BaseShape::sphere},
+     {"torus", BaseShape::torus},
+     {"genus5", BaseShape::genus5},
+     {"shells", BaseShape::shells}}};
 
 // Ground plans of one storey of unit cubes; the boundary of the cubes is the cage.
 constexpr std::array<std::string_view, 1> kCube{"#"};
@@ -34,13 +34,13 @@ constexpr double kInnerShellRadius = 0.6;
 
 /// Returns half the height of a storey, after fit_unit_cube; for the shells half the gap between
 /// them.
-double thickness_of(Shape shape) {
+double thickness_of(BaseShape shape) {
   switch (shape) {
-    case Shape::torus:
+    case BaseShape::torus:
       return 1.0 / 3;
-    case Shape::genus5:
+    case BaseShape::genus5:
       return 1.0 / 7;
-    case Shape::shells:
+    case BaseShape::shells:
       return (1 - kInnerShellRadius) / 2;
     default:
       return 1;
@@ -190,7 +190,7 @@ constexpr std::array<NetCorner, 4> kNetCorners{
 
 }  // namespace
 
-std::optional<Shape> shape_named(std::string_view name) {
+std::optional<BaseShape> shape_named(std::string_view name) {
   for (const auto& [text, shape] : kShapeNames) {
     if (text == name)
       return shape;
@@ -198,7 +198,7 @@ std::optional<Shape> shape_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of(Shape shape) {
+std::string_view name_of(BaseShape shape) {
   for (const auto& [text, named] : kShapeNames) {
     if (named == shape)
       return text;
@@ -206,13 +206,13 @@ std::string_view name_of(Shape shape) {
   return "unknown";
 }
 
-std::vector<std::array<Side, 4>> opposite_sides(const QuadMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Side> side_from_to;
+std::vector<std::array<PatchSide, 4>> opposite_sides(const QuadMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, PatchSide> side_from_to;
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     for (std::uint32_t s = 0; s < 4; ++s)
       side_from_to[{mesh.faces[f][s], mesh.faces[f][next_corner(s)]}] = {f, s};
   }
-  std::vector<std::array<Side, 4>> result(mesh.faces.size());
+  std::vector<std::array<PatchSide, 4>> result(mesh.faces.size());
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     for (std::uint32_t s = 0; s < 4; ++s)
       result[f][s] = side_from_to.at({mesh.faces[f][next_corner(s)], mesh.faces[f][s]});
@@ -256,11 +256,11 @@ QuadMesh subdivided(const QuadMesh& mesh) {
   return result;
 }
 
-BaseSurface::BaseSurface(Shape shape) : thickness_(thickness_of(shape)) {
-  const bool round = shape == Shape::sphere || shape == Shape::shells;
-  cage_ = cage_of(round ? Plan(kCube) : shape == Shape::torus ? Plan(kRing) : Plan(kFiveHoles));
+BaseSurface::BaseSurface(BaseShape shape) : thickness_(thickness_of(shape)) {
+  const bool round = shape == BaseShape::sphere || shape == BaseShape::shells;
+  cage_ = cage_of(round ? Plan(kCube) : shape == BaseShape::torus ? Plan(kRing) : Plan(kFiveHoles));
   radius_.assign(cage_.faces.size() * 4, round ? 1.0 : 0.0);
-  if (shape == Shape::shells) {
+  if (shape == BaseShape::shells) {
     append_inverted_copy(cage_);
     radius_.resize(cage_.faces.size() * 4, -kInnerShellRadius);
   }
@@ -299,8 +299,8 @@ void BaseSurface::fit_control_nets() {
       const NetCorner& at = kNetCorners[c];
       nets_[f][at.corner] = corner_sum[face[c]] * (1 / valence[face[c]]);
       // The neighbour across side c starts that side at our next corner, so it ends it at ours.
-      const Side next = opposite[f][c];
-      const Side previous = opposite[f][previous_corner(c)];
+      const PatchSide next = opposite[f][c];
+      const PatchSide previous = opposite[f][previous_corner(c)];
       const std::size_t next_inner = kNetCorners[next_corner(next.side)].inner;
       const std::size_t previous_inner = kNetCorners[previous.side].inner;
       nets_[f][at.along] = (nets_[f][at.inner] + nets_[next.face][next_inner]) * 0.5;

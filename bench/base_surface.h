@@ -11,7 +11,7 @@
 
 namespace meshhier::bench {
 
-enum class Shape {
+enum class BaseShape {
   sphere,  ///< genus 0, exactly round
   torus,   ///< genus 1
   genus5,  ///< a plate with five holes
@@ -19,8 +19,8 @@ enum class Shape {
 };
 
 /// Returns the shape of that name; nothing if there is none.
-std::optional<Shape> shape_named(std::string_view name);
-std::string_view name_of(Shape shape);
+std::optional<BaseShape> shape_named(std::string_view name);
+std::string_view name_of(BaseShape shape);
 
 /// A closed, manifold, consistently oriented mesh of quads (seen from outside: counter-clockwise).
 struct QuadMesh {
@@ -29,14 +29,14 @@ struct QuadMesh {
 };
 
 /// Side s of a face runs from its corner s to its corner (s + 1) % 4.
-struct Side {
+struct PatchSide {
   std::uint32_t face = 0;
   std::uint32_t side = 0;
 };
 
 /// Returns for every side of every face the same edge as a side of the other face. Requires a
 /// closed mesh.
-std::vector<std::array<Side, 4>> opposite_sides(const QuadMesh& mesh);
+std::vector<std::array<PatchSide, 4>> opposite_sides(const QuadMesh& mesh);
 
 /// Does one step of Catmull & Clark, Recursively generated B-spline surfaces, 1978. Face f becomes
 /// the faces 4f .. 4f + 3.
@@ -51,7 +51,7 @@ struct SurfacePoint {
 /// Surfaces with Bicubic Patches, 2008. Fits the cube [-1, 1]^3. Immutable, thread-safe.
 class BaseSurface {
  public:
-  explicit BaseSurface(Shape shape);
+  explicit BaseSurface(BaseShape shape);
 
   const QuadMesh& patches() const { return cage_; }
 

@@ -11,10 +11,10 @@
 
 namespace meshhier::bench {
 
-class VertexBlocks {
+class VertexCollector {
  public:
   /// `visit` must outlive this object.
-  VertexBlocks(std::size_t block_size, const VertexBlockVisitor& visit)
+  VertexCollector(std::size_t block_size, const VertexBlockVisitor& visit)
       : block_size_(block_size), visit_(visit) {
     assert(block_size >= 1);
   }
@@ -40,10 +40,10 @@ class VertexBlocks {
   std::vector<float> attributes_;
 };
 
-class TriangleBlocks {
+class TriangleCollector {
  public:
   /// `visit` must outlive this object.
-  TriangleBlocks(std::size_t block_size, const TriangleBlockVisitor& visit)
+  TriangleCollector(std::size_t block_size, const TriangleBlockVisitor& visit)
       : block_size_(block_size), visit_(visit) {
     assert(block_size >= 1);
   }

@@ -39,7 +39,7 @@ class GeneratedMesh {
 };
 
 struct SurfaceOptions {
-  Shape shape = Shape::sphere;
+  BaseShape shape = BaseShape::sphere;
   /// At least so many triangles; the next number that the grid can have is taken.
   std::uint64_t triangles = 1'000'000;
   std::uint64_t seed = 1;

@@ -47,7 +47,7 @@ constexpr std::array kContractions = {
 /// triangles: just as many as a chunk may have, so that a split is measured at full size.
 std::unique_ptr<GeneratedMesh> noisy_torus() {
   SurfaceOptions options;
-  options.shape = Shape::torus;
+  options.shape = BaseShape::torus;
   options.triangles = 2 * partition::kChunkVertices;
   options.noise = 0.2;
   return make_surface(options);

@@ -190,7 +190,7 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
 
 void run_textured(storage::FileSystem& files, Arguments& arguments) {
   arguments.surface.seed = arguments.atlas.seed = arguments.seed;
-  const bench::TexturedSurface surface({arguments.surface, arguments.atlas});
+  const bench::TexturedScan surface({arguments.surface, arguments.atlas});
   const bench::TexturedFileSizes sizes = bench::write_textured(
       files, {arguments.output, arguments.force, {}}, surface, arguments.textured);
   const bench::ChartAtlas& atlas = surface.atlas();

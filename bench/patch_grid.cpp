@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kNoPatch = ~std::uint32_t{0};
 
-std::optional<std::uint32_t> corner_at(GridPoint p, std::uint32_t n) {
+std::optional<std::uint32_t> corner_at(PatchPoint p, std::uint32_t n) {
   const bool at_ends = (p.column == 0 || p.column == n) && (p.row == 0 || p.row == n);
   if (!at_ends)
     return std::nullopt;
@@ -21,7 +21,7 @@ struct SidePoint {
   std::uint32_t along;
 };
 
-std::optional<SidePoint> side_at(GridPoint p, std::uint32_t n) {
+std::optional<SidePoint> side_at(PatchPoint p, std::uint32_t n) {
   if (p.row == 0)
     return SidePoint{0, p.column};
   if (p.column == n)
@@ -33,7 +33,7 @@ std::optional<SidePoint> side_at(GridPoint p, std::uint32_t n) {
   return std::nullopt;
 }
 
-GridPoint point_on(Side at, std::uint32_t along, std::uint32_t n) {
+PatchPoint point_on(PatchSide at, std::uint32_t along, std::uint32_t n) {
   switch (at.side) {
     case 0:
       return {at.face, along, 0};
@@ -52,11 +52,11 @@ PatchGrid::PatchGrid(const QuadMesh& mesh, std::uint32_t cells)
     : cells_(cells),
       faces_(mesh.faces),
       opposite_(opposite_sides(mesh)),
-      corner_owner_(mesh.vertices.size(), Side{kNoPatch, 0}) {
+      corner_owner_(mesh.vertices.size(), PatchSide{kNoPatch, 0}) {
   assert(cells >= 1);
   for (std::uint32_t patch = 0; patch < patch_count(); ++patch) {
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
-      Side& owner = corner_owner_[faces_[patch][corner]];
+      PatchSide& owner = corner_owner_[faces_[patch][corner]];
       if (owner.face == kNoPatch)
         owner = {patch, corner};
     }
@@ -69,13 +69,13 @@ PatchGrid::PatchGrid(const QuadMesh& mesh, std::uint32_t cells)
   }
 }
 
-bool PatchGrid::is_owned(GridPoint point) const {
+bool PatchGrid::is_owned(PatchPoint point) const {
   const RowParts row = parts(point.patch, point.row);
   return point.column == 0 ? row.left : point.column == cells_ ? row.right : row.middle;
 }
 
-std::uint64_t PatchGrid::index(GridPoint point) const {
-  const GridPoint owner = owner_of(point);
+std::uint64_t PatchGrid::index(PatchPoint point) const {
+  const PatchPoint owner = owner_of(point);
   std::uint64_t before = first_[owner.patch];
   if (owner.row > 0) {
     before += size(parts(owner.patch, 0));
@@ -93,7 +93,7 @@ std::uint64_t PatchGrid::index(GridPoint point) const {
 
 PatchGrid::RowParts PatchGrid::parts(std::uint32_t patch, std::uint32_t row) const {
   const auto owns_corner = [&](std::uint32_t corner) {
-    const Side owner = corner_owner_[faces_[patch][corner]];
+    const PatchSide owner = corner_owner_[faces_[patch][corner]];
     return owner.face == patch && owner.side == corner;
   };
   const auto owns_side = [&](std::uint32_t side) { return patch < opposite_[patch][side].face; };
@@ -108,13 +108,13 @@ std::uint64_t PatchGrid::size(const RowParts& row) const {
   return (row.left ? 1u : 0u) + (row.middle ? cells_ - 1 : 0u) + (row.right ? 1u : 0u);
 }
 
-GridPoint PatchGrid::owner_of(GridPoint point) const {
+PatchPoint PatchGrid::owner_of(PatchPoint point) const {
   if (const auto corner = corner_at(point, cells_)) {
-    const Side owner = corner_owner_[faces_[point.patch][*corner]];
+    const PatchSide owner = corner_owner_[faces_[point.patch][*corner]];
     return point_on(owner, 0, cells_);
   }
   if (const auto on_side = side_at(point, cells_)) {
-    const Side across = opposite_[point.patch][on_side->side];
+    const PatchSide across = opposite_[point.patch][on_side->side];
     if (across.face < point.patch)
       return point_on(across, cells_ - on_side->along, cells_);
   }

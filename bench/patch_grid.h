@@ -11,7 +11,7 @@ namespace meshhier::bench {
 
 /// Grid point (column, row) of a patch, both in [0, n]; corners 0, 1, 2, 3 of the patch are at
 /// (0, 0), (n, 0), (n, n), (0, n).
-struct GridPoint {
+struct PatchPoint {
   std::uint32_t patch = 0;
   std::uint32_t column = 0;
   std::uint32_t row = 0;
@@ -30,9 +30,9 @@ class PatchGrid {
   std::uint64_t vertex_count() const { return first_.back(); }
   std::uint64_t triangle_count() const { return 2 * cell_count(); }
 
-  bool is_owned(GridPoint point) const;
+  bool is_owned(PatchPoint point) const;
   /// The vertex's number, in [0, vertex_count()): the same for every patch that holds the point.
-  std::uint64_t index(GridPoint point) const;
+  std::uint64_t index(PatchPoint point) const;
 
  private:
   /// The parts of a row that belong to its own patch.
@@ -45,13 +45,13 @@ class PatchGrid {
   std::uint64_t cell_count() const { return std::uint64_t{patch_count()} * cells_ * cells_; }
   RowParts parts(std::uint32_t patch, std::uint32_t row) const;
   std::uint64_t size(const RowParts& row) const;
-  GridPoint owner_of(GridPoint point) const;
+  PatchPoint owner_of(PatchPoint point) const;
 
   std::uint32_t cells_;
   std::vector<std::array<std::uint32_t, 4>> faces_;
-  std::vector<std::array<Side, 4>> opposite_;  ///< side of the neighbour, by side
-  std::vector<Side> corner_owner_;             ///< by vertex of the mesh: patch and corner
-  std::vector<std::uint64_t> first_;           ///< number of a patch's first vertex; then the total
+  std::vector<std::array<PatchSide, 4>> opposite_;  ///< side of the neighbour, by side
+  std::vector<PatchSide> corner_owner_;             ///< by vertex of the mesh: patch and corner
+  std::vector<std::uint64_t> first_;  ///< number of a patch's first vertex; then the total
 };
 
 }  // namespace meshhier::bench

@@ -61,10 +61,10 @@ FractalOptions relief_options(const SurfaceOptions& options, double thickness, d
 
 }  // namespace
 
-CellTriangles triangles_of(GridPoint cell) {
-  const GridPoint right{cell.patch, cell.column + 1, cell.row};
-  const GridPoint above{cell.patch, cell.column, cell.row + 1};
-  const GridPoint across{cell.patch, cell.column + 1, cell.row + 1};
+CellTriangles triangles_of(PatchPoint cell) {
+  const PatchPoint right{cell.patch, cell.column + 1, cell.row};
+  const PatchPoint above{cell.patch, cell.column, cell.row + 1};
+  const PatchPoint across{cell.patch, cell.column + 1, cell.row + 1};
   if (is_cut_upwards(cell))
     return {{{cell, right, across}, {cell, across, above}}};
   return {{{cell, right, above}, {right, across, above}}};
@@ -88,7 +88,7 @@ ReliefSurface::ReliefSurface(const SurfaceOptions& options)
   }
 }
 
-ReliefVertex ReliefSurface::vertex(GridPoint at, std::uint64_t index) const {
+ReliefVertex ReliefSurface::vertex(PatchPoint at, std::uint64_t index) const {
   const double cells = grid_.cells();
   const SurfacePoint base = base_.at(at.patch, at.column / cells, at.row / cells);
   const NoiseSample relief = relief_.at(base.position);

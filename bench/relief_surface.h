@@ -23,16 +23,16 @@ struct ReliefVertex {
 
 /// The two triangles of a grid's cell; each triangle's corners turn counter-clockwise seen from
 /// outside.
-using CellTriangles = std::array<std::array<GridPoint, 3>, 2>;
+using CellTriangles = std::array<std::array<PatchPoint, 3>, 2>;
 
 /// Returns whether a cell is cut from (column, row) to (column + 1, row + 1), else from (column +
 /// 1, row) to (column, row + 1). Cuts alternate, as a checkerboard: no direction is preferred.
-constexpr bool is_cut_upwards(GridPoint cell) {
+constexpr bool is_cut_upwards(PatchPoint cell) {
   return (cell.column + cell.row) % 2 == 0;
 }
 
 /// Requires that `cell`, the lowest point of a cell, is no last one of its row or column.
-CellTriangles triangles_of(GridPoint cell);
+CellTriangles triangles_of(PatchPoint cell);
 
 /// Tells how a surface was made, for a comment in its file.
 std::string description_of(const SurfaceOptions& options);
@@ -48,14 +48,14 @@ class ReliefSurface {
   /// Returns the mean distance of neighbouring grid points, roughly.
   double step() const { return step_; }
 
-  ReliefVertex vertex(GridPoint at) const { return vertex(at, grid_.index(at)); }
+  ReliefVertex vertex(PatchPoint at) const { return vertex(at, grid_.index(at)); }
   /// Returns its position as a file holds it.
   Vec3d stored(const ReliefVertex& vertex) const;
   /// Visits every vertex once, by ascending number.
   void visit_vertices(const std::function<void(const ReliefVertex&)>& visit) const;
 
  private:
-  ReliefVertex vertex(GridPoint at, std::uint64_t index) const;
+  ReliefVertex vertex(PatchPoint at, std::uint64_t index) const;
 
   SurfaceOptions options_;
   BaseSurface base_;

@@ -43,7 +43,7 @@ class Shuffled final : public GeneratedMesh {
   const mesh_io::PlyContent& content() const override { return content_; }
 
   void visit_vertices(std::size_t block_size, const VertexBlockVisitor& visit) const override {
-    VertexBlocks blocks(block_size, visit);
+    VertexCollector blocks(block_size, visit);
     const auto channels = static_cast<std::size_t>(mesh_.attributes.channels());
     const std::span<const float> all(mesh_.channels);
     for (const std::uint64_t v : vertex_order_)
@@ -52,7 +52,7 @@ class Shuffled final : public GeneratedMesh {
   }
 
   void visit_triangles(std::size_t block_size, const TriangleBlockVisitor& visit) const override {
-    TriangleBlocks blocks(block_size, visit);
+    TriangleCollector blocks(block_size, visit);
     for (const std::uint64_t t : triangle_order_) {
       const auto [a, b, c] = mesh_.triangles[t];
       blocks.add({new_number_[a], new_number_[b], new_number_[c]});

@@ -250,7 +250,7 @@ class Held final : public GeneratedMesh {
   const mesh_io::PlyContent& content() const override { return content_; }
 
   void visit_vertices(std::size_t block_size, const VertexBlockVisitor& visit) const override {
-    VertexBlocks blocks(block_size, visit);
+    VertexCollector blocks(block_size, visit);
     const auto channels = static_cast<std::size_t>(mesh_.attributes.channels());
     const std::span<const float> all(mesh_.channels);
     for (std::size_t v = 0; v < mesh_.positions.size(); ++v)
@@ -259,7 +259,7 @@ class Held final : public GeneratedMesh {
   }
 
   void visit_triangles(std::size_t block_size, const TriangleBlockVisitor& visit) const override {
-    TriangleBlocks blocks(block_size, visit);
+    TriangleCollector blocks(block_size, visit);
     for (const MeshTriangle& t : mesh_.triangles)
       blocks.add(t);
     blocks.flush();

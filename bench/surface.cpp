@@ -40,13 +40,13 @@ class Surface final : public GeneratedMesh {
   const mesh_io::PlyContent& content() const override { return content_; }
 
   void visit_vertices(std::size_t block_size, const VertexBlockVisitor& visit) const override {
-    VertexBlocks blocks(block_size, visit);
+    VertexCollector blocks(block_size, visit);
     surface_.visit_vertices([&](const ReliefVertex& vertex) { add_vertex(vertex, blocks); });
     blocks.flush();
   }
 
   void visit_triangles(std::size_t block_size, const TriangleBlockVisitor& visit) const override {
-    TriangleBlocks blocks(block_size, visit);
+    TriangleCollector blocks(block_size, visit);
     const PatchGrid& grid = surface_.grid();
     std::vector<std::uint32_t> lower;
     std::vector<std::uint32_t> upper;
@@ -69,9 +69,9 @@ class Surface final : public GeneratedMesh {
       indices.push_back(static_cast<std::uint32_t>(surface_.grid().index({patch, column, row})));
   }
 
-  static void add_strip(GridPoint cell, const std::vector<std::uint32_t>& lower,
-                        const std::vector<std::uint32_t>& upper, TriangleBlocks& blocks) {
-    const auto number = [&](GridPoint at) {
+  static void add_strip(PatchPoint cell, const std::vector<std::uint32_t>& lower,
+                        const std::vector<std::uint32_t>& upper, TriangleCollector& blocks) {
+    const auto number = [&](PatchPoint at) {
       return (at.row == cell.row ? lower : upper)[at.column];
     };
     for (; cell.column + 1 < lower.size(); ++cell.column) {
@@ -80,7 +80,7 @@ class Surface final : public GeneratedMesh {
     }
   }
 
-  void add_vertex(const ReliefVertex& vertex, VertexBlocks& blocks) const {
+  void add_vertex(const ReliefVertex& vertex, VertexCollector& blocks) const {
     std::array<float, kMaxChannels> attributes{};
     if (options_.normals)
       set_normal(vertex.base.normal, vertex.slope, attributes);

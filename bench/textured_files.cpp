@@ -60,7 +60,7 @@ void visit_triangles(const PlacedChart& chart, const Visit& visit) {
 }
 
 /// Returns where a point of the grid lies within its chart.
-ChartPlace place_in(const PlacedChart& chart, GridPoint at) {
+ChartPlace place_in(const PlacedChart& chart, PatchPoint at) {
   return {static_cast<double>(at.column - chart.cells.column_begin),
           static_cast<double>(at.row - chart.cells.row_begin)};
 }
@@ -69,7 +69,7 @@ ChartPlace place_in(const PlacedChart& chart, GridPoint at) {
 
 class ObjFile {
  public:
-  ObjFile(std::shared_ptr<storage::File> file, const TexturedSurface& surface, const Names& names)
+  ObjFile(std::shared_ptr<storage::File> file, const TexturedScan& surface, const Names& names)
       : out_(std::move(file)), surface_(surface), names_(names) {}
 
   std::uint64_t write() {
@@ -96,7 +96,7 @@ class ObjFile {
       material_ = chart.image + std::uint64_t{1};
     }
     write_texcoords(chart);
-    visit_triangles(chart, [&](const std::array<GridPoint, 3>& corners) {
+    visit_triangles(chart, [&](const std::array<PatchPoint, 3>& corners) {
       const auto& [a, b, c] = corners;
       out_.print("f {}/{} {}/{} {}/{}\n", position(a), texcoord(chart, a), position(b),
                  texcoord(chart, b), position(c), texcoord(chart, c));
@@ -115,21 +115,21 @@ class ObjFile {
     }
   }
 
-  std::uint64_t position(GridPoint at) const { return surface_.grid().index(at) + 1; }
-  std::uint64_t texcoord(const PlacedChart& chart, GridPoint at) const {
+  std::uint64_t position(PatchPoint at) const { return surface_.grid().index(at) + 1; }
+  std::uint64_t texcoord(const PlacedChart& chart, PatchPoint at) const {
     return texcoords_ + 1 +
            std::uint64_t{at.row - chart.cells.row_begin} * (chart.cells.columns() + 1) +
            (at.column - chart.cells.column_begin);
   }
 
   BufferedFile out_;
-  const TexturedSurface& surface_;
+  const TexturedScan& surface_;
   const Names& names_;
   std::uint64_t material_ = 0;   ///< number of the material in use, plus 1
   std::uint64_t texcoords_ = 0;  ///< written before the current chart
 };
 
-std::string library_text(const TexturedSurface& surface, const Names& names) {
+std::string library_text(const TexturedScan& surface, const Names& names) {
   std::string text;
   for (std::uint32_t i = 0; i < surface.atlas().options().images; ++i) {
     text += fmt::format("newmtl {}\nKd 1 1 1\nillum 0\nmap_Kd {}\n\n", names.material(i),
@@ -139,7 +139,7 @@ std::string library_text(const TexturedSurface& surface, const Names& names) {
 }
 
 void write_library(storage::FileSystem& files, const storage::OutputRequest& request,
-                   const TexturedSurface& surface, const Names& names) {
+                   const TexturedScan& surface, const Names& names) {
   storage::OutputFile output(files, {names.beside(names.mtl_name()), request.replace, {}});
   const std::string text = library_text(surface, names);
   output.publish(std::as_bytes(std::span(text)));
@@ -149,15 +149,15 @@ void write_library(storage::FileSystem& files, const storage::OutputRequest& req
 
 class PlyFile {
  public:
-  PlyFile(std::shared_ptr<storage::File> file, const TexturedSurface& surface, const Names& names)
+  PlyFile(std::shared_ptr<storage::File> file, const TexturedScan& surface, const Names& names)
       : out_(std::move(file)), surface_(surface), names_(names) {}
 
   std::uint64_t write() {
     write_header();
     surface_.surface().visit_vertices([&](const ReliefVertex& v) { write_position(v); });
     surface_.visit_charts([&](const PlacedChart& chart) {
-      visit_triangles(chart,
-                      [&](const std::array<GridPoint, 3>& corners) { write_face(chart, corners); });
+      visit_triangles(
+          chart, [&](const std::array<PatchPoint, 3>& corners) { write_face(chart, corners); });
     });
     out_.flush();
     return out_.size();
@@ -189,12 +189,12 @@ class PlyFile {
     }
   }
 
-  void write_face(const PlacedChart& chart, const std::array<GridPoint, 3>& corners) {
+  void write_face(const PlacedChart& chart, const std::array<PatchPoint, 3>& corners) {
     put(std::uint8_t{3});
-    for (const GridPoint& at : corners)
+    for (const PatchPoint& at : corners)
       put(static_cast<std::uint32_t>(surface_.grid().index(at)));
     put(std::uint8_t{6});
-    for (const GridPoint& at : corners) {
+    for (const PatchPoint& at : corners) {
       const auto [u, v] =
           file_texcoord(chart.texel_of(place_in(chart, at)), surface_.atlas().options().side);
       put(u);
@@ -211,14 +211,14 @@ class PlyFile {
   }
 
   BufferedFile out_;
-  const TexturedSurface& surface_;
+  const TexturedScan& surface_;
   const Names& names_;
 };
 
 // ---- pictures ------------------------------------------------------------------------------
 
 std::uint64_t write_image(storage::FileSystem& files, const storage::OutputRequest& request,
-                          const TexturedSurface& surface, const images::WrittenImage& format,
+                          const TexturedScan& surface, const images::WrittenImage& format,
                           std::uint32_t image) {
   storage::OutputFile output(files, request);
   BufferedFile bytes(output.file());
@@ -233,7 +233,7 @@ std::uint64_t write_image(storage::FileSystem& files, const storage::OutputReque
 }
 
 std::uint64_t write_images(storage::FileSystem& files, const storage::OutputRequest& request,
-                           const TexturedSurface& surface, const TexturedFileOptions& options,
+                           const TexturedScan& surface, const TexturedFileOptions& options,
                            const Names& names) {
   const AtlasOptions& atlas = surface.atlas().options();
   const images::WrittenImage format{options.image, options.quality, atlas.side, atlas.side, 3};
@@ -259,8 +259,7 @@ void require_file(storage::FileSystem& files, const std::filesystem::path& path)
 }  // namespace
 
 TexturedFileSizes write_textured(storage::FileSystem& files, const storage::OutputRequest& request,
-                                 const TexturedSurface& surface,
-                                 const TexturedFileOptions& options) {
+                                 const TexturedScan& surface, const TexturedFileOptions& options) {
   require_file(files, request.path);
   require_range("quality", options.quality, 1, 100);
   const Names names(request.path, options.image);

@@ -1,7 +1,7 @@
 // Writes a textured surface: the mesh, and its pictures beside it.
 #pragma once
 
-#include "bench/textured_surface.h"
+#include "bench/textured_scan.h"
 #include "hierarchy/texture.h"
 #include "storage/io/file.h"
 #include "storage/io/output_file.h"
@@ -29,7 +29,6 @@ struct TexturedFileSizes {
 /// (`texcoord`, `texnumber`, `comment TextureFile`). Throws Error(usage) if the output is no file,
 /// or if an option is out of range, Error(exists | io).
 TexturedFileSizes write_textured(storage::FileSystem& files, const storage::OutputRequest& request,
-                                 const TexturedSurface& surface,
-                                 const TexturedFileOptions& options);
+                                 const TexturedScan& surface, const TexturedFileOptions& options);
 
 }  // namespace meshhier::bench

@@ -19,7 +19,7 @@ using testing::Each;
 using testing::HasSubstr;
 
 PatchGrid torus_grid(std::uint32_t cells) {
-  return {BaseSurface(Shape::torus).patches(), cells};
+  return {BaseSurface(BaseShape::torus).patches(), cells};
 }
 
 std::vector<PlacedChart> charts_of(const ChartAtlas& atlas) {

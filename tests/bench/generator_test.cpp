@@ -103,7 +103,7 @@ class GeneratorFiles : public testing::Test {
 
 TEST_F(GeneratorFiles, what_is_written_is_what_is_read) {
   for (const bool wide : {false, true}) {
-    const auto mesh = make_surface({.shape = Shape::torus,
+    const auto mesh = make_surface({.shape = BaseShape::torus,
                                     .triangles = 200'000,
                                     .normals = true,
                                     .colours = true,

@@ -13,7 +13,7 @@ namespace {
 
 std::unique_ptr<GeneratedMesh> torus() {
   SurfaceOptions options;
-  options.shape = Shape::torus;
+  options.shape = BaseShape::torus;
   options.triangles = 8000;
   options.noise = 0.2;
   return make_surface(options);

@@ -18,7 +18,7 @@ namespace meshhier::bench {
 namespace {
 
 struct ShapeFacts {
-  Shape shape;
+  BaseShape shape;
   std::int64_t euler;
   std::size_t components;
 };
@@ -64,11 +64,11 @@ TEST_P(SurfaceShape, has_the_least_grid_with_enough_triangles) {
 
 /// The volume that the smooth shape encloses: spheres by formula, the others as the limit of
 /// Catmull and Clark's subdivision, which the patches approximate.
-double ideal_volume(Shape shape) {
+double ideal_volume(BaseShape shape) {
   constexpr double kUnitBall = 4.18879020478639;
-  if (shape == Shape::sphere)
+  if (shape == BaseShape::sphere)
     return kUnitBall;
-  if (shape == Shape::shells)
+  if (shape == BaseShape::shells)
     return kUnitBall * (1 - 0.6 * 0.6 * 0.6);
   QuadMesh mesh = BaseSurface(shape).patches();
   for (int step = 0; step < 4; ++step)
@@ -96,12 +96,13 @@ TEST_P(SurfaceShape, encloses_the_volume_of_its_shape) {
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, SurfaceShape,
-    testing::Values(ShapeFacts{Shape::sphere, 2, 1}, ShapeFacts{Shape::torus, 0, 1},
-                    ShapeFacts{Shape::genus5, -8, 1}, ShapeFacts{Shape::shells, 4, 2}),
+    testing::Values(ShapeFacts{BaseShape::sphere, 2, 1}, ShapeFacts{BaseShape::torus, 0, 1},
+                    ShapeFacts{BaseShape::genus5, -8, 1}, ShapeFacts{BaseShape::shells, 4, 2}),
     [](const auto& tested) { return std::string(name_of(tested.param.shape)); });
 
 TEST(Surface, smallest_grids_are_closed_too) {
-  for (const Shape shape : {Shape::sphere, Shape::torus, Shape::genus5, Shape::shells}) {
+  for (const BaseShape shape :
+       {BaseShape::sphere, BaseShape::torus, BaseShape::genus5, BaseShape::shells}) {
     const auto one = make_surface({.shape = shape, .triangles = 1});
     for (const std::uint64_t factor : {1u, 4u, 9u}) {  // n = 1, 2, 3
       const Collected mesh = collect(
@@ -115,8 +116,8 @@ TEST(Surface, smallest_grids_are_closed_too) {
 }
 
 TEST(Surface, bytes_do_not_depend_on_the_block_size) {
-  const auto mesh =
-      make_surface({.shape = Shape::torus, .triangles = 3000, .normals = true, .colours = true});
+  const auto mesh = make_surface(
+      {.shape = BaseShape::torus, .triangles = 3000, .normals = true, .colours = true});
   const Collected reference = collect(*mesh, 1u << 20);
   for (const std::size_t block_size : {1u, 7u, 1000u})
     EXPECT_EQ(collect(*mesh, block_size), reference) << block_size;
@@ -125,7 +126,7 @@ TEST(Surface, bytes_do_not_depend_on_the_block_size) {
 // A change of these values is a change of every generated mesh: measurements before and after it
 // cannot be compared.
 TEST(Surface, golden_hashes) {
-  const Collected mesh = collect(*make_surface({.shape = Shape::genus5,
+  const Collected mesh = collect(*make_surface({.shape = BaseShape::genus5,
                                                 .triangles = 30'000,
                                                 .seed = 7,
                                                 .noise = 0.25,
@@ -180,7 +181,8 @@ TEST(Surface, noise_moves_every_vertex_by_less_than_a_grid_step) {
 }
 
 TEST(Surface, normals_fit_the_relief) {
-  for (const Shape shape : {Shape::sphere, Shape::torus, Shape::genus5, Shape::shells}) {
+  for (const BaseShape shape :
+       {BaseShape::sphere, BaseShape::torus, BaseShape::genus5, BaseShape::shells}) {
     const Collected mesh =
         collect(*make_surface({.shape = shape, .triangles = 100'000, .normals = true}));
     std::vector<Vec3d> sums(mesh.positions.size());
@@ -234,7 +236,7 @@ TEST(Surface, double_coordinates_hold_more_than_floats) {
 
 TEST(Surface, billions_of_triangles_are_counted_at_once) {
   const mesh_io::PlyContent content =
-      make_surface({.shape = Shape::torus, .triangles = 8'000'000'000})->content();
+      make_surface({.shape = BaseShape::torus, .triangles = 8'000'000'000})->content();
   EXPECT_GE(content.triangle_count, 8'000'000'000u);
   EXPECT_LT(content.triangle_count, 8'010'000'000u);
   EXPECT_EQ(content.vertex_count, content.triangle_count / 2);
@@ -262,7 +264,7 @@ TEST(Surface, options_out_of_range_are_named) {
 }
 
 TEST(PatchGrid, numbers_owned_points_in_walking_order) {
-  for (const Shape shape : {Shape::sphere, Shape::genus5}) {
+  for (const BaseShape shape : {BaseShape::sphere, BaseShape::genus5}) {
     const BaseSurface base(shape);
     for (const std::uint32_t cells : {1u, 2u, 3u, 8u}) {
       const PatchGrid grid(base.patches(), cells);
@@ -282,10 +284,11 @@ TEST(PatchGrid, numbers_owned_points_in_walking_order) {
 }
 
 TEST(BaseSurface, neighbours_agree_along_their_sides) {
-  for (const Shape shape : {Shape::sphere, Shape::torus, Shape::genus5, Shape::shells}) {
+  for (const BaseShape shape :
+       {BaseShape::sphere, BaseShape::torus, BaseShape::genus5, BaseShape::shells}) {
     const BaseSurface base(shape);
     const auto opposite = opposite_sides(base.patches());
-    const auto on_side = [&](Side at, double t) {
+    const auto on_side = [&](PatchSide at, double t) {
       const std::array<std::array<double, 2>, 4> uv{{{t, 0}, {1, t}, {1 - t, 1}, {0, 1 - t}}};
       return base.at(at.face, uv[at.side][0], uv[at.side][1]);
     };

@@ -166,7 +166,7 @@ class TexturedMeshTest : public testing::Test {
   /// Written to files and read again. Another seed, other places in the pictures.
   TexturedMesh loaded(MeshFileFormat format, std::uint64_t atlas_seed) {
     const std::string name = format == MeshFileFormat::obj ? "a.obj" : "a.ply";
-    const TexturedSurface surface(
+    const TexturedScan surface(
         {.surface = {.triangles = 5000},
          .atlas = {.images = 2, .side = 512, .charts = 40, .seed = atlas_seed}});
     write_textured(*files_, {directory_.path() / name, true, {}}, surface,

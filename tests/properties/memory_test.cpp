@@ -102,7 +102,7 @@ class MemoryTest : public testing::Test {
       bench::TexturedOptions options;
       options.surface.triangles = 20'000;
       options.atlas = atlas;
-      bench::write_textured(*files, {path("mesh.ply"), true}, bench::TexturedSurface(options),
+      bench::write_textured(*files, {path("mesh.ply"), true}, bench::TexturedScan(options),
                             {.mesh = bench::MeshFileFormat::ply});
       _exit(0);
     }
@@ -281,8 +281,9 @@ bench::SurfaceOptions million_vertices() {
 // Each page of a buffer that is given back after a tile is made anew for the next: 2.3 times the
 // peak was made for this mesh. Large pages are made in fewer steps, never in more.
 TEST_F(MemoryTest, FreedMemoryIsUsedAgain) {
-  write_apart(
-      [] { return bench::SurfaceOptions{.shape = bench::Shape::torus, .triangles = 1'000'000}; });
+  write_apart([] {
+    return bench::SurfaceOptions{.shape = bench::BaseShape::torus, .triangles = 1'000'000};
+  });
   const Outcome outcome = build("512MiB", {"threads=2"});
   ASSERT_EQ(outcome.code, 0) << outcome.messages;
   EXPECT_GT(outcome.new_page_bytes, 0U);

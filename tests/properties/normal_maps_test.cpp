@@ -40,7 +40,7 @@ using tests::kMiB;
 /// A torus with relief: what a coarse tile has too few triangles for.
 bench::SurfaceOptions rough_torus() {
   bench::SurfaceOptions options;
-  options.shape = bench::Shape::torus;
+  options.shape = bench::BaseShape::torus;
   options.triangles = 40000;
   options.noise = 0.3;
   return options;

@@ -87,7 +87,7 @@ class Dice {
 std::unique_ptr<bench::GeneratedMesh> random_mesh(Dice& dice) {
   if (dice.one_in(3)) {
     bench::SurfaceOptions options;
-    options.shape = static_cast<bench::Shape>(dice.from(0, 3));
+    options.shape = static_cast<bench::BaseShape>(dice.from(0, 3));
     options.triangles = dice.of_any_size(4000);
     options.noise = dice.one_in(2) ? 0 : 0.5;
     options.normals = dice.one_in(3);

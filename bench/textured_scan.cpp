@@ -1,4 +1,4 @@
-#include "bench/textured_surface.h"
+#include "bench/textured_scan.h"
 
 #include <algorithm>
 #include <array>
@@ -97,7 +97,7 @@ class ChartPainter {
     const bool is_row = chart_.rows_stay_rows();
     const std::uint32_t last = is_row ? chart_.cells.columns() : chart_.cells.rows();
     for (std::uint32_t i = 0; i <= last; ++i) {
-      const GridPoint at = is_row ? grid_point(chart_, i, number) : grid_point(chart_, number, i);
+      const PatchPoint at = is_row ? grid_point(chart_, i, number) : grid_point(chart_, number, i);
       line.push_back(surface_.vertex(at).moved);
     }
   }
@@ -111,7 +111,7 @@ class ChartPainter {
 /// The charts side by side in a row of a picture's slots.
 class SlotRowPainter {
  public:
-  SlotRowPainter(const TexturedSurface& mesh, std::uint32_t image, std::uint32_t row)
+  SlotRowPainter(const TexturedScan& mesh, std::uint32_t image, std::uint32_t row)
       : mesh_(mesh), points_(mesh.atlas().slot_side()) {
     for (std::uint32_t column = 0; column < mesh.atlas().slots_a_row(); ++column) {
       if (const auto chart = mesh.atlas().chart(image, column, row))
@@ -128,20 +128,20 @@ class SlotRowPainter {
   }
 
  private:
-  const TexturedSurface& mesh_;
+  const TexturedScan& mesh_;
   std::vector<ChartPainter> charts_;
   std::vector<Vec3d> points_;
 };
 
 }  // namespace
 
-TexturedSurface::TexturedSurface(const TexturedOptions& options)
+TexturedScan::TexturedScan(const TexturedOptions& options)
     : options_(options),
       surface_(options.surface),
       atlas_(surface_.grid(), options.atlas),
       paint_({options.surface.seed, finest_wave(surface_, atlas_)}) {}
 
-void TexturedSurface::visit_charts(const std::function<void(const PlacedChart&)>& visit) const {
+void TexturedScan::visit_charts(const std::function<void(const PlacedChart&)>& visit) const {
   for (std::uint32_t image = 0; image < atlas_.options().images; ++image) {
     for (std::uint32_t row = 0; row < atlas_.slots_a_row(); ++row) {
       for (std::uint32_t column = 0; column < atlas_.slots_a_row(); ++column) {
@@ -152,7 +152,7 @@ void TexturedSurface::visit_charts(const std::function<void(const PlacedChart&)>
   }
 }
 
-void TexturedSurface::visit_rows(
+void TexturedScan::visit_rows(
     std::uint32_t image, const std::function<void(std::span<const std::uint8_t>)>& visit) const {
   const std::uint32_t side = atlas_.options().side, slot = atlas_.slot_side();
   std::vector<std::uint8_t> row(3 * std::size_t{side}, kBackground);

@@ -19,10 +19,10 @@ struct TexturedOptions {
 
 /// A pure function of the options. Its pictures show a SolidPaint where the triangles lie that they
 /// are on. Immutable, thread-safe; O(sqrt(triangles) + charts) memory.
-class TexturedSurface {
+class TexturedScan {
  public:
   /// Throws Error(usage) as make_surface() and ChartAtlas.
-  explicit TexturedSurface(const TexturedOptions& options);
+  explicit TexturedScan(const TexturedOptions& options);
 
   const TexturedOptions& options() const { return options_; }
   const ReliefSurface& surface() const { return surface_; }
@@ -45,7 +45,7 @@ class TexturedSurface {
 };
 
 /// The point of the grid at a corner of the cells of a chart.
-inline GridPoint grid_point(const PlacedChart& chart, std::uint32_t column, std::uint32_t row) {
+inline PatchPoint grid_point(const PlacedChart& chart, std::uint32_t column, std::uint32_t row) {
   return {chart.cells.patch, chart.cells.column_begin + column, chart.cells.row_begin + row};
 }
 

@@ -1,5 +1,5 @@
 // Pictures of generated meshes show what lies in space where their triangles are.
-#include "bench/textured_surface.h"
+#include "bench/textured_scan.h"
 
 #include "bench/textured_files.h"
 #include "images/image_codec.h"
@@ -28,11 +28,11 @@ namespace {
 using testing::HasSubstr;
 
 TexturedOptions small_mesh() {
-  return {.surface = {.shape = Shape::torus, .triangles = 20'000, .height = 0.3, .noise = 0.2},
+  return {.surface = {.shape = BaseShape::torus, .triangles = 20'000, .height = 0.3, .noise = 0.2},
           .atlas = {.images = 3, .side = 256, .charts = 60, .gutter = 2, .seed = 1}};
 }
 
-images::Image picture_of(const TexturedSurface& mesh, std::uint32_t image) {
+images::Image picture_of(const TexturedScan& mesh, std::uint32_t image) {
   const std::uint32_t side = mesh.atlas().options().side;
   images::Image picture(side, side, 3);
   std::uint32_t y = 0;
@@ -50,9 +50,9 @@ struct Corner {
 using CornerTriangle = std::array<Corner, 3>;
 
 /// Returns all triangles of a chart.
-std::vector<CornerTriangle> triangles_in(const TexturedSurface& mesh, const PlacedChart& chart) {
+std::vector<CornerTriangle> triangles_in(const TexturedScan& mesh, const PlacedChart& chart) {
   std::vector<CornerTriangle> all;
-  const auto corner = [&](GridPoint at) {
+  const auto corner = [&](PatchPoint at) {
     return Corner{chart.texel_of({double(at.column - chart.cells.column_begin),
                                   double(at.row - chart.cells.row_begin)}),
                   mesh.surface().vertex(at).moved};
@@ -87,8 +87,8 @@ int largest_difference(const std::uint8_t* a, const std::uint8_t* b) {
   return most;
 }
 
-TEST(TexturedSurfaceTest, TexelsShowThePaintWhereTheirTrianglesLie) {
-  const TexturedSurface mesh(small_mesh());
+TEST(TexturedScanTest, TexelsShowThePaintWhereTheirTrianglesLie) {
+  const TexturedScan mesh(small_mesh());
   std::vector<images::Image> pictures;
   for (std::uint32_t i = 0; i < 3; ++i)
     pictures.push_back(picture_of(mesh, i));
@@ -117,12 +117,12 @@ TEST(TexturedSurfaceTest, TexelsShowThePaintWhereTheirTrianglesLie) {
                           mesh.atlas().chart_side() * 9 / 10);
 }
 
-TEST(TexturedSurfaceTest, GuttersContinueTheBorder) {
+TEST(TexturedScanTest, GuttersContinueTheBorder) {
   TexturedOptions options = small_mesh();
   options.surface.height = 0;
   options.surface.noise = 0;
   options.atlas.side = 1024;  // colours of neighbouring texels are near
-  const TexturedSurface mesh(options);
+  const TexturedScan mesh(options);
   const images::Image picture = picture_of(mesh, 0);
   mesh.visit_charts([&](const PlacedChart& chart) {
     if (chart.image != 0)
@@ -139,12 +139,12 @@ TEST(TexturedSurfaceTest, GuttersContinueTheBorder) {
   });
 }
 
-TEST(TexturedSurfaceTest, PicturesHaveDetailOfAllSizes) {
+TEST(TexturedScanTest, PicturesHaveDetailOfAllSizes) {
   TexturedOptions options = small_mesh();
   options.surface.height = 0;
   options.surface.noise = 0;
   options.atlas = {.images = 1, .side = 1024, .charts = 1};
-  const TexturedSurface mesh(options);
+  const TexturedScan mesh(options);
   const PlacedChart chart = *mesh.atlas().chart(0, 1, 1);
   const images::Image picture = picture_of(mesh, 0);
   // Means of squares of 1, 2, 4, ... texels differ from their neighbours at each of the sizes.
@@ -168,7 +168,7 @@ TEST(TexturedSurfaceTest, PicturesHaveDetailOfAllSizes) {
 
 TexturedFileSizes write(tests::MemoryFiles& files, const std::string& path,
                         const TexturedFileOptions& options, bool replace = false) {
-  return write_textured(files, {path, replace, {}}, TexturedSurface(small_mesh()), options);
+  return write_textured(files, {path, replace, {}}, TexturedScan(small_mesh()), options);
 }
 
 TEST(TexturedFilesTest, AnObjIsTheSurfaceWithItsCharts) {
@@ -223,7 +223,7 @@ TEST(TexturedFilesTest, APlyHasItsTexturesInItsFaces) {
   const std::string file = files.content("/models/a.ply");
   const std::string end = "end_header\n";
   const std::size_t body = file.find(end) + end.size();
-  const TexturedSurface mesh(small_mesh());
+  const TexturedScan mesh(small_mesh());
   EXPECT_EQ(file.size(), sizes.mesh_bytes);
   EXPECT_EQ(file.size() - body,
             mesh.grid().vertex_count() * 12 + mesh.grid().triangle_count() * (1 + 12 + 1 + 24 + 4));
@@ -233,7 +233,7 @@ TEST(TexturedFilesTest, APlyHasItsTexturesInItsFaces) {
 TEST(TexturedFilesTest, PicturesAreBesideTheMesh) {
   tests::MemoryFiles files;
   const TexturedFileSizes sizes = write(files, "/models/a.obj", {.image = ImageFormat::png});
-  const TexturedSurface mesh(small_mesh());
+  const TexturedScan mesh(small_mesh());
   std::uint64_t bytes = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const auto& file = files.bytes("/models/a_000" + std::to_string(i) + ".png");
