@@ -109,7 +109,7 @@ class PictureHosts {
 
 }  // namespace
 
-exporting::OpenPicture open_story_pictures(const StoryPictures& pictures,
+exporting::OpenPicture open_story_pictures(const PictureSources& pictures,
                                            const execution::CancelToken& cancel) {
   const auto hosts = pictures.fetches ? std::make_shared<PictureHosts>(cancel) : nullptr;
   return [folder = PictureFolder(pictures.beside), hosts](const std::string& named,

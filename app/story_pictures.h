@@ -8,7 +8,8 @@
 
 namespace meshhier::app {
 
-struct StoryPictures {
+/// Where pictures of a story may lie.
+struct PictureSources {
   std::filesystem::path beside;  ///< the folder of the story
   bool fetches = false;          ///< pictures of other hosts are fetched, else refused
 };
@@ -16,7 +17,7 @@ struct StoryPictures {
 /// Returns a function that opens pictures in the folder or below it, by relative addresses; no link
 /// is followed, no hidden name is opened. A host gets 20 seconds for a picture, all hosts two
 /// minutes. `cancel` must outlive the result.
-exporting::OpenPicture open_story_pictures(const StoryPictures& pictures,
+exporting::OpenPicture open_story_pictures(const PictureSources& pictures,
                                            const execution::CancelToken& cancel);
 
 }  // namespace meshhier::app

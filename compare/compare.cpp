@@ -274,7 +274,7 @@ class Comparer {
                                    bool with_sides) {
     const std::vector<std::uint32_t> order = curve_order(points);
     const std::vector<Vec3d> sorted = in_order(points, order);
-    const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
+    const std::vector<NearestOnSurface> nearest = search_.nearest(sorted, cancel_);
     std::vector<Side> sorted_sides(points.size(), Side::outside);
     if (with_sides)
       sorted_sides = surface_sides(target_, search_.trees(), sorted, nearest, cancel_);
@@ -338,7 +338,7 @@ class Comparer {
       middles.push_back((t.corners[0] + t.corners[1] + t.corners[2]) * (1.0 / 3));
     const std::vector<std::uint32_t> order = curve_order(middles);
     const std::vector<Vec3d> sorted = in_order(middles, order);
-    const std::vector<NearestTriangle> nearest = search_.nearest(sorted, cancel_);
+    const std::vector<NearestOnSurface> nearest = search_.nearest(sorted, cancel_);
     const std::vector<SurfaceTriangle> targets = search_.triangles(nearest, cancel_);
     std::vector<double> most(loose.size());
     execution::parallel_for(

@@ -119,7 +119,7 @@ std::vector<SurfaceDistance::Candidate> SurfaceDistance::candidates(
 /// Takes the queries of the next kSearchedTiles tiles away from the front of `queries`. Returns
 /// those that are still open: distances found since they were asked may answer them without a tree.
 std::vector<SurfaceDistance::Query> SurfaceDistance::take_batch(
-    std::span<const Vec3d> points, std::span<const NearestTriangle> found,
+    std::span<const Vec3d> points, std::span<const NearestOnSurface> found,
     std::span<const Query>& queries) const {
   std::vector<Query> batch;
   std::size_t tiles = 0, taken = 0;
@@ -138,16 +138,16 @@ std::vector<SurfaceDistance::Query> SurfaceDistance::take_batch(
 }
 
 /// Answers the queries of a batch. None influences another.
-std::vector<NearestTriangle> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
-                                                           std::span<const NearestTriangle> found,
-                                                           std::span<const Query> batch) {
+std::vector<NearestOnSurface> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
+                                                            std::span<const NearestOnSurface> found,
+                                                            std::span<const Query> batch) {
   std::vector<std::uint32_t> tiles;
   for (const Query& query : batch) {
     if (tiles.empty() || tiles.back() != query.tile)
       tiles.push_back(query.tile);
   }
   const auto trees = trees_.get(tiles);
-  std::vector<NearestTriangle> answers(batch.size());
+  std::vector<NearestOnSurface> answers(batch.size());
   execution::parallel_for(block_count(batch.size()), [&](std::size_t block) {
     const auto queries = block_of(batch, block);
     const auto results = block_of(std::span(answers), block);
@@ -169,15 +169,15 @@ std::vector<NearestTriangle> SurfaceDistance::answer_batch(std::span<const Vec3d
 
 /// Lowers found[query.point] to the distance that query.tile has, if that is less.
 void SurfaceDistance::answer(std::span<const Vec3d> points, std::span<const Query> queries,
-                             std::vector<NearestTriangle>& found,
+                             std::vector<NearestOnSurface>& found,
                              const execution::CancelToken& cancel) {
   const std::vector<Query> sorted = by_tile(queries, surface_.size());
   for (std::span<const Query> waiting(sorted); !waiting.empty();) {
     cancel.check();
     const std::vector<Query> batch = take_batch(points, found, waiting);
-    const std::vector<NearestTriangle> answers = answer_batch(points, found, batch);
+    const std::vector<NearestOnSurface> answers = answer_batch(points, found, batch);
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      NearestTriangle& nearest = found[batch[i].point];
+      NearestOnSurface& nearest = found[batch[i].point];
       if (answers[i].squared < nearest.squared)
         nearest = answers[i];
     }
@@ -206,9 +206,9 @@ std::uint32_t SurfaceDistance::likely_tile(Vec3d point,
 
 /// First each point is looked up in the tile that is nearly always the right one, then in all whose
 /// boxes are nearer than what was found there.
-std::vector<NearestTriangle> SurfaceDistance::nearest(std::span<const Vec3d> points,
-                                                      const execution::CancelToken& cancel) {
-  std::vector<NearestTriangle> found(points.size());
+std::vector<NearestOnSurface> SurfaceDistance::nearest(std::span<const Vec3d> points,
+                                                       const execution::CancelToken& cancel) {
+  std::vector<NearestOnSurface> found(points.size());
   if (surface_.total().triangles == 0)
     return found;
   std::vector<std::vector<Candidate>> near(block_count(points.size()));
@@ -238,7 +238,7 @@ std::vector<NearestTriangle> SurfaceDistance::nearest(std::span<const Vec3d> poi
   return found;
 }
 
-std::vector<SurfaceTriangle> SurfaceDistance::triangles(std::span<const NearestTriangle> found,
+std::vector<SurfaceTriangle> SurfaceDistance::triangles(std::span<const NearestOnSurface> found,
                                                         const execution::CancelToken& cancel) {
   std::vector<Query> queries;
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -255,7 +255,7 @@ std::vector<double> SurfaceDistance::distances(std::span<const Vec3d> points,
                                                const execution::CancelToken& cancel) {
   std::vector<double> distances;
   distances.reserve(points.size());
-  for (const NearestTriangle& found : nearest(points, cancel))
+  for (const NearestOnSurface& found : nearest(points, cancel))
     distances.push_back(std::sqrt(found.squared));
   return distances;
 }

@@ -95,7 +95,7 @@ class TreeCache {
 };
 
 /// The triangle of a surface that is nearest to a point.
-struct NearestTriangle {
+struct NearestOnSurface {
   double squared = std::numeric_limits<double>::infinity();  ///< the distance's square; infinite if
                                                              ///< there is no triangle
   std::uint32_t tile = 0;                                    ///< position in the cut
@@ -158,12 +158,12 @@ class SurfaceDistance {
   std::vector<double> distances(std::span<const Vec3d> points,
                                 const execution::CancelToken& cancel);
   /// Returns the nearest triangle of each point, likewise; one of them if several are equally near.
-  std::vector<NearestTriangle> nearest(std::span<const Vec3d> points,
-                                       const execution::CancelToken& cancel);
+  std::vector<NearestOnSurface> nearest(std::span<const Vec3d> points,
+                                        const execution::CancelToken& cancel);
 
   /// Returns the triangles themselves. Requires that nearest() has found them: squared distances
   /// are finite.
-  std::vector<SurfaceTriangle> triangles(std::span<const NearestTriangle> found,
+  std::vector<SurfaceTriangle> triangles(std::span<const NearestOnSurface> found,
                                          const execution::CancelToken& cancel);
 
   TreeCache& trees() { return trees_; }
@@ -181,13 +181,13 @@ class SurfaceDistance {
   std::vector<Candidate> candidates(std::span<const Vec3d> block) const;
   std::uint32_t likely_tile(Vec3d point, std::span<const Candidate> candidates) const;
   std::vector<Query> take_batch(std::span<const Vec3d> points,
-                                std::span<const NearestTriangle> found,
+                                std::span<const NearestOnSurface> found,
                                 std::span<const Query>& queries) const;
-  std::vector<NearestTriangle> answer_batch(std::span<const Vec3d> points,
-                                            std::span<const NearestTriangle> found,
-                                            std::span<const Query> batch);
+  std::vector<NearestOnSurface> answer_batch(std::span<const Vec3d> points,
+                                             std::span<const NearestOnSurface> found,
+                                             std::span<const Query> batch);
   void answer(std::span<const Vec3d> points, std::span<const Query> queries,
-              std::vector<NearestTriangle>& found, const execution::CancelToken& cancel);
+              std::vector<NearestOnSurface>& found, const execution::CancelToken& cancel);
 
   const CutSurface& surface_;
   TreeCache trees_;

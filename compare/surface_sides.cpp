@@ -125,7 +125,7 @@ using OpenFans = std::vector<std::unique_ptr<OpenFan>>;
 
 /// The other tiles that may have triangles at open fans; by tile.
 std::vector<TileQuery> other_tiles(const CutSurface& surface, const OpenFans& open,
-                                   std::span<const NearestTriangle> nearest) {
+                                   std::span<const NearestOnSurface> nearest) {
   std::vector<TileQuery> queries;
   for (std::size_t first = 0; first < open.size(); first += kSearchedPoints) {
     const std::size_t end = std::min(first + kSearchedPoints, open.size());
@@ -149,8 +149,9 @@ std::vector<TileQuery> other_tiles(const CutSurface& surface, const OpenFans& op
 }
 
 /// Adds the triangles of other tiles, in the order of the tiles.
-void complete(const CutSurface& surface, TreeCache& trees, std::span<const NearestTriangle> nearest,
-              OpenFans& open, const execution::CancelToken& cancel) {
+void complete(const CutSurface& surface, TreeCache& trees,
+              std::span<const NearestOnSurface> nearest, OpenFans& open,
+              const execution::CancelToken& cancel) {
   const std::vector<TileQuery> queries = other_tiles(surface, open, nearest);
   std::vector<Fan> fans(queries.size());
   look_up(trees, queries, cancel,
@@ -167,7 +168,7 @@ void complete(const CutSurface& surface, TreeCache& trees, std::span<const Neare
 
 std::vector<Side> surface_sides(const CutSurface& surface, TreeCache& trees,
                                 std::span<const Vec3d> points,
-                                std::span<const NearestTriangle> nearest,
+                                std::span<const NearestOnSurface> nearest,
                                 const execution::CancelToken& cancel) {
   std::vector<Side> sides(points.size(), Side::outside);
   std::vector<TileQuery> queries;

@@ -27,7 +27,7 @@ enum class Side : std::uint8_t {
 /// SurfaceDistance.
 std::vector<Side> surface_sides(const CutSurface& surface, TreeCache& trees,
                                 std::span<const Vec3d> points,
-                                std::span<const NearestTriangle> nearest,
+                                std::span<const NearestOnSurface> nearest,
                                 const execution::CancelToken& cancel);
 
 }  // namespace meshhier::comparing

@@ -302,7 +302,7 @@ std::string formats_json() {
       naming.push_back(row.ending);
     companions.insert(companions.end(), row.companions.begin(), row.companions.end());
   }
-  for (const std::string_view ending : mesh_io::all_picture_endings())
+  for (const std::string_view ending : mesh_io::companion_picture_endings())
     companions.push_back(ending);
   const Json formats{
       {"meshes", mesh_io::mesh_endings()}, {"namesOthers", naming}, {"companions", companions}};

@@ -7,19 +7,19 @@
 
 namespace meshhier::execution {
 
-/// Lets items in as long as all that is held stays within the limit; others wait. An item holds one
-/// share at a time, so that none waits for another one that waits. Thread-safe.
+/// Lets items in as long as all that is held stays within the limit; others wait. An item is let
+/// in once at a time, so that none waits for another one that waits. Thread-safe.
 class MemoryGate {
  public:
   explicit MemoryGate(std::uint64_t limit_bytes) : limit_(limit_bytes) {}
 
   /// Memory that is held as long as the object is there.
-  class Share {
+  class Hold {
    public:
-    Share(MemoryGate& gate, std::uint64_t bytes) : gate_(gate), bytes_(bytes) {}
-    Share(const Share&) = delete;
-    Share& operator=(const Share&) = delete;
-    ~Share() { gate_.leave(bytes_); }
+    Hold(MemoryGate& gate, std::uint64_t bytes) : gate_(gate), bytes_(bytes) {}
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+    ~Hold() { gate_.leave(bytes_); }
 
    private:
     MemoryGate& gate_;
@@ -28,7 +28,7 @@ class MemoryGate {
 
   /// Waits until there is room. An item that exceeds the limit by itself goes in when nothing else
   /// is held.
-  [[nodiscard]] Share enter(std::uint64_t bytes) {
+  [[nodiscard]] Hold enter(std::uint64_t bytes) {
     std::unique_lock lock(mutex_);
     freed_.wait(lock, [&] { return held_ == 0 || held_ + bytes <= limit_; });
     held_ += bytes;

@@ -107,7 +107,7 @@ constexpr bool is_exact(ImageFormat format, int quality) {
 }
 
 /// The endings that pictures of a mesh have which no name is given for.
-inline std::vector<std::string_view> picture_endings() {
+inline std::vector<std::string_view> unnamed_picture_endings() {
   std::vector<std::string_view> endings;
   for (const ImageFormatRow& row : kImageFormats) {
     for (const std::string_view ending : row.file.endings) {

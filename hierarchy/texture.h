@@ -2,11 +2,11 @@
 #pragma once
 
 #include "hierarchy/image_format.h"
+#include "hierarchy/named_value.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace meshhier {
@@ -24,7 +24,10 @@ enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
 
 /// The meaning of alpha. Ordered: the last one of several in a tile counts.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
-inline constexpr std::array<std::string_view, 3> kAlphaModeNames{"opaque", "mask", "blend"};
+/// As glTF calls them.
+inline constexpr std::array kAlphaModes{NamedValue{"OPAQUE", AlphaMode::opaque},
+                                        NamedValue{"MASK", AlphaMode::mask},
+                                        NamedValue{"BLEND", AlphaMode::blend}};
 
 /// The picture of a tile, as its file has it.
 struct TileImage {

@@ -18,7 +18,7 @@ constexpr std::uint64_t kRgba = 4;
 constexpr std::uint64_t kMostHeldJpeg = std::uint64_t{1} << 20;
 
 // Costs of files: with a quality of 90, most of an atlas covered.
-constexpr auto kFormats = std::to_array<FormatRow>({
+constexpr auto kFormats = std::to_array<FormatCoders>({
     {.format = ImageFormat::jpeg,
      .open = open_jpeg,
      .encode = encode_jpeg,
@@ -83,16 +83,16 @@ constexpr auto kFormats = std::to_array<FormatRow>({
      .processes = &kKtx2Processes},
 });
 static_assert(kFormats.size() == kImageFormats.size());
-static_assert(are_in_order(kFormats, &FormatRow::format));
+static_assert(are_in_order(kFormats, &FormatCoders::format));
 
 }  // namespace
 
-const FormatRow& coders_of(ImageFormat format) {
+const FormatCoders& coders_of(ImageFormat format) {
   return kFormats[static_cast<std::size_t>(format)];
 }
 
 const TexelCosts& costs_of(const TextureFormat& textures) {
-  const FormatRow& row = coders_of(textures.format);
+  const FormatCoders& row = coders_of(textures.format);
   return textures.quality == kBestQuality ? row.best_colours : row.colours;
 }
 
@@ -111,7 +111,7 @@ std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels) {
 }
 
 void end_coders() {
-  for (const FormatRow& row : kFormats) {
+  for (const FormatCoders& row : kFormats) {
     if (row.processes != nullptr)
       row.processes->end();
   }

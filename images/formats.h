@@ -34,7 +34,7 @@ struct CoderProcesses {
 };
 
 /// A format. All functions are thread-safe for different pictures.
-struct FormatRow {
+struct FormatCoders {
   ImageFormat format;
   /// Reads the head; as open_image(), once the format is known.
   std::unique_ptr<ImageReader> (*open)(ByteSource source, const std::string& name);
@@ -53,7 +53,7 @@ struct FormatRow {
 };
 
 /// Return the row of a format, and the costs of a texel in pictures and in normal maps.
-const FormatRow& coders_of(ImageFormat format);
+const FormatCoders& coders_of(ImageFormat format);
 const TexelCosts& costs_of(const TextureFormat& textures);
 const TexelCosts& costs_of(const NormalMapFormat& maps);
 

@@ -16,7 +16,7 @@ std::uint64_t texels_of(const WrittenImage& image) {
 }
 
 bool is_held(const WrittenImage& image) {
-  const FormatRow& row = coders_of(image.format);
+  const FormatCoders& row = coders_of(image.format);
   return row.open_rows == nullptr || texels_of(image) <= row.most_held_texels;
 }
 

@@ -96,7 +96,7 @@ class Import {
   /// Notes the files when all is read. Pictures are read for their checksums, which is little
   /// beside decoding them.
   void note_files() {
-    Companions all = input_.companions();
+    CompanionFiles all = input_.companions();
     for (const CompanionFile& library : mesh_.materials.companions().files())
       all.add(library);
     for (const images::ImageSource& picture : mesh_.materials.list().images) {

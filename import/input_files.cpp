@@ -133,7 +133,7 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
 /// A picture beside may be the mesh's texture, or of anything else, as a photograph of the object.
 void InputFiles::look_for_picture(const InputFileFacts& facts) {
   std::filesystem::path name = without_gz(facts.path);
-  for (const std::string_view ending : picture_endings()) {
+  for (const std::string_view ending : unnamed_picture_endings()) {
     name.replace_extension(ending);
     if (files_.kind(name) != storage::FileKind::regular)
       continue;
@@ -177,7 +177,7 @@ bool InputFiles::recall(const InputRecord& earlier) {
   };
   if (std::ranges::any_of(earlier.awaited, is_there))
     return false;
-  Companions now;
+  CompanionFiles now;
   now.await(earlier.awaited);
   for (const ReadFile& file : earlier.files) {
     if (file.part == InputPart::mesh)

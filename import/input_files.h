@@ -73,8 +73,8 @@ class InputFiles {
   const std::vector<InputFileFacts>& all() const { return all_; }
   /// Returns the files that belong to the meshes: buffers of glTF files that are there; libraries
   /// and pictures as well, once an import or an earlier build has told them.
-  const Companions& companions() const { return companions_; }
-  void set_companions(Companions companions) { companions_ = std::move(companions); }
+  const CompanionFiles& companions() const { return companions_; }
+  void set_companions(CompanionFiles companions) { companions_ = std::move(companions); }
   /// Takes the companions of an earlier build, as they are now. Returns false, and changes nothing,
   /// if one is not there any more, or if one that was missing is there.
   bool recall(const InputRecord& earlier);
@@ -154,7 +154,7 @@ class InputFiles {
   /// The frame of the first tileset, if there is one; all tilesets stand in it.
   std::optional<std::optional<mesh_io::GlobeFrame>> frame_;
   std::vector<SourceCount> tileset_counts_;
-  Companions companions_;
+  CompanionFiles companions_;
   std::vector<std::string> unused_, warnings_;
   std::set<std::string> known_unused_;
   InputUse use_;

@@ -36,12 +36,12 @@ SourceFile joined(std::span<const ReadFile> files) {
 
 }  // namespace
 
-void Companions::add(CompanionFile file) {
+void CompanionFiles::add(CompanionFile file) {
   if (known_.insert(file.path).second)
     files_.push_back(std::move(file));
 }
 
-void Companions::await(const std::vector<std::filesystem::path>& places) {
+void CompanionFiles::await(const std::vector<std::filesystem::path>& places) {
   for (const std::filesystem::path& place : places) {
     if (known_places_.insert(place).second)
       awaited_.push_back(place);

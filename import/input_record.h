@@ -27,7 +27,7 @@ struct CompanionFile {
 };
 
 /// The companions of an input, each once, in the order in which they were added.
-class Companions {
+class CompanionFiles {
  public:
   void add(CompanionFile file);
   /// Notes where a missing file would have been: one that appears at any of these places belongs to

@@ -46,7 +46,7 @@ std::vector<Word> words_of(std::string_view text) {
 
 class LibraryReader {
  public:
-  LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files, Companions& companions,
+  LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files, CompanionFiles& companions,
                 const execution::CancelToken& cancel)
       : names_(names),
         folder_(names.obj().parent_path()),
@@ -247,7 +247,7 @@ class LibraryReader {
   const MaterialNames& names_;
   fs::path folder_;
   mesh_io::NamedFiles& files_;
-  Companions& companions_;
+  CompanionFiles& companions_;
   const execution::CancelToken& cancel_;
   std::map<std::string, std::vector<std::size_t>> wanted_;  ///< numbers of each name
   std::map<std::string, Loose> loose_;                      ///< wanted names, in small letters
@@ -310,7 +310,7 @@ std::string LibraryMaterial::file_of(std::uint32_t tile) const {
 }
 
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
-                         Companions& companions, const execution::CancelToken& cancel) {
+                         CompanionFiles& companions, const execution::CancelToken& cancel) {
   return LibraryReader(names, files, companions, cancel).read(names.libraries());
 }
 

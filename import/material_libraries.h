@@ -102,6 +102,6 @@ struct Libraries {
 /// material alone, all have that. Throws as mesh_io::read_mtl, and Error(input) if a library is too
 /// large. `companions` gets the libraries.
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
-                         Companions& companions, const execution::CancelToken& cancel);
+                         CompanionFiles& companions, const execution::CancelToken& cancel);
 
 }  // namespace meshhier::importing

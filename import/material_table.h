@@ -46,7 +46,7 @@ class MaterialTable {
   void leave_materials(const std::filesystem::path& obj) { left_.push_back(obj.string()); }
 
   /// Files that the materials come from, but for the pictures, and where missing ones would be.
-  Companions& companions() { return companions_; }
+  CompanionFiles& companions() { return companions_; }
 
   const images::MaterialList& list() const { return list_; }
   std::uint64_t missing() const { return missing_.size(); }
@@ -65,7 +65,7 @@ class MaterialTable {
   images::MaterialList list_;
   std::map<Place, std::uint32_t> known_;
   std::set<std::pair<std::string, std::string>> missing_;
-  Companions companions_;
+  CompanionFiles companions_;
   std::string first_missing_;
   std::uint64_t missing_libraries_ = 0;
   std::string first_missing_library_;

@@ -18,7 +18,7 @@ std::vector<std::string> names_of(std::int32_t texture, const mesh_io::PlyPlan& 
   if (number < plan.texture_files.size())
     return {plan.texture_files[number]};
   std::vector<std::string> names;
-  for (const std::string_view ending : picture_endings())
+  for (const std::string_view ending : unnamed_picture_endings())
     names.push_back(fmt::format("{}_{}{}", without_gz(ply).stem().string(), texture, ending));
   return names;
 }

@@ -274,9 +274,6 @@ class DocumentReader {
   }
 
   void read_material(const GltfObject& o) {
-    static constexpr std::array kAlphaModes{NamedValue{"OPAQUE", AlphaMode::opaque},
-                                            NamedValue{"MASK", AlphaMode::mask},
-                                            NamedValue{"BLEND", AlphaMode::blend}};
     GltfMaterial material{.name = read_name(o)};
     const auto metallic = o.object("pbrMetallicRoughness");
     const bool has_base =

@@ -208,11 +208,11 @@ bool is_known_ending(std::string_view ending) {
   const auto has = [&](const std::vector<std::string_view>& endings) {
     return std::ranges::find(endings, ending) != endings.end();
   };
-  return has(mesh_endings()) || has(all_picture_endings()) ||
+  return has(mesh_endings()) || has(companion_picture_endings()) ||
          std::ranges::any_of(others(), has, &OtherFormat::endings);
 }
 
-std::vector<std::string_view> all_picture_endings() {
+std::vector<std::string_view> companion_picture_endings() {
   std::vector<std::string_view> all;
   for (const ImageFormatRow& row : kImageFormats) {
     std::ranges::copy_if(row.file.endings, std::back_inserter(all),

@@ -17,6 +17,6 @@ std::string other_format(std::string_view start);
 bool is_known_ending(std::string_view ending);
 
 /// Returns the endings of pictures, read or not, which may belong to a mesh.
-std::vector<std::string_view> all_picture_endings();
+std::vector<std::string_view> companion_picture_endings();
 
 }  // namespace meshhier::mesh_io

@@ -120,8 +120,7 @@ class MapStage {
       textures_.put(node, {}, source, {});
       return;
     }
-    const execution::MemoryGate::Share share =
-        gate_.enter(map_bytes(job_.normal_map_format, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(map_bytes(job_.normal_map_format, side_));
     const std::vector<FinerSurface> finer =
         finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
     std::vector<texture::NormalSurface> surfaces;

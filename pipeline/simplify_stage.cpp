@@ -20,10 +20,10 @@ using cluster_simplify::ContractedTile;
 
 /// Returns how far a simplified tile's surface went when its level was made. Requires that the
 /// level is complete.
-Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
+StepDeviation measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   const TileMesh& mesh = loaded.tile.mesh;
   const cluster_simplify::SeamStripOf own{node.index, forest.seam_strip(node)};
-  Step step;
+  StepDeviation step;
   const auto add_foreign = [&](const SeamStrip& of) {
     for (const FinerGhost& corner : of.foreign)
       step.finer_neighbours.add(corner.ref.tile);
@@ -156,8 +156,8 @@ std::vector<NodeId> tiles_left(const Tree& tree, Level level, const Share& share
 }
 
 /// Returns a step for each of so many tiles.
-std::vector<Step> in_order(std::vector<IndexedStep> steps, std::uint32_t count) {
-  std::vector<Step> all(count);
+std::vector<StepDeviation> in_order(std::vector<IndexedStep> steps, std::uint32_t count) {
+  std::vector<StepDeviation> all(count);
   for (IndexedStep& step : steps)
     all.at(step.first) = std::move(step.second);
   return all;

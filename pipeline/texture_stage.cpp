@@ -68,7 +68,7 @@ LeafCorners corners_of(const TileMesh& mesh, const AttributeLayout& layout) {
   return corners;
 }
 
-texture::MaterialTexels texels_of(const Material& material, const images::ImageStore& pictures) {
+texture::AtlasMaterial texels_of(const Material& material, const images::ImageStore& pictures) {
   if (!material.image)
     return {};
   const images::ImageInfo& info = pictures.info(*material.image);
@@ -76,8 +76,8 @@ texture::MaterialTexels texels_of(const Material& material, const images::ImageS
           material.wrap_v};
 }
 
-std::vector<texture::MaterialTexels> texels_of(const TexturedInput& input) {
-  std::vector<texture::MaterialTexels> all;
+std::vector<texture::AtlasMaterial> texels_of(const TexturedInput& input) {
+  std::vector<texture::AtlasMaterial> all;
   for (const Material& material : input.materials.materials)
     all.push_back(texels_of(material, input.pictures));
   return all;
@@ -212,7 +212,7 @@ class TextureMaker {
     source.alpha = picture.alpha();
     const images::WrittenImage written = written_as(source.alpha, atlas.width, atlas.height);
     // The size of a picture is known only now: tiles wait here until there is memory for theirs.
-    const execution::MemoryGate::Share share = gate_.enter(cut_bytes(written, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(cut_bytes(written, side_));
     const TileTexture texture = painted(picture, written, source);
     const float texel = texture::texel_size(source.surface(), atlas.width, atlas.height);
     textures_.put(node, texture, source, {texel, texel, 0});
@@ -253,7 +253,7 @@ class TextureMaker {
     const TileMesh mesh = forest_.load(node).mesh;
     BakeSource source = bare_source(mesh);
     TexelSizes texels = texels_below(node);
-    const execution::MemoryGate::Share share = gate_.enter(bake_bytes(format_.format, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(format_.format, side_));
     if (!source.triangles.empty()) {
       const std::vector<FinerSurface> finer = finer_surfaces(
           forest_, node, mesh, [&](NodeId child) { return textures_.source(child); });
@@ -313,7 +313,7 @@ class TextureMaker {
 
   const Forest& forest_;
   const TexturedInput& input_;
-  const std::vector<texture::MaterialTexels> materials_;
+  const std::vector<texture::AtlasMaterial> materials_;
   TextureStore& textures_;
   const TextureFormat format_;
   const std::uint32_t side_;

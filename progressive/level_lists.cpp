@@ -19,15 +19,15 @@ using progressive::Lifted;
 using progressive::Losses;
 using progressive::Sector;
 using progressive::TracedTile;
-using progressive::Values;
+using progressive::VertexValues;
 
 /// The part of one level's lists that a subtree makes.
 struct LevelPart {
   Losses lost;
   std::vector<StandIn> stand_ins;
-  Values stand_in_values;
+  VertexValues stand_in_values;
   std::vector<std::uint32_t> foreign_ranks;
-  Values foreign_values;
+  VertexValues foreign_values;
 };
 
 struct Subtree {

@@ -268,7 +268,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   mesh_io::require_true_ending(options.output.string(), {},
                                "progressive makes a directory of its own kind; name it NAME.prog");
   const storage::Output output{storage::followed(files, options.output), storage::Container::files,
-                               storage::Content::progressive_stream};
+                               storage::OutputContent::progressive_stream};
   storage::check_output(files, output, options.replace);
   storage::require_apart(files, options.output, std::array{hierarchy});
   storage::check_place(files, output.path);

@@ -28,8 +28,8 @@ TileVertex vertex_of(std::size_t number) {
   return static_cast<TileVertex>(number);
 }
 
-Values values_of(const VertexArray& vertices, std::size_t count) {
-  Values values;
+VertexValues values_of(const VertexArray& vertices, std::size_t count) {
+  VertexValues values;
   values.width = 3 + static_cast<std::size_t>(vertices.channels);
   values.values.reserve(count * values.width);
   for (std::size_t i = 0; i < count; ++i) {

@@ -68,7 +68,7 @@ struct TracedTriangle {
 };
 
 /// An array of the vertices' values: x, y, z, attributes.
-struct Values {
+struct VertexValues {
   std::vector<float> values;  ///< width each
   std::size_t width = 3;
 
@@ -82,8 +82,8 @@ struct Values {
 
 struct TracedTile {
   NodeId node;
-  std::vector<std::uint32_t> ranks;       ///< the original vertex that each own vertex is
-  Values values;                          ///< the own vertices'
+  std::vector<std::uint32_t> ranks;       ///< which vertex of the original each own vertex is
+  VertexValues values;                    ///< theirs
   std::vector<GhostRef> ghosts;           ///< ascending; tile vertices from ranks.size() on
   GhostChains chains;                     ///< one for each ghost, from this tile's level up
   std::vector<std::uint16_t> parent_map;  ///< empty for the root
@@ -94,7 +94,7 @@ struct TracedTile {
 /// Vertices and triangles of a level that the next coarser one has no more, in ascending order.
 struct Losses {
   std::vector<std::uint32_t> ranks;
-  Values values;
+  VertexValues values;
   std::vector<std::uint64_t> triangles;  ///< indices; those counted elsewhere are not there
   std::vector<Triangle<std::uint32_t>> corners;
 };

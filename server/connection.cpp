@@ -139,7 +139,7 @@ bool Connection::invite_body() {
   return write(kContinue.data(), kContinue.size()) == static_cast<ssize_t>(kContinue.size());
 }
 
-Connection::Piece Connection::receive_body(std::span<std::byte> bytes) {
+Connection::BodyPiece Connection::receive_body(std::span<std::byte> bytes) {
   if (!invite_body())
     return {0, Body::End::lost};
   for (;;) {
@@ -153,11 +153,11 @@ Connection::Piece Connection::receive_body(std::span<std::byte> bytes) {
   }
 }
 
-Connection::Piece Connection::take_body(std::span<std::byte> bytes) {
+Connection::BodyPiece Connection::take_body(std::span<std::byte> bytes) {
   const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), body_left_));
   if (most == 0)
     return {};
-  Piece piece{take_received(bytes.first(most))};
+  BodyPiece piece{take_received(bytes.first(most))};
   if (piece.bytes == 0)
     piece = receive_body(bytes.first(most));
   body_left_ -= piece.bytes;

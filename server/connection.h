@@ -56,14 +56,14 @@ class Connection final : public httplib::Stream {
   const RequestHead& head() const { return head_; }
 
   /// A piece of the body.
-  struct Piece {
+  struct BodyPiece {
     std::size_t bytes = 0;             ///< 0: none comes any more,
     Body::End end = Body::End::whole;  ///< because of this
   };
   /// Returns the next bytes behind the head, as far as Content-Length announced some: those that
   /// are there, else waits for the first that come, within the limits. A client that waits for it
   /// is told to go on.
-  Piece take_body(std::span<std::byte> bytes);
+  BodyPiece take_body(std::span<std::byte> bytes);
   bool is_stopping() const { return is_stopping_(); }
 
   /// Says that nothing more is sent. If the client may still be sending, its bytes are dropped for
@@ -89,7 +89,7 @@ class Connection final : public httplib::Stream {
   bool has_head() const;
   void begin_exchange();
   std::size_t take_received(std::span<std::byte> bytes);
-  Piece receive_body(std::span<std::byte> bytes);
+  BodyPiece receive_body(std::span<std::byte> bytes);
   bool invite_body();
   /// Appends what has come to received_.
   enum class Received { something, nothing_yet, end };

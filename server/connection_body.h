@@ -20,7 +20,7 @@ class ConnectionBody final : public Body {
   std::size_t read(std::span<std::byte> bytes) override {
     if (end_ != End::whole)
       return 0;
-    const Connection::Piece piece = connection_.take_body(bytes);
+    const Connection::BodyPiece piece = connection_.take_body(bytes);
     end_ = piece.end;
     return piece.bytes;
   }

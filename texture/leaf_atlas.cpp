@@ -22,7 +22,7 @@ struct Cell {
 
 class Planner {
  public:
-  Planner(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+  Planner(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
           std::uint32_t most_side)
       : leaf_(leaf),
         materials_(materials),
@@ -48,14 +48,14 @@ class Planner {
     return std::max(cell.texels.width, cell.texels.height);
   }
   std::uint32_t material_of(std::uint32_t cell) const { return texels_.shared[cell].material; }
-  const MaterialTexels& picture_of(std::uint32_t cell) const {
+  const AtlasMaterial& picture_of(std::uint32_t cell) const {
     return materials_[material_of(cell)];
   }
 
   /// The texels that charts share, in a level of their picture. They are flat where it has one
   /// texel, or does not exist.
   Cell cell(std::uint32_t number, std::uint32_t level) const {
-    const MaterialTexels& picture = picture_of(number);
+    const AtlasMaterial& picture = picture_of(number);
     const bool is_flat =
         picture.width == 0 || level >= picture.levels ||
         std::max(level_side(picture.width, level), level_side(picture.height, level)) <= 1;
@@ -190,7 +190,7 @@ class Planner {
 
   Vec2f corner(const LeafAtlas& atlas, const SharedPlace& place, const AtlasPiece& piece,
                std::uint32_t vertex) const {
-    const MaterialTexels& picture = picture_of(place.shared);
+    const AtlasMaterial& picture = picture_of(place.shared);
     const auto in_atlas = [&](double at, std::uint32_t side, std::int64_t from, std::uint32_t to,
                               std::uint32_t atlas_side) {
       const double inside = cells_[place.shared].is_flat
@@ -206,7 +206,7 @@ class Planner {
   }
 
   const LeafTriangles& leaf_;
-  std::span<const MaterialTexels> materials_;
+  std::span<const AtlasMaterial> materials_;
   std::uint32_t most_side_;
   ChartPieces charts_;
   SharedCharts texels_;
@@ -215,7 +215,7 @@ class Planner {
 
 }  // namespace
 
-LeafAtlas plan_leaf_atlas(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+LeafAtlas plan_leaf_atlas(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
                           std::uint32_t most_side) {
   return Planner(leaf, materials, most_side)();
 }

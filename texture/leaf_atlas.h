@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kLeafGutter = 4;
 inline constexpr std::uint32_t kLeafAlignment = 8;
 
 /// A material as the atlas sees it.
-struct MaterialTexels {
+struct AtlasMaterial {
   std::uint32_t width = 0, height = 0;  ///< of its picture; 0: a colour alone
   std::uint32_t levels = 1;             ///< of the picture's pyramid
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
@@ -60,7 +60,7 @@ struct LeafAtlas {
 /// count; coordinates of any size: those beyond 2^23 are taken for it. Only if 8 x 8 texels a
 /// material have no room in most_side * most_side, the atlas is larger. A level of a picture is 0
 /// ... 1 wide, however its sides were rounded. O(t log t), a few times over.
-LeafAtlas plan_leaf_atlas(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+LeafAtlas plan_leaf_atlas(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
                           std::uint32_t most_side);
 
 }  // namespace meshhier::texture

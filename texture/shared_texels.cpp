@@ -25,7 +25,7 @@ TexcoordBox joined(const TexcoordBox& a, const TexcoordBox& b) {
 /// A material's picture: its shared parts, to be found by the place.
 class Picture {
  public:
-  explicit Picture(const MaterialTexels& texels) : texels_(texels) {
+  explicit Picture(const AtlasMaterial& texels) : texels_(texels) {
     period_u_ = period(texels, texels.wrap_u);
     period_v_ = period(texels, texels.wrap_v);
   }
@@ -91,14 +91,14 @@ class Picture {
     return {first, last < first ? last + kCells : last};
   }
 
-  const MaterialTexels& texels_;
+  const AtlasMaterial& texels_;
   double period_u_ = 0, period_v_ = 0;
   std::array<std::array<std::vector<std::uint32_t>, kCells>, kCells> cells_;
 };
 
 class Sharer {
  public:
-  Sharer(std::span<const ChartPiece> pieces, std::span<const MaterialTexels> materials,
+  Sharer(std::span<const ChartPiece> pieces, std::span<const AtlasMaterial> materials,
          std::uint32_t most_side)
       : pieces_(pieces), materials_(materials), most_side_(most_side) {}
 
@@ -169,7 +169,7 @@ class Sharer {
   }
 
   std::span<const ChartPiece> pieces_;
-  std::span<const MaterialTexels> materials_;
+  std::span<const AtlasMaterial> materials_;
   std::uint32_t most_side_;
   SharedCharts result_;
 };
@@ -177,7 +177,7 @@ class Sharer {
 }  // namespace
 
 SharedCharts share_texels(std::span<const ChartPiece> pieces,
-                          std::span<const MaterialTexels> materials, std::uint32_t most_side) {
+                          std::span<const AtlasMaterial> materials, std::uint32_t most_side) {
   return Sharer(pieces, materials, most_side)();
 }
 

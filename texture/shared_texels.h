@@ -31,6 +31,6 @@ struct SharedCharts {
 /// exceeded; where a picture repeats, so is a piece moved. Not the least of texels that can be, as
 /// each piece looks at a few others only. Deterministic; O(p log p) for p pieces.
 SharedCharts share_texels(std::span<const ChartPiece> pieces,
-                          std::span<const MaterialTexels> materials, std::uint32_t most_side);
+                          std::span<const AtlasMaterial> materials, std::uint32_t most_side);
 
 }  // namespace meshhier::texture

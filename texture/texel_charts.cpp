@@ -74,7 +74,7 @@ UnionFind connect(const LeafTriangles& leaf) {
 
 class Cutter {
  public:
-  Cutter(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+  Cutter(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
          std::uint32_t most_side)
       : leaf_(leaf), materials_(materials), most_side_(most_side) {}
 
@@ -125,7 +125,7 @@ class Cutter {
   }
 
   bool is_full(const ChartPiece& whole, const TexelBox& box) const {
-    const MaterialTexels& picture = materials_[whole.material];
+    const AtlasMaterial& picture = materials_[whole.material];
     double covered = 0;
     for (std::uint32_t i = whole.begin; i < whole.end; ++i)
       covered += area(result_.triangles[i]);
@@ -136,7 +136,7 @@ class Cutter {
     const auto is_long = [](double length, double period) {
       return period > 0 && length > kManyPeriods * period;
     };
-    const MaterialTexels& picture = materials_[chart.material];
+    const AtlasMaterial& picture = materials_[chart.material];
     return is_long(chart.box.u1 - chart.box.u0, period(picture, picture.wrap_u)) ||
            is_long(chart.box.v1 - chart.box.v0, period(picture, picture.wrap_v));
   }
@@ -147,7 +147,7 @@ class Cutter {
     TexcoordBox middles = kNowhere;
     for (std::uint32_t i = whole.begin; i < whole.end; ++i)
       add(middles, middle(result_.triangles[i]));
-    const MaterialTexels& picture = materials_[whole.material];
+    const AtlasMaterial& picture = materials_[whole.material];
     const double width = (middles.u1 - middles.u0) * picture.width;
     const double height = (middles.v1 - middles.v0) * picture.height;
     if (!(std::max(width, height) > 3))
@@ -166,7 +166,7 @@ class Cutter {
   /// Appends the pieces and returns their texels.
   double cut(std::uint32_t begin, std::uint32_t end) {
     const ChartPiece whole = piece(begin, end);
-    const MaterialTexels& picture = materials_[whole.material];
+    const AtlasMaterial& picture = materials_[whole.material];
     const std::size_t first = result_.pieces.size();
     const TexelBox box = texels_around(whole.box, picture, 0);
     const bool fits = std::max(box.width, box.height) <= most_side_ && !is_repeated(whole);
@@ -182,7 +182,7 @@ class Cutter {
   }
 
   const LeafTriangles& leaf_;
-  std::span<const MaterialTexels> materials_;
+  std::span<const AtlasMaterial> materials_;
   std::uint32_t most_side_;
   ChartPieces result_;
 };
@@ -194,7 +194,7 @@ double clamped_texcoord(float value) {
                                     : -kFarthestTexcoord;
 }
 
-double period(const MaterialTexels& material, Wrap wrap) {
+double period(const AtlasMaterial& material, Wrap wrap) {
   if (material.width == 0 || wrap == Wrap::clamp)
     return 0;
   return wrap == Wrap::mirrored ? 2 : 1;
@@ -207,8 +207,7 @@ std::uint32_t level_side(std::uint32_t side, std::uint32_t level) {
                                     level);
 }
 
-TexelBox texels_around(const TexcoordBox& box, const MaterialTexels& material,
-                       std::uint32_t level) {
+TexelBox texels_around(const TexcoordBox& box, const AtlasMaterial& material, std::uint32_t level) {
   const std::int64_t gutter = kLeafGutter;
   const double width = level_side(material.width, level);
   const double height = level_side(material.height, level);
@@ -220,7 +219,7 @@ TexelBox texels_around(const TexcoordBox& box, const MaterialTexels& material,
   return texels;
 }
 
-ChartPieces cut_charts(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+ChartPieces cut_charts(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
                        std::uint32_t most_side) {
   return Cutter(leaf, materials, most_side)();
 }

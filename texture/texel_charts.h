@@ -42,18 +42,18 @@ struct TexelBox {
 std::uint32_t level_side(std::uint32_t side, std::uint32_t level);
 
 /// The texels for triangles in `box`. O(1).
-TexelBox texels_around(const TexcoordBox& box, const MaterialTexels& material, std::uint32_t level);
+TexelBox texels_around(const TexcoordBox& box, const AtlasMaterial& material, std::uint32_t level);
 
 double clamped_texcoord(float value);
 
 /// After how many pictures a picture repeats: 1, mirrored 2; 0 if it never does.
-double period(const MaterialTexels& material, Wrap wrap);
+double period(const AtlasMaterial& material, Wrap wrap);
 
 /// Triangles that share a vertex, or a material's coordinates to the bit, are one chart. A chart is
 /// cut in two by its triangles' middles as long as it is larger than `most_side`, its picture
 /// repeats in it, or little of it is covered and the cut saves a fourth of its texels. Equal
 /// triangles stay together. O(t log t), times at most twice the bits of a texel's number for cuts.
-ChartPieces cut_charts(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
+ChartPieces cut_charts(const LeafTriangles& leaf, std::span<const AtlasMaterial> materials,
                        std::uint32_t most_side);
 
 }  // namespace meshhier::texture

@@ -22,7 +22,7 @@ std::uint64_t hash_of(const ShadedTriangle& triangle, bool with_normals) {
 template <class Visit>
 void for_each_other(const CornerTriangle& triangle, std::uint32_t own, Visit visit) {
   std::uint32_t met = own;
-  for (const Corner corner : triangle) {
+  for (const CornerId corner : triangle) {
     const std::uint32_t tile = tile_index(corner);
     if (tile == own || tile == met)
       continue;
@@ -99,7 +99,7 @@ std::vector<BorderPairs::Use> BorderPairs::add_triangles(NodeId node,
   for (const ShadedTriangle& triangle : border) {
     for_each_other(triangle.corners, node.index, [&](std::uint32_t other) {
       sums[other].triangles += hash_of(triangle, compare_attributes(node, {node.level, other}));
-      for (const Corner corner : triangle.corners) {
+      for (const CornerId corner : triangle.corners) {
         if (tile_index(corner) == node.index)
           uses.push_back({other, vertex_index(corner)});
       }

@@ -11,17 +11,17 @@
 namespace meshhier::verifying {
 
 /// NodeId::index of a tile in the upper half, one of its own places in the lower.
-enum class Corner : std::uint64_t {};
+enum class CornerId : std::uint64_t {};
 
-using CornerTriangle = Triangle<Corner>;
+using CornerTriangle = Triangle<CornerId>;
 
-constexpr Corner make_corner(std::uint32_t tile, std::uint32_t vertex) {
-  return static_cast<Corner>(std::uint64_t{tile} << 32 | vertex);
+constexpr CornerId make_corner(std::uint32_t tile, std::uint32_t vertex) {
+  return static_cast<CornerId>(std::uint64_t{tile} << 32 | vertex);
 }
-constexpr std::uint32_t tile_index(Corner corner) {
+constexpr std::uint32_t tile_index(CornerId corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner) >> 32);
 }
-constexpr std::uint32_t vertex_index(Corner corner) {
+constexpr std::uint32_t vertex_index(CornerId corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
 }
 

@@ -127,7 +127,7 @@ std::vector<ShadedTriangle> touching(const std::vector<ShadedTriangle>& border,
   std::vector<ShadedTriangle> met;
   std::copy_if(border.begin(), border.end(), std::back_inserter(met), [&](const auto& triangle) {
     return std::any_of(triangle.corners.begin(), triangle.corners.end(),
-                       [&](Corner corner) { return tile_index(corner) == other; });
+                       [&](CornerId corner) { return tile_index(corner) == other; });
   });
   return met;
 }

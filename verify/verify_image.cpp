@@ -33,8 +33,8 @@ ChildTiles children_of(const VerifyJob& job, NodeId parent) {
 
 /// The image of ghost i of `child`, or nothing if its chain is wrong (told by explain_difference).
 /// `sibling`: the parent's other child.
-std::optional<Corner> ghost_image(const Tree& tree, const PublishedTile& child,
-                                  const PublishedTile& sibling, std::size_t i, NodeId parent) {
+std::optional<CornerId> ghost_image(const Tree& tree, const PublishedTile& child,
+                                    const PublishedTile& sibling, std::size_t i, NodeId parent) {
   const NodeId neighbour{child.node.level, child.mesh.ghosts[i].tile};
   const std::size_t up = raw(child.node.level) - raw(parent.level);
   const GhostChain chain = child.chains[i];
@@ -52,9 +52,10 @@ std::optional<Corner> ghost_image(const Tree& tree, const PublishedTile& child,
 
 /// The places of a child's tile as places of the parent's level; nothing if the child is
 /// broken.
-std::optional<std::vector<Corner>> image_of_vertices(const Tree& tree, const PublishedTile& child,
-                                                     const PublishedTile& sibling, NodeId parent) {
-  std::vector<Corner> images;
+std::optional<std::vector<CornerId>> image_of_vertices(const Tree& tree, const PublishedTile& child,
+                                                       const PublishedTile& sibling,
+                                                       NodeId parent) {
+  std::vector<CornerId> images;
   images.reserve(child.mesh.vertices.size());
   if (child.parent_map.size() != child.mesh.own_count)
     return std::nullopt;

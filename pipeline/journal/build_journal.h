@@ -90,7 +90,7 @@ struct Workpieces {
 using BrokenImage = std::pair<std::uint32_t, std::string>;
 
 /// The step of a tile whose index on its level is known.
-using IndexedStep = std::pair<std::uint32_t, Step>;
+using IndexedStep = std::pair<std::uint32_t, StepDeviation>;
 
 /// A tile's file.
 struct Published {

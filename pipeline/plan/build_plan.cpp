@@ -186,7 +186,7 @@ void require_stay(std::span<const std::filesystem::path> inputs,
 
 }  // namespace
 
-void check_apart(const importing::Companions& companions, const config::Config& config,
+void check_apart(const importing::CompanionFiles& companions, const config::Config& config,
                  const std::vector<std::filesystem::path>& others, storage::FileSystem& files) {
   std::vector<std::filesystem::path> paths;
   for (const importing::CompanionFile& file : companions.files())

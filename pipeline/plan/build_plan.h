@@ -53,7 +53,7 @@ void check_apart(const config::Config& config, storage::FileSystem& files);
 
 /// Throws so for the files that meshes name, which are known when the meshes are read. `others`:
 /// files that are written besides the output.
-void check_apart(const importing::Companions& companions, const config::Config& config,
+void check_apart(const importing::CompanionFiles& companions, const config::Config& config,
                  const std::vector<std::filesystem::path>& others, storage::FileSystem& files);
 
 /// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.

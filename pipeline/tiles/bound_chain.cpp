@@ -37,11 +37,11 @@ BoundChain::BoundChain(const Tree& tree, double diagonal)
     below_[i].reached.add(i);
 }
 
-void BoundChain::add(Level level, std::span<const Step> steps) {
+void BoundChain::add(Level level, std::span<const StepDeviation> steps) {
   most_back_ = most_certain_ = 0;
   for (const Sum& sum : below_)
     most_back_ = std::max(most_back_, sum.back);
-  for (const Step& step : steps)
+  for (const StepDeviation& step : steps)
     most_certain_ = std::max(most_certain_, step.certain);
   std::vector<Sum> sums(steps.size());
   constexpr std::uint64_t kPart = 64;
@@ -67,8 +67,8 @@ double BoundChain::farthest_back(const TileSet& tiles) const {
   return farthest;
 }
 
-BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) const {
-  const Step& step = steps[node.index];
+BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const StepDeviation> steps) const {
+  const StepDeviation& step = steps[node.index];
   Sum sum;
   // The surface was measured against its children's and its neighbours' children's: a point's way
   // back may lead through any of them.
@@ -105,7 +105,7 @@ BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) con
   return sum;
 }
 
-void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
+void BoundChain::note(NodeId node, const StepDeviation& step, const Sum& sum) {
   TileError below;
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {

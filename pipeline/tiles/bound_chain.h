@@ -51,8 +51,8 @@ class TileSet {
 };
 
 /// The distance that the contraction of one tile moved the surface, its seams counted.
-struct Step {
-  double certain = 0;        ///< both ways; infinite if a drawn part has nothing drawn near it now
+struct StepDeviation {
+  double certain = 0;        ///< both ways; infinite if what was drawn is drawn nowhere near
   double mean_square = 0;    ///< infinite likewise
   TileSet finer_neighbours;  ///< tiles of the children's level that the drawn surface was held
                              ///< against
@@ -92,7 +92,7 @@ class BoundChain {
 
   /// Adds the steps of a level, the next above the last call's, one per node. Works in parallel on
   /// the caller's TBB arena.
-  void add(Level level, std::span<const Step> steps);
+  void add(Level level, std::span<const StepDeviation> steps);
 
   /// The errors of the levels that were added so far; 0 for the partitions.
   const TileErrors& errors() const { return errors_; }
@@ -106,8 +106,8 @@ class BoundChain {
 
   std::uint32_t parent(Level level, std::uint32_t finer_tile) const;
   double farthest_back(const TileSet& tiles) const;
-  Sum sum_of(NodeId node, std::span<const Step> steps) const;
-  void note(NodeId node, const Step& step, const Sum& sum);
+  Sum sum_of(NodeId node, std::span<const StepDeviation> steps) const;
+  void note(NodeId node, const StepDeviation& step, const Sum& sum);
 
   Tree tree_;
   TileErrors errors_;

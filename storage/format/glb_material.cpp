@@ -1,16 +1,11 @@
 #include "storage/format/glb_material.h"
 
-#include <array>
-
 #include <nlohmann/json.hpp>
 
 namespace meshhier::storage {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// glTF's names, in the order of AlphaMode.
-constexpr std::array<const char*, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
 
 // Filters and wrap modes of the glTF 2.0 specification.
 constexpr unsigned kLinear = 9729;
@@ -28,7 +23,7 @@ Json material_json(std::size_t texture, AlphaMode alpha, bool unlit) {
   Json material = material_json();
   material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
   if (alpha != AlphaMode::opaque)
-    material["alphaMode"] = kAlphaModes[static_cast<std::size_t>(alpha)];
+    material["alphaMode"] = name_in(kAlphaModes, alpha);
   if (unlit)
     material["extensions"][kUnlitExtension] = Json::object();
   return material;

@@ -289,7 +289,8 @@ GhostGroups group_ghosts(std::span<const GhostRef> ghosts) {
 AlphaMode read_alpha(const Json& document) {
   const Json::json_pointer place("/materials/0/alphaMode");
   const Json mode = document.contains(place) ? document[place] : Json();
-  return mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+  const std::string name = mode.is_string() ? mode.get<std::string>() : "";
+  return value_named(kAlphaModes, name).value_or(AlphaMode::opaque);
 }
 
 /// The keys of a picture in the extension.

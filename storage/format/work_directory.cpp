@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 /// folders; empty if there is none.
 std::string foreign_file(FileSystem& files, const Output& output) {
   const auto is_own =
-      output.content == Content::progressive_stream ? is_stream_file : is_hierarchy_file;
+      output.content == OutputContent::progressive_stream ? is_stream_file : is_hierarchy_file;
   for (const fs::path& file : files.list(output.path)) {
     const std::string name = file.lexically_relative(output.path).generic_string();
     if (!is_own(name) && !is_system_file(name))
@@ -42,7 +42,7 @@ std::string objection(FileSystem& files, const Output& output) {
       return "is a directory, and one file is to be made (\"container\": \"3tz\")";
     return is_hierarchy_archive(files, output.path) ? "" : "is not the archive of a hierarchy";
   }
-  const bool is_stream = output.content == Content::progressive_stream;
+  const bool is_stream = output.content == OutputContent::progressive_stream;
   if (!is_directory && is_stream)
     return "is not a progressive stream but a file";
   if (!is_directory)

@@ -17,18 +17,18 @@ enum class Container {
 };
 
 /// The kind of an output: only its own kind is replaced.
-enum class Content { hierarchy, progressive_stream };
+enum class OutputContent { hierarchy, progressive_stream };
 
 /// The place and kind of an output.
 struct Output {
   // NOLINTNEXTLINE(google-explicit-constructor): a path is a directory unless more is said
   Output(std::filesystem::path where, Container in = Container::files,
-         Content what = Content::hierarchy)
+         OutputContent what = OutputContent::hierarchy)
       : path(std::move(where)), container(in), content(what) {}
 
   std::filesystem::path path;
   Container container;
-  Content content;
+  OutputContent content;
 };
 
 /// Returns the path that a link of that name leads to; the name itself if it is no link.

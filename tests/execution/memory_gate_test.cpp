@@ -17,7 +17,7 @@ TEST(MemoryGateTest, WhatIsHeldStaysWithinTheLimit) {
   std::atomic<std::uint64_t> most = 0;
   const auto work = [&](std::uint64_t bytes) {
     for (int i = 0; i < 200; ++i) {
-      const MemoryGate::Share share = gate.enter(bytes);
+      const MemoryGate::Hold held = gate.enter(bytes);
       const std::uint64_t now = held += bytes;
       for (std::uint64_t seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
       }
@@ -36,9 +36,9 @@ TEST(MemoryGateTest, WhatIsHeldStaysWithinTheLimit) {
 
 TEST(MemoryGateTest, WhatExceedsTheLimitGoesInAlone) {
   MemoryGate gate(10);
-  { const MemoryGate::Share large = gate.enter(1000); }
-  const MemoryGate::Share first = gate.enter(4);
-  const MemoryGate::Share second = gate.enter(6);
+  { const MemoryGate::Hold large = gate.enter(1000); }
+  const MemoryGate::Hold first = gate.enter(4);
+  const MemoryGate::Hold second = gate.enter(6);
 }
 
 }  // namespace

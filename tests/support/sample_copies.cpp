@@ -20,7 +20,7 @@
 namespace meshhier::tests {
 namespace {
 
-using verifying::Corner;
+using verifying::CornerId;
 using verifying::CornerTriangle;
 using verifying::make_corner;
 
@@ -34,13 +34,13 @@ std::uint64_t scrambled(std::uint64_t x) {
 /// Alike in all tiles that have the triangle.
 std::uint64_t hash_of(const CornerTriangle& t) {
   std::uint64_t hash = 0;
-  for (const Corner corner : canonical(t))
+  for (const CornerId corner : canonical(t))
     hash = scrambled(hash + static_cast<std::uint64_t>(corner) + 1);
   return hash;
 }
 
 /// Which of the vertices at a corner's place a triangle takes, 0 to 2: a name, not a number yet.
-std::uint32_t name_of(Corner corner, const CornerTriangle& t) {
+std::uint32_t name_of(CornerId corner, const CornerTriangle& t) {
   return static_cast<std::uint32_t>(scrambled(hash_of(t) + static_cast<std::uint64_t>(corner)) % 3);
 }
 
@@ -85,7 +85,7 @@ class Splitter {
     std::vector<CornerWedges> wedges;  ///< as the owners number them
   };
 
-  static Corner corner_of(const PublishedTile& tile, TileVertex v) {
+  static CornerId corner_of(const PublishedTile& tile, TileVertex v) {
     return tile.mesh.is_own(v) ? make_corner(tile.node.index, raw(v))
                                : make_corner(tile.mesh.ghost(v).tile, tile.mesh.ghost(v).index);
   }
@@ -93,7 +93,7 @@ class Splitter {
     return {corner_of(tile, t[0]), corner_of(tile, t[1]), corner_of(tile, t[2])};
   }
 
-  std::set<std::uint32_t> names_at(Corner corner) const {
+  std::set<std::uint32_t> names_at(CornerId corner) const {
     const auto found = names_.find(corner);
     return found == names_.end() ? std::set<std::uint32_t>{0} : found->second;
   }
@@ -188,7 +188,7 @@ class Splitter {
 
   CopiesOptions options_;
   int channels_;
-  std::map<Corner, std::set<std::uint32_t>> names_;
+  std::map<CornerId, std::set<std::uint32_t>> names_;
 };
 
 void renew_record(const Tree& tree, const PublishedTile& tile, TileRecord& record) {

@@ -62,7 +62,7 @@ std::uint32_t levels_of(std::uint32_t width, std::uint32_t height) {
     ++levels;
   return levels;
 }
-MaterialTexels picture(std::uint32_t width, std::uint32_t height) {
+AtlasMaterial picture(std::uint32_t width, std::uint32_t height) {
   return {width, height, levels_of(width, height)};
 }
 
@@ -81,7 +81,7 @@ std::uint64_t wrapped(std::int64_t at, std::int64_t side, Wrap wrap) {
 }
 
 /// Any value for any texel of a picture.
-double texel(const MaterialTexels& of, std::uint32_t level, std::int64_t x, std::int64_t y) {
+double texel(const AtlasMaterial& of, std::uint32_t level, std::int64_t x, std::int64_t y) {
   const std::uint64_t at_x = wrapped(x, level_side_of(of.width, level), of.wrap_u);
   const std::uint64_t at_y = wrapped(y, level_side_of(of.height, level), of.wrap_v);
   const std::uint64_t mixed = (at_x * 0x9E3779B97F4A7C15U ^ at_y * 0xC2B2AE3D27D4EB4FU ^ level);
@@ -102,7 +102,7 @@ double bilinear(double x, double y, const At& at) {
 /// The atlas drawn with texel().
 class Drawn {
  public:
-  Drawn(const LeafAtlas& atlas, const std::vector<MaterialTexels>& materials)
+  Drawn(const LeafAtlas& atlas, const std::vector<AtlasMaterial>& materials)
       : atlas_(atlas), piece_at_(std::size_t{atlas.width} * atlas.height, -1) {
     for (std::size_t p = 0; p < atlas.pieces.size(); ++p) {
       const AtlasPiece& piece = atlas.pieces[p];
@@ -141,7 +141,7 @@ class Drawn {
  private:
   const LeafAtlas& atlas_;
   std::vector<int> piece_at_;
-  std::vector<MaterialTexels> materials_;
+  std::vector<AtlasMaterial> materials_;
 };
 
 Vec2f between(const CornerTexcoords& at, double b, double c) {
@@ -151,7 +151,7 @@ Vec2f between(const CornerTexcoords& at, double b, double c) {
 }
 
 /// The corners of a triangle lie in one piece, with the gutter around them.
-void expect_gutters(const LeafAtlas& atlas, const std::vector<MaterialTexels>& materials) {
+void expect_gutters(const LeafAtlas& atlas, const std::vector<AtlasMaterial>& materials) {
   const Drawn drawn(atlas, materials);
   constexpr double kRounding = 0.01;
   for (const CornerTexcoords& corners : atlas.corners) {
@@ -170,11 +170,11 @@ void expect_gutters(const LeafAtlas& atlas, const std::vector<MaterialTexels>& m
 
 /// Everywhere in the triangles that the atlas shows texel by texel it looks like the input.
 void expect_input_texels(const Leaf& leaf, const LeafAtlas& atlas,
-                         const std::vector<MaterialTexels>& materials) {
+                         const std::vector<AtlasMaterial>& materials) {
   const Drawn drawn(atlas, materials);
   for (std::size_t t = 0; t < leaf.triangles.size(); ++t) {
     const std::array<TileVertex, 3>& corners = leaf.triangles[t];
-    const MaterialTexels& picture = materials[leaf.materials[raw(corners[0])]];
+    const AtlasMaterial& picture = materials[leaf.materials[raw(corners[0])]];
     for (const auto& [b, c] :
          {std::array{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.3, 0.3}, {0.5, 0.5}}) {
       const auto source = [&](auto member) {
@@ -205,7 +205,7 @@ TEST(LeafAtlas, ATexelOfTheAtlasIsATexelOfTheInput) {
   leaf.grid({0.5f, 0.5f}, {0.9f, 0.99f}, 3, 1);
   leaf.grid({-0.2f, -0.1f}, {0.05f, 0.08f}, 4);    // over the picture's border
   leaf.grid({117.25f, -33.5f}, {117.5f, -33}, 2);  // far from 0
-  const std::vector<MaterialTexels> materials = {picture(333, 517), picture(128, 64)};
+  const std::vector<AtlasMaterial> materials = {picture(333, 517), picture(128, 64)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.charts, 4U);
   EXPECT_EQ(atlas.reduced, 0U);
@@ -220,7 +220,7 @@ TEST(LeafAtlas, TrianglesThatShareAVertexOrACoordinateAreOneChart) {
   leaf.triangle(Vec2f{0.2f, 0.2f}, {0.3f, 0.2f}, {0.2f, 0.3f});     // shares a coordinate
   leaf.triangle(Vec2f{0.2f, 0.2f}, {0.3f, 0.2f}, {0.2f, 0.3f}, 1);  // with another material
   leaf.triangle(Vec2f{0.7f, 0.7f}, {0.8f, 0.7f}, {0.7f, 0.8f});
-  const std::vector<MaterialTexels> materials = {picture(64, 64), picture(64, 64)};
+  const std::vector<AtlasMaterial> materials = {picture(64, 64), picture(64, 64)};
   EXPECT_EQ(plan_leaf_atlas(leaf, materials, 4096).charts, 3U);
 }
 
@@ -235,7 +235,7 @@ TEST(LeafAtlas, ADiagonalStripIsCutIntoPieces) {
     a = c;
     b = d;
   }
-  const std::vector<MaterialTexels> materials = {picture(1000, 1000)};
+  const std::vector<AtlasMaterial> materials = {picture(1000, 1000)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_GT(atlas.pieces.size(), 5U);
   // 100 * 2 triangles of 98 texels are 20,000; the whole box has 1,000,000.
@@ -247,7 +247,7 @@ TEST(LeafAtlas, ADiagonalStripIsCutIntoPieces) {
 TEST(LeafAtlas, AFullChartStaysWhole) {
   Leaf leaf;
   leaf.grid({0, 0}, {1, 1}, 20);
-  const std::vector<MaterialTexels> materials = {picture(500, 500)};
+  const std::vector<AtlasMaterial> materials = {picture(500, 500)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.pieces.size(), 1U);
   EXPECT_EQ(atlas.width, 512U);
@@ -257,7 +257,7 @@ TEST(LeafAtlas, AFullChartStaysWhole) {
 TEST(LeafAtlas, AChartThatIsTooWideIsCutBeforeItGetsCoarser) {
   Leaf leaf;
   leaf.grid({0, 0}, {1, 0.03f}, 32);
-  const std::vector<MaterialTexels> materials = {picture(1024, 1024)};
+  const std::vector<AtlasMaterial> materials = {picture(1024, 1024)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 512);
   EXPECT_GE(atlas.pieces.size(), 2U);
   EXPECT_EQ(atlas.reduced, 0U);
@@ -270,7 +270,7 @@ TEST(LeafAtlas, AWallOfManyBricksTakesACoarserLevel) {
   Leaf leaf;
   leaf.grid({0, 0}, {40, 20}, 1);
   leaf.grid({0.25f, 0.25f}, {0.5f, 0.5f}, 1, 1);
-  const std::vector<MaterialTexels> materials = {picture(512, 512), picture(512, 512)};
+  const std::vector<AtlasMaterial> materials = {picture(512, 512), picture(512, 512)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 1024);
   EXPECT_LE(atlas.width, 1024U);
   EXPECT_LE(atlas.height, 1024U);
@@ -287,7 +287,7 @@ TEST(LeafAtlas, TheLargestChartsGetCoarserUntilAllFit) {
     leaf.grid({u + 0.01f, v + 0.01f}, {u + 0.24f, v + 0.24f}, 2);
   }
   leaf.grid({5.001f, 5.001f}, {5.002f, 5.002f}, 2);
-  const std::vector<MaterialTexels> materials = {picture(2000, 2000)};
+  const std::vector<AtlasMaterial> materials = {picture(2000, 2000)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 1024);
   EXPECT_LE(atlas.width, 1024U);
   EXPECT_LE(atlas.height, 1024U);
@@ -303,7 +303,7 @@ TEST(LeafAtlas, AColourAloneTakesOnePieceAMaterial) {
   for (int i = 0; i < 50; ++i)
     leaf.triangle(Vec2f{float(i), 0}, {float(i) + 0.5f, 1}, {float(i), 1},
                   static_cast<std::uint32_t>(i % 3));
-  const std::vector<MaterialTexels> materials = {{}, picture(64, 64), {}};
+  const std::vector<AtlasMaterial> materials = {{}, picture(64, 64), {}};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   const auto pieces_of = [&](std::uint32_t material) {
     return std::ranges::count(atlas.pieces, material, &AtlasPiece::material);
@@ -324,7 +324,7 @@ TEST(LeafAtlas, EqualTrianglesGetEqualCorners) {
   for (int i = 0; i < 300; ++i)
     leaf.triangle(random.below(300), random.below(300), random.below(300));
   leaf.triangles.insert(leaf.triangles.end(), leaf.triangles.begin(), leaf.triangles.end());
-  const std::vector<MaterialTexels> materials = {picture(300, 200), picture(50, 100)};
+  const std::vector<AtlasMaterial> materials = {picture(300, 200), picture(50, 100)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   for (std::size_t t = 0; t < 300; ++t)
     EXPECT_EQ(atlas.corners[t], atlas.corners[t + 300]);
@@ -344,8 +344,8 @@ TEST(LeafAtlas, CoordinatesOfAnySizeAreBoundedWork) {
       leaf.vertex({any(), any()}, random.below(3));
     for (int i = 0; i < 400; ++i)
       leaf.triangle(random.below(200), random.below(200), random.below(200));
-    const std::vector<MaterialTexels> materials = {picture(65535, 65535), picture(1, 1),
-                                                   picture(1, 4000)};
+    const std::vector<AtlasMaterial> materials = {picture(65535, 65535), picture(1, 1),
+                                                  picture(1, 4000)};
     const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 2048);
     EXPECT_LE(atlas.width, 2048U);
     EXPECT_LE(atlas.height, 2048U);
@@ -363,7 +363,7 @@ TEST(LeafAtlas, AllCoordinatesAreOne) {
   Leaf leaf;
   for (int i = 0; i < 100; ++i)
     leaf.triangle(Vec2f{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f});
-  const std::vector<MaterialTexels> materials = {picture(64, 64)};
+  const std::vector<AtlasMaterial> materials = {picture(64, 64)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.pieces.size(), 1U);
   expect_gutters(atlas, materials);
@@ -377,7 +377,7 @@ std::size_t texels_of(const LeafAtlas& atlas) {
 TEST(LeafAtlas, APictureThatRepeatsInAChartIsThereOnce) {
   Leaf leaf;
   leaf.grid({-3.3f, 0.1f}, {8.4f, 5.7f}, 96);
-  const std::vector<MaterialTexels> materials = {picture(100, 60)};
+  const std::vector<AtlasMaterial> materials = {picture(100, 60)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.reduced, 0U);
   // Triangles have up to an eighth of a picture; 11.7 x 5.6 pictures are 393,000 texels.
@@ -392,7 +392,7 @@ TEST(LeafAtlas, ChartsOfTheSameTexelsShareThem) {
     const auto by = static_cast<float>(i % 7), down = static_cast<float>(i % 3);
     leaf.grid({by + 0.25f, down + 0.125f}, {by + 0.75f, down + 0.5f}, 1 + i % 5);
   }
-  const std::vector<MaterialTexels> materials = {picture(256, 256)};
+  const std::vector<AtlasMaterial> materials = {picture(256, 256)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.pieces.size(), 1U);
   EXPECT_LE(texels_of(atlas), (128U + 16) * (96 + 16));
@@ -405,7 +405,7 @@ TEST(LeafAtlas, ChartsThatLieApartShareNothing) {
   leaf.grid({0.1f, 0.1f}, {0.2f, 0.2f}, 2);
   leaf.grid({0.6f, 0.7f}, {0.7f, 0.8f}, 2);
   leaf.grid({0.1f, 0.1f}, {0.2f, 0.2f}, 2, 1);
-  const std::vector<MaterialTexels> materials = {picture(512, 512), picture(512, 512)};
+  const std::vector<AtlasMaterial> materials = {picture(512, 512), picture(512, 512)};
   EXPECT_EQ(plan_leaf_atlas(leaf, materials, 4096).pieces.size(), 3U);
 }
 
@@ -415,10 +415,10 @@ TEST(LeafAtlas, MirroredAndClampedPicturesAreSharedWhereTheyAreTheSame) {
   leaf.grid({1.1f, 0.2f}, {1.4f, 0.6f}, 3);    // mirrored
   leaf.grid({-1.9f, 0.2f}, {-1.6f, 0.6f}, 3);  // two periods of one: the same
   leaf.grid({0.1f, 5.2f}, {0.4f, 5.6f}, 3);    // the last row again and again
-  MaterialTexels mirrored = picture(200, 100);
+  AtlasMaterial mirrored = picture(200, 100);
   mirrored.wrap_u = Wrap::mirrored;
   mirrored.wrap_v = Wrap::clamp;
-  const std::vector<MaterialTexels> materials = {mirrored};
+  const std::vector<AtlasMaterial> materials = {mirrored};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.pieces.size(), 3U);
   expect_gutters(atlas, materials);
@@ -432,7 +432,7 @@ TEST(LeafAtlas, WhatIsSharedHasNoLimitOfCharts) {
     const Vec2f at{float(random.below(1 << 20)) / 4096, float(random.below(1 << 20)) / 4096};
     leaf.triangle(at, {at.u + 0.11f, at.v}, {at.u, at.v + 0.07f});
   }
-  const std::vector<MaterialTexels> materials = {picture(1024, 1024)};
+  const std::vector<AtlasMaterial> materials = {picture(1024, 1024)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
   EXPECT_EQ(atlas.charts, 20000U);
   // Apart they would have 20,000 * 120 * 80 = 192 M texels.
@@ -448,7 +448,7 @@ TEST(LeafAtlas, IsTheSameEachTime) {
     const Vec2f at{float(random.below(4096)) / 4096, float(random.below(4096)) / 4096};
     leaf.triangle(at, {at.u + 0.02f, at.v}, {at.u, at.v + 0.03f}, random.below(2));
   }
-  const std::vector<MaterialTexels> materials = {picture(1024, 1024), picture(700, 900)};
+  const std::vector<AtlasMaterial> materials = {picture(1024, 1024), picture(700, 900)};
   const LeafAtlas a = plan_leaf_atlas(leaf, materials, 1024);
   const LeafAtlas b = plan_leaf_atlas(leaf, materials, 1024);
   EXPECT_EQ(a.corners, b.corners);

@@ -35,7 +35,7 @@ class BoundChainTest : public testing::Test {
   float error(int level, std::uint32_t index) const {
     return chain_->errors()[node(level, index)].error;
   }
-  void add(int level, const std::vector<Step>& steps) {
+  void add(int level, const std::vector<StepDeviation>& steps) {
     chain_->add(static_cast<Level>(level), steps);
   }
 
@@ -150,7 +150,7 @@ TEST_F(BoundChainTest, BoundsAreNotBelowErrors) {
 TEST_F(BoundChainTest, EarlyNodesAreTheirPartitions) {
   make(5);  // three of four nodes on level 2 hold one partition
   ASSERT_EQ(raw(tree_.depth()), 3);
-  std::vector<Step> steps(4);
+  std::vector<StepDeviation> steps(4);
   std::uint32_t early = 0;
   for (std::uint32_t i = 0; i < 4; ++i) {
     if (!tree_.is_early(node(2, i)))
