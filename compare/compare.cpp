@@ -1,28 +1,23 @@
 #include "compare/compare.h"
 
 #include "compare/cut_surface.h"
+#include "compare/difference_ply.h"
 #include "compare/farthest_bound.h"
 #include "compare/surface_distance.h"
 #include "compare/surface_samples.h"
 #include "compare/surface_sides.h"
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
-#include "hierarchy/flat_axes.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/text_mark.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/output_name.h"
-#include "mesh_io/ply_writer.h"
 #include "storage/format/archive.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
-#include "storage/io/spool.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -42,29 +37,8 @@ constexpr std::size_t kBatchTriangles = 16384;
 /// The memory of a comparison beside its caches, about: the program, a batch and the trees it is
 /// looked up in, tiles on their way, sums.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{56} << 20;
-/// Grain of the scratch: large writes, small beside any budget.
-constexpr std::size_t kDifferenceBlockBytes = std::size_t{1} << 18;
-constexpr std::size_t kCopiedAtOnce = 65536;
 /// Scans of one object are nearer to each other, as a rule.
 constexpr double kFarPart = 0.05;
-
-Vec3d moved(const std::optional<PlaceTransform>& transform, Vec3d p) {
-  if (!transform)
-    return p;
-  const PlaceTransform& m = *transform;
-  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
-
-BoundsD moved_box(const std::optional<PlaceTransform>& transform, const BoundsD& box) {
-  BoundsD all;
-  for (int corner = 0; !box.empty() && corner < 8; ++corner) {
-    all.add(moved(transform, {(corner & 1) != 0 ? box.max.x : box.min.x,
-                              (corner & 2) != 0 ? box.max.y : box.min.y,
-                              (corner & 4) != 0 ? box.max.z : box.min.z}));
-  }
-  return all;
-}
 
 /// A hierarchy that is open.
 struct Opened {
@@ -104,69 +78,6 @@ ComparedSurface facts_of(const Opened& opened, const CutSurface& surface) {
   facts.error_bound += opened.rounding();
   return facts;
 }
-
-/// Vertices with their distances and triangles, until their counts are known.
-class DifferencePly {
- public:
-  DifferencePly(storage::FileSystem& files, const storage::OutputRequest& request,
-                std::uint64_t memory_bytes, const std::function<void()>& check)
-      : output_(files, request, check),
-        pool_(memory_bytes),
-        scratch_(files, output_.scratch(), pool_),
-        positions_(scratch_, kDifferenceBlockBytes),
-        distances_(scratch_, kDifferenceBlockBytes),
-        triangles_(scratch_, kDifferenceBlockBytes) {}
-
-  void add(const PlacedTile& tile, std::span<const double> distances) {
-    positions_.append(std::span(tile.places).first(tile.own_count));
-    for (const double distance : distances.first(tile.own_count))
-      distances_.append(static_cast<float>(distance));
-    for (const Triangle<std::uint32_t>& t : tile.triangles)
-      triangles_.append(
-          Triangle<std::uint32_t>{tile.number(t[0]), tile.number(t[1]), tile.number(t[2])});
-  }
-
-  void write(Vec3d origin, const std::string& comment, const std::function<void()>& check) {
-    mesh_io::PlyContent content;
-    content.vertex_count = positions_.size();
-    content.triangle_count = triangles_.size();
-    content.attributes.values = {{"distance", ValueType::f32}};
-    content.double_coordinates = origin != Vec3d{};
-    content.comments = {comment};
-    mesh_io::PlyWriter writer(output_.file(), content);
-    std::vector<Vec3f> places;
-    std::vector<Vec3d> exact;
-    std::vector<float> values;
-    for (std::uint64_t first = 0; first < positions_.size(); first += places.size()) {
-      check();
-      places.resize(std::min<std::uint64_t>(kCopiedAtOnce, positions_.size() - first));
-      values.resize(places.size());
-      positions_.read(first, places);
-      distances_.read(first, values);
-      exact.clear();
-      for (const Vec3f place : places)
-        exact.push_back(to_double(place) + origin);
-      writer.write_vertices(exact, values);
-    }
-    std::vector<Triangle<std::uint32_t>> block;
-    for (std::uint64_t first = 0; first < triangles_.size(); first += block.size()) {
-      check();
-      block.resize(std::min<std::uint64_t>(kCopiedAtOnce, triangles_.size() - first));
-      triangles_.read(first, block);
-      writer.write_triangles(block);
-    }
-    writer.finish();
-    output_.publish();
-  }
-
- private:
-  storage::OutputFile output_;
-  storage::MemoryPool pool_;
-  storage::ScratchFile scratch_;
-  storage::RecordSpool<Vec3f> positions_;
-  storage::RecordSpool<float> distances_;
-  storage::RecordSpool<Triangle<std::uint32_t>> triangles_;
-};
 
 /// Returns the memory that caches may have.
 std::uint64_t spare_bytes(const CompareOptions& options) {
@@ -449,45 +360,7 @@ void check_options(const Opened& from, const Opened& to, const CompareOptions& o
   }
 }
 
-/// Returns whether a transform leaves no volume, but for rounding.
-bool is_flat(const PlaceTransform& m) {
-  return are_flat({m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]});
-}
-
 }  // namespace
-
-PlaceTransform parse_transform(std::string_view text, const std::string& name) {
-  text = without_mark(text);
-  std::vector<double> numbers;
-  const auto fail = [&](const std::string& found) {
-    throw Error(ErrorCode::usage, fmt::format("{}: expected 16 numbers, a 4 x 4 matrix with rows "
-                                              "first whose last row is 0 0 0 1; found {}",
-                                              name, found));
-  };
-  constexpr std::string_view kBetween = " \t\r\n,;[]";
-  for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;
-       at = text.find_first_not_of(kBetween, at)) {
-    const std::string_view word =
-        text.substr(at, std::min(text.find_first_of(kBetween, at), text.size()) - at);
-    at += word.size();
-    double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
-      fail("\"" + plain_text(std::string(word.substr(0, 40)), 40) + "\"");
-    numbers.push_back(number);
-    if (numbers.size() > 16)
-      fail("more");
-  }
-  if (numbers.size() != 16)
-    fail(fmt::format("{}", numbers.size()));
-  PlaceTransform transform{};
-  std::ranges::copy(numbers, transform.begin());
-  if (transform[12] != 0 || transform[13] != 0 || transform[14] != 0 || transform[15] != 1)
-    fail("another last row");
-  if (is_flat(transform))
-    fail("one that makes all flat: its first three rows lie in a plane");
-  return transform;
-}
 
 bool is_hierarchy_there(storage::FileSystem& files, const fs::path& path) {
   if (files.kind(path) != storage::FileKind::regular)

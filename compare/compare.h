@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/distance_tally.h"
+#include "compare/place_transform.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "export/cut_by_error.h"
@@ -10,12 +11,10 @@
 #include "hierarchy/unit.h"
 #include "storage/io/file.h"
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -25,14 +24,6 @@ namespace meshhier::comparing {
 
 /// Selects the original surfaces.
 struct Originals {};
-
-/// An affine map as 4 x 4 numbers, rows first; the last row is 0 0 0 1.
-using PlaceTransform = std::array<double, 16>;
-
-/// Reads sixteen numbers between blanks, commas and brackets, perhaps behind a byte order mark.
-/// `name` begins messages. Throws Error(usage) if they are not so many, not finite, no affine map,
-/// or one that makes all flat.
-PlaceTransform parse_transform(std::string_view text, const std::string& name);
 
 struct CompareOptions {
   /// The part of both hierarchies: all partitions; a level, or the finest one of a tree that is
