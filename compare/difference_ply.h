@@ -20,9 +20,9 @@ class DifferencePly {
   DifferencePly(storage::FileSystem& files, const storage::OutputRequest& request,
                 std::uint64_t memory_bytes, const std::function<void()>& check);
 
-  /// The tile's own places with their distances, and its triangles.
+  /// Takes the tile's own places with their distances, and its triangles.
   void add(const PlacedTile& tile, std::span<const double> distances);
-  /// All that was added, once: the file is there then. `check` may throw.
+  /// Writes all that was added, once: the file is there then. `check` may throw.
   void write(Vec3d origin, const std::string& comment, const std::function<void()>& check);
 
  private:
