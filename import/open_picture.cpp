@@ -1,35 +1,67 @@
 #include "import/open_picture.h"
 
-#include "images/open_source.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace meshhier::importing {
+namespace {
+
+using images::ByteSource;
+
+/// Bytes [offset, offset + size) of a file.
+ByteSource bytes_of(std::shared_ptr<storage::File> file, std::uint64_t offset, std::uint64_t size) {
+  return [file = std::move(file), offset, size](std::uint64_t at, std::span<std::byte> into) {
+    const std::uint64_t left = at < size ? size - at : 0;
+    return file->read_at(offset + at, into.first(std::min<std::uint64_t>(left, into.size())));
+  };
+}
+
+/// Bytes in memory; `owner`, if there is one, has them.
+ByteSource bytes_of(std::span<const std::byte> data, std::shared_ptr<const void> owner = {}) {
+  return [data, owner = std::move(owner)](std::uint64_t at, std::span<std::byte> into) {
+    const std::size_t count = at < data.size() ? std::min(data.size() - at, into.size()) : 0;
+    if (count > 0)
+      std::memcpy(into.data(), data.data() + at, count);
+    return count;
+  };
+}
+
+/// A picture within a file in gzip, as it is coded.
+ByteSource unpacked(const images::ImageSource& source, storage::FileSystem& files) {
+  const auto file = files.open(source.file);
+  const auto stream = mesh_io::open_stream({*file, file->size()}, {});
+  const auto bytes = std::make_shared<std::vector<std::byte>>(source.bytes);
+  if (mesh_io::skip(*stream, source.offset) < source.offset || stream->read(*bytes) < bytes->size())
+    mesh_io::fail_file(source.file, "ends before its picture (truncated?)");
+  return bytes_of(*bytes, bytes);
+}
+
+ByteSource source_of(const images::ImageSource& source, storage::FileSystem& files) {
+  if (source.is_packed)
+    return unpacked(source, files);
+  if (source.file.empty())
+    return bytes_of(source.data);
+  std::shared_ptr<storage::File> file = files.open(source.file);
+  const std::uint64_t size = file->size();
+  const std::uint64_t offset = std::min(source.offset, size);
+  const std::uint64_t bytes =
+      source.bytes > 0 ? std::min(source.bytes, size - offset) : size - offset;
+  return bytes_of(std::move(file), offset, bytes);
+}
+
+}  // namespace
 
 std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& source,
                                                   storage::FileSystem& files) {
-  if (!source.is_packed)
-    return images::open_source(source, files);
-  const auto file = files.open(source.file);
-  const auto stream = mesh_io::open_stream({*file, file->size()}, {});
-  auto bytes = std::make_shared<std::vector<std::byte>>(source.bytes);
-  if (mesh_io::skip(*stream, source.offset) < source.offset || stream->read(*bytes) < bytes->size())
-    mesh_io::fail_file(source.file, "ends before its picture (truncated?)");
-  return images::open_image(
-      [bytes](std::uint64_t at, std::span<std::byte> into) {
-        const std::size_t count =
-            at < bytes->size() ? std::min<std::size_t>(bytes->size() - at, into.size()) : 0;
-        std::copy_n(bytes->begin() + static_cast<std::ptrdiff_t>(at < bytes->size() ? at : 0),
-                    count, into.begin());
-        return count;
-      },
-      source.name);
+  return images::open_image(source_of(source, files), source.name);
 }
 
 }  // namespace meshhier::importing

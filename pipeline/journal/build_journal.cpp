@@ -2,8 +2,7 @@
 
 #include "execution/parallel.h"
 #include "hierarchy/error.h"
-#include "pipeline/journal/material_json.h"
-#include "pipeline/journal/record_json.h"
+#include "pipeline/journal/input_json.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
@@ -33,7 +32,7 @@ Vec3d point(const Value& json) {
 }
 
 Value to_json(const IndexedStep& indexed) {
-  const Step& step = indexed.second;
+  const StepDeviation& step = indexed.second;
   return {indexed.first, step.certain, step.mean_square, step.finer_neighbours.numbers()};
 }
 

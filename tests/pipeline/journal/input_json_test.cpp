@@ -1,4 +1,4 @@
-#include "pipeline/journal/material_json.h"
+#include "pipeline/journal/input_json.h"
 
 #include <gtest/gtest.h>
 
