@@ -17,7 +17,7 @@ TEST(MemoryGateTest, WhatIsHeldStaysWithinTheLimit) {
   std::atomic<std::uint64_t> most = 0;
   const auto work = [&](std::uint64_t bytes) {
     for (int i = 0; i < 200; ++i) {
-      const MemoryGate::Hold held = gate.enter(bytes);
+      const MemoryGate::Hold room = gate.enter(bytes);
       const std::uint64_t now = held += bytes;
       for (std::uint64_t seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
       }
