@@ -4,23 +4,17 @@ import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './add
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import type { Turn } from './gallery/layout.js';
-import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, readable, withoutWarnings, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
-import { languageSelect } from './parts/language_select.js';
-import { themeButton } from './parts/theme_button.js';
-import { loadPreferences, savePreferences, type Theme } from './preferences.js';
-import { Problems } from './problems.js';
+import { Page } from './page.js';
 import { readQuery, shortened, type Query } from './query.js';
 import { watchInput } from './parts/input.js';
-import { applyTheme, watchSystemTheme } from './theme.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
 import { maySend } from './upload/permission.js';
 import { UploadPlace } from './upload/upload_place.js';
-import type { Language } from './words/languages.js';
 import { language, words } from './words/words.js';
-import type { ModelView, Surroundings } from './view/model_view.js';
+import type { ModelView } from './view/model_view.js';
 
 /// What a listing without a model says; `url`: its own.
 function emptyText({ folder, inbox }: Listing, url: string): string {
@@ -41,9 +35,8 @@ function loadView(): Promise<typeof import('./view/model_view.js')> {
 }
 
 export class App {
-  readonly preferences = loadPreferences();
-  readonly problems = new Problems();
   view: ModelView | null = null;
+  private readonly page = new Page();
   private readonly query: Query;
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
@@ -62,12 +55,15 @@ export class App {
       (listing) => (maySend(listing.upload, this.query.listing) ? listing : withoutWarnings(listing)),
     );
     document.documentElement.lang = language;
-    root.append(this.problems.root);
-    applyTheme(this.preferences.theme);
-    watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
+    root.append(this.page.problems.root);
     watchInput();
     window.addEventListener('hashchange', () => { this.route(); });
-    if (this.query.problem !== null) this.problems.tell(this.query.problem.message, this.query.problem);
+    this.page.addEventListener('leave', () => { this.close(); });
+    this.page.addEventListener('again', () => {
+      this.closeView();
+      this.route();
+    });
+    if (this.query.problem !== null) this.page.problems.tell(this.query.problem.message, this.query.problem);
   }
 
   get models(): readonly Model[] {
@@ -83,7 +79,7 @@ export class App {
       return;
     }
     this.showGallery();
-    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(readable(address.path))));
+    if (address !== null) this.page.problems.tell(words.problems.unfetchable(shortened(readable(address.path))));
   }
 
   /// Opens a model of the listing by its name or path. False if there is none.
@@ -98,29 +94,6 @@ export class App {
     if (this.query.only !== null || this.entry === null || this.entry.leave()) return;
     showAddress(this.galleryAddress);
     this.route();
-  }
-
-  setTheme(theme: Theme): void {
-    this.preferences.theme = theme;
-    savePreferences(this.preferences);
-    applyTheme(theme);
-    this.gallery?.themeChanged();
-    this.view?.themeChanged();
-  }
-
-  private setOrder(order: Order): void {
-    this.preferences.order = order;
-    savePreferences(this.preferences);
-  }
-
-  /// The words hold as long as the page: it is loaded again, without the language that its address asks for.
-  setLanguage(chosen: Language): void {
-    this.preferences.language = chosen;
-    savePreferences(this.preferences);
-    const address = new URL(location.href);
-    address.searchParams.delete('lang');
-    history.replaceState(history.state, '', address);
-    location.reload();
   }
 
   private get galleryAddress(): string {
@@ -149,17 +122,11 @@ export class App {
   }
 
   private makeGallery(): Gallery {
-    const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
-    const language = languageSelect((chosen) => { this.setLanguage(chosen); });
-    const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
+    const gallery = new Gallery(this.page);
     this.root.prepend(gallery.root);
     watchLinks(gallery.root);
-    this.uploads = new UploadPlace((section) => { gallery.insert(section); }, {
-      place: gallery.root,
-      inbox: new URL('inbox/', this.query.listing).href,
-      problems: this.problems,
-      stored: () => { if (gallery.shown) this.watch.start(); },
-    });
+    this.uploads = new UploadPlace(gallery, this.page.problems, new URL('inbox/', this.query.listing).href);
+    gallery.root.addEventListener('stored', () => { if (gallery.shown) this.watch.start(); });
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
     return gallery;
@@ -188,7 +155,9 @@ export class App {
     try {
       const { ModelView } = await loadView();
       if (entry !== this.entry) return;
-      this.view = new ModelView(model, { ...this.surroundings(entry, spot, early), turn });
+      const { fetch, createWorker } = early;
+      const findStory = (signal: AbortSignal): Promise<string | null> => this.storyOf(model, signal);
+      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, findStory, hasGallery: this.query.only === null });
     } finally {
       early.close();
     }
@@ -206,8 +175,8 @@ export class App {
     this.showGallery();
     const retry = (): void => { visit(formatAddress({ path: model.path, ...spot })); };
     const { noWebGl, noWebGlMore, notShown } = words.problems;
-    if (why === noWebGl) this.problems.tell(why, { more: noWebGlMore });
-    else this.problems.tell(notShown(model.name), { more: why, retry });
+    if (why === noWebGl) this.page.problems.tell(why, { more: noWebGlMore });
+    else this.page.problems.tell(notShown(model.name), { more: why, retry });
   }
 
   /// The address of what is told about a model; a link to one says nothing of it, but the listing does.
@@ -221,29 +190,9 @@ export class App {
     }
   }
 
-  private surroundings(entry: ModelEntry, spot: Spot, { fetch, createWorker }: EarlyStart): Omit<Surroundings, 'turn'> {
-    return {
-      fetch,
-      createWorker,
-      spot,
-      preferences: this.preferences,
-      chosen: () => { savePreferences(this.preferences); },
-      setTheme: (theme) => { this.setTheme(theme); },
-      setLanguage: (chosen) => { this.setLanguage(chosen); },
-      leave: this.query.only === null ? () => { this.close(); } : null,
-      findStory: (signal) => this.storyOf(entry.model, signal),
-      rested: (rest) => { entry.write(rest); },
-      failed: (message, telling) => this.problems.tell(message, telling),
-      again: () => {
-        this.closeView();
-        this.route();
-      },
-    };
-  }
-
   /// Makes room for something else. What was told before anything was shown stays.
   private closeView(): void {
-    if (this.entry !== null || this.gallery?.shown) this.problems.clear();
+    if (this.entry !== null || this.gallery?.shown) this.page.problems.clear();
     this.left = this.entry?.model.path ?? null;
     this.entry = null;
     this.view?.close();

@@ -25,6 +25,9 @@ export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'relief
 export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
 export const DEFAULT_LIGHT: Light = { name: 'auto', key: null, occlusion: false };
 
+const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline', 'isolines'] as const;
+type Switches = Pick<Look, (typeof SWITCHES)[number]>;
+
 type Json = Record<string, unknown>;
 
 function asObject(value: unknown): Json {
@@ -55,24 +58,23 @@ export function lastingLook(look: Partial<Look>): Partial<Look> {
   return Object.fromEntries(Object.entries(look).filter(([name]) => !['attribute', 'range', 'hidden'].includes(name)));
 }
 
+/// A switch that is neither on nor off is as it is without a choice.
+function readSwitches(valueOf: (name: string) => unknown): Switches {
+  return Object.fromEntries(SWITCHES.map((name) => [name, oneOf(valueOf(name), [true, false], DEFAULT_LOOK[name])])) as unknown as Switches;
+}
+
 /// `relief` follows from the rest.
 export function readLook(stored: unknown): Look {
   const look = asObject(stored);
   return {
     colours: oneOf(look.colours, COLOURS, DEFAULT_LOOK.colours),
-    texture: look.texture !== false,
-    relight: look.relight === true,
+    ...readSwitches((name) => look[name]),
     material: DEFAULT_LOOK.material,
     relief: DEFAULT_LOOK.relief,
-    cavities: look.cavities !== false,
     shading: oneOf(look.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
-    wires: look.wires === true,
-    points: look.points === true,
-    outline: look.outline === true,
     attribute: typeof look.attribute === 'string' ? look.attribute.slice(0, LONGEST_NAME) : '',
     ramp: oneOf(look.ramp, RAMPS, DEFAULT_LOOK.ramp),
     range: readRange(look.range),
-    isolines: look.isolines === true,
     hidden: readNumbers(look.hidden).slice(0, MOST_HIDDEN),
   };
 }
@@ -118,7 +120,6 @@ export function keepStanding(standings: Standings, url: string, standing: Standi
 // ---- in links
 
 const DIGITS = 4;
-const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline', 'isolines'] as const;
 
 function onOff(is: boolean): string {
   return is ? 'on' : 'off';

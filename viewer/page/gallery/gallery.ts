@@ -2,7 +2,10 @@
 // The thumbnail preview: all models as pictures, in groups, and the meshes that are becoming some.
 import type { Job, Listing, Model } from '../listing.js';
 import { formatCount } from '../numbers.js';
+import type { Page } from '../page.js';
 import { element } from '../parts/element.js';
+import { languageSelect } from '../parts/language_select.js';
+import { themeButton } from '../parts/theme_button.js';
 import { words } from '../words/words.js';
 import { Animation } from './animation.js';
 import { arrangeModels, findJobs, type Group } from './arrangement.js';
@@ -11,24 +14,23 @@ import { DrawingQueue } from './drawing_queue.js';
 import { JobCell } from './job_cell.js';
 import type { Turn } from './layout.js';
 import { ModelCell } from './model_cell.js';
-import type { Order } from './orders.js';
 import { Toolbar } from './toolbar.js';
 import { VisibleCells } from './visible_cells.js';
 
 const MOST_KEPT = 400; // cells of models, of which the window shows a few dozen: what was seen comes back as it was
 const LEAST_SEARCHED = 2; // models
 
-interface ModelEntry {
+interface ModelItem {
   key: string;
   model: Model;
 }
 
-interface JobEntry {
+interface JobItem {
   key: string;
   job: Job;
 }
 
-function entryOf(model: Model): ModelEntry {
+function itemOf(model: Model): ModelItem {
   return { key: `model ${model.path}`, model };
 }
 
@@ -36,7 +38,7 @@ export class Gallery {
   readonly root: HTMLElement;
   private readonly note = element('p', { class: 'gallery-note', 'aria-live': 'polite' });
   private readonly toolbar: Toolbar;
-  private readonly visible = new VisibleCells<ModelEntry | JobEntry>((entry) => ('model' in entry ? this.modelCell(entry) : this.jobCell(entry)));
+  private readonly visible = new VisibleCells<ModelItem | JobItem>((entry) => ('model' in entry ? this.modelCell(entry) : this.jobCell(entry)));
   private readonly above = new ResizeObserver(() => { if (this.open) this.visible.follow(); }); // cells move with what is above
   private readonly animation = new Animation();
   private readonly stills = new DrawingQueue();
@@ -47,13 +49,13 @@ export class Gallery {
   private open = false;
   private scrolled = 0;
 
-  /// `ordered`: the user chose another order. `controls`: of the page as a whole.
-  constructor(order: Order, ordered: (order: Order) => void, controls: readonly HTMLElement[]) {
-    this.toolbar = new Toolbar(order, () => {
-      ordered(this.toolbar.wish.order);
+  constructor(page: Page) {
+    this.toolbar = new Toolbar(page.preferences.order, () => {
+      page.keep({ order: this.toolbar.wish.order });
       this.arrange();
     });
-    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
+    page.addEventListener('theme', () => { this.visible.redraw(); });
+    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, languageSelect(page), themeButton(page));
     this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.visible.root);
     for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
     this.toolbar.root.hidden = true;
@@ -95,10 +97,6 @@ export class Gallery {
     return this.cells.get(`model ${path}`)?.turn ?? null;
   }
 
-  themeChanged(): void {
-    this.visible.redraw();
-  }
-
   /// A text in the place of the models, or above them. The same one again is not read out again.
   tell(text: string): void {
     if (this.note.textContent !== text) this.note.textContent = text;
@@ -123,7 +121,7 @@ export class Gallery {
   private showGroups(): void {
     const jobs = findJobs(this.listing.jobs ?? [], this.toolbar.wish);
     const underWay = { key: 'jobs', name: '', items: jobs.map((job) => ({ key: `job ${job.name}`, job })) };
-    const models = this.groups.map(({ key, name, items }) => ({ key, name, items: items.map(entryOf) }));
+    const models = this.groups.map(({ key, name, items }) => ({ key, name, items: items.map(itemOf) }));
     this.visible.show([underWay, ...models].filter(({ items }) => items.length > 0));
     this.tell(this.summary());
   }
@@ -138,7 +136,7 @@ export class Gallery {
   }
 
   /// The model's cell; a new one if it is not as it was.
-  private modelCell({ key, model }: ModelEntry): Cell {
+  private modelCell({ key, model }: ModelItem): Cell {
     const cell = this.cells.get(key) ?? new ModelCell(model, { stills: this.stills, animation: this.animation });
     this.cells.delete(key);
     this.cells.set(key, cell);
@@ -153,11 +151,11 @@ export class Gallery {
 
   /// Cells of models that are gone, or others by now.
   private dropOthers(models: readonly Model[]): void {
-    const now = new Map(models.map((model) => [entryOf(model).key, model]));
+    const now = new Map(models.map((model) => [itemOf(model).key, model]));
     for (const [key, { model }] of [...this.cells]) if (JSON.stringify(model) !== JSON.stringify(now.get(key))) this.drop(key);
   }
 
-  private jobCell({ job }: JobEntry): Cell {
+  private jobCell({ job }: JobItem): Cell {
     const cell = this.jobCells.get(job.name) ?? new JobCell(job.name);
     this.jobCells.set(job.name, cell);
     cell.update(job);

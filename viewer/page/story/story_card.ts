@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What a story says, note by note: text, picture, link, and the way through it. Read only.
-import type { Note, Notebook } from '../../src/tools/note.js';
+import type { Stories } from '../../src/plugins/stories.js';
+import type { Note } from '../../src/tools/note.js';
 import { resolveUrl } from '../listing.js';
 import { formatCount } from '../numbers.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { words } from '../words/words.js';
 import { pictureOf } from './story_source.js';
-
-export interface StoryOrders {
-  /// To the note of that number.
-  go(i: number): void;
-  /// By itself from note to note, or not any more.
-  play(): void;
-  close(): void;
-}
 
 export class StoryCard {
   readonly root: HTMLElement;
@@ -23,23 +16,24 @@ export class StoryCard {
   private readonly before: HTMLButtonElement;
   private readonly next: HTMLButtonElement;
   private readonly playing: HTMLButtonElement;
-  private shown: number | null = null;
 
-  /// `base`: where the story lies; null: in the page, which fetches nothing for it.
-  constructor(private readonly story: Notebook, private readonly base: string | null, orders: StoryOrders) {
-    const title = story.title || words.story.title;
-    this.before = iconButton(words.story.before, ICONS.back, () => { orders.go((this.shown ?? 0) - 1); });
-    this.next = iconButton(words.story.next, ICONS.next, () => { orders.go((this.shown ?? -1) + 1); });
-    this.playing = iconButton(words.story.play, ICONS.play, () => { orders.play(); });
-    const close = iconButton(words.parts.close(words.story.title), ICONS.close, () => { orders.close(); });
+  /// `base`: where the story lies; null: in the page, which fetches nothing for it. `ended`: the visitor has closed it.
+  constructor(private readonly stories: Stories, private readonly base: string | null, ended: () => void) {
+    const title = stories.story.title || words.story.title;
+    this.before = iconButton(words.story.before, ICONS.back, () => { stories.turnTo((stories.step ?? 0) - 1); });
+    this.next = iconButton(words.story.next, ICONS.next, () => { stories.turnTo((stories.step ?? -1) + 1); });
+    this.playing = iconButton(words.story.play, ICONS.play, () => { stories.togglePlaying(); });
+    const close = iconButton(words.parts.close(words.story.title), ICONS.close, ended);
     const bar = element('div', { class: 'story-bar' }, this.before, this.playing, this.next, this.step);
+    stories.addEventListener('shown', () => { this.show(stories.step); });
+    stories.addEventListener('playing', () => { this.showPlaying(stories.isPlaying); });
     this.root = element('section', { class: 'story-card', 'aria-label': `${words.story.title}: ${title}` }, element('div', { class: 'sheet-head' }, element('h2', {}, title), close), this.body, bar);
+    this.show(stories.step);
   }
 
   /// Null: none yet.
-  show(i: number | null): void {
-    const { notes } = this.story;
-    this.shown = i;
+  private show(i: number | null): void {
+    const { notes } = this.stories.story;
     this.step.textContent = i === null ? words.story.notes(notes.length, String(notes.length)) : words.story.step(String(i + 1), String(notes.length));
     this.before.disabled = i === null || i === 0;
     this.next.disabled = i === notes.length - 1;
@@ -47,7 +41,7 @@ export class StoryCard {
     this.body.scrollTop = 0;
   }
 
-  showPlaying(isPlaying: boolean): void {
+  private showPlaying(isPlaying: boolean): void {
     const [name, path] = isPlaying ? [words.story.pause, ICONS.pause] : [words.story.play, ICONS.play];
     this.playing.title = name;
     this.playing.setAttribute('aria-label', name);
@@ -56,7 +50,7 @@ export class StoryCard {
 
   /// Before the first note: what of the file is not told.
   private startOf(): HTMLElement[] {
-    const { leftOut = 0 } = this.story;
+    const { leftOut = 0 } = this.stories.story;
     return leftOut === 0 ? [] : [element('p', { class: 'tool-note' }, words.story.leftOut(leftOut, formatCount(leftOut)))];
   }
 

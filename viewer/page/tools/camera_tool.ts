@@ -5,20 +5,20 @@ import { MOST_SIZE, takePicture } from '../../src/tools/screenshot.js';
 import { STEP, Turntable } from '../../src/tools/turntable.js';
 import { isTyped } from '../../src/typing.js';
 import { checkbox } from '../parts/controls.js';
-import { element } from '../parts/element.js';
+import { element, iconButton } from '../parts/element.js';
+import { ICONS } from '../parts/icons.js';
 import { CameraPose } from '../../src/scene/camera_pose.js';
 import { turn } from '../view/camera_moves.js';
 import { download } from './download.js';
-import { entryList, type Entry } from './entry_list.js';
 import { textButton } from './figures.js';
 import { isKey } from './keys.js';
-import { Places } from '../../src/tools/places.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const PATIENCE = 120_000; // milliseconds until a picture is taken of what is there
 const POLL = 100; // milliseconds
+const MOST_LETTERS = 500; // of a bookmark's name
 const WHITE = [255, 255, 255];
 
 const still = matchMedia('(prefers-reduced-motion: reduce)');
@@ -40,11 +40,9 @@ export class CameraTool implements Tool {
   private readonly shot = textButton(words.camera.shot, () => void this.takeShot());
   private isTransparent = false;
   private readonly ending = new AbortController();
-  private readonly places: Places;
 
   constructor(private readonly shop: Workshop) {
-    const { surface, root, view } = shop.bench;
-    this.places = new Places(view);
+    const { surface, root } = shop.bench;
     const { camera } = words;
     const ratio = window.devicePixelRatio;
     const [width, height] = [numberField(camera.width, Math.round(surface.clientWidth * ratio)), numberField(camera.height, Math.round(surface.clientHeight * ratio))];
@@ -85,28 +83,28 @@ export class CameraTool implements Tool {
   // ---- bookmarks
 
   private bookmark(): void {
-    const { bench, notebook } = this.shop;
+    const { bench, notebook, places } = this.shop;
     const { position, target } = bench.pose();
     const name = words.camera.bookmark(String(notebook.bookmarks.length + 1));
-    notebook.add({ notes: [], bookmarks: [{ name, position: this.places.toInput(position), target: this.places.toInput(target) }] });
+    notebook.add({ notes: [], bookmarks: [{ name, position: places.toInput(position), target: places.toInput(target) }] });
   }
 
-  private entryOf(mark: Bookmark): Entry {
-    const { bench, notebook } = this.shop;
+  private show(): void {
+    this.list.replaceChildren(...this.shop.notebook.bookmarks.map((mark, i) => this.rowOf(mark, words.camera.bookmark(String(i + 1)))));
+  }
+
+  /// `name`: what the row is called, whatever the bookmark is.
+  private rowOf(mark: Bookmark, name: string): HTMLElement {
+    const { bench, notebook, places } = this.shop;
     const change = (to: readonly Bookmark[]): void => {
       notebook.bookmarks = notebook.bookmarks.flatMap((each) => (each === mark ? to : [each]));
       notebook.changed();
     };
-    return {
-      text: mark.name,
-      rename: (name) => { change([{ ...mark, name }]); },
-      go: () => { bench.fly(new CameraPose(this.places.toWorld(mark.position), this.places.toWorld(mark.target))); },
-      remove: () => { change([]); },
-    };
-  }
-
-  private show(): void {
-    this.list.replaceChildren(...entryList(this.shop.notebook.bookmarks.map((mark) => this.entryOf(mark)), words.camera.bookmark));
+    const input = element('input', { type: 'text', class: 'tool-text', 'aria-label': name, maxlength: String(MOST_LETTERS) });
+    input.value = mark.name;
+    input.addEventListener('change', () => { change([{ ...mark, name: input.value }]); });
+    const go = iconButton(words.list.go(name), ICONS.go, () => { bench.fly(new CameraPose(places.toWorld(mark.position), places.toWorld(mark.target))); });
+    return element('li', {}, input, go, iconButton(words.list.remove(name), ICONS.close, () => { change([]); }));
   }
 
   // ---- turntable

@@ -169,7 +169,7 @@ export class ClipTool implements Tool {
       this.note.textContent = words.clip.nothing;
       return;
     }
-    const length = this.shop.scale().format(lines.reduce((sum, line) => sum + lengthOf(line), 0));
+    const length = this.shop.scale.format(lines.reduce((sum, line) => sum + lengthOf(line), 0));
     const told = words.clip.section(bench.name, String(lines.length), length);
     const levels = view.surface.map(({ node }) => node.level);
     const from = words.clip.levels(String(Math.min(...levels)), String(Math.max(...levels)), String(view.source!.tree.lastLevel));
@@ -183,13 +183,13 @@ export class ClipTool implements Tool {
     const { view } = this.shop.bench;
     if (!this.list.isConnected || !view.stats().settled) return;
     const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
-    const key = [this.planesKey, this.shop.scale().sign, this.exact?.planes, ...tiles].join();
+    const key = [this.planesKey, this.shop.scale.sign, this.exact?.planes, ...tiles].join();
     if (key === this.measured) return;
     this.measured = key;
     const volume = this.exact?.planes === this.planesKey ? this.exact.volume : this.shownVolume();
     this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
     const name = view.closed ? words.clip.volume : words.clip.between;
-    this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale().formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
+    this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
   }
 
   private get planesKey(): string {

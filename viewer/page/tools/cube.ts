@@ -3,14 +3,14 @@
 import { cubeTransform, positionFor, SIDES, type Side } from '../../src/tools/orientation.js';
 import { element } from '../parts/element.js';
 import { CameraPose } from '../../src/scene/camera_pose.js';
-import type { Bench } from './bench.js';
+import type { PageStage } from '../view/page_stage.js';
 import { words } from './words/words.js';
 
 export class Cube {
   readonly root: HTMLElement;
   private readonly body: HTMLElement;
 
-  constructor(private readonly bench: Bench) {
+  constructor(private readonly bench: PageStage) {
     const faces = (Object.keys(SIDES) as Side[]).map((side) => {
       const face = element('button', { type: 'button', class: `cube-face cube-${side}`, 'aria-label': words.cube.look(words.cube.sides[side]) }, words.cube.sides[side]);
       face.addEventListener('click', () => { this.look(side); });

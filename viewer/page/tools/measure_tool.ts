@@ -34,7 +34,7 @@ export class MeasureTool implements Tool {
   private readonly measuring: Measuring;
 
   constructor(private readonly shop: Workshop) {
-    this.measuring = new Measuring({ name: 'page measuring', isAlone: false, tell: (length, bound) => shop.scale().formatWithin(length, bound) });
+    this.measuring = new Measuring({ name: 'page measuring', isAlone: false, tell: (length, bound) => shop.scale.formatWithin(length, bound) });
     this.measuring.addEventListener('change', () => { this.show(); });
     shop.bench.view.registerPlugin(this.measuring);
     const units = unitsForm(shop, () => { this.show(); });
@@ -71,8 +71,7 @@ export class MeasureTool implements Tool {
   }
 
   private setSnap(on: boolean): void {
-    this.shop.settings.snaps = on;
-    this.shop.chosen();
+    this.shop.setSettings({ snaps: on });
     this.snap.show(on);
   }
 
@@ -87,7 +86,7 @@ export class MeasureTool implements Tool {
     this.note.textContent = profiles.length === 0 ? words.measure.noProfile : '';
     if (profiles.length === 0) return;
     const bound = Math.max(...view.surface.map(({ node }) => recordedBound(view.source, node)));
-    const scale = this.shop.scale();
+    const scale = this.shop.scale;
     const off = bound > 0 && bound < Infinity ? `; ± ${scale.format(bound)}` : '';
     const title = `${words.measure.profile(bench.name, scale.format(this.measuring.measures().level))}${off}`;
     const text = kind === 'csv' ? profileCsv(profiles, toInput, upwards) : sectionSvg(profileLines(profiles, toInput, upwards), { axes: PROFILE_AXES, unit: settings.modelUnit, title });
@@ -98,7 +97,7 @@ export class MeasureTool implements Tool {
   private show(): void {
     for (const save of this.saves) save.hidden = this.measuring.points.length < 2;
     const [is, off] = [this.measuring.measures(), this.measuring.bounds()];
-    const scale = this.shop.scale();
+    const scale = this.shop.scale;
     const { measure } = words;
     const lengths = (['length', 'level', 'straight', 'rise'] as const).map((name) => [measure[name], scale.formatWithin(is[name], off[name])] as const);
     const areas = (['area', 'areaLevel'] as const).flatMap((name) => (is[name] === null ? [] : [[measure[name], scale.formatAreaWithin(is[name], off[name] ?? Infinity)] as const]));

@@ -40,6 +40,12 @@ export class NotebookStore {
     this.changed();
   }
 
+  /// Notes that are at that point move to another.
+  moveNote(from: Note['at'], to: Note['at']): void {
+    this.notes = this.notes.map((note) => (note.at === from ? { ...note, at: to } : note));
+    this.changed();
+  }
+
   changed(): void {
     const link = isEmpty(this) ? null : packNotes(this);
     this.isInLink = isEmpty(this) || link !== null;

@@ -93,8 +93,7 @@ export class PickTool implements Tool {
 
   /// The place chosen last is looked at again, if the camera has not moved since.
   private setSnap(on: boolean): void {
-    this.shop.settings.snaps = on;
-    this.shop.chosen();
+    this.shop.setSettings({ snaps: on });
     this.snap.show(on);
     if (this.place !== null) this.choose(...this.place);
   }

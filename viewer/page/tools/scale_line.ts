@@ -16,7 +16,7 @@ export class ScaleLine {
   show(): void {
     const { bench } = this.shop;
     const perPixel = unitsPerPixel(bench.pose().distance, bench.camera.projectionMatrix.elements[5], bench.surface.clientHeight);
-    const bar = scaleBar(perPixel, MOST_PIXELS, this.shop.scale());
+    const bar = scaleBar(perPixel, MOST_PIXELS, this.shop.scale);
     this.root.hidden = bar === null;
     if (bar === null) return;
     this.root.style.width = `${bar.pixels}px`;

@@ -1,55 +1,24 @@
 // SPDX-License-Identifier: MIT
 // The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
 import { Overlay } from '../../src/plugins/overlay.js';
-import { Pointing } from '../../src/tools/pointing.js';
-import { LengthScale, unitOfModel } from '../../src/tools/units.js';
+import type { Plugin } from '../../src/index.js';
 import { isTyped } from '../../src/typing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
-import type { Bench, Teller, ToolName, Tools } from './bench.js';
+import type { PageStage } from '../view/page_stage.js';
+import type { StoryHost } from '../view/story_host.js';
 import { Cube } from './cube.js';
-import { TOOL_ICONS } from './icons.js';
-import { TOOL_KEYS } from './keys.js';
 import { LastingSign } from './lasting_sign.js';
-import { NotebookStore } from './notebook.js';
 import { ScaleLine } from './scale_line.js';
-import { loadToolSettings, saveToolSettings } from './tool_settings.js';
 import type { Tool } from './tool.js';
+import { TOOL_NAMES, TOOLS, type ToolName } from './tools.js';
 import { words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
-import type { Workshop } from './workshop.js';
+import { Workshop } from './workshop.js';
 import './tools.css';
 
-type Load = () => Promise<{ makeTool: (shop: Workshop) => Tool }>;
-
-const LOADS: Readonly<Record<ToolName, Load>> = {
-  pick: () => import('./pick_tool.js'),
-  measure: () => import('./measure_tool.js'),
-  clip: () => import('./clip_tool.js'),
-  notes: () => import('./notes_tool.js'),
-  camera: () => import('./camera_tool.js'),
-};
-const NAMES = Object.keys(LOADS) as readonly ToolName[];
-
-/// `link`: the notes that the address has; `write`: puts others there, or takes them away.
-function makeShop(bench: Bench, story: Teller, link: string | null, write: (link: string | null) => void): Workshop {
-  const { manifest } = bench.view;
-  const settings = loadToolSettings(manifest && unitOfModel(manifest));
-  return {
-    bench,
-    pointing: new Pointing(bench),
-    settings,
-    notebook: new NotebookStore(link, write),
-    story,
-    scale: () => new LengthScale(settings.modelUnit, settings.shownUnit, words.units.unit),
-    chosen: () => {
-      saveToolSettings(settings);
-      bench.redraw();
-    },
-  };
-}
-
-export class Toolbox implements Tools {
+/// A plug-in of the view.
+export class Toolbox implements Plugin {
   readonly name = 'page tools';
   private readonly shop: Workshop;
   private readonly overlay = new Overlay('tool-overlay');
@@ -68,12 +37,13 @@ export class Toolbox implements Tools {
   private readonly made = new Map<ToolName, Tool>();
   private active: ToolName | null = null;
 
-  constructor(private readonly bench: Bench, ...notes: [Teller, string | null, (link: string | null) => void]) {
-    this.shop = makeShop(bench, ...notes);
+  /// As the workshop has them.
+  constructor(private readonly bench: PageStage, story: StoryHost, link: string | null, write: (link: string | null) => void) {
+    this.shop = new Workshop(bench, story, link, write);
     this.scaleLine = new ScaleLine(this.shop);
     this.cube = new Cube(bench);
     this.lasting = new LastingSign(bench.surface);
-    const entries = NAMES.map((name) => [name, this.makeButton(name)] as const);
+    const entries = TOOL_NAMES.map((name) => [name, this.makeButton(name)] as const);
     this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
     this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
     const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
@@ -87,6 +57,7 @@ export class Toolbox implements Tools {
     bench.signal.addEventListener('abort', () => { for (const tool of this.made.values()) tool.close?.(); });
   }
 
+  /// Null: the bar alone, or nothing any more if it is there.
   toggle(name: ToolName | null): void {
     if (name === null) this.setOpen(this.root.hidden);
     else this.put(name === this.active ? null : name);
@@ -109,6 +80,7 @@ export class Toolbox implements Tools {
     this.cube.show();
   }
 
+  /// Puts away the tool, then the bar. False: nothing is there.
   back(): boolean {
     if (this.root.hidden) return false;
     if (this.active !== null) this.put(null);
@@ -116,6 +88,7 @@ export class Toolbox implements Tools {
     return true;
   }
 
+  /// Another link is followed, with these notes.
   follow(notes: string | null): void {
     this.shop.notebook.follow(notes);
   }
@@ -125,9 +98,10 @@ export class Toolbox implements Tools {
   }
 
   private makeButton(name: ToolName): HTMLButtonElement {
-    const button = iconButton(`${words.names[name]} (${TOOL_KEYS[name]})`, TOOL_ICONS[name], () => { this.toggle(name); });
+    const { key, icon } = TOOLS[name];
+    const button = iconButton(`${words.names[name]} (${key})`, icon, () => { this.toggle(name); });
     button.setAttribute('aria-label', words.names[name]);
-    button.setAttribute('aria-keyshortcuts', TOOL_KEYS[name]);
+    button.setAttribute('aria-keyshortcuts', key);
     button.setAttribute('aria-pressed', 'false');
     return button;
   }
@@ -153,7 +127,7 @@ export class Toolbox implements Tools {
     if (inside) (this.active === null ? this.bench.surface : this.buttons[this.active]).focus();
     this.active = name;
     if (name !== null) this.root.hidden = false;
-    for (const each of NAMES) this.buttons[each].setAttribute('aria-pressed', String(each === name));
+    for (const each of TOOL_NAMES) this.buttons[each].setAttribute('aria-pressed', String(each === name));
     this.root.classList.toggle('working', name !== null);
     this.card.hidden = true;
     this.setGrown(false);
@@ -163,7 +137,7 @@ export class Toolbox implements Tools {
 
   private async open(name: ToolName): Promise<void> {
     try {
-      const { makeTool } = await LOADS[name]();
+      const { makeTool } = await TOOLS[name].load();
       if (this.active !== name || this.bench.signal.aborted) return;
       if (!this.made.has(name)) this.made.set(name, makeTool(this.shop));
     } catch {

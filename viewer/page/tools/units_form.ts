@@ -13,12 +13,12 @@ function select(name: string, unknown: string, value: UnitName, chosen: (unit: U
 }
 
 /// `changed`: after the settings have.
-export function unitsForm({ settings, chosen }: Workshop, changed: () => void): HTMLElement {
+export function unitsForm(shop: Workshop, changed: () => void): HTMLElement {
   const set = (key: 'modelUnit' | 'shownUnit') => (unit: UnitName): void => {
-    settings[key] = unit;
-    chosen();
+    shop.setSettings({ [key]: unit });
     changed();
   };
+  const { settings } = shop;
   return element('div', { class: 'tool-units tool-extra' },
     select(words.units.model, words.units.unknown, settings.modelUnit, set('modelUnit')),
     select(words.units.shown, words.units.asModel, settings.shownUnit, set('shownUnit')));

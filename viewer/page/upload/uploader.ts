@@ -21,16 +21,7 @@ interface Waiting {
   ending: AbortController;
 }
 
-export interface Surroundings {
-  /// What is marked while files are held over the page, and must be shown.
-  place: HTMLElement;
-  /// Of the inbox, with a slash at its end.
-  inbox: string;
-  problems: Problems;
-  /// Something has been stored.
-  stored: () => void;
-}
-
+/// Event `stored`, at its root and above: the server has taken something.
 export class Uploader {
   readonly root: HTMLElement;
   private readonly rows = element('ul', { class: 'upload-rows', 'aria-label': words.upload.title });
@@ -40,7 +31,8 @@ export class Uploader {
   private busy = false;
   private offer: UploadOffer | null = null;
 
-  constructor(private readonly around: Surroundings) {
+  /// `place`: it is marked while files are held over the page, and takes none while it is hidden. `inbox`: its address, with a slash at its end.
+  constructor(private readonly place: HTMLElement, private readonly problems: Problems, private readonly inbox: string) {
     this.root = element('section', { class: 'upload', hidden: true },
       element('div', { class: 'upload-buttons' }, this.picker(words.upload.addFiles, false), this.picker(words.upload.addFolder, true),
         element('span', { class: 'upload-hint' }, words.upload.hint)),
@@ -87,7 +79,7 @@ export class Uploader {
 
   /// Anywhere on the page while the gallery is shown: beside it the browser would leave the page for the file.
   private watchDrops(): void {
-    const { place } = this.around;
+    const { place } = this;
     const takes = ({ dataTransfer }: DragEvent): boolean =>
       this.offer !== null && !place.hidden && (dataTransfer?.types.includes('Files') ?? false);
     const mark = (on: boolean): void => { place.classList.toggle('upload-target', on); };
@@ -118,7 +110,7 @@ export class Uploader {
       const answer = await this.sendOne(next);
       this.drop(next);
       if (answer === null) continue;
-      if (answer.status === CREATED) this.around.stored();
+      if (answer.status === CREATED) this.root.dispatchEvent(new Event('stored', { bubbles: true }));
       else this.tell(refusalText(next.row.upload.name, answer));
     }
     this.busy = false;
@@ -141,11 +133,11 @@ export class Uploader {
   private sendWith(token: string | null, { row, ending }: Waiting): Promise<Answer | null> {
     const told = (sent: number, total: number): void => { row.show(sent, total, performance.now()); };
     told(0, row.upload.bytes);
-    return send(row.upload, { inbox: this.around.inbox, token, told, ended: ending.signal });
+    return send(row.upload, { inbox: this.inbox, token, told, ended: ending.signal });
   }
 
   private tell(problem: string): void {
-    this.told.set(problem, this.around.problems.tell(problem));
+    this.told.set(problem, this.problems.tell(problem));
   }
 
   /// Those of an earlier try: what was dismissed then would not be told again.

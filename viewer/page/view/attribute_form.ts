@@ -5,12 +5,11 @@ import { formatCount, formatLength } from '../numbers.js';
 import { checkbox, choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
+import type { ViewChoices } from './view_choices.js';
 
 const STEPS = 1000; // of a handle of the legend
 const GRADIENT_STOPS = 16;
 const BARS_HEIGHT = 36;
-
-type Chosen = (change: Partial<AttributeLook>) => void;
 
 function css(colour: readonly [number, number, number]): string {
   return `rgb(${colour.join(' ')})`;
@@ -102,8 +101,9 @@ export class AttributeForm {
   private look: AttributeLook | null = null;
   private on = false;
 
-  constructor(private readonly chosen: Chosen) {
+  constructor(private readonly choices: ViewChoices) {
     const text = words.attribute;
+    const chosen = (change: Partial<AttributeLook>): void => { choices.choose({ look: change }); };
     this.select.addEventListener('change', () => { chosen({ attribute: this.select.value, range: null, hidden: [] }); });
     this.ramp = choice(text.ramp, RAMPS.map((name) => [name, name] as const), (ramp) => { chosen({ ramp }); });
     this.isolines = checkbox(text.isolines, null, (isolines) => { chosen({ isolines }); });
@@ -153,7 +153,7 @@ export class AttributeForm {
     }
     const focused = [...this.labels.querySelectorAll('input')].findIndex((input) => input === document.activeElement);
     this.labels.replaceChildren(...labels.map((label, i) => {
-      const box = checkbox(labelNames[i] || String(label), null, (on) => { this.chosen({ hidden: on ? hidden.filter((each) => each !== label) : [...hidden, label] }); });
+      const box = checkbox(labelNames[i] || String(label), null, (on) => { this.choices.choose({ look: { hidden: on ? hidden.filter((each) => each !== label) : [...hidden, label] } }); });
       box.show(!hidden.includes(label));
       const swatch = element('span', { class: 'swatch', 'aria-hidden': 'true' });
       swatch.style.background = css(labelColour(i));

@@ -30,7 +30,7 @@ export class Extensions {
       await this.immersion.start(mode);
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
-      context.around.failed(words.problems.noImmersion, { more: why, subject: 'immersion' });
+      context.page.problems.tell(words.problems.noImmersion, { more: why, subject: 'immersion' });
     }
   }
 

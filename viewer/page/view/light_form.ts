@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Light, and how the model stands.
-import type { Standing, Up } from '../../src/index.js';
+import type { Up } from '../../src/index.js';
 import { MOST_STRETCH, UPS } from '../../src/index.js';
-import { LIGHTS, type Light, type LightName } from '../appearance.js';
+import { LIGHTS, type LightName } from '../appearance.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 import type { Angles } from '../../src/scene/lighting.js';
-
-export interface LightChoices {
-  /// Whether a drag turns the light from now on, instead of the model.
-  dragsLight: (does: boolean) => void;
-  light: (change: Partial<Light>) => void;
-  standing: (change: Partial<Standing>) => void;
-}
+import type { LightDrag } from './light_drag.js';
+import { SWITCH_KEYS, type Switch, type ViewChoices } from './view_choices.js';
 
 const DEGREE = Math.PI / 180;
 const AROUND = { least: -180, most: 180, step: 5 };
@@ -28,6 +23,10 @@ function upSelect(chosen: (up: Up) => void): Control<Up> {
   return { root: element('label', { class: 'language-row' }, text.up, select), show: (up) => { select.value = up; } };
 }
 
+export function switchBox(choices: ViewChoices, what: Switch): Control<boolean> {
+  return checkbox(words.switches[what], SWITCH_KEYS[what], (on) => { choices.turn(what, on); });
+}
+
 export class LightForm {
   readonly root: HTMLElement;
   private readonly name: Control<LightName>;
@@ -36,28 +35,27 @@ export class LightForm {
   private readonly above: Control<number>;
   private readonly up: Control<Up>;
   private readonly stretch: Control<number>;
-  private key: Angles = { right: 0, up: 0 };
 
-  constructor({ dragsLight, light, standing }: LightChoices) {
+  constructor(private readonly choices: ViewChoices, lightDrag: LightDrag) {
     const text = words.light;
     const turn = (change: Partial<Angles>): void => {
-      const { right, up } = { ...this.key, ...change };
-      light({ key: [right, up] });
+      const { right, up } = { ...choices.presentation.shown.key, ...change };
+      choices.choose({ light: { key: [right, up] } });
     };
-    this.name = choice(text.light, LIGHTS.map((name) => [name, text.names[name]]), (name) => { light({ name, key: null }); });
+    this.name = choice(text.light, LIGHTS.map((name) => [name, text.names[name]]), (name) => { choices.choose({ light: { name, key: null } }); });
     this.around = slider(text.around, '°', AROUND, (degrees) => { turn({ right: degrees * DEGREE }); });
     this.above = slider(text.above, '°', ABOVE, (degrees) => { turn({ up: degrees * DEGREE }); });
-    this.up = upSelect((up) => { standing({ up }); });
-    this.stretch = slider(text.stretch, '×', STRETCHES, (stretch) => { standing({ stretch }); });
-    this.occlusion = checkbox(text.occlusion, 'A', (occlusion) => { light({ occlusion }); });
-    const drag = checkbox(text.drag, null, dragsLight);
+    this.up = upSelect((up) => { choices.choose({ standing: { up } }); });
+    this.stretch = slider(text.stretch, '×', STRETCHES, (stretch) => { choices.choose({ standing: { stretch } }); });
+    this.occlusion = switchBox(choices, 'occlusion');
+    const drag = checkbox(text.drag, null, (on) => { lightDrag.isChosen = on; });
     const parts = [this.name, this.occlusion, drag, this.around, this.above, this.up, this.stretch];
     this.root = element('div', { class: 'settings' }, ...parts.map(({ root }) => root));
   }
 
-  /// `key`: where the light comes from now.
-  show(light: Light, key: Angles, { up, stretch }: Standing): void {
-    this.key = key;
+  /// As it is chosen now.
+  show(): void {
+    const { chosen: { light, standing: { up, stretch } }, presentation: { shown: { key } } } = this.choices;
     this.name.show(light.name);
     this.occlusion.show(light.occlusion);
     this.around.show(Math.round(key.right / DEGREE));

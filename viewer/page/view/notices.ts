@@ -26,15 +26,15 @@ export class Notices {
 
   /// However many files are missing, they are one message.
   private miss(message: string, files: number): void {
-    const { model, around, view } = this.context;
+    const { model, page: { problems }, view } = this.context;
     const text = words.problems.missing(model.name, files, formatCount(files));
-    this.missing = around.failed(text, { more: message, subject: 'missing', retry: () => { view.retry(); } });
+    this.missing = problems.tell(text, { more: message, subject: 'missing', retry: () => { view.retry(); } });
   }
 
   /// Nothing is drawn until the device is back.
   private lose(): void {
     const { pictureLost, pictureLostMore } = words.problems;
-    const told = this.context.around.failed(pictureLost, { more: pictureLostMore });
+    const told = this.context.page.problems.tell(pictureLost, { more: pictureLostMore });
     const goOn = this.frames.pause();
     this.lost = () => {
       this.lost = undefined;
@@ -44,12 +44,12 @@ export class Notices {
   }
 
   private refuse(error: unknown): void {
-    const { model, around } = this.context;
+    const { model, page } = this.context;
     const why = error instanceof Error ? error.message : String(error);
     const passes = error instanceof HierarchyProblem && error.mayPass;
     const { notOpened, notAHierarchy } = words.problems;
     const more = passes ? why : `${why}. ${notAHierarchy(model.url)}`;
     this.missing?.();
-    this.refusal = around.failed(notOpened(model.name), { more, subject: 'refused', retry: () => { around.again(); } });
+    this.refusal = page.problems.tell(notOpened(model.name), { more, subject: 'refused', retry: () => { page.dispatchEvent(new Event('again')); } });
   }
 }

@@ -5,33 +5,24 @@ import { HierarchyView, type Manifest, type Stats, type ViewOptions } from '../.
 import type { Spot } from '../address.js';
 import type { Turn } from '../gallery/layout.js';
 import type { Model } from '../listing.js';
+import type { ModelEntry } from '../model_entry.js';
+import type { Page } from '../page.js';
 import { element } from '../parts/element.js';
-import type { Preferences, Theme } from '../preferences.js';
-import type { Telling } from '../problems.js';
-import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import { Canvas } from './canvas.js';
 
-/// The page gives these to a view.
-export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
-  spot: Spot;
-  /// As the gallery showed the model, to go on from there; null: it was not turned.
-  turn: Turn | null;
-  preferences: Preferences;
-  /// Preferences have changed.
-  chosen(): void;
-  setTheme(theme: Theme): void;
-  setLanguage(language: Language): void;
-  /// To the gallery; null: there is none.
-  leave: (() => void) | null;
+/// How a visitor comes to a model.
+export interface Arrival extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
+  readonly page: Page;
+  /// The model, and where the address keeps what is seen of it.
+  readonly entry: ModelEntry;
+  readonly spot: Spot;
+  /// The gallery showed the model so, to go on from there; null: it was not turned.
+  readonly turn: Turn | null;
+  /// False: there is nothing to go back to.
+  readonly hasGallery: boolean;
   /// The address of what is told about the model, or itself; null: nothing is.
-  findStory: (signal: AbortSignal) => Promise<string | null>;
-  /// The camera stands still, elsewhere than before, or something else was chosen.
-  rested(spot: Spot): void;
-  /// What it returns takes the message away; one about the same subject takes its place.
-  failed(message: string, telling?: Telling): () => void;
-  /// Opens the model anew.
-  again(): void;
+  readonly findStory: (signal: AbortSignal) => Promise<string | null>;
 }
 
 export interface ContextEvents {
@@ -49,11 +40,15 @@ export interface ContextEvents {
   known: { manifest: Manifest };
   /// The model has a story.
   story: { isTold: boolean };
+  /// L was pressed alone.
+  lightKey: object;
 }
 
 const REST = 300; // milliseconds without movement
 
 export class PageContext extends EventDispatcher<ContextEvents> {
+  readonly page: Page;
+  readonly model: Model;
   readonly canvas: Canvas;
   /// Holds everything of the view.
   readonly root = element('main', { class: 'view' });
@@ -68,10 +63,11 @@ export class PageContext extends EventDispatcher<ContextEvents> {
   private restTimer = 0;
 
   /// Throws Error where there is no WebGL 2.
-  constructor(readonly model: Model, readonly around: Surroundings) {
+  constructor(readonly arrival: Arrival) {
     super();
-    const { fetch, createWorker, preferences: { settings } } = around;
-    this.canvas = new Canvas(() => new HierarchyView(model.url, { fetch, createWorker, settings, files: model.files }));
+    const { fetch, createWorker, page, entry: { model } } = arrival;
+    [this.page, this.model] = [page, model];
+    this.canvas = new Canvas(() => new HierarchyView(model.url, { fetch, createWorker, settings: page.preferences.settings, files: model.files }));
     const name = words.view.surface(model.name);
     this.surface = element('div', { class: 'surface', tabindex: '0', role: 'application', 'aria-label': name }, this.canvas.element);
     this.view.addEventListener('change', () => { this.dispatchEvent({ type: 'wake' }); });
@@ -107,7 +103,7 @@ export class PageContext extends EventDispatcher<ContextEvents> {
       done();
       again();
     };
-    const done = this.around.failed(words.problems.noCode, { more: words.problems.noCodeMore, subject: 'tools', retry });
+    const done = this.page.problems.tell(words.problems.noCode, { more: words.problems.noCodeMore, subject: 'tools', retry });
   }
 
   close(): void {

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT
 // A model's view for plug-ins and tools.
-import type { HierarchyView } from '../../src/index.js';
+import type { HierarchyView, Stage } from '../../src/index.js';
 import type { CameraPose } from '../../src/scene/camera_pose.js';
+import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { fileOf } from '../listing.js';
-import type { Bench } from '../tools/bench.js';
+import type { Telling } from '../problems.js';
 import type { Canvas } from './canvas.js';
 import type { PageFrames } from './page_frames.js';
 import { isStanding, type ViewCamera } from './view_camera.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
 
-export class PageStage implements Bench {
+export class PageStage implements Stage {
   readonly view: HierarchyView;
   readonly renderer: Canvas['renderer'];
   readonly scene: Canvas['scene'];
   readonly camera: Canvas['camera'];
+  /// Holds everything around the picture.
   readonly root: HTMLElement;
   readonly surface: HTMLElement;
   readonly signal: AbortSignal;
   readonly name: string;
+  /// The file of the hierarchy: its story lies beside it under that name and ".story.json".
   readonly fileName: string;
 
   constructor(readonly context: PageContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: PageFrames) {
@@ -58,15 +61,18 @@ export class PageStage implements Bench {
     this.looks.tell(choices);
   }
 
+  /// The look of the model, as links have it.
   choices(): string {
     return this.looks.text;
   }
 
-  freeze(size: Parameters<Bench['freeze']>[0]): ReturnType<Bench['freeze']> {
+  /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.
+  freeze(size: PictureSize): { readonly draw: DrawPart; release(): void } {
     return this.moves.freeze(size);
   }
 
-  tell(message: string, telling?: Parameters<Bench['tell']>[1]): () => void {
-    return this.context.around.failed(message, { ...telling, subject: 'tools' });
+  /// What it returns takes the message away.
+  tell(message: string, telling?: Pick<Telling, 'more' | 'retry'>): () => void {
+    return this.context.page.problems.tell(message, { ...telling, subject: 'tools' });
   }
 }

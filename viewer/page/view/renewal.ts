@@ -22,7 +22,7 @@ export class Renewal {
   /// True: it is another one whose places are others. Then all begins anew, and nothing that was measured holds.
   know(manifest: Manifest): boolean {
     const isElsewhere = this.places.haveChanged(manifest);
-    if (isElsewhere) queueMicrotask(() => { this.context.around.again(); });
+    if (isElsewhere) queueMicrotask(() => { this.context.page.dispatchEvent(new Event('again')); });
     return isElsewhere;
   }
 
@@ -31,17 +31,17 @@ export class Renewal {
   }
 
   private tell(isLasting: boolean): void {
-    const { model: { name }, around } = this.context;
+    const { model: { name }, page: { problems } } = this.context;
     const { replaced, replacedMore, hostReplaced, hostReplacedMore } = words.problems;
     if (isLasting) {
-      around.failed(hostReplaced(name), { more: hostReplacedMore, subject: 'replaced' });
+      problems.tell(hostReplaced(name), { more: hostReplacedMore, subject: 'replaced' });
       return;
     }
     const reload = (): void => {
       done();
       void this.reload();
     };
-    const done = around.failed(replaced(name), { more: replacedMore, subject: 'replaced', retry: reload, retryText: words.parts.reload });
+    const done = problems.tell(replaced(name), { more: replacedMore, subject: 'replaced', retry: reload, retryText: words.parts.reload });
   }
 
   /// With what the host has now; the camera, the look, and what was measured stay.

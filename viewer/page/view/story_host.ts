@@ -3,7 +3,6 @@
 import { choiceOf, type Spot } from '../address.js';
 import type { Notebook } from '../../src/tools/note.js';
 import type { StoryPlayer } from '../story/story_player.js';
-import type { Teller } from '../tools/bench.js';
 import { words } from '../words/words.js';
 import type { PageStage } from './page_stage.js';
 
@@ -13,7 +12,7 @@ interface Story {
   readonly address: string | null;
 }
 
-export class StoryHost implements Teller {
+export class StoryHost {
   private story: Story | null = null;
   private player: StoryPlayer | null = null;
   private step: number | null = null;
@@ -29,6 +28,7 @@ export class StoryHost implements Teller {
     return this.step === null ? null : this.step + 1;
   }
 
+  /// The story that lies beside the model; null: there is none, or it has not come yet.
   get told(): Notebook | null {
     return this.story?.notebook ?? null;
   }
@@ -45,7 +45,7 @@ export class StoryHost implements Teller {
     if (this.step !== null) this.player?.stories.stand(this.step);
   }
 
-  /// What was written with the tools, instead of what is told.
+  /// Shows what was written with the tools as visitors see it, instead of what is told; `from`: the first note, from 0 on.
   play(notebook: Notebook, from: number): void {
     this.open({ notebook, address: this.address }).then(
       () => { this.player?.stories.go(from); },
@@ -70,18 +70,18 @@ export class StoryHost implements Teller {
     if (this.sought) return;
     this.sought = true;
     this.load().catch((error: unknown) => {
-      const { around, model } = this.stage.context;
+      const { page, model } = this.stage.context;
       const retry = (): void => {
         this.sought = false;
         this.seek();
       };
-      around.failed(words.story.notRead(model.name), { more: error instanceof Error ? error.message : String(error), subject: 'story', retry });
+      page.problems.tell(words.story.notRead(model.name), { more: error instanceof Error ? error.message : String(error), subject: 'story', retry });
     });
   }
 
   private async load(): Promise<void> {
     const { signal, context } = this.stage;
-    const found = await context.around.findStory(signal);
+    const found = await context.arrival.findStory(signal);
     if (found === null) return;
     const { loadStory } = await import('../story/story_source.js');
     const notebook = await loadStory(found, signal);

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The tools of a view, loaded when they are first used, and the notes that its links have.
 import { choiceOf, type Spot } from '../address.js';
-import type { Teller, ToolName, Tools } from '../tools/bench.js';
+import type { Toolbox } from '../tools/toolbox.js';
+import type { ToolName } from '../tools/tools.js';
 import type { PageStage } from './page_stage.js';
+import type { StoryHost } from './story_host.js';
 
 export class ToolHost {
-  private tools: Tools | null = null;
+  private tools: Toolbox | null = null;
   private linked: string | null = null;
   private hasNews = false;
 
-  constructor(private readonly stage: PageStage, private readonly story: Teller) {
+  constructor(private readonly stage: PageStage, private readonly story: StoryHost) {
     stage.context.addEventListener('known', () => { this.showNews(); });
   }
 

@@ -26,9 +26,9 @@ export class ViewCamera {
   private approach: ReturnType<typeof towardsViewer> | null = null;
 
   constructor(private readonly context: PageContext) {
-    const { canvas, around } = context;
+    const { canvas, arrival: { turn } } = context;
     this.navigation = new Navigation((right, up) => canvas.pick(right, up), () => { context.redraw(); });
-    if (around.turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(around.turn);
+    if (turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(turn);
     context.addEventListener('opened', () => { this.reframe(); });
   }
 

@@ -14,18 +14,20 @@ export interface Choice {
   readonly standing?: Partial<Standing>;
 }
 
-/// These are on or off.
-export type Switch = 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'occlusion' | 'flat';
+/// What is on or off in a form of its own, with its key; null: it has none.
+export const SWITCH_KEYS = { texture: 'T', relight: null, wires: 'W', points: 'P', outline: 'O', flat: 'F', cavities: 'C', occlusion: 'A' } as const;
+export type Switch = keyof typeof SWITCH_KEYS;
 
 export class ViewChoices {
   readonly presentation: Presentation;
   private readonly toldLook = new ToldLook();
 
   constructor(private readonly context: PageContext) {
-    const { view, canvas, around } = context;
-    this.presentation = new Presentation(view, canvas.lighting, this.wished(around.spot));
+    const { view, canvas, arrival, page, signal } = context;
+    this.presentation = new Presentation(view, canvas.lighting, this.wished(arrival.spot));
     this.presentation.apply();
     context.addEventListener('opened', () => { this.present(); }); // what the model is may choose for it
+    page.addEventListener('theme', () => { this.show(); }, { signal });
     context.addEventListener('story', ({ isTold }) => { if (!isTold) this.presentAs(this.toldLook.end(this.chosen)); });
   }
 
@@ -50,26 +52,35 @@ export class ViewChoices {
 
   /// Kept for other models too; but not how this one stands.
   choose({ look, light, standing }: Choice): void {
-    const { context: { around, model }, chosen } = this;
-    const { preferences } = around;
+    const { context: { page, model }, chosen } = this;
+    const { preferences } = page;
     this.presentation.chosen = {
       look: { ...chosen.look, ...look },
       light: { ...chosen.light, ...light },
       standing: { ...chosen.standing, ...standing },
     };
-    Object.assign(preferences.look, lastingLook(look ?? {}));
-    Object.assign(preferences.light, light);
-    if (standing !== undefined) preferences.standings = keepStanding(preferences.standings, model.url, this.chosen.standing);
-    around.chosen();
+    page.keep({
+      look: { ...preferences.look, ...lastingLook(look ?? {}) },
+      light: { ...preferences.light, ...light },
+      standings: standing === undefined ? preferences.standings : keepStanding(preferences.standings, model.url, this.chosen.standing),
+    });
     this.present();
     this.context.startRest();
   }
 
-  toggle(what: Switch): void {
+  isOn(what: Switch): boolean {
     const { look, light } = this.chosen;
-    if (what === 'occlusion') this.choose({ light: { occlusion: !light.occlusion } });
-    else if (what === 'flat') this.choose({ look: { shading: look.shading === 'flat' ? 'smooth' : 'flat' } });
-    else this.choose({ look: { [what]: !look[what] } });
+    if (what === 'occlusion') return light.occlusion;
+    return what === 'flat' ? look.shading === 'flat' : look[what];
+  }
+
+  turn(what: Switch, on: boolean): void {
+    if (what === 'occlusion') this.choose({ light: { occlusion: on } });
+    else this.choose({ look: what === 'flat' ? { shading: on ? 'flat' : 'smooth' } : { [what]: on } });
+  }
+
+  toggle(what: Switch): void {
+    this.turn(what, !this.isOn(what));
   }
 
   nextLight(): void {
@@ -81,10 +92,9 @@ export class ViewChoices {
   }
 
   setSettings(change: Partial<Settings>): void {
-    const { view, around } = this.context;
+    const { view, page } = this.context;
     view.setSettings(change);
-    Object.assign(around.preferences.settings, change);
-    around.chosen();
+    page.keep({ settings: { ...page.preferences.settings, ...change } });
     this.show();
   }
 
@@ -106,7 +116,7 @@ export class ViewChoices {
 
   /// The wishes that this browser keeps, and what a link says instead.
   private wished({ choices }: Spot): Appearance {
-    const { around: { preferences: { look, light, standings } }, model } = this.context;
+    const { page: { preferences: { look, light, standings } }, model } = this.context;
     return withChoices(choices, { look, light, standing: readStanding(standings[model.url]) });
   }
 }

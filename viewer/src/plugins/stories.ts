@@ -61,6 +61,12 @@ export class Stories extends EventDispatcher<StoryEvents> implements Plugin {
     this.dispatchEvent({ type: 'told' });
   }
 
+  /// By hand: the story no longer goes on by itself.
+  turnTo(i: number): void {
+    this.pause();
+    this.go(i);
+  }
+
   /// The note is shown, and the camera stays where it is.
   stand(i: number): void {
     if (this.story.notes[i] !== undefined) this.show(i);
