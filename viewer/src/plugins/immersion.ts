@@ -39,8 +39,7 @@ export class Immersion implements Plugin {
       resume();
     };
     try {
-      const { renderer, scene, camera, view } = stage;
-      const session = await ImmersionSession.start(mode, { renderer, scene, camera, view, shown: shownOf(view, manifest), ended });
+      const session = await ImmersionSession.start(mode, stage, shownOf(stage.view, manifest), ended);
       if (isOver) return;
       if (this.stage !== stage) { // it was taken away meanwhile
         session.stop();

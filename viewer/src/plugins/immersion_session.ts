@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A model in the room around a visitor, through WebXR: it refines for what the headset sees, within the device's frame rate.
-import { Group, MathUtils, PerspectiveCamera, Vector3, type Quaternion, type Scene, type WebGLRenderer } from 'three';
-import type { HierarchyView } from '../scene/hierarchy_view.js';
+import { Group, MathUtils, PerspectiveCamera, Vector3, type Quaternion } from 'three';
+import type { Stage } from '../scene/hierarchy_view.js';
 import { Hands } from './hands.js';
 import type { ImmersionMode } from './immersion_modes.js';
 import { Placement, type Shown } from './placement.js';
@@ -10,16 +10,6 @@ const NEAR = 0.03; // metres
 const FAR = 200;
 const USUAL_RATE = 72; // frames per second, of a device that does not say
 const WIDER = 1.15; // than one eye sees, that both do
-
-export interface Surroundings {
-  readonly renderer: WebGLRenderer;
-  readonly scene: Scene;
-  /// Lights may be at it: it follows the visitor's head.
-  readonly camera: PerspectiveCamera;
-  readonly view: HierarchyView;
-  readonly shown: Shown;
-  ended(): void;
-}
 
 async function floorOf(session: XRSession): Promise<'local-floor' | 'local'> {
   return session.requestReferenceSpace('local-floor').then(() => 'local-floor' as const, () => 'local' as const);
@@ -30,32 +20,35 @@ export class ImmersionSession {
   private readonly eyes = new PerspectiveCamera(50, 1, NEAR, FAR);
   /// What both eyes see, in the model's units.
   private readonly head = new PerspectiveCamera();
-  private readonly placement: Placement;
   private readonly hands: Hands;
   private readonly rate: number;
   /// The stage's camera as it stood before.
   private readonly before: { readonly position: Vector3; readonly quaternion: Quaternion };
 
-  private constructor(private readonly session: XRSession, private readonly around: Surroundings, onFloor: boolean) {
-    this.placement = new Placement(around.shown, onFloor);
-    this.hands = new Hands(this.placement);
-    this.rate = around.view.settings.framesPerSecond;
-    this.before = { position: around.camera.position.clone(), quaternion: around.camera.quaternion.clone() };
+  private constructor(private readonly session: XRSession, private readonly stage: Stage, private readonly placement: Placement) {
+    const { view, scene, camera } = stage;
+    this.hands = new Hands(placement);
+    this.rate = view.settings.framesPerSecond;
+    this.before = { position: camera.position.clone(), quaternion: camera.quaternion.clone() };
     this.rig.matrixAutoUpdate = false;
     this.rig.add(this.eyes);
-    around.scene.add(this.rig);
-    around.view.setSettings({ framesPerSecond: Math.min(Math.max(session.frameRate ?? USUAL_RATE, 1), 240) });
-    session.addEventListener('end', () => { this.end(); });
+    scene.add(this.rig);
+    view.setSettings({ framesPerSecond: Math.min(Math.max(session.frameRate ?? USUAL_RATE, 1), 240) });
   }
 
-  /// Of a click. Rejects where the visitor or the browser does not allow it.
-  static async start(mode: ImmersionMode, around: Surroundings): Promise<ImmersionSession> {
+  /// Call it when the visitor clicks: `ended` is called once the visitor is back. Lights may be at the stage's camera: it follows the
+  /// visitor's head. Rejects where the visitor or the browser does not allow it.
+  static async start(mode: ImmersionMode, stage: Stage, shown: Shown, ended: () => void): Promise<ImmersionSession> {
     const session = await navigator.xr!.requestSession(mode, { optionalFeatures: ['local-floor'] });
     const space = await floorOf(session);
-    const { renderer } = around;
+    const { renderer } = stage;
     renderer.xr.enabled = true;
     renderer.xr.setReferenceSpaceType(space);
-    const immersion = new ImmersionSession(session, around, space === 'local-floor');
+    const immersion = new ImmersionSession(session, stage, new Placement(shown, space === 'local-floor'));
+    session.addEventListener('end', () => {
+      immersion.end();
+      ended();
+    });
     await renderer.xr.setSession(session);
     renderer.setAnimationLoop((now, frame?: XRFrame) => { if (frame) immersion.draw(now, frame); });
     return immersion;
@@ -66,7 +59,7 @@ export class ImmersionSession {
   }
 
   private draw(now: number, frame: XRFrame): void {
-    const { renderer, scene, view, camera } = this.around;
+    const { renderer, scene, view, camera } = this.stage;
     const space = renderer.xr.getReferenceSpace();
     if (space !== null) this.hands.step(frame, space, now);
     this.rig.matrix.copy(this.placement.toWorld);
@@ -83,7 +76,7 @@ export class ImmersionSession {
 
   /// Pixels of an eye; null: the device does not know where it is.
   private aimHead(): { width: number; height: number } | null {
-    const { cameras } = this.around.renderer.xr.getCamera();
+    const { cameras } = this.stage.renderer.xr.getCamera();
     const eye = cameras.at(0);
     const viewport = eye?.viewport;
     if (eye === undefined || viewport === undefined || viewport.w === 0) return null;
@@ -99,13 +92,12 @@ export class ImmersionSession {
   }
 
   private end(): void {
-    const { renderer, scene, view, camera } = this.around;
+    const { renderer, scene, view, camera } = this.stage;
     renderer.setAnimationLoop(null);
     renderer.xr.enabled = false;
     scene.remove(this.rig);
     camera.position.copy(this.before.position);
     camera.quaternion.copy(this.before.quaternion);
     view.setSettings({ framesPerSecond: this.rate });
-    this.around.ended();
   }
 }

@@ -12,7 +12,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
-import { Opening } from './opening.js';
+import { Opening, type FileHost } from './opening.js';
 import { OutlineLayer } from './outline_layer.js';
 import type { TileSource } from './surface.js';
 import { memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from './tile_object.js';
@@ -36,7 +36,7 @@ export class ShownCut {
   readonly drawn = new Promise<void>((resolve) => { this.rootDrawn = resolve; });
 }
 
-export class Loading {
+export class Loading implements FileHost {
   manifest: Manifest | null = null;
   directory: Directory | null = null;
   cut = new ShownCut();
@@ -52,17 +52,11 @@ export class Loading {
 
   /// `url`: of the hierarchy's directory, or of its archive.
   constructor(private readonly url: string, private readonly context: ViewContext) {
-    const { options, tiles } = context;
+    const { options } = context;
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     this.opening = this.makeOpening(false);
     this.store = this.makeStore();
-    this.outline = new OutlineLayer(tiles, {
-      tell: (problem) => { this.tell('outline', problem); },
-      came: () => {
-        this.recover('outline');
-        context.changed();
-      },
-    });
+    this.outline = new OutlineLayer(context, this);
   }
 
   /// Resolves when the root can be drawn. Rejects with an Error that names the file.
@@ -155,6 +149,11 @@ export class Loading {
     context.changed();
   }
 
+  /// A file has come.
+  recover(file: string | number): void {
+    if (this.missing.delete(file) && this.missing.size === 0) this.context.events.dispatchEvent({ type: 'recovered' });
+  }
+
   dispose(): void {
     this.opening.close();
     this.store.dispose();
@@ -165,8 +164,7 @@ export class Loading {
   private makeOpening(isAnew: boolean): Opening {
     const { options } = this.context;
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
-    const host = { tell: (file: string, problem: unknown) => { this.tell(file, problem); }, recover: (file: string) => { this.recover(file); } };
-    return new Opening(options.files ?? remoteFiles(this.url, fetch), this.decoder, host, isAnew);
+    return new Opening(options.files ?? remoteFiles(this.url, fetch), this.decoder, this, isAnew);
   }
 
   private makeStore(): TileStore {
@@ -246,9 +244,5 @@ export class Loading {
     }
     this.context.events.dispatchEvent({ type: 'replaced', isLasting });
     this.context.changed();
-  }
-
-  private recover(file: string | number): void {
-    if (this.missing.delete(file) && this.missing.size === 0) this.context.events.dispatchEvent({ type: 'recovered' });
   }
 }

@@ -20,8 +20,9 @@ export interface OpenRoot {
   readonly drawn?: Promise<void>;
 }
 
-export interface OpeningHost {
-  /// A file failed; each failure but the last.
+/// Whoever loads a hierarchy is told of its files.
+export interface FileHost {
+  /// A file failed; of what is tried again, each failure but the last.
   tell(file: string, problem: unknown): void;
   /// A file has come.
   recover(file: string): void;
@@ -36,7 +37,7 @@ export class Opening {
   constructor(
     files: RemoteFiles,
     decoder: TileDecoder,
-    private readonly host: OpeningHost,
+    private readonly host: FileHost,
     readonly isAnew: boolean,
   ) {
     this.remote = new RemoteHierarchy(files, decoder, this.ending.signal, isAnew);

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The outline of a view: fetched when it is first to be seen.
-import type { Group } from 'three';
 import type { Outline } from '../hierarchy/outline.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
+import type { FileHost } from './opening.js';
 import { OutlineObject } from './outline_object.js';
-
-export interface OutlineHost {
-  tell(problem: unknown): void;
-  came(): void;
-}
+import type { ViewContext } from './view_context.js';
 
 export class OutlineLayer {
   private object: OutlineObject | null = null;
@@ -16,8 +12,8 @@ export class OutlineLayer {
   private loading: object | null = null; // the newest attempt; what will not pass is not tried again
 
   constructor(
-    private readonly parent: Group,
-    private readonly host: OutlineHost,
+    private readonly context: ViewContext,
+    private readonly host: FileHost,
   ) {}
 
   /// `place`: what the tiles' positions are relative to.
@@ -41,12 +37,13 @@ export class OutlineLayer {
       if (this.loading !== attempt) return;
       this.object = new OutlineObject(outline, place);
       this.object.visible = this.isWanted;
-      this.parent.add(this.object);
-      this.host.came();
+      this.context.tiles.add(this.object);
+      this.host.recover('outline');
+      this.context.changed();
     } catch (problem) {
       if (this.loading !== attempt) return;
       if (problem instanceof HierarchyProblem && problem.mayPass) this.loading = null; // asked for again when it is switched on again
-      this.host.tell(problem);
+      this.host.tell('outline', problem);
     }
   }
 }
