@@ -52,6 +52,10 @@ class Stranger implements Plugin {
   }
 }
 
+function refuse(): never {
+  throw new Error('no');
+}
+
 const render = vi.fn();
 const RENDERER = { render } as unknown as WebGLRenderer;
 
@@ -178,11 +182,34 @@ describe.skipIf(!hasProgram)('a plug-in of a stranger', () => {
     expect(after.customProgramCacheKey()).not.toBe(before.customProgramCacheKey());
     expect(compiled(session.meshes()[0]).uniforms.width).toBe(wide.shading!.uniforms.width);
   });
-});
 
-function refuse(): never {
-  throw new Error('no');
-}
+  it.each(['key', 'edit', 'parameters', 'show', 'prepare'] as const)('is left out of the shading once its %s throws, and told once', async (what) => {
+    const told = vi.fn();
+    vi.stubGlobal('reportError', told);
+    const before = (session.meshes()[0].material as Material).customProgramCacheKey();
+    const half = (shader: Shader): never => {
+      shader.fragmentShader += '// half';
+      return refuse();
+    };
+    const bad: Plugin = { name: 'bad', shading: { uniforms: {}, key: () => 'bad', edit: () => undefined, [what]: what === 'edit' ? half : refuse } };
+    session.view.registerPlugin(bad).registerPlugin(plugin);
+    for (let i = 0; i < 2; ++i) {
+      await session.frame();
+      for (const mesh of session.meshes()) expect(compiled(mesh).fragmentShader).toMatch(/^(?!.*half).*fract\(stripes\)/s);
+    }
+    expect(await session.frame()).toBe(false);
+    expect(told).toHaveBeenCalledOnce();
+    session.view.unregisterPlugin(plugin);
+    await session.frame();
+    expect((session.meshes()[0].material as Material).customProgramCacheKey()).toBe(before);
+    session.view.unregisterPlugin(bad);
+    session.view.registerPlugin(bad);
+    await session.frame();
+    compiled(session.meshes()[0]);
+    expect(told).toHaveBeenCalledTimes(2); // it has another try
+    vi.unstubAllGlobals();
+  });
+});
 
 describe('a plug-in that throws', () => {
   const told = vi.fn();
@@ -239,6 +266,13 @@ describe('a plug-in that throws', () => {
     plugins.register(bad);
     plugins.paint(frame);
     expect(bad.paint).toHaveBeenCalledTimes(2); // it has another try
+  });
+
+  it('keeps what others keep, and takes no taps', () => {
+    const bad = { name: 'bad', keeps: vi.fn(refuse), tapped: vi.fn(refuse) };
+    for (const each of [bad, { name: 'good', keeps: ({ x }: Vector3) => x > 0, tapped: (right: number) => right > 0 }]) plugins.register(each);
+    expect([1, -1].map((x) => [plugins.keeps(new Vector3(x, 0, 0)), plugins.tapped(x, 0)])).toEqual([[true, true], [false, false]]);
+    expect([bad.keeps, bad.tapped, told].map(({ mock }) => mock.calls.length)).toEqual([1, 1, 2]);
   });
 
   it('enters once, whoever brings it or takes it away', () => {

@@ -3,6 +3,7 @@
 import type { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import type { CameraPose } from '../scene/camera_pose.js';
 import type { Shading } from '../scene/shading.js';
+import { attempt } from './attempt.js';
 
 /// A frame is drawn by the renderer, of the scene, as the camera sees it.
 export interface Frame {
@@ -58,31 +59,21 @@ export interface PluginOf<View> {
   dispose?(): void;
 }
 
-type Drawing = 'paint' | 'shade' | 'drawn';
-
-/// Errors of plug-ins are told as those that nobody has caught: the view goes on without what has thrown.
-function tellError(error: unknown): void {
-  const report = globalThis.reportError as typeof globalThis.reportError | undefined; // not outside browsers
-  if (report === undefined) console.error(error);
-  else report(error);
-}
+type Question = 'paint' | 'shade' | 'drawn' | 'keeps' | 'tapped';
 
 /// False: it has thrown.
 function isDone(work: () => void): boolean {
-  try {
+  return attempt(() => {
     work();
     return true;
-  } catch (error) {
-    tellError(error);
-    return false;
-  }
+  }, () => false);
 }
 
 /// Holds the plug-ins of a view, in the order in which they came.
 export class Plugins<View> {
   private readonly all = new Map<string, PluginOf<View>>();
-  /// They have thrown, and are left alone.
-  private readonly failed = new Map<PluginOf<View>, Set<Drawing>>();
+  /// What a plug-in has thrown at it is not asked again.
+  private readonly failed = new Map<PluginOf<View>, Set<Question>>();
   private stage: StageOf<View> | null = null;
 
   /// `changed`: the picture is another one; `shadings`: all there are, if they are others.
@@ -119,52 +110,57 @@ export class Plugins<View> {
   /// A plug-in that throws is taken away. One may add others, or take them away.
   enter(stage: StageOf<View>): void {
     this.stage = stage;
-    for (const plugin of [...this.all.values()]) if (this.has(plugin) && !isDone(() => plugin.enter?.(stage))) this.unregister(plugin);
+    for (const plugin of this.every) if (this.has(plugin) && !isDone(() => plugin.enter?.(stage))) this.unregister(plugin);
   }
 
   /// The scene as plug-ins draw it; without one, as the renderer does.
   paint(frame: Frame): void {
     const { renderer, scene, camera } = frame;
-    for (const plugin of this.all.values()) if (this.draws(plugin, 'paint', frame)) return;
+    if (this.every.some((plugin) => this.ask(plugin, 'paint', () => plugin.paint?.(frame) === true, false))) return;
     renderer.render(scene, camera);
-    for (const plugin of this.all.values()) this.draws(plugin, 'shade', frame);
+    for (const plugin of this.every) this.ask(plugin, 'shade', () => plugin.shade?.(frame), undefined);
   }
 
   drawn(frame: Frame): void {
-    for (const plugin of this.all.values()) this.draws(plugin, 'drawn', frame);
+    for (const plugin of this.every) this.ask(plugin, 'drawn', () => plugin.drawn?.(frame), undefined);
   }
 
   keeps(point: Vector3): boolean {
-    return [...this.all.values()].every((plugin) => plugin.keeps?.(point) ?? true);
+    return this.every.every((plugin) => this.ask(plugin, 'keeps', () => plugin.keeps?.(point) ?? true, true));
   }
 
   tapped(right: number, up: number): boolean {
-    return [...this.all.values()].some((plugin) => plugin.tapped?.(right, up) ?? false);
+    return this.every.some((plugin) => this.ask(plugin, 'tapped', () => plugin.tapped?.(right, up) ?? false, false));
   }
 
   dispose(): void {
-    const all = [...this.all.values()];
+    const all = this.every;
     this.all.clear();
     this.stage = null;
     for (const plugin of all) isDone(() => plugin.dispose?.());
+  }
+
+  private get every(): readonly PluginOf<View>[] {
+    return [...this.all.values()];
   }
 
   private has(plugin: PluginOf<View>): boolean {
     return this.all.get(plugin.name) === plugin;
   }
 
-  /// What has thrown once is not asked again. True: it has painted.
-  private draws(plugin: PluginOf<View>, what: Drawing, frame: Frame): boolean {
+  /// `otherwise`: of a plug-in that has thrown at this question, now or before.
+  private ask<Answer>(plugin: PluginOf<View>, question: Question, call: () => Answer, otherwise: Answer): Answer {
     const failed = this.failed.get(plugin) ?? new Set();
-    if (failed.has(what)) return false;
-    let isPainted: unknown = false;
-    if (!isDone(() => { isPainted = plugin[what]?.(frame); })) this.failed.set(plugin, failed.add(what));
-    return isPainted === true;
+    if (failed.has(question)) return otherwise;
+    return attempt(call, () => {
+      this.failed.set(plugin, failed.add(question));
+      return otherwise;
+    });
   }
 
   /// `plugin`: has come or gone.
   private tellChanged(plugin: PluginOf<View>): void {
-    const shadings = [...this.all.values()].flatMap(({ shading }) => (shading === undefined ? [] : [shading]));
+    const shadings = this.every.flatMap(({ shading }) => (shading === undefined ? [] : [shading]));
     this.changed(plugin.shading === undefined ? null : shadings);
   }
 }

@@ -27,7 +27,7 @@ export class HierarchyView extends Group<ViewEvents> {
   readonly opened: Promise<void>;
   /// For what shows the view.
   readonly plugins: Plugins<HierarchyView>;
-  private readonly tiles = new TileScene(() => { this.loading.askAgain(); });
+  private readonly tiles = new TileScene(() => { this.loading.askAgain(); }, () => { this.context.changed(); });
   private readonly context: ViewContext;
   private readonly loading: Loading;
   private readonly frames: Frames;

@@ -7,7 +7,7 @@ import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { makeMatcap } from './matcap.js';
 import type { Look } from './settings.js';
-import { numberOf, replaceChunk, type Shader, type Shading } from './shading.js';
+import { numberOf, replaceChunk, Shadings, type Shader } from './shading.js';
 
 const PLAIN = 0xb9b4ab;
 const CLAY = 0xd99a76;
@@ -71,18 +71,10 @@ diffuseColor.rgb *= clamp(1.0 + ${strength.toFixed(1)} * bend, ${least.toFixed(2
 
 const CAVITIES = cavitiesBy({ strength: 1.8, least: 0.5, most: 1.4 });
 
-/// What shadings make of a tile, of one that leaves it alone nothing. `of`: what of a shading tells it from others.
-function shadingKeys(shadings: readonly Shading[], look: Look, tile: Tile, of: (shading: Shading) => object): string[] {
-  return shadings.map((each) => {
-    const key = each.key(look, tile);
-    return key === '' ? '' : `${numberOf(of(each))}:${key}`;
-  });
-}
-
 /// A tile's surfaces of one key are the same.
 export function surfaceKey(look: Look, tile: Tile, { shadings }: SharedMaterials): string {
   const { colours, texture, relight, material, cavities, shading, wires, points } = look;
-  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadingKeys(shadings, look, tile, (each) => each)].join();
+  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadings.keyed(look, tile).map((each) => `${numberOf(each.shading)}:${each.key}`)].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -98,7 +90,7 @@ export interface SharedMaterials {
   readonly heights: { value: Vector2 };
   readonly matcap: Texture;
   /// Those of plug-ins.
-  shadings: readonly Shading[];
+  readonly shadings: Shadings;
 }
 
 /// What of a tile its surface shows.
@@ -151,28 +143,25 @@ function normalMap({ shading }: Look, normals: Texture | null): { normalMap?: Te
   return normals === null || shading === 'flat' ? {} : { normalMap: normals };
 }
 
-function parametersOf(shadings: readonly Shading[], look: Look): MaterialParameters {
-  return shadings.reduce<MaterialParameters>((all, each) => ({ ...all, ...each.parameters?.(look) }), {});
-}
-
 function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
   const { colours, cavities, shading } = look;
   const { outwards, upwards, heights } = shared;
   const vertexColors = colours === 'vertex' && tile.colours !== null && (texture === null || tile.coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
   const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
-  const keys = shadingKeys(shared.shadings, look, tile, (each) => each.edit);
-  const shadings = shared.shadings.filter((_, i) => keys[i] !== '');
-  const parameters = { ...own, ...standing(look), ...picturing(tile.picture, texture), ...normalMap(look, normals), ...parametersOf(shadings, look) };
+  const keyed = shared.shadings.keyed(look, tile);
+  const shadings = keyed.map((each) => each.shading);
+  const besides = shadings.map((each) => shared.shadings.ask(each, () => each.parameters?.(look) ?? {}, {}));
+  const parameters = { ...own, ...standing(look), ...picturing(tile.picture, texture), ...normalMap(look, normals), ...(Object.assign({}, ...besides) as MaterialParameters) };
   const material = look.material === 'matcap'
     ? new MeshMatcapMaterial({ ...parameters, matcap: shared.matcap })
     : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, { outwards, upwards, heights }, ...shadings.map(({ uniforms }) => uniforms));
-    for (const each of [...shadings].reverse()) each.edit(shader, look, tile); // the last one that replaces a chunk comes first in it
+    for (const each of [...shadings].reverse()) shared.shadings.edit(each, shader, look, tile); // the last one that replaces a chunk comes first in it
     edit(shader, look, vertexColors);
   };
-  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keys].join('-')}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keyed.map((each) => `${numberOf(each.shading.edit)}:${each.key}`)].join('-')}`;
   return material;
 }
 
@@ -212,7 +201,7 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
   return material;
 }
 
-export function sharedMaterials(shadings: readonly Shading[] = []): SharedMaterials {
+export function sharedMaterials(shadings = new Shadings()): SharedMaterials {
   const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) } };
   const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
   return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), shadings, ...uniforms };

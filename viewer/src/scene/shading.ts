@@ -3,6 +3,7 @@
 import type { BufferGeometry, IUniform, MaterialParameters, WebGLProgramParametersWithUniforms } from 'three';
 import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
+import { attempt } from '../plugins/attempt.js';
 import type { Look } from './settings.js';
 
 export type Shader = WebGLProgramParametersWithUniforms;
@@ -22,6 +23,55 @@ export interface Shading {
   show?(look: Look, attributes: readonly ScalarAttribute[]): void;
   /// Gives a tile's vertices what the shader wants of them, whenever it is shown otherwise. Arrays of the tile are kept up as its seams change.
   prepare?(geometry: BufferGeometry, tile: Tile, look: Look): void;
+}
+
+/// The shadings of a view's plug-ins, in their order. One that throws is left out from then on.
+export class Shadings {
+  private list: readonly Shading[] = [];
+  private readonly failed = new Set<Shading>();
+
+  /// `changed`: one is left out, and tiles are to be shown anew.
+  constructor(private readonly changed: () => void = () => undefined) {}
+
+  get all(): readonly Shading[] {
+    return this.list.filter((each) => !this.failed.has(each));
+  }
+
+  /// One that was taken away has another try when it is back.
+  set all(shadings: readonly Shading[]) {
+    this.list = shadings;
+    for (const each of this.failed) if (!shadings.includes(each)) this.failed.delete(each);
+  }
+
+  /// `otherwise`: where it throws.
+  ask<Answer>(shading: Shading, call: () => Answer, otherwise: Answer): Answer {
+    return attempt(call, () => {
+      this.failed.add(shading);
+      this.changed();
+      return otherwise;
+    });
+  }
+
+  show(look: Look, attributes: readonly ScalarAttribute[]): void {
+    for (const each of this.all) this.ask(each, () => each.show?.(look, attributes), undefined);
+  }
+
+  prepare(geometry: BufferGeometry, tile: Tile, look: Look): void {
+    for (const each of this.all) this.ask(each, () => each.prepare?.(geometry, tile, look), undefined);
+  }
+
+  /// Those that change a tile's surface, with their keys.
+  keyed(look: Look, tile: Tile): { readonly shading: Shading; readonly key: string }[] {
+    return this.all.map((shading) => ({ shading, key: this.ask(shading, () => shading.key(look, tile), '') })).filter(({ key }) => key !== '');
+  }
+
+  /// A shader is as before where its edit fails.
+  edit(shading: Shading, shader: Shader, look: Look, tile: Tile): void {
+    if (this.failed.has(shading)) return;
+    const { vertexShader, fragmentShader } = shader;
+    this.ask(shading, () => { shading.edit(shader, look, tile); }, undefined);
+    if (this.failed.has(shading)) Object.assign(shader, { vertexShader, fragmentShader });
+  }
 }
 
 const numbers = new WeakMap<object, number>();

@@ -129,7 +129,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
 
   /// Has what shaders look for.
   private prepare(): void {
-    for (const each of this.shared.shadings) each.prepare?.(this.geometry, this.resident.tile, this.look);
+    this.shared.shadings.prepare(this.geometry, this.resident.tile, this.look);
   }
 
   /// Ghosts may lie elsewhere than in the file.

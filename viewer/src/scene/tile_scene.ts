@@ -8,9 +8,9 @@ import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
-import { errorColour, partitionColour, sharedMaterials } from './materials.js';
+import { errorColour, partitionColour, sharedMaterials, type SharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
-import type { Shading } from './shading.js';
+import { Shadings, type Shading } from './shading.js';
 import type { DrawnTile } from './surface.js';
 import { uprightRows, type Standing } from './standing.js';
 import { heightsOf } from './terrain.js';
@@ -23,12 +23,16 @@ export class TileScene extends Group {
   private attributes: readonly ScalarAttribute[] = [];
   private readonly damaged: Node[] = [];
   private readonly told = new Set<number>();
-  private readonly materials = sharedMaterials();
+  private readonly materials: SharedMaterials;
   private readonly contexts: ContextWatch;
 
-  /// `restored`: a lost device is back, without the pictures that only it had.
-  constructor(restored: () => void) {
+  /// `restored`: a lost device is back, without the pictures that only it had. `changed`: tiles are to be shown anew.
+  constructor(restored: () => void, changed: () => void) {
     super();
+    this.materials = sharedMaterials(new Shadings(() => {
+      this.look = null;
+      changed();
+    }));
     this.contexts = new ContextWatch(restored);
   }
 
@@ -39,7 +43,7 @@ export class TileScene extends Group {
 
   /// Those of plug-ins, from the next cut on.
   set shadings(shadings: readonly Shading[]) {
-    this.materials.shadings = shadings;
+    this.materials.shadings.all = shadings;
     this.look = null;
   }
 
@@ -58,7 +62,7 @@ export class TileScene extends Group {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
     if (isSameCut && look === this.look && attributes === this.attributes) return false;
     this.attributes = attributes;
-    for (const each of this.materials.shadings) each.show?.(look, attributes);
+    this.materials.shadings.show(look, attributes);
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
     for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
