@@ -1,6 +1,7 @@
 #include "config/config_reference.h"
 
 #include "config/config_schema.h"
+#include "hierarchy/image_format.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/other_formats.h"
 #include "storage/io/json_text.h"
@@ -304,8 +305,18 @@ std::string formats_json() {
   }
   for (const std::string_view ending : mesh_io::companion_picture_endings())
     companions.push_back(ending);
-  const Json formats{
-      {"meshes", mesh_io::mesh_endings()}, {"namesOthers", naming}, {"companions", companions}};
+  Json pictures = Json::array();
+  for (const ImageFormatRow& row : kImageFormats)
+    pictures.push_back(
+        {{"name", row.name}, {"title", row.file.title}, {"type", row.file.media_type}});
+  std::vector<std::string_view> shown;
+  for (const PictureFile& file : kBrowserPictures)
+    shown.push_back(file.media_type);
+  const Json formats{{"meshes", mesh_io::mesh_endings()},
+                     {"namesOthers", naming},
+                     {"companions", companions},
+                     {"pictures", pictures},
+                     {"browserPictures", shown}};
   return storage::json_text(formats, {.indent = 2}) + '\n';
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The story that lies beside a model.
-import { BROWSER_PICTURES } from '../../src/hierarchy/picture_size.js';
+import { FORMATS } from '../../src/hierarchy/formats.js';
 import { MOST_STORY_BYTES } from '../../src/tools/note.js';
 import { readNotes, type Notebook } from '../../src/tools/notes.js';
 import { fetchText } from '../fetched.js';
@@ -20,6 +20,6 @@ export async function loadStory(story: string, signal: AbortSignal): Promise<Not
 /// fetched for what is told.
 export function pictureOf(address: string | null | undefined, base: string | null): string | null {
   if (!address) return null;
-  if (BROWSER_PICTURES.some((type) => address.startsWith(`data:${type};base64,`))) return address;
+  if (FORMATS.browserPictures.some((type) => address.startsWith(`data:${type};base64,`))) return address;
   return base === null ? null : resolveUrl(address, base);
 }

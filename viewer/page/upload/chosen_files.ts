@@ -26,7 +26,7 @@ async function collect(entry: FileSystemEntry, folder: string, found: Chosen[]):
   else for (const child of await childrenOf(entry as FileSystemDirectoryEntry)) await collect(child, `${path}/`, found);
 }
 
-/// Of a drop. What it holds must be asked for at once: it is gone when the event is.
+/// Lists the files of a drop. They must be asked for at once: they are gone when the event is.
 export async function droppedFiles({ items, files }: DataTransfer): Promise<Chosen[]> {
   const entries = [...items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   if (entries.length === 0) return listedFiles(files);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What becomes of files that were dropped or chosen: which are meshes, and which belong to which of them.
+// Sorts files that were dropped or chosen: which are meshes, and which belong to which of them.
+import { FORMATS } from '../../src/hierarchy/formats.js';
 import { words } from '../words/words.js';
-import formats from './formats.json'; // scripts/references writes it
 
 export interface Chosen {
   file: File;
@@ -24,15 +24,15 @@ export interface Plan {
   problems: string[];
 }
 
-/// Of names that have one of the endings, perhaps with ".gz" behind it; what is before that is the first group.
+/// Matches names that have one of the endings, perhaps with ".gz" behind it; the name before that is the first group.
 function namesEndingIn(endings: readonly string[]): RegExp {
   return new RegExp(`^(.+)(?:${endings.map((ending) => ending.replace('.', '\\.')).join('|')})(?:\\.gz)?$`, 'i');
 }
 
-const MESH = namesEndingIn(formats.meshes);
-/// What else is chosen with several meshes belongs to the only one of these.
-const NAMES_OTHERS = namesEndingIn(formats.namesOthers);
-const COMPANION = namesEndingIn(formats.companions);
+const MESH = namesEndingIn(FORMATS.meshes);
+/// Other files that are chosen with several meshes belong to the only one of these.
+const NAMES_OTHERS = namesEndingIn(FORMATS.namesOthers);
+const COMPANION = namesEndingIn(FORMATS.companions);
 
 /// Folder, with a slash at its end, and name.
 function split(path: string): [string, string] {
@@ -90,7 +90,7 @@ function problemOf(upload: Upload, limit: number, limitText: string): string | n
 export function plan(chosen: readonly Chosen[], limit: number, limitText: string): Plan {
   const visible = chosen.filter(({ path }) => !isHidden(path));
   const meshes = visible.filter(isMesh);
-  if (meshes.length === 0) return { uploads: [], problems: [words.upload.noMesh(formats.meshes.join(', '))] };
+  if (meshes.length === 0) return { uploads: [], problems: [words.upload.noMesh(FORMATS.meshes.join(', '))] };
   const belonging = new Map<Chosen, Chosen[]>(meshes.map((mesh) => [mesh, []]));
   for (const file of visible.filter(({ path }) => COMPANION.test(path))) {
     const owner = ownerOf(file, meshes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page says of an upload that the server did not take.
+// Says why the server did not take an upload.
 import { words } from '../words/words.js';
 import type { Answer } from './send.js';
 

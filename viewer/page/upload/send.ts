@@ -5,12 +5,12 @@ import type { Upload } from './plan.js';
 export interface Answer {
   /// 0: there was none.
   status: number;
-  /// What the server said, in one line.
+  /// The server said so, in one line.
   text: string;
 }
 
 export interface Sending {
-  /// Of the inbox, with a slash at its end.
+  /// The address of the inbox, with a slash at its end.
   inbox: string;
   token: string | null;
   /// Bytes of the request that have gone; all of `total` before the answer comes.

@@ -4,7 +4,7 @@ import { JsonValue, type Fail } from '../json_value.js';
 import { COMPRESSIONS, COMPRESSION_NAMES } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
-import { PICTURE_FORMATS } from './picture_size.js';
+import { FORMATS } from './formats.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { whole, type RemoteFiles } from './files.js';
 import { TILES_A_DIRECTORY } from './tree.js';
@@ -20,7 +20,7 @@ export interface Manifest {
     readonly triangles: number;
     readonly hasColours: boolean;
     readonly hasNormals: boolean;
-    /// What vertices have besides.
+    /// Attributes that vertices have besides.
     readonly values: readonly ScalarAttribute[];
     /// Its pictures, and those of them that were not there; null: the mesh is not textured.
     readonly textures: { readonly images: number; readonly missingImages: number } | null;
@@ -32,12 +32,12 @@ export interface Manifest {
   };
   /// Add to stored positions for input coordinates.
   readonly origin: readonly [number, number, number];
-  /// What decoded tiles' positions are relative to, itself relative to the origin: not 0 on a lattice of 16-bit numbers.
+  /// Positions of decoded tiles are relative to this place, which is relative to the origin: not 0 on a lattice of 16-bit numbers.
   readonly place: readonly [number, number, number];
   /// The largest distance that a position was moved to the lattice of a quantized hierarchy; 0 of others.
   readonly worstRounding: number;
   readonly up: 'y' | 'z';
-  /// What the input's lengths are in, as the manifest names it; null: not known.
+  /// The unit of the input's lengths, as the manifest names it; null: not known.
   readonly units: (typeof MANIFEST_UNITS)[number] | null;
   /// 4 x 4, column by column: from 3D Tiles' coordinates, z up, to the earth's; null: the model has no place.
   readonly transform: readonly number[] | null;
@@ -54,7 +54,7 @@ export interface Manifest {
   readonly build: string;
 }
 
-/// Of a hierarchy.
+/// A file of a hierarchy that its manifest names.
 export interface NamedFile {
   readonly file: string;
   readonly bytes: number;
@@ -80,7 +80,7 @@ function readTransform(value: JsonValue): readonly number[] | null {
 /// With how they are stored, which is there if and only if they are.
 function readTextures(source: JsonValue, storage: JsonValue): Manifest['source']['textures'] {
   if (!source.has('textures') && !storage.has('texture')) return null;
-  storage.at('texture').at('format').oneOf(...PICTURE_FORMATS.map(({ name }) => name));
+  storage.at('texture').at('format').oneOf(...FORMATS.pictures.map(({ name }) => name));
   const textures = source.at('textures');
   const images = textures.at('images').count();
   return { images, missingImages: textures.at('missing_images').count(0, images) };

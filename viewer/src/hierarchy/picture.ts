@@ -2,7 +2,8 @@
 // The picture of a tile (docs/file_format.md, section 4.10).
 import type { Glb } from './glb.js';
 import { texelBytes, transcode, type CompressedTexels } from './basis.js';
-import { KTX2, PICTURE_FORMATS, pictureSize, type Size } from './picture_size.js';
+import { FORMATS } from './formats.js';
+import { KTX2, pictureSize, type Size } from './picture_size.js';
 
 export type Alpha = 'OPAQUE' | 'MASK' | 'BLEND';
 
@@ -22,7 +23,7 @@ interface StoredPicture extends Omit<Picture, 'texels'> {
 }
 
 export const BITMAP_TEXEL_BYTES = 4;
-const TITLES = PICTURE_FORMATS.map(({ title }) => title);
+const TITLES = FORMATS.pictures.map(({ title }) => title);
 const ALPHAS: readonly Alpha[] = ['OPAQUE', 'MASK', 'BLEND'];
 
 export function isCompressed(texels: Picture['texels']): texels is CompressedTexels {
@@ -34,7 +35,7 @@ export function bytesOfTexel({ texels }: Picture): number {
   return isCompressed(texels) ? texelBytes(texels.format) : BITMAP_TEXEL_BYTES;
 }
 
-/// What a picture holds besides the GPU's copy.
+/// Returns what a picture holds besides the GPU's copy.
 export function partsOfPicture({ texels }: Picture): Transferable[] {
   return isCompressed(texels) ? texels.levels.map(({ data }) => data.buffer) : [texels];
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The formats of pictures, as hierarchy/image_format.h has them, and how large a picture is, out of the beginning of its file: known
-// before anything decodes it.
+// Tells how large a picture is, out of the beginning of its file, before anything decodes it.
+import { FORMATS } from './formats.js';
 
 export interface Size {
   readonly width: number;
@@ -54,35 +54,17 @@ export const KTX2 = 'image/ktx2';
 const KTX2_BYTES = 28;
 const KTX2_MARK = [0xab4b5458, 0x203230bb, 0x0d0a1a0a];
 
-/// Of blocks of 4 x 4 texels.
+/// Both sides are multiples of 4, as blocks are.
 function ofKtx2(bytes: DataView): Size | null {
   if (bytes.byteLength < KTX2_BYTES || KTX2_MARK.some((word, i) => bytes.getUint32(4 * i) !== word)) return null;
   const size = { width: bytes.getUint32(20, true), height: bytes.getUint32(24, true) };
   return size.width % 4 === 0 && size.height % 4 === 0 ? size : null;
 }
 
-interface PictureFormat {
-  /// In manifests.
-  readonly name: string;
-  readonly title: string;
-  readonly type: string;
-  readonly endings: readonly string[];
-  readonly inBrowsers: boolean;
-  readonly sizeOf: Read;
-}
-
-export const PICTURE_FORMATS: readonly PictureFormat[] = [
-  { name: 'jpeg', title: 'JPEG', type: 'image/jpeg', endings: ['jpg', 'jpeg'], inBrowsers: true, sizeOf: ofJpeg },
-  { name: 'png', title: 'PNG', type: 'image/png', endings: ['png'], inBrowsers: true, sizeOf: ofPng },
-  { name: 'webp', title: 'WebP', type: 'image/webp', endings: ['webp'], inBrowsers: true, sizeOf: ofWebp },
-  { name: 'ktx2', title: 'KTX2', type: KTX2, endings: ['ktx2'], inBrowsers: false, sizeOf: ofKtx2 },
-];
-
-/// All that browsers show.
-export const BROWSER_PICTURES: readonly string[] = [...PICTURE_FORMATS.filter(({ inBrowsers }) => inBrowsers).map(({ type }) => type), 'image/gif', 'image/avif'];
+const READS: Readonly<Record<(typeof FORMATS.pictures)[number]['name'], Read>> = { jpeg: ofJpeg, png: ofPng, webp: ofWebp, ktx2: ofKtx2 };
 
 /// Null of what is no picture of that type.
 export function pictureSize(bytes: Uint8Array, type: string): Size | null {
-  const format = PICTURE_FORMATS.find((each) => each.type === type);
-  return format?.sizeOf(new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength)) ?? null;
+  const format = FORMATS.pictures.find((each) => each.type === type);
+  return format === undefined ? null : READS[format.name](new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength));
 }
