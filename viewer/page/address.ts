@@ -7,7 +7,7 @@ import { readable } from './listing.js';
 
 export type { Pose };
 
-/// What of a view a link keeps.
+/// A link keeps this of a view.
 export interface Spot {
   /// Null: all of the model.
   pose: Pose | null;
@@ -19,7 +19,7 @@ export interface Address extends Spot {
   path: string;
 }
 
-/// What a choice of that name is; null: it is not among them.
+/// Returns the choice of that name; null: it is not among them.
 export function choiceOf({ choices }: Spot, name: string): string | null {
   return new URLSearchParams(choices).get(name);
 }
@@ -32,7 +32,7 @@ function rounded(value: number): number {
   return Number(value.toPrecision(DIGITS));
 }
 
-/// What a link keeps of a pose: what is drawn from it is drawn again, to the pixel.
+/// Returns a pose as links keep it: what is drawn from it is drawn again, to the pixel.
 export function roundedPose({ position: [a, b, c], target: [d, e, f] }: Pose): Pose {
   return { position: [rounded(a), rounded(b), rounded(c)], target: [rounded(d), rounded(e), rounded(f)] };
 }
@@ -82,7 +82,7 @@ export function parseAddress(hash: string): Address | null {
   return path === null ? null : { path, pose: pose === undefined ? null : parsePose(pose), choices: others.filter((part) => part.includes('=')).join('&') };
 }
 
-/// What `parseAddress` reads again, with twelve digits a number; without the camera, if none can stand so.
+/// Writes what `parseAddress` reads again, with twelve digits a number; without the camera, if none can stand so.
 export function formatAddress({ path, pose, choices }: Address): string {
   const rounded = pose === null || problemOfPose(pose.position, pose.target) !== null ? null : roundedPose(pose);
   const camera = rounded === null ? '' : `&${[...rounded.position, ...rounded.target].join(',')}`;

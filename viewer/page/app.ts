@@ -16,7 +16,7 @@ import { UploadPlace } from './upload/upload_place.js';
 import { language, words } from './words/words.js';
 import type { ModelView } from './view/model_view.js';
 
-/// What a listing without a model says; `url`: its own.
+/// Says what to do about a listing without a model; `url`: its own.
 function emptyText({ folder, inbox }: Listing, url: string): string {
   const { gallery } = words;
   if (folder === null) return `${gallery.emptyListing(url)} ${gallery.howToList}`;

@@ -53,7 +53,7 @@ function readRange(stored: unknown): Look['range'] {
   return numbers.length === 2 ? [numbers[0], numbers[1]] : null;
 }
 
-/// What of a look holds for other models too.
+/// Returns the part of a look that holds for other models too.
 export function lastingLook(look: Partial<Look>): Partial<Look> {
   return Object.fromEntries(Object.entries(look).filter(([name]) => !['attribute', 'range', 'hidden'].includes(name)));
 }
@@ -160,7 +160,7 @@ function attributeChoices(choices: URLSearchParams): Json {
   return { attribute: choices.get('attribute'), ramp: choices.get('ramp'), range: listed(choices.get('range')), hidden: listed(choices.get('hidden')) };
 }
 
-/// What a link chooses, on top of what is given; a link that chooses anything of look and light chooses all of it.
+/// Returns what a link chooses, on top of what is given; a link that chooses anything of look and light chooses all of it.
 export function withChoices(text: string, given: Appearance): Appearance {
   const choices = new URLSearchParams(text);
   const standing = { ...given.standing, ...(choices.has('up') || choices.has('stretch') ? readStanding({ up: choices.get('up'), stretch: Number(choices.get('stretch') ?? 1) }) : {}) };

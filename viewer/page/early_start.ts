@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the first picture needs is asked for before the code that draws it is there: the root tile, or the beginning of an
+// Files of the first picture are asked for before the code that draws it is there: the root tile, or the beginning of an
 // archive, which tells where it is; and a worker that decodes it.
 import { HEAD_BYTES, isArchiveUrl } from '../src/hierarchy/archive_format.js';
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';

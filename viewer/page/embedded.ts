@@ -36,7 +36,7 @@ export class EmbeddedFiles implements RemoteFiles {
     return !this.files.has(name) && !this.reaches;
   }
 
-  /// What this page has was checked when the page was made. Of a part, once it was asked for.
+  /// Files of this page were checked when it was made; a part counts once it was asked for.
   holds(name: string, end = 0): boolean {
     return this.files.has(name) && (this.lengths.get(name) ?? 0) >= end;
   }
@@ -78,7 +78,7 @@ export class EmbeddedFiles implements RemoteFiles {
     return this.link !== null && performance.now() >= this.offlineUntil;
   }
 
-  /// What could not be had by the line is lacking for a while.
+  /// Files that could not be had by the line are lacking for a while.
   private async ask<T>(name: string, from: (link: RemoteFiles) => Promise<T>): Promise<T> {
     if (this.link === null) throw new HierarchyProblem(name, 'is not in this page');
     try {

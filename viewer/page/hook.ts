@@ -7,7 +7,7 @@ import type { Model } from './listing.js';
 import type { HierarchyView } from '../src/index.js';
 
 export interface Hook {
-  /// Of the open model; null in the gallery and before the model's code is there.
+  /// Figures of the open model; null in the gallery and before the model's code is there.
   stats(): Stats | null;
   camera(): Pose | null;
   /// At once, without a flight. Throws RangeError if no camera can stand so.
@@ -15,7 +15,7 @@ export interface Hook {
   /// The view stands still, is drawn, and nothing is left to fetch or refine.
   settled(): boolean;
   readonly view: HierarchyView | null;
-  /// Of the listing, as soon as the gallery has been shown.
+  /// Models of the listing, as soon as the gallery has been shown.
   readonly models: readonly Model[];
   /// By name or path. False if the listing has no such model.
   open(name: string): boolean;
@@ -33,7 +33,7 @@ function isList(value: unknown): value is readonly unknown[] {
   return Array.isArray(value);
 }
 
-/// What scripts give is whatever they give.
+/// Scripts may give anything.
 export function checkedPose(given: unknown): Pose {
   const { position, target } = (given ?? {}) as Partial<Record<keyof Pose, unknown>>;
   const problem = problemOfPose(isList(position) ? position : [], isList(target) ? target : []);

@@ -8,7 +8,7 @@ import { words } from './words/words.js';
 
 export interface Model {
   name: string;
-  /// Of the hierarchy, relative to the listing.
+  /// The hierarchy's, relative to the listing.
   path: string;
   url: string;
   vertices: number | null;
@@ -21,7 +21,7 @@ export interface Model {
   preview: string | null;
   /// The address of what people tell about it (src/tools/annotations.ts), or itself: JSON.
   story: string | null;
-  /// What its build warned of; missing: nothing, or it is not told.
+  /// Warnings of its build; missing: there are none, or they are not told.
   warnings?: readonly string[];
   /// Where its files are, if not at its URL.
   files?: RemoteFiles;
@@ -99,7 +99,7 @@ export function nameOfPath(path: string): string {
   return lastPart(path).replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
-/// Of its hierarchy: `dragon.hier`.
+/// Returns the file name of its hierarchy: `dragon.hier`.
 export function fileOf({ name, path, files }: Model): string {
   return files === undefined ? lastPart(path) : `${name}.hier`;
 }
@@ -115,7 +115,7 @@ export function resolveUrl(path: string, base: string): string | null {
   }
 }
 
-/// Of an archive, or of the directory of a hierarchy, without slashes at its end but where it could be taken for an archive.
+/// Returns the URL of an archive, or of the directory of a hierarchy, without slashes at its end but where it could be taken for an archive.
 /// Null of a directory that its files' names cannot follow.
 function resolveHierarchy(path: string, base: string): string | null {
   const url = resolveUrl(path, base);
@@ -175,7 +175,7 @@ function readUpload(value: unknown): UploadOffer | null {
   return limit === null ? null : { limit, token: value.token === true };
 }
 
-/// What `read` makes of the entries, without what it refuses; of several with one key the first.
+/// Returns what `read` makes of the entries, without what it refuses; of several with one key the first.
 function readAll<T>(values: unknown[], read: (value: unknown) => T | null, key: (item: T) => string): T[] {
   const found = new Map<string, T>();
   for (const value of values.slice(0, MOST_ENTRIES)) {

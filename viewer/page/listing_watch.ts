@@ -37,7 +37,7 @@ export class ListingWatch {
     private readonly url: string,
     private readonly changed: (listing: Listing) => void,
     private readonly failed: (message: string) => void,
-    /// What of a listing is for this visitor.
+    /// Returns the part of a listing that is for this visitor.
     private readonly visible: (listing: Listing) => Listing = (listing) => listing,
   ) {}
 

@@ -3,7 +3,7 @@
 import { formatAddress, type Spot } from './address.js';
 import type { Model } from './listing.js';
 
-/// What an entry keeps of how it was reached. From the gallery: going back leads there.
+/// An entry keeps how it was reached. From the gallery: going back leads there.
 interface Origin {
   fromGallery: boolean;
 }

@@ -24,9 +24,9 @@ export interface Numbers {
   readonly formatDecimal: (value: number) => string;
   /// Four digits: 0.001235, 12.35, 123,500.
   readonly formatLength: (value: number) => string;
-  /// Of a part from 0 to 1: 42%.
+  /// A part from 0 to 1: 42%.
   readonly formatPercent: (value: number) => string;
-  /// Of seconds since 1970 the day: Nov 24, 2026.
+  /// The day of seconds since 1970: Nov 24, 2026.
   readonly formatDate: (seconds: number) => string;
 }
 

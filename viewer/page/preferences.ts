@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
+// Keeps in the browser what the user chose. Whatever is stored there, what comes out is sound.
 import { changedSettings, type Look, type Settings } from '../src/scene/settings.js';
 import { oneOf, readLight, readLook, readStandings, type Light, type Standings } from './appearance.js';
 import { ORDERS, type Order } from './gallery/orders.js';
@@ -11,7 +11,7 @@ export interface Preferences {
   theme: Theme;
   /// Null: as the browser wants it.
   language: Language | null;
-  /// Of the gallery.
+  /// The gallery's.
   order: Order;
   panel: boolean;
   settings: Settings;
@@ -31,7 +31,7 @@ export interface Range {
   step: number;
 }
 
-/// What may be chosen; the memory budget in MB.
+/// Numbers from these ranges may be chosen; the memory budget in MB.
 export const RANGES = {
   framesPerSecond: { least: 5, most: 120, step: 5 },
   threshold: { least: 0.5, most: 16, step: 0.5 },

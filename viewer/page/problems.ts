@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What failed and what to do: one message at a time, the newest, in a region that can be dismissed.
+// Tells what failed and what to do: one message at a time, the newest, in a region that can be dismissed.
 import { element, iconButton } from './parts/element.js';
 import { ICONS } from './parts/icons.js';
 import { words } from './words/words.js';
@@ -12,13 +12,13 @@ interface Told {
 }
 
 export interface Telling {
-  /// What the button Retry does; null: there is none.
+  /// The button Retry does this; null: there is no button.
   retry?: (() => void) | null;
   /// Another text on that button.
   retryText?: string;
   /// Why, and what to do: shown when it is asked for.
   more?: string;
-  /// What the message is about: a later one about the same takes its place.
+  /// The message is about this: a later one about the same takes its place.
   subject?: string;
 }
 
@@ -38,7 +38,7 @@ export class Problems {
     this.box.append(this.retry, iconButton(words.parts.dismiss, ICONS.close, () => { this.dismiss(); }));
   }
 
-  /// What was dismissed is not told again until it was taken away, which is what the result does.
+  /// A message that was dismissed is not told again until it was taken away, which the function that it returns does.
   tell(message: string, { retry = null, retryText = words.parts.retry, more = '', subject = message }: Telling = {}): () => void {
     if (!this.dismissed.has(subject)) {
       this.told.delete(subject);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page's address says beside the link to a view: `?models=URL` another listing, `?model=URL` one
+// The page's address says this beside the link to a view: `?models=URL` another listing, `?model=URL` one
 // hierarchy without a listing, and `&story=URL` what is told about it. The language, `?lang=`, is chosen by words/words.ts.
 import { modelOfPath, resolveUrl, type Model } from './listing.js';
 import { words } from './words/words.js';

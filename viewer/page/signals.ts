@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What may be given up for more than one reason.
+// Work may be given up for more than one reason.
 
 /// Aborts `ending` as soon as `signal` is, unless `ending` was before. As AbortSignal.any, which browsers have since 2024.
 export function follow(ending: AbortController, signal: AbortSignal): void {

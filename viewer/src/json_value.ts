@@ -2,7 +2,7 @@
 // JSON of strangers: each value is asked for as the type that it must have.
 import { areNear, FARTHEST } from './farthest.js';
 
-/// What is wrong; must throw.
+/// Is told what is wrong, and must throw.
 export type Fail = (what: string) => never;
 
 export class JsonValue {
@@ -41,7 +41,7 @@ export class JsonValue {
     return this.value.map((_, i) => this.at(i));
   }
 
-  /// Of what may be one or several.
+  /// The items of an array, or the value alone.
   oneOrMore(): JsonValue[] {
     return Array.isArray(this.value) ? this.items() : [this];
   }
@@ -79,7 +79,7 @@ export class JsonValue {
     return typeof this.value === 'number' && Number.isFinite(this.value) ? this.value : this.fail('a number');
   }
 
-  /// Of a place that somebody names, along an axis.
+  /// A coordinate of a place that somebody names.
   coordinate(): number {
     const value = this.number();
     return areNear([value]) ? value : this.fail(`from ${-FARTHEST} to ${FARTHEST}`);
@@ -110,7 +110,7 @@ export class JsonValue {
     return /^[0-9a-f]{16}$/.test(text) ? text : this.fail('a checksum');
   }
 
-  /// Of a file that lies beside the one that names it.
+  /// The name of a file that lies beside the one that names it.
   fileName(): string {
     const name = this.text();
     return /^[A-Za-z0-9_]+\.[a-z0-9]+$/.test(name) ? name : this.fail('a file name');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which keys are for the field that they are typed into: the one rule for every view's keys, in pages and elements.
 
-/// What of a key's event counts.
+/// These of a key's event count.
 export type Typed = Pick<KeyboardEvent, 'key' | 'isComposing' | 'composedPath'>;
 
 const WRITTEN_IN: readonly string[] = ['textarea', 'select'];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of the listing is shown, in which order and in which groups.
+// Chooses what of the listing is shown, in which order and in which groups.
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
 import { readable, type Job, type Model } from '../listing.js';
 import { locale } from '../words/words.js';
@@ -40,7 +40,7 @@ function wordsOf({ search }: Wish): string[] {
   return plain(search).split(/\s+/).filter((word) => word !== '');
 }
 
-/// What is not known comes last.
+/// Numbers that are not known come last.
 function descending(a: number | null, b: number | null): number {
   return (b ?? -1) - (a ?? -1);
 }

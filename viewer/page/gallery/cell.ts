@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the gallery shows of an entry: an element that can be put into a list and taken out again.
+// The gallery shows an entry as a cell: an element that can be put into a list and taken out again.
 
 export interface Cell {
   readonly root: HTMLLIElement;

@@ -25,7 +25,7 @@ export class DrawingQueue {
     this.ask();
   }
 
-  /// What has left the page meanwhile is left out.
+  /// Outlines that have left the page meanwhile are left out.
   private takeFirst(): Drawable | null {
     for (const one of this.waiting) {
       this.waiting.delete(one);

@@ -2,14 +2,14 @@
 // Where cells of one size lie in a page: groups one below the other, each with a heading and rows of cells. All lengths are CSS pixels.
 
 export interface Metrics {
-  /// Of the page.
+  /// The page's.
   width: number;
   /// A cell is as wide as that or wider, unless the page is narrower.
   leastWidth: number;
   gap: number;
-  /// Of a cell, for what is below its square picture.
+  /// The height of what is below a cell's square picture.
   textHeight: number;
-  /// Of a group's name, with the room around it.
+  /// The height of a group's name, with the room around it.
   headingHeight: number;
 }
 
@@ -19,7 +19,7 @@ export interface Extent {
   hasHeading: boolean;
 }
 
-/// Of a group, items [first, end).
+/// The items [first, end) of a group.
 export interface Run {
   group: number;
   first: number;
@@ -28,7 +28,7 @@ export interface Run {
 
 interface Band {
   top: number;
-  /// Of the first row of cells.
+  /// The top of the first row of cells.
   cellsTop: number;
   bottom: number;
   count: number;
@@ -42,7 +42,7 @@ export class Grid {
   readonly columns: number;
   readonly cellWidth: number;
   readonly cellHeight: number;
-  /// Of all groups together.
+  /// The height of all groups together.
   readonly height: number;
   private readonly bands: Band[] = [];
 

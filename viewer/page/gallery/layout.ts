@@ -57,7 +57,7 @@ export function ballOf(positions: Float32Array): Ball {
   return { centre, radius: reachOf(positions, centre) || 1 };
 }
 
-/// What shows that view; null: none is better than others.
+/// Returns the turn that shows that view; null: none is better than others.
 export function turnTo(view: FirstView | null): Turn {
   return view === null ? USUAL_TURN : { yaw: -view.azimuth * RADIANS, pitch: Math.min(Math.max(view.elevation * RADIANS, -MOST_PITCH), MOST_PITCH) };
 }
@@ -105,7 +105,7 @@ function projection(aspect: number): Matrix {
   return [focus / aspect, 0, 0, 0, 0, focus, 0, 0, 0, 0, a, -1, 0, 0, b - a * DISTANCE, DISTANCE];
 }
 
-/// What moves and enlarges the clip space of a cell of that width by height.
+/// Returns the matrix that moves and enlarges the clip space of a cell of that width by height.
 export function fitMatrix({ zoom, right, up }: Fit, aspect: number): number[] {
   const narrow = Math.min(aspect, 1);
   return [zoom, 0, 0, 0, 0, zoom, 0, 0, 0, 0, 1, 0, (-zoom * right * narrow) / aspect, -zoom * up * narrow, 0, 1];

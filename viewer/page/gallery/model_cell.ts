@@ -35,7 +35,7 @@ function exactText({ name, source, modified, warnings = [] }: Model, { vertices,
   return [...parts, ...warnings].join('\n');
 }
 
-/// What all cells draw with.
+/// All cells draw with these.
 export interface Studio {
   stills: DrawingQueue;
   animation: Animation;
@@ -122,7 +122,7 @@ export class ModelCell implements Cell {
     this.arrange();
   }
 
-  /// Of a model whose listing tells nothing but its path, the manifest tells it, and the sizes.
+  /// Where a listing tells nothing but the model's path, the manifest tells the picture, and the sizes.
   private async findPicture(): Promise<string | null> {
     if (this.model.preview !== null || this.model.vertices !== null) return this.model.preview;
     const facts = await this.source.facts().catch(() => null);

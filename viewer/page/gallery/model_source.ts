@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a cell shows of a model, fetched when it is asked for.
+// Fetches what a cell shows of a model, when it is asked for.
 import { isArchiveUrl } from '../../src/hierarchy/archive_format.js';
 import { withoutLastSlashes, type Fetch } from '../../src/hierarchy/bytes.js';
 import { fetchManifest, type NamedFile } from '../../src/hierarchy/manifest.js';
@@ -13,7 +13,7 @@ const MOST_TRIES = 2;
 export interface Facts {
   readonly vertices: number | null;
   readonly triangles: number | null;
-  /// Of all files of the hierarchy.
+  /// The bytes of all files of the hierarchy.
   readonly bytes: number | null;
   /// Its picture's address, if it has one.
   readonly preview: string | null;
@@ -62,7 +62,7 @@ export class ModelSource {
     return this.ending.signal.aborted;
   }
 
-  /// What is on its way is given up.
+  /// Gives up what is on its way.
   close(): void {
     this.ending.abort();
     if (this.picture !== null) URL.revokeObjectURL(this.picture);

@@ -12,7 +12,7 @@ export interface Shape {
   up: 'y' | 'z';
   /// As it is seen first.
   first: Turn;
-  /// What shows it then as large as its preview is.
+  /// Shows it then as large as its preview is.
   fit: Fit;
 }
 

@@ -42,7 +42,7 @@ export class Turning {
     return this.reasons.size > 0;
   }
 
-  /// What is seen first is known now; what was turned by hand stays.
+  /// The side that is seen first is known now; an outline that was turned by hand stays.
   start(first: Turn): void {
     this.first = first;
     if (!this.byHand) this.turn = first;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of thousands of cells those near the window: only these are elements of the page, which is as high as all of them.
+// Keeps cells near the window, of thousands: only these are elements of the page, which is as high as all of them.
 import { element } from '../parts/element.js';
 import type { Group } from './arrangement.js';
 import type { Cell } from './cell.js';
@@ -119,7 +119,7 @@ export class VisibleCells<One extends Entry> {
     for (const [cell, timer] of before) if (!this.shown.has(cell)) window.clearTimeout(timer);
   }
 
-  /// Of each group that is near the window the cells to be shown. The one that has the focus keeps it, wherever it is.
+  /// Returns the cells to be shown of each group that is near the window. The one that has the focus keeps it, wherever it is.
   private wanted(top: number, bottom: number): Map<number, Set<number>> {
     const wanted = new Map<number, Set<number>>();
     for (const { group, first, end } of this.grid.runsBetween(top, bottom))

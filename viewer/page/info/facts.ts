@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is known of a model, for people: of what is not known there is no line.
+// Tells people what is known of a model: of what is not known there is no line.
 import type { Manifest } from '../../src/index.js';
 import { UNITS, unitOfModel } from '../../src/tools/units.js';
 import type { Model } from '../listing.js';

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What another page is given to show a model, or this one to show it again.
+// Makes the code that another page is given to show a model, or this one to show it again.
 import { formatAddress, type Spot } from '../address.js';
 
 export interface Shared extends Spot {
   /// The page's address, without query and hash.
   page: string;
   name: string;
-  /// Of the hierarchy.
+  /// The hierarchy's.
   url: string;
   /// The address of what is told about it; null: nothing, or it has none.
   story: string | null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a story says, note by note: text, picture, link, and the way through it. Read only.
+// Shows a story note by note: text, picture, link, and the way through it. Read only.
 import type { Stories } from '../../src/plugins/stories.js';
 import type { Note } from '../../src/tools/note.js';
 import { resolveUrl } from '../listing.js';

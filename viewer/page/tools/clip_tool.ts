@@ -31,7 +31,7 @@ interface Extent {
   readonly max: Vector;
 }
 
-/// Of the model along a direction.
+/// Returns the range of the model along a direction.
 function rangeAlong({ min, max }: Extent, normal: Vector): readonly [number, number] {
   const ends = normal.map((part, axis) => [part * min[axis], part * max[axis]]);
   return [ends.reduce((sum, pair) => sum + Math.min(...pair), 0), ends.reduce((sum, pair) => sum + Math.max(...pair), 0)];
@@ -50,10 +50,10 @@ export class ClipTool implements Tool {
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly list = figureList();
-  /// What the volume was measured of.
+  /// The volume was measured of this.
   private measured = '';
   private readonly original = textButton(words.clip.original, () => void this.measureOriginal());
-  /// Of the original, by the planes it was measured for.
+  /// The original's volume, with the planes that it was measured for.
   private exact: { planes: string; volume: Volume } | null = null;
   private measuring = new AbortController();
   private readonly caps: Control<boolean>;
@@ -196,7 +196,7 @@ export class ClipTool implements Tool {
     return JSON.stringify(this.planes());
   }
 
-  /// What volumes are measured above or within.
+  /// Volumes are measured above or within these.
   private volumePlanes(): readonly CutPlane[] {
     const below = this.coordinates.toInput([0, 0, 0])[2] - this.extent.min[2];
     const planes = this.localPlanes();
@@ -220,7 +220,7 @@ export class ClipTool implements Tool {
     }
   }
 
-  /// Of a closed model what is kept of it; of a terrain what lies between it and a level plane.
+  /// Measures what is kept of a closed model, or what lies between a terrain and a level plane.
   private shownVolume(): Volume | null {
     const { view } = this.shop.bench;
     const { surface, source } = view;

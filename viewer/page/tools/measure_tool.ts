@@ -75,7 +75,7 @@ export class MeasureTool implements Tool {
     this.snap.show(on);
   }
 
-  /// Of what is drawn.
+  /// Cuts what is drawn.
   private saveProfile(kind: 'svg' | 'csv'): void {
     const { bench, settings } = this.shop;
     const { view } = bench;

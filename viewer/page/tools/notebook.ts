@@ -8,7 +8,7 @@ export class NotebookStore {
   title = '';
   notes: Note[] = [];
   bookmarks: Bookmark[] = [];
-  /// What is kept is in the page's address, too.
+  /// The page's address has all that is kept, too.
   isInLink = true;
   private link: string | null = null;
   private readonly listeners: (() => void)[] = [];
@@ -21,7 +21,7 @@ export class NotebookStore {
     this.follow(link);
   }
 
-  /// What a link has, instead of what the one before had; what no link holds stays.
+  /// Takes what a link has, instead of what the one before had; what no link holds stays.
   follow(link: string | null): void {
     if (link === this.link) return;
     if (this.isInLink) [this.title, this.notes, this.bookmarks] = ['', [], []];

@@ -3,7 +3,7 @@
 import type { Mark } from '../../src/plugins/overlay.js';
 
 export interface Tool {
-  /// What its card holds. What has the class `tool-extra` is not in the strip that the card is on phones.
+  /// Its card holds this. Parts of the class `tool-extra` are not in the strip that the card is on phones.
   readonly root: HTMLElement;
   /// A place of the picture, from -1 to 1 to the right and up.
   choose?(right: number, up: number): void;
@@ -14,7 +14,7 @@ export interface Tool {
   marks?(): readonly Mark[];
   /// After each frame.
   drawn?(): void;
-  /// What goes on when its card is closed, in a few words; null: nothing does.
+  /// Says what goes on when its card is closed, in a few words; null: nothing does.
   lasting?(): string | null;
   /// Ends that.
   end?(): void;

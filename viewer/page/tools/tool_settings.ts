@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was chosen for the tools, kept in the browser. Whatever is stored there, what comes out is sound.
+// Keeps in the browser what was chosen for the tools. Whatever is stored there, what comes out is sound.
 import { isUnitName, type UnitName } from '../../src/tools/units.js';
 
 export interface ToolSettings {

@@ -106,7 +106,7 @@ export class Toolbox implements Plugin {
     return button;
   }
 
-  /// What tools have marked stays until they are opened again.
+  /// Marks of tools stay until they are opened again.
   private setOpen(open: boolean): void {
     this.root.hidden = !open;
     if (!open) {

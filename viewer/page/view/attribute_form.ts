@@ -20,7 +20,7 @@ function gradient(ramp: RampName): string {
   return `linear-gradient(to right, ${stops.join(', ')})`;
 }
 
-/// Of the whole range, 0 to 1.
+/// Returns the part of the whole range at which a value lies, from 0 to 1.
 function partOf({ min, max }: ScalarAttribute, value: number): number {
   return Math.min(Math.max((value - min) / (max - min || 1), 0), 1);
 }
@@ -113,7 +113,7 @@ export class AttributeForm {
     this.root = element('div', { class: 'attribute settings' }, this.select, this.missing, this.quantity, this.labels);
   }
 
-  /// What the model has.
+  /// The model has these.
   tell(attributes: readonly ScalarAttribute[]): void {
     if (attributes === this.attributes) return;
     this.attributes = attributes;

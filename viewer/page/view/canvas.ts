@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What draws: canvas, scene, camera and light.
+// Draws: canvas, scene, camera and light.
 import { NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, WebGLRenderer, type Box3, type Vector3 } from 'three';
 import { words } from '../words/words.js';
 import { partDrawer } from '../../src/tools/draw_part.js';
@@ -42,7 +42,6 @@ export class Canvas {
     this.scene.add(this.camera, this.view);
   }
 
-  /// Of the canvas.
   get aspect(): number {
     return this.nominal.x / Math.max(this.nominal.y, 1);
   }
@@ -79,7 +78,7 @@ export class Canvas {
     this.view.draw(this.renderer, this.scene, this.camera);
   }
 
-  /// Of a picture as it is aimed at.
+  /// Draws parts of a picture as it is aimed at.
   get drawPart(): DrawPart {
     return partDrawer(this.renderer, this.camera, () => { this.view.plugins.paint(this); });
   }

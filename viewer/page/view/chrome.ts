@@ -72,7 +72,7 @@ export class Chrome {
     this.figures.tellTerrain(view.terrain === null ? null : shown);
   }
 
-  /// What the device can do; of all else there is no button.
+  /// Shows buttons for what the device can do.
   private tellImmersions(modes: readonly ImmersionMode[]): void {
     for (const mode of modes) this.immersions[mode].hidden = false;
   }

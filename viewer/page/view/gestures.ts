@@ -59,7 +59,7 @@ export class Gestures {
     return { x: sum.x / all.length, y: sum.y / all.length };
   }
 
-  /// Of the fingers from their middle.
+  /// Adds up the fingers' distances from their middle.
   private spread(): number {
     const { x, y } = this.middle();
     return [...this.fingers.values()].reduce((sum, finger) => sum + Math.hypot(finger.x - x, finger.y - y), 0);

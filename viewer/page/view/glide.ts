@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is still to be moved of a gesture: each frame takes its part, so that movements end softly.
+// Keeps what is still to be moved of a gesture: each frame takes its part, so that movements end softly.
 
 const SETTLING = 70; // milliseconds until a third is left
 const LEAST = 1e-4; // of a radian, of the picture's height, of a factor's logarithm
@@ -26,7 +26,7 @@ export class Glide {
     return KEYS.some((key) => this.left[key] !== 0);
   }
 
-  /// What is not finite is no movement.
+  /// A number that is not finite is no movement.
   add(moves: Partial<Moves>): void {
     for (const key of KEYS) {
       const move = moves[key] ?? 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What hands and keys do, and what the modes are called.
+// Tells what hands and keys do, and what the modes are called.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 

@@ -22,7 +22,7 @@ const home: Act = ({ camera }) => { camera.navigation.goHome(); };
 const colours = (number: number): Act => ({ choices }) => { choices.choose({ look: { colours: COLOURS[number] } }); };
 const sheet = (name: 'panel' | 'help'): Act => (_, chrome) => { chrome[name].toggle(); };
 
-/// What was opened last goes first, then the view itself.
+/// Closes what lies over the view, then leaves the view itself.
 const back: Act = (parts, { sheets }) => {
   if (!sheets.closeAside() && !parts.tools.back() && !sheets.closeOne() && !parts.story.back()) parts.back();
 };

@@ -71,7 +71,7 @@ export class PageStage implements Stage {
     return this.moves.freeze(size);
   }
 
-  /// What it returns takes the message away.
+  /// Tells a message, which the function that it returns takes away.
   tell(message: string, telling?: Pick<Telling, 'more' | 'retry'>): () => void {
     return this.context.page.problems.tell(message, { ...telling, subject: 'tools' });
   }

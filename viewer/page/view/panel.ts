@@ -26,7 +26,7 @@ function pictures({ textures }: Manifest['source']): string {
   return ` ${textures.missingImages > 0 ? text.missingPictures(count, formatCount(textures.missingImages)) : count}.`;
 }
 
-/// What was never measured is no figure.
+/// A rate that was never measured is no figure.
 function rate({ framesPerSecond }: Stats, wanted: number): string {
   return text.of(formatDecimal(framesPerSecond > 0 ? framesPerSecond : NaN), formatCount(wanted));
 }
@@ -70,7 +70,7 @@ export class Panel {
     this.root = element('div', {}, this.source, this.terrain, element('dl', { class: 'figures' }, ...rows));
   }
 
-  /// What the model was made from, and its licence.
+  /// Tells what the model was made from, and its licence.
   tellSource({ source, licence }: Manifest): void {
     const [vertices, triangles] = (['vertices', 'triangles'] as const).map((what) => words.counts[what](source[what], formatCount(source[what])));
     this.source.textContent = `${text.source(source.fileName, vertices, triangles)}${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;

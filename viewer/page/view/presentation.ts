@@ -5,7 +5,7 @@ import { rigFor, shownLook, type KnownModel } from '../../src/scene/shown_look.j
 import { LIGHTS, type Appearance, type Light } from '../appearance.js';
 import { keyOf, turned, type Angles, type Lighting, type Rig } from '../../src/scene/lighting.js';
 
-/// What is shown of what was chosen.
+/// This is shown of what was chosen.
 export interface Shown {
   look: Look;
   rig: Rig;

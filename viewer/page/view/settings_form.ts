@@ -56,7 +56,7 @@ export class SettingsForm {
     this.root = element('div', { class: 'settings' }, this.colours.root, this.attribute.root, toggles, this.light.root, this.quality.root, numbers, this.theme.root, languages);
   }
 
-  /// What the model can be coloured by.
+  /// The model can be coloured by these.
   tellAttributes(attributes: readonly ScalarAttribute[]): void {
     this.attribute.tell(attributes);
     this.colours.offer('attribute', attributes.length > 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What opens beside the picture, or over its lower part where it is narrow: one at a time there.
+// Sheets open beside the picture, or over its lower part where it is narrow: one at a time there.
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { words } from '../words/words.js';

@@ -14,7 +14,7 @@ export interface Choice {
   readonly standing?: Partial<Standing>;
 }
 
-/// What is on or off in a form of its own, with its key; null: it has none.
+/// Switches in the order of their form, with their keys; null: it has none.
 export const SWITCH_KEYS = { texture: 'T', relight: null, wires: 'W', points: 'P', outline: 'O', flat: 'F', cavities: 'C', occlusion: 'A' } as const;
 export type Switch = keyof typeof SWITCH_KEYS;
 

@@ -39,7 +39,7 @@ export class ViewParts {
     this.light = new LightDrag((by) => { this.choices.turnLight(by); }, () => { context.dispatchEvent({ type: 'lightKey' }); }, context.signal);
   }
 
-  /// What a link to what is seen tells.
+  /// Returns what a link to this view tells.
   spot(): Spot {
     const { choices, tools, story, camera } = this;
     const notes = tools.notes === null ? '' : `notes=${tools.notes}`;
@@ -47,7 +47,7 @@ export class ViewParts {
     return { pose: camera.navigation.atHome ? null : camera.pose(), choices: [choices.text, notes, told].filter((text) => text !== '').join('&') };
   }
 
-  /// What other pages need to show the same. The address tells of the camera as it is, even before it has come to rest.
+  /// Returns what other pages need to show the same. The address tells of the camera as it is, even before it has come to rest.
   shared(): Shared {
     this.context.rest();
     const { name, url, files } = this.context.model;

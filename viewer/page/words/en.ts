@@ -9,7 +9,7 @@ function counted(count: number, text: string, one: string, more: string): string
 }
 
 export const en = {
-  /// What the language calls itself.
+  /// The language calls itself so.
   language: 'English',
   title: (name: string) => `${name} – meshhier`,
   parts: {
@@ -227,7 +227,7 @@ export const en = {
     levels: (tiles: string, coarsest: number, finest: number) => `${tiles}, levels ${coarsest} to ${finest}`,
     dropped: (tiles: string, dropped: string) => `${tiles}, ${dropped} dropped`,
     onTheWay: (pending: string, aborted: string, failed: string) => `${pending}, ${aborted} given up, ${failed} failed`,
-    /// Of each row its name, and a tip that says more.
+    /// Each row has its name, and a tip that says more.
     rows: {
       rate: ['Frames per second', 'while the camera moves, and the goal'],
       triangles: ['Triangles', 'in view'],
@@ -246,7 +246,7 @@ export const en = {
     },
   },
   help: {
-    /// What hands or keys do, and what comes of it.
+    /// A movement of hands or a key, and what comes of it.
     hands: [
       ['L + drag', 'turn the light'],
       ['Drag', 'turn'],
@@ -270,7 +270,7 @@ export const en = {
       ['B R E', 'with the camera: bookmark, turntable, full screen'],
       ['?', 'this help'],
     ],
-    /// What the modes are called in the literature.
+    /// The literature calls the modes so.
     modesTitle: 'Modes',
     modes: [
       ['TP', 'thumbnail preview: the gallery'],

@@ -13,7 +13,7 @@ function withoutRegion(tag: string): string {
   return tag.toLowerCase().split('-')[0];
 }
 
-/// What the address asks for (`?lang=`), else what was chosen here before, else the first that the browser wants.
+/// Returns the language that the address asks for (`?lang=`), else the one that was chosen here before, else the first that the browser wants.
 export function chooseLanguage(search: string, chosen: Language | null, wanted: readonly string[]): Language {
   const asked = new URLSearchParams(search).get('lang');
   const tags = [asked, chosen, ...wanted].map((tag) => withoutRegion(tag ?? ''));

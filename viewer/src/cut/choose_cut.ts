@@ -11,9 +11,9 @@ export interface Limits {
   readonly threshold: number;
   /// The same of tiles that may be finer, as long as their triangles are larger than a pixel; if it is less.
   readonly fine: number;
-  /// Of all tiles in view.
+  /// The vertices of all tiles in view.
   readonly vertices: number;
-  /// Of all tiles of the cut and above it, in memory, with room for the largest of them on its way.
+  /// The bytes of all tiles of the cut and above it, in memory, with room for the largest of them on its way.
   readonly bytes: number;
 }
 

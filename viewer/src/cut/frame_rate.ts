@@ -37,7 +37,7 @@ interface Measured {
 
 export class FrameRate {
   budget = 2_000_000;
-  /// Of the last window; 0: nothing measured yet.
+  /// The rate of the last window; 0: nothing is measured yet.
   framesPerSecond = 0;
   private intervals: number[] = [];
   private elapsed = 0;
@@ -45,7 +45,7 @@ export class FrameRate {
   private sinceChange = 0;
   private wait = 0;
   private wentUp = false;
-  /// What a frame took before the last step down, and where a step down turned out to be of no use.
+  /// The time of a frame before the last step down, and where a step down turned out to be of no use.
   private before: Measured | null = null;
   private floor: Measured | null = null;
 
@@ -98,7 +98,7 @@ export class FrameRate {
     return perVertex * this.before.vertices < LEAST_PART * this.before.milliseconds;
   }
 
-  /// What is shown comes in tiles: only the budget itself grows by little.
+  /// The vertices that are shown come in tiles: only the budget itself grows by little.
   private grow(ratio: number): void {
     this.before = null;
     if (ratio < MUCH_SPARE) this.wait = 0;

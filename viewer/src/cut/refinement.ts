@@ -11,7 +11,7 @@ import { windingNumber } from './winding.js';
 
 export interface RefinementLimits {
   readonly threshold: number;
-  /// Of it, at rest: see RestDetail.
+  /// At rest the error is divided by it: see RestDetail.
   readonly restDetail: number;
   readonly vertices: number;
   /// The camera stands still.
@@ -52,7 +52,7 @@ export class Refinement {
   /// Backs are seen from outside, too: the model is cut open.
   showsInside = false;
   private refined: ReadonlySet<number> = NONE;
-  /// What the last drawing showed finer.
+  /// The last drawing showed these finer.
   private shown = new Set<number>();
   private readonly detail = new RestDetail();
 

@@ -9,7 +9,7 @@ export class RestDetail {
   private divisor = 1;
   private completeSince: number | null = null;
 
-  /// What the error that was asked for is divided by; `finest` at the most.
+  /// The error that was asked for is divided by it; `finest` at the most.
   step(now: number, atRest: boolean, finest: number): number {
     const isDue = this.completeSince !== null && now - this.completeSince >= PAUSE_MS;
     if (!atRest) this.divisor = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
+// Chooses what a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
 import { placeOf, verticesAt } from '../hierarchy/copies.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import { valueWidth } from '../hierarchy/scalar_values.js';
@@ -16,22 +16,22 @@ const UNKNOWN = -2;
 
 type Values = Float32Array | Normals | Uint8Array;
 
-/// Of a vertex to another one, `width` each.
+/// Copies the values of a vertex to another one, `width` each.
 function copyValues<Kind extends Values>(from: Kind, source: number, to: Kind, target: number, width: number): void {
   for (let k = 0; k < width; ++k) to[width * target + k] = from[width * source + k];
 }
 
-/// Of two vertices, four values each: the square of their distance.
+/// Returns the square of the distance of two vertices, of four values each.
 function difference<Kind extends Values>(a: Kind, i: number, b: Kind, j: number): number {
   let sum = 0;
   for (let k = 0; k < 4; ++k) sum += (a[4 * i + k] - b[4 * j + k]) ** 2;
   return sum;
 }
 
-/// Of a vertex, from what is looked for.
+/// Measures a vertex's distance from what is looked for.
 type Distance = (vertex: number) => number;
 
-/// Of several vertices: each distance decides between those that are equally near by those before; then the first in order.
+/// Returns the nearest of several vertices: each distance decides between those that are equally near by those before; then the first in order.
 function nearest(vertices: readonly number[], ...distances: readonly Distance[]): number {
   return vertices.reduce((found, vertex) => {
     const deciding = distances.find((distance) => distance(vertex) !== distance(found));
@@ -40,16 +40,16 @@ function nearest(vertices: readonly number[], ...distances: readonly Distance[])
 }
 
 export class Seam {
-  /// Of neighbour i: keys of it and its ancestors up to below the common one, at `keyStarts[i]` and after.
+  /// Keys of neighbour i and its ancestors up to below the common one stand at `keyStarts[i]` and after.
   private readonly keys: Float64Array;
   private readonly keyStarts: Uint32Array;
   private readonly chainStarts: Uint32Array;
   private readonly neighbourOf: Uint32Array;
   private readonly coarser: Int8Array;
   private readonly shown: (Tile | null)[];
-  /// Of each ghost: the vertex of `shown` that it is.
+  /// The vertex of `shown` that each ghost is.
   private readonly vertices: Uint16Array;
-  /// Of ghosts and all behind them, as in the file: what moves and comes back. Null where the file has none.
+  /// Values of ghosts and all behind them, as in the file: they move and come back. Null where the file has none.
   private readonly givenNormals: Normals | null;
   private readonly givenColours: Uint8Array | null;
   private readonly givenValues: Float32Array | null;

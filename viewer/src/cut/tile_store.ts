@@ -16,7 +16,7 @@ export interface ResidentTile {
 export interface Wanted {
   readonly node: Node;
   readonly record: TileRecord;
-  /// What the tile takes in memory while it is on its way, at the most: more than when it is there.
+  /// The most memory that the tile takes while it is on its way: more than when it is there.
   readonly loadingBytes: number;
 }
 
@@ -33,13 +33,13 @@ interface Entry {
   readonly node: Node;
   readonly key: number;
   readonly parent: number | null;
-  /// What is counted for it.
+  /// Bytes that are counted for it.
   bytes: number;
   resident: ResidentTile | null;
   readonly abort: AbortController;
   /// Children that are there or on their way.
   below: number;
-  /// Of the last request that named it, or drawn it.
+  /// The number of the last request that named it, or drew it.
   useful: number;
 }
 
@@ -187,7 +187,7 @@ export class TileStore {
     this.entries.clear();
   }
 
-  /// Of use at the time `now`.
+  /// It is of use at the time `now`.
   private touch({ level, index }: Node, now: number): void {
     const entry = this.entries.get(keyOf(level, index));
     if (entry) entry.useful = now;
@@ -316,7 +316,7 @@ export class TileStore {
       if (!entry.resident && this.entries.has(entry.key) && entry.useful < now - PATIENCE_MS) this.cancel(entry);
   }
 
-  /// What failed is asked for again as soon as it is wanted.
+  /// Tiles that failed are asked for again as soon as they are wanted.
   retry(): void {
     this.failures.clear();
   }

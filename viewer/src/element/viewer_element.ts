@@ -40,7 +40,7 @@ export class MeshhierViewerElement extends Base {
 
   /// On the button beside a problem; for all elements made later.
   static retryText = 'Retry';
-  /// What is said of a model that was replaced, and on the button beside it; likewise.
+  /// Said of a model that was replaced, and on the button beside it; for all elements made later.
   static replacedText = 'This model was replaced by another one.';
   static reloadText = 'Load it anew';
 
@@ -73,7 +73,7 @@ export class MeshhierViewerElement extends Base {
     this.near = new IntersectionObserver((entries) => { this.seen(entries.some(({ isIntersecting }) => isIntersecting)); }, { rootMargin: NEAR });
   }
 
-  /// Of the hierarchy's directory; empty: none.
+  /// The URL of the hierarchy's directory or archive; empty: none.
   get src(): string {
     const given = this.getAttribute('src') ?? '';
     return given === '' ? '' : new URL(given, document.baseURI).href;

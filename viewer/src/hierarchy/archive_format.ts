@@ -18,21 +18,21 @@ export function isArchiveUrl(url: string): boolean {
   return /^[^?#]*\.3tz([?#]|$)/i.test(url);
 }
 
-/// Of the beginning of an archive, as it is asked for first: with the manifest and the header of the root.
+/// The beginning of an archive that is asked for first: it holds the manifest and the header of the root.
 export const HEAD_BYTES = 2 ** 14;
-/// What ends an archive has no more bytes.
+/// An archive's end has no more bytes.
 export const MOST_END_BYTES = END_BYTES + END64_BYTES;
 /// A file's header has no more bytes.
 export const MOST_LOCAL_BYTES = LOCAL_BYTES + 255;
 
 export interface LocalHeader {
   readonly name: string;
-  /// Of the content, which follows the header.
+  /// The length of the content, which follows the header.
   readonly bytes: number;
   readonly headerBytes: number;
 }
 
-/// What a file takes in an archive.
+/// Returns the bytes that a file takes in an archive.
 export function archivedBytes(name: string, bytes: number): number {
   return LOCAL_BYTES + name.length + bytes;
 }

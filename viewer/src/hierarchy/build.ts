@@ -29,7 +29,7 @@ export class Build {
     return next;
   }
 
-  /// What a problem is due to: HierarchyReplaced where the host has another build by now, else the problem itself.
+  /// Returns what a problem is due to: HierarchyReplaced where the host has another build by now, else the problem itself.
   async explain(problem: unknown): Promise<unknown> {
     if (!(problem instanceof HierarchyProblem) || problem instanceof HierarchyReplaced || problem.mayPass) return problem;
     try {

@@ -7,7 +7,7 @@ export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
 /// A host that sends nothing for so long does not answer: it may have taken the connection, and no more.
 const SILENT_MS = 20_000;
 
-/// What `awaited` gives, if it gives something in time. Else it is ended by `giveUp`, and a problem of `name` that may pass.
+/// Resolves as `awaited` does, if that is in time. Else it is ended by `giveUp`, and a problem of `name` that may pass is thrown.
 export async function inTime<T>(awaited: Promise<T>, name: string, giveUp: () => void): Promise<T> {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const late = new Promise<never>((_, reject) => {
@@ -23,7 +23,7 @@ export async function inTime<T>(awaited: Promise<T>, name: string, giveUp: () =>
   }
 }
 
-/// Of a stream: the next piece.
+/// Reads the next piece of a stream.
 type NextPiece = (reader: ReadableStreamDefaultReader<Uint8Array>) => Promise<ReadableStreamReadResult<Uint8Array>>;
 
 /// In time.
@@ -95,7 +95,7 @@ function passes(status: number): boolean {
   return status === 408 || status === 425 || status >= 429;
 }
 
-/// What ends the request of an answer whose body is still awaited.
+/// Each of these ends the request of an answer whose body is still awaited.
 const requests = new WeakMap<Response, AbortController>();
 
 /// The host's answer, if one comes in time and is a good one. Throws HierarchyProblem of `name`, and what ends `init.signal`.

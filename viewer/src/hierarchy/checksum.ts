@@ -76,7 +76,7 @@ function rotated(value: bigint, by: bigint): bigint {
   return u64(value << by) | (value >> (64n - by));
 }
 
-/// Of at most 16 bytes.
+/// Returns the checksum of at most 16 bytes.
 function tiny(view: DataView): bigint {
   const length = view.byteLength;
   if (length === 0) return shortAvalanche(secret64(56) ^ secret64(64));
@@ -102,7 +102,7 @@ function mixed16(view: DataView, at: number, secret: number): bigint {
   return folded(read64(view, at) ^ secret64(secret), read64(view, at + 8) ^ secret64(secret + 8));
 }
 
-/// Of 17 to 128 bytes.
+/// Returns the checksum of 17 to 128 bytes.
 function small(view: DataView): bigint {
   const length = view.byteLength;
   let sum = BigInt(length) * PRIME64_1;
@@ -113,7 +113,7 @@ function small(view: DataView): bigint {
   return avalanche(u64(sum));
 }
 
-/// Of 129 to 240 bytes.
+/// Returns the checksum of 129 to 240 bytes.
 function middling(view: DataView): bigint {
   const length = view.byteLength;
   const rounds = length >> 4;

@@ -9,9 +9,9 @@ export type Indices = Uint16Array | Uint32Array;
 export interface Places {
   readonly own: number;
   readonly ghosts: number;
-  /// Of each copy its place, own or ghost; ascending.
+  /// The place of each copy, own or ghost; ascending.
   readonly copyOf: Indices;
-  /// Of each split its vertex, a place or a copy; ascending.
+  /// The vertex of each split, a place or a copy; ascending.
   readonly splitOf: Indices;
 }
 

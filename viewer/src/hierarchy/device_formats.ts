@@ -4,7 +4,7 @@
 /// Blocks of 4 x 4 texels, as glTF's viewers know them; `rgba`: none of them, four bytes a texel.
 export type TexelFormat = 'etc2' | 'etc2_alpha' | 'bc1' | 'bc3' | 'bc7' | 'astc' | 'rgba';
 
-/// What decides it: of each, that the device takes it as sRGB too.
+/// The device decides: true where it takes a format, as sRGB too.
 export interface DeviceFormats {
   readonly etc2: boolean;
   readonly s3tc: boolean;

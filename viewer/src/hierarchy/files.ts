@@ -6,7 +6,7 @@ import { unpacked } from './bytes.js';
 export interface Whereabouts {
   readonly anchor: string;
   readonly distance: number;
-  /// Of the file.
+  /// The length of the file.
   readonly bytes: number;
 }
 

@@ -17,7 +17,7 @@ function isWithin(value: unknown, most: number): value is number {
   return typeof value === 'number' && Math.abs(value) <= most;
 }
 
-/// Of a glTF document; null: an older program made it. `refuse`: what is there is none.
+/// Reads the first view of a glTF document; null: an older program made it. `refuse` is called where what is there is none.
 export function readFirstView({ extras }: { extras?: unknown }, refuse: () => never): FirstView | null {
   if (extras === undefined) return null;
   const view: unknown = typeof extras === 'object' && extras !== null ? (extras as { firstView?: unknown }).firstView : null;

@@ -25,11 +25,11 @@ export interface Gltf {
   meshes: { primitives: { attributes: Record<string, number>; indices?: number; mode: number }[] }[];
   accessors: { bufferView: number; componentType: number; normalized?: boolean; count: number; type: string; min?: number[]; max?: number[] }[];
   bufferViews: BufferView[];
-  /// Of a tile with a picture.
+  /// A tile with a picture has one.
   images?: { mimeType?: unknown }[];
   materials?: { alphaMode?: unknown; normalTexture?: { texCoord?: number }; extensions?: Record<string, unknown> }[];
   extensions: Record<string, Record<string, number>>;
-  /// Of the root.
+  /// The root has them.
   extras?: unknown;
 }
 

@@ -3,9 +3,9 @@
 // files.
 
 const PREFIX = 'meshhier ';
-/// Of one archive; no more is kept.
+/// No more of one archive is kept.
 const MOST_BYTES = 2 ** 28;
-/// Of all sites' archives of this origin; the one opened first goes first.
+/// Archives of this origin that are kept; the one opened first goes first.
 const MOST_ARCHIVES = 8;
 
 /// The store of one version of an archive. What fails is as if it were not there: nothing depends on it.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What the format allows of a tile (docs/file_format.md): sizes are computed from counts within these.
+// The format allows a tile no more (docs/file_format.md): sizes are computed from counts within these limits.
 
 /// Vertices of its own.
 export const MOST_OWN = 32768;
 /// Ghosts, triangles, and whatever else is counted.
 export const MOST_ELEMENTS = 2 ** 26;
-/// Of a root, which nothing else tells of: more than its largest file has room for without compression.
+/// Nothing else tells of a root: its largest file has room for fewer without compression.
 export const MOST_ROOT_TRIANGLES = 2 ** 22;
 
-/// Of a picture, texels.
+/// The longest side of a picture, in texels.
 export const MOST_SIDE = 8192;
 
 /// Each is at a triangle's corner.

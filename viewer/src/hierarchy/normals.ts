@@ -52,7 +52,7 @@ export function vertexNormals(positions: Float32Array, ...lists: Indices[]): Int
   return normals;
 }
 
-/// Of all triangles but those with a hundredth of the area. A cosine of -1 says nothing about directions.
+/// Returns the cone of all triangles but those with a hundredth of the area. A cosine of -1 says nothing about directions.
 export function normalCone(positions: Float32Array, ...lists: Indices[]): Cone {
   const axis: [number, number, number] = [0, 0, 0];
   for (const triangles of lists)

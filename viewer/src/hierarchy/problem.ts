@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is wrong with a file, and which one it is. Everything in this library throws these for bad
+/// Problems say what is wrong with a file, and which one it is. Everything in this library throws them for bad
 /// input; anything else is a defect.
 export class HierarchyProblem extends Error {
   override readonly name: string = 'HierarchyProblem';

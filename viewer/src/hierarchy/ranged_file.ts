@@ -19,7 +19,7 @@ interface Wanted {
   readonly reject: (problem: unknown) => void;
 }
 
-/// What tells one version of a file from another, as far as the host lets the page see it.
+/// These tell one version of a file from another, as far as the host lets the page see them.
 interface Version {
   readonly tag: string | null;
   readonly modified: string | null;
@@ -51,7 +51,7 @@ function contentRange(response: Response): ContentRange | null {
   return match && { first: Number(match[1]), total: match[2] === '*' ? null : Number(match[2]) };
 }
 
-/// Of a length that no file has, what is wrong: places in it could not be told from their neighbours.
+/// Says what is wrong with a length that no file has: places in it could not be told from their neighbours. Null: nothing.
 function problemOfLength(total: number | null): string | null {
   return total === null || Number.isSafeInteger(total) ? null : `the host says that it has ${total} bytes, as no file has`;
 }
@@ -121,7 +121,7 @@ export class RangedFile {
     return Number(length);
   }
 
-  /// What tells this version from others; null: the page may not see it.
+  /// Tells this version from others; null: the page may not see it.
   get versionText(): string | null {
     const { tag = null, modified = null, total = null } = this.version ?? {};
     return tag === null && modified === null ? null : `${tag ?? ''} ${modified ?? ''} ${total ?? ''}`;
@@ -191,7 +191,7 @@ export class RangedFile {
     return part;
   }
 
-  /// What the host sent instead of a part.
+  /// Reads the whole file, which the host sent instead of a part.
   private async readWhole(response: Response, signal: AbortSignal | null | undefined): Promise<Uint8Array<ArrayBuffer>> {
     const length = Number(response.headers.get('Content-Length') ?? 0);
     const refuse = (): never => {

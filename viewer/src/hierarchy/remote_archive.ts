@@ -21,7 +21,7 @@ const PEEK_BYTES = 2 ** 15;
 const FIRST_TILE = tilePath({ level: 1, index: 0 });
 
 interface Place {
-  /// Of the content.
+  /// The first byte of the content.
   readonly offset: number;
   readonly bytes: number;
 }
@@ -117,7 +117,7 @@ export class RemoteArchive implements RemoteFiles {
     });
   }
 
-  /// Of what follows the manifest. Older archives have another order: there it is looked up.
+  /// Notes where the files behind the manifest lie. Older archives have another order: there they are looked up.
   private place({ index, outline, preview }: Manifest, bytes: Uint8Array, from: number): void {
     const root = readLocalHeader(bytes, this.name);
     if (root?.name !== tilePath({ level: 0, index: 0 })) return;
@@ -145,7 +145,7 @@ export class RemoteArchive implements RemoteFiles {
     });
   }
 
-  /// Of the local header of a file. Throws HierarchyProblem if there is no such file.
+  /// Finds the local header of a file. Throws HierarchyProblem if there is no such file.
   private offsetOf(name: string): Promise<number> {
     return this.once(`offset of ${name}`, async () => {
       await this.head();
@@ -175,7 +175,7 @@ export class RemoteArchive implements RemoteFiles {
     return header;
   }
 
-  /// Of a file of any size.
+  /// Reads a file of any size.
   private async contentOf(name: string, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
     const head = await this.head();
     const place = this.known.get(name);
@@ -197,7 +197,7 @@ export class RemoteArchive implements RemoteFiles {
     return all;
   }
 
-  /// Of a file whose place and size are known.
+  /// Reads a file whose place and size are known.
   private async contentAt(name: string, { anchor, distance, bytes }: Whereabouts, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
     if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
     const at = (await this.offsetOf(anchor)) + distance;

@@ -19,7 +19,7 @@ import { Tree, tilePath, type Node } from './tree.js';
 const MOST_ROOT = 2 ** 25 + mostPictureBytes({ width: MOST_SIDE, height: MOST_SIDE });
 const ROOT: Node = { level: 0, index: 0 };
 
-/// What all tiles but the root need.
+/// All tiles but the root need this.
 export interface Directory {
   readonly manifest: Manifest;
   readonly tree: Tree;
@@ -143,7 +143,7 @@ export class RemoteHierarchy {
     throw this.isAnew ? await this.explained(new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged')) : new HierarchyReplaced(name);
   }
 
-  /// Of one that a host has unpacked: whether it is what the host has now, and the build still the same.
+  /// Tells whether a root that a host has unpacked is what the host has now, and the build still the same.
   private async isStillRoot(bytes: Uint8Array, drawn?: Promise<void>): Promise<boolean> {
     await drawn;
     const now = await this.files.stored(tilePath(ROOT), MOST_ROOT, { cache: 'no-cache', signal: this.signal });

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What vertices have besides normals, colours and texture coordinates (docs/file_format.md, sections 2 and 4.11).
+// Attributes that vertices have besides normals, colours and texture coordinates (docs/file_format.md, sections 2 and 4.11).
 import type { JsonValue } from '../json_value.js';
 import type { Glb, Gltf } from './glb.js';
 import { detached } from './vertex_values.js';
 
 export const MOST_VALUES = 54;
-/// What a float accessor has where a vertex has no finite value: the lowest float.
+/// A float accessor has the lowest float where a vertex has no finite value.
 export const NO_VALUE = -3.4028234663852886e38;
 
 /// One number a vertex.
@@ -17,13 +17,13 @@ export interface ScalarAttribute {
   readonly max: number;
   /// Vertices without a finite value.
   readonly missing: number;
-  /// Of the others: `bins[i]` lie from (firstBin + i) * binWidth on.
+  /// A histogram of quantities: `bins[i]` lie from (firstBin + i) * binWidth on.
   readonly binWidth: number;
   readonly firstBin: number;
   readonly bins: readonly number[];
   /// All labels, ascending; empty of quantities, and if there are very many.
   readonly labels: readonly number[];
-  /// What the input calls each of them; '' if it says nothing.
+  /// The input's names of the labels; '' where it says nothing.
   readonly labelNames: readonly string[];
 }
 
@@ -44,7 +44,7 @@ function numbers(value: JsonValue): number[] {
   return value.items().map((item) => item.number());
 }
 
-/// Of the manifest's source.
+/// Reads the attributes in the manifest's source.
 export function readScalarAttributes(source: JsonValue): ScalarAttribute[] {
   if (!source.has('values')) return [];
   return source.at('values').items().slice(0, MOST_VALUES).map(readScalarAttribute);

@@ -6,7 +6,7 @@ import { HierarchyProblem } from './problem.js';
 import { readTile, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';
 
-/// What the index says of a file.
+/// The index says this of a file.
 export interface Seal {
   readonly bytes: number;
   readonly checksum: bigint;

@@ -33,7 +33,7 @@ export interface Tile extends Places {
   /// u, v of each vertex in the picture, or in the normal map; none without. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
-  /// What the tile is lit by, and how it lies: both or none.
+  /// A tile has both a normal map and tangents, or none.
   readonly normalMap: Picture | null;
   readonly tangents: Int8Array | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
@@ -46,14 +46,14 @@ export interface Tile extends Places {
   readonly ghostStarts: Uint32Array;
   readonly chains: Uint16Array;
   readonly cone: Cone;
-  /// Of the root: whether it has no open border; and if so, whether its triangles show their backs.
+  /// The root alone knows it: the mesh has no open border; and if so, whether its triangles show their backs.
   readonly closed: boolean;
   readonly insideOut: boolean;
   /// x, y, z smallest, then largest, of all vertices.
   readonly box: readonly number[];
   /// The mesh lies with its z axis up.
   readonly zUp: boolean;
-  /// Of the root; null: an older program made it.
+  /// The root alone has it; null: an older program made it.
   readonly firstView: FirstView | null;
 }
 
@@ -69,7 +69,7 @@ function readIndices(glb: Glb, primitive: number, triangles: number, end: number
   return indices;
 }
 
-/// Of further vertices those that they repeat, below `end`; `what`: they are called.
+/// Reads which vertices, below `end`, further ones repeat. `what`: these are called so.
 function readRepeated(glb: Glb, number: number, length: number, end: number, what: string): Indices {
   const wide = end > 65535;
   const bytes = detached(glb.section(number, length * (wide ? 4 : 2)));
@@ -136,7 +136,7 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-/// Of the tile's picture or normal map.
+/// Reads the texture coordinates of the tile's picture or normal map.
 function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, isNormalMap }: Counts, vertices: number): Float32Array | null {
   if (pictureWidth === 0) return null;
   const set = isNormalMap ? (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0) : 0;
@@ -225,7 +225,7 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
   }
 }
 
-/// What a tile holds, each once: what moves when it is handed over.
+/// Returns the buffers and pictures that a tile holds, each once: they move when it is handed over.
 export function partsOf(tile: Tile): Transferable[] {
   const { copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
   const arrays = [copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, indices, border, neighbours, ghostStarts, chains];

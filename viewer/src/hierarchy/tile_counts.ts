@@ -3,7 +3,7 @@
 import type { Glb } from './glb.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, MOST_SIDE, mostSplits } from './limits.js';
 
-/// What the index says of a tile.
+/// The index says this of a tile.
 export interface ExpectedCounts {
   readonly level: number;
   readonly index: number;
@@ -13,7 +13,7 @@ export interface ExpectedCounts {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// Of the picture or the normal map; 0: there is neither.
+  /// The texels of the picture or the normal map; 0: there is neither.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
 }
@@ -32,7 +32,7 @@ const NO_MAPS_VERSION = 5; // the same in hierarchies without normal maps
 const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
 const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
-/// What tiles without splits, pictures, values or normal maps need not say.
+/// Tiles without splits, pictures, values or normal maps need not say these.
 const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1, normalMapWidth: 0, normalMapHeight: 0, normalMap: -1 };
 
 /// MESHHIER_tile.

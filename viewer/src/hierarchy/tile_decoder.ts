@@ -8,9 +8,9 @@ import { openTile, type OpenedTile, type TileWanted } from './stored_tile.js';
 interface Answer {
   id: number;
   opened?: OpenedTile;
-  /// What is wrong with the file.
+  /// Says what is wrong with the file.
   what?: string;
-  /// What went wrong otherwise.
+  /// Says what went wrong otherwise.
   defect?: string;
   milliseconds?: number;
 }

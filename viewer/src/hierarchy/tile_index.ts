@@ -16,7 +16,7 @@ export interface TileRecord {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// Of the tile's picture or normal map, texels; 0: there is none.
+  /// The texels of the tile's picture or normal map; 0: there is none.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
   /// Estimated distance to the input, in its units, and no less than a texel that is coarser than the input's; 0 of partitions.
@@ -27,7 +27,7 @@ export interface TileRecord {
   /// its bound.
   readonly min: Triple;
   readonly max: Triple;
-  /// Of the tile's file.
+  /// The length of the tile's file.
   readonly bytes: number;
   /// XXH3-64 of the tile's file.
   readonly checksum: bigint;
@@ -95,7 +95,7 @@ function isSound(record: TileRecord): boolean {
   return counts && picture && splits <= mostSplits({ interior, border }) && error >= 0 && bound >= 0 && [...min, ...max, error, bound].every(Number.isFinite);
 }
 
-/// Of a page that is not there: on its way, or when to ask for it again.
+/// A page that is not there is on its way, or is asked for again later.
 interface Absent {
   readonly again: number;
 }
@@ -149,7 +149,7 @@ export class TileIndex {
     return { anchor: tilePath(anchor), distance: this.distancesOf(page, view)[at / RECORD_BYTES], bytes: bytesAt(view, at) };
   }
 
-  /// Of each record's file from the first one of the page.
+  /// Returns where each record's file begins, counted from the first one of the page.
   private distancesOf(page: number, view: DataView): Float64Array {
     let distances = this.distances.get(page);
     if (distances !== undefined) return distances;

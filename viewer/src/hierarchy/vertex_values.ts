@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the vertices of a tile have (docs/file_format.md, section 4.3), as it is drawn.
+// Reads what the vertices of a tile have (docs/file_format.md, section 4.3), as it is drawn.
 import type { Glb, Gltf } from './glb.js';
 
 export type Accessor = Gltf['accessors'][number];
@@ -39,7 +39,7 @@ const COLOUR_TYPES: Record<number, { bytes: number; most: number }> = {
 
 let screenValues: Uint8Array | null = null;
 
-/// Of lights in parts of 65535 (IEC 61966-2-1, sRGB).
+/// Makes the table of screen values for light in parts of 65535 (IEC 61966-2-1, sRGB).
 function valuesOfLight(): Uint8Array {
   screenValues ??= Uint8Array.from({ length: 65536 }, (_, i) => {
     const light = i / 65535;
@@ -67,7 +67,7 @@ export function readColours(glb: Glb, accessor: Accessor, vertices: number, areS
   return new Uint8Array(colours.buffer);
 }
 
-/// Of a tile's picture: within it.
+/// Reads where vertices lie in the tile's picture: within it.
 export function readTexcoords(glb: Glb, { bufferView, componentType, type }: Accessor, vertices: number): Float32Array {
   if (componentType !== 5126 || type !== 'VEC2') glb.fail('texture coordinates of an unknown type');
   const texcoords = floats(glb.section(bufferView, 8 * vertices));
@@ -75,7 +75,7 @@ export function readTexcoords(glb: Glb, { bufferView, componentType, type }: Acc
   return texcoords;
 }
 
-/// Of a tile's normal map: numbers in parts of 65535.
+/// Reads where vertices lie in the tile's normal map: numbers in parts of 65535.
 export function readMapTexcoords(glb: Glb, { bufferView, componentType, type }: Accessor, vertices: number): Float32Array {
   if (componentType !== 5123 || type !== 'VEC2') glb.fail('texture coordinates of an unknown type');
   const numbers = new Uint16Array(detached(glb.section(bufferView, 4 * vertices)));

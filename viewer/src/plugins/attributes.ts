@@ -52,7 +52,7 @@ export class Attributes implements PluginOf<unknown>, Shading {
     valueRange: { value: new Vector2(0, 1) },
     isolineStep: { value: 0 },
   };
-  /// Of the values of a vertex, which one; -1: the model has none, or it is not known yet.
+  /// The place of the attribute among a vertex's values; -1: the model has none, or it is not known yet.
   private index = -1;
   /// A label is that of a whole triangle.
   private isLabel = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a visitor's hands do with a model in the room: one that grabs moves it, two turn and resize it; sticks turn and resize it;
+// A visitor's hands move a model in the room: one that grabs moves it, two turn and resize it; sticks turn and resize it;
 // a finger on a phone's screen turns it.
 import { Vector3 } from 'three';
 import type { Placement } from './placement.js';

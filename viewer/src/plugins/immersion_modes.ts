@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the device can do, asked without asking the visitor.
+// Asks what the device can do, without asking the visitor.
 
 export type ImmersionMode = 'immersive-vr' | 'immersive-ar';
 

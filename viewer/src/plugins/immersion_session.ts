@@ -18,7 +18,7 @@ async function floorOf(session: XRSession): Promise<'local-floor' | 'local'> {
 export class ImmersionSession {
   private readonly rig = new Group();
   private readonly eyes = new PerspectiveCamera(50, 1, NEAR, FAR);
-  /// What both eyes see, in the model's units.
+  /// Sees what both eyes see, in the model's units.
   private readonly head = new PerspectiveCamera();
   private readonly hands: Hands;
   private readonly rate: number;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What little light comes to hollows: ambient occlusion of what is on the screen, by three's pass (ground-truth ambient
+// Little light comes to hollows: ambient occlusion of what is on the screen, by three's pass (ground-truth ambient
 // occlusion, Jimenez et al. 2016), multiplied onto a picture that is drawn already.
 import {
   CustomBlending, DepthTexture, DoubleSide, MeshBasicMaterial, OneFactor, ShaderMaterial, SrcColorFactor, UnsignedIntType, Vector2, WebGLRenderTarget, ZeroFactor,
@@ -10,7 +10,7 @@ import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
 import type { Frame } from './plugin.js';
 
-/// Of the distance of what the camera looks at: hollows of that size are shaded, however near the camera is.
+/// Hollows of this part of the camera's distance are shaded, however near the camera is.
 const REACH = 0.1;
 const MOST_RATIO = 2; // pixels of the canvas for one of the page
 const QUALITY = { samples: 32, distanceExponent: 1.4, distanceFallOff: 0.5, scale: 1.5 };
@@ -30,7 +30,7 @@ function multiplying(): ShaderMaterial {
 /// Shades the hollows of one scene, for one camera.
 class Hollows {
   private readonly depth = new WebGLRenderTarget(1, 1, { depthTexture: new DepthTexture(1, 1, UnsignedIntType) });
-  /// Of whatever is drawn the depth alone counts.
+  /// The depth alone counts of whatever is drawn.
   private readonly bare = new MeshBasicMaterial({ side: DoubleSide, colorWrite: false });
   private readonly pass: GTAOPass;
   private readonly multiply = multiplying();
@@ -46,7 +46,7 @@ class Hollows {
     this.multiply.uniforms.light.value = this.pass.gtaoMap;
   }
 
-  /// What was drawn on the canvas. `distance`: of what the camera looks at. `ratio`: pixels of the canvas for one here.
+  /// Shades what was drawn on the canvas. `distance`: to what the camera looks at. `ratio`: pixels of the canvas for one here.
   shade(renderer: WebGLRenderer, distance: number, ratio: number): void {
     this.fit(renderer, ratio);
     const reach = REACH * distance;

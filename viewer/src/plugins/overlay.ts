@@ -30,7 +30,7 @@ function make(tag: string, to: Element, attributes: Readonly<Record<string, numb
 export class Overlay {
   readonly root = document.createElementNS(SVG, 'svg');
 
-  /// What a page's style says of marks in the class goes before their attributes here: colours, widths. Where it lies is set here alone.
+  /// A page's style of marks in the class goes before their attributes here: colours, widths. The overlay's place is set here alone.
   constructor(name = 'meshhier-overlay') {
     this.root.setAttribute('class', name);
     this.root.style.cssText = 'position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none';
@@ -55,7 +55,7 @@ export class Overlay {
     this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
   }
 
-  /// Of what lies behind the camera nothing is drawn.
+  /// Nothing is drawn that lies behind the camera.
   private line(a: Vector4, b: Vector4, text: string | undefined): void {
     const near = Math.max(a.w, b.w) * 1e-6;
     if (near <= 0) return;

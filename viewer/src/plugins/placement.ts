@@ -11,7 +11,7 @@ const UP = new Vector3(0, 1, 0);
 const SCALES = { least: 1e-2, most: 1e3 }; // times the first one
 
 export interface Shown {
-  /// Of the model's box.
+  /// The middle of the model's box.
   readonly centre: Vector3;
   /// Its longest side, in units.
   readonly size: number;
@@ -31,7 +31,7 @@ export class Placement {
   private scale: number;
   /// Radians around the vertical, from the side that is seen first.
   private turned = 0;
-  /// Of its centre, in the room.
+  /// Its centre is here, in the room.
   private readonly place: Vector3;
   private readonly first: number;
   private readonly facing: number;

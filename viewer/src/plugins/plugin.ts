@@ -72,7 +72,7 @@ function isDone(work: () => void): boolean {
 /// Holds the plug-ins of a view, in the order in which they came.
 export class Plugins<View> {
   private readonly all = new Map<string, PluginOf<View>>();
-  /// What a plug-in has thrown at it is not asked again.
+  /// Questions that a plug-in has thrown at are not put to it again.
   private readonly failed = new Map<PluginOf<View>, Set<Question>>();
   private stage: StageOf<View> | null = null;
 

@@ -22,7 +22,7 @@ async function fetchFile(url: string, most: number): Promise<Uint8Array<ArrayBuf
   }
 }
 
-/// What `make` makes. Throws StreamError where there is no memory for it.
+/// Returns what `make` does. Throws StreamError where there is no memory for it.
 function allocated<T>(make: () => T, name: string): T {
   try {
     return make();
@@ -42,7 +42,7 @@ function unfold(residual: number): number {
   return (residual & 1) !== 0 ? ~(residual >>> 1) : residual >>> 1;
 }
 
-/// What a file did.
+/// A file did this to the mesh.
 export interface Step {
   file: string;
   level: number;

@@ -47,7 +47,7 @@ const VERSION = 2;
 /// Bytes of each of the client's arrays, and of a file: 2 GiB, which some browsers do not exceed.
 const MOST_BYTES = 2 ** 31 - 1;
 
-/// What does not belong to the stream, or is damaged. The message names the file.
+/// Thrown for a file that does not belong to the stream, or is damaged. The message names it.
 export class StreamError extends Error {}
 
 function readFile(file: JsonValue): StreamFile {

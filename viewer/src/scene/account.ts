@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the differences save: a client without memory would be sent each view whole (Lluch et al.).
+// Counts what differences save: a client without memory would be sent each view whole (Lluch et al.).
 
 export interface ShownFile {
   readonly bytes: number;
-  /// Of the movement in which it was fetched.
+  /// The number of the movement in which it was fetched.
   readonly epoch: number;
 }
 

@@ -6,7 +6,7 @@ export class ContextWatch {
 
   constructor(private readonly restored: () => void) {}
 
-  /// What draws has listened before: it is ready when this tells.
+  /// The renderer has listened before: it is ready when this tells.
   drawnOn(canvas: EventTarget): void {
     if (this.canvases.has(canvas)) return;
     this.canvases.add(canvas);

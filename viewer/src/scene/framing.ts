@@ -37,7 +37,7 @@ export function cornersOf({ min, max }: Box3): Vector3[] {
   );
 }
 
-/// What touches the two borders of the picture that face each other along an axis, `most` on either side: places along the axis, each less or
+/// Finds what touches the two borders of the picture that face each other along an axis, `most` on either side: places along the axis, each less or
 /// plus its depth times the slope. They say where the camera is on that axis, and how far forward it may go.
 class Pair {
   private readonly most: [number, number] = [-Infinity, -Infinity];

@@ -16,7 +16,7 @@ interface Setup {
   readonly fill: number;
   readonly rim: number;
   readonly sky: number;
-  /// What comes from below, as a part of what comes from above.
+  /// Light from below, as a part of the light from above.
   readonly ground: number;
 }
 

@@ -21,7 +21,7 @@ function smooth(from: number, to: number, value: number): number {
   return t * t * (3 - 2 * t);
 }
 
-/// Of a normal in view: x to the right, y up; z towards the eye.
+/// Returns the colour for a normal in view: x to the right, y up; z towards the eye.
 function shade(x: number, y: number, z: number): Colour {
   const key = -0.5 * x + 0.62 * y + 0.6 * z;
   const body = mixed(DARK, BODY, smooth(-0.75, 0.65, key));

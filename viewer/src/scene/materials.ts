@@ -77,7 +77,7 @@ export function surfaceKey(look: Look, tile: Tile, { shadings }: SharedMaterials
   return [colours, texture, relight, material, cavities, shading, wires || points, ...shadings.keyed(look, tile).map((each) => `${numberOf(each.shading)}:${each.key}`)].join();
 }
 
-/// What the materials of a model's tiles have in common.
+/// The materials of a model's tiles share this.
 export interface SharedMaterials {
   readonly wires: Material;
   readonly points: Material;
@@ -93,7 +93,7 @@ export interface SharedMaterials {
   readonly shadings: Shadings;
 }
 
-/// What of a tile its surface shows.
+/// A tile's surface shows this of it.
 export interface Painting {
   readonly tile: Tile;
   /// The picture's.
@@ -126,7 +126,7 @@ function unlitMaterial(look: Look, { tile: { picture, coloursTint }, texture }: 
   return material;
 }
 
-/// What three's shaders are changed by, for a look.
+/// Changes three's shaders for a look.
 function edit(shader: Shader, { colours, cavities, material }: Look, vertexColors: boolean): void {
   replaceChunk(shader, 'fragmentShader', 'normal_fragment_begin', BACKS);
   if (vertexColors) takeScreenColours(shader);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view is called (Kim & Lee).
+// Names a view's mode (Kim & Lee).
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { areInView, distance, pixelsOf, type Viewpoint } from '../cut/viewpoint.js';
 import type { Mode } from './settings.js';

@@ -10,7 +10,7 @@ export interface Viewport {
 
 /// A camera that has not changed for this long stands still.
 export const REST_MS = 200;
-/// What rounding may make of equal lengths.
+/// Rounding may make equal lengths differ by this factor.
 const EVEN = 1 + 1e-6;
 
 export class Motion {

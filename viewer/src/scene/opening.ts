@@ -63,7 +63,7 @@ export class Opening {
     });
   }
 
-  /// What failed is asked for at once.
+  /// Asks at once for what failed.
   hurry(): void {
     this.wake?.();
   }

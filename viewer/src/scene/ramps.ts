@@ -2,7 +2,7 @@
 // Colours for numbers: perceptual ramps of the field, and colours for names.
 import { ClampToEdgeWrapping, DataTexture, LinearFilter, NearestFilter, SRGBColorSpace } from 'three';
 
-/// Of a screen, at equal steps. viridis and cividis (Nuñez, Anderton & Renslow 2018) are even to the eye, cividis also to eyes that see
+/// Colours of a screen, at equal steps. viridis and cividis (Nuñez, Anderton & Renslow 2018) are even to the eye, cividis also to eyes that see
 /// few colours; turbo (Mikhailov 2019) tells more steps apart; coolwarm (Moreland 2009) has a middle, for signed values.
 const STOPS = {
   viridis: [0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a884, 0x44bf70, 0x7ad151, 0xbddf26, 0xfde725],
@@ -32,7 +32,7 @@ export function rampColour(name: RampName, part: number): Rgb {
 
 const GOLDEN = 0.6180339887498949; // colours of neighbours in a list lie far apart
 
-/// Of the label with that number in the list of all.
+/// Returns the colour of the label with that number in the list of all.
 export function labelColour(number: number): Rgb {
   const hue = 6 * ((number * GOLDEN + 0.58) % 1);
   const [light, strength] = [[0.62, 0.62], [0.45, 0.7], [0.74, 0.5]][number % 3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user of the library may set, and what it tells.
+// The settings and looks that a user of the library may choose, and the figures that a view tells.
 import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { RampName } from './ramps.js';
 
@@ -45,13 +45,13 @@ export interface Settings {
   framesPerSecond: number;
   /// Largest error on screen, in pixels (of the viewport given to `update`).
   threshold: number;
-  /// What a view at rest divides that by once all is there, step by step, as long as triangles are larger than a pixel: 1 … 16.
+  /// A view at rest divides the threshold by it once all is there, step by step, as long as triangles are larger than a pixel: 1 … 16.
   restDetail: number;
   /// Bytes of all tiles in memory, those in GPU buffers included: never exceeded, but that the root stays.
   memoryBudget: number;
 }
 
-/// What a view looks like if nothing is said.
+/// A view looks so if nothing is said.
 export const DEFAULT_LOOK: Look = {
   colours: 'vertex', texture: true, relight: false, material: 'lit', relief: 1, cavities: true, shading: 'smooth', wires: false, points: false, outline: false,
   attribute: '', ramp: 'viridis', range: null, isolines: false, hidden: [],
@@ -114,10 +114,10 @@ export interface Stats {
   /// The most that residentBytes ever was.
   peakBytes: number;
   memoryBudget: number;
-  /// Of files with tiles, as stored.
+  /// The bytes of files with tiles, as stored.
   fetchedBytes: number;
   fetchedFiles: number;
-  /// What sending each settled view whole would have taken, and what of that was not sent.
+  /// Bytes that sending each settled view whole would have taken, and those of them that were not sent.
   wholeViewBytes: number;
   savedBytes: number;
   /// Tiles of settled views that were there already.

@@ -8,7 +8,7 @@ import type { Terrain } from './terrain.js';
 const SHOWN_SLOPE = 0.5;
 const MOST_RELIEF = 1000;
 
-/// What is known of it; null: not yet, or it is none.
+/// Facts about a model; null: not known yet, or it has none.
 export interface KnownModel {
   readonly terrain: Terrain | null;
   readonly hasColours: boolean | null;
@@ -25,7 +25,7 @@ function reliefOf({ slope }: Terrain, stretch: number): number {
   return Math.min(Math.max(SHOWN_SLOPE / Math.max(slope * stretch, 1e-9), 1), MOST_RELIEF);
 }
 
-/// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun, or seen from their front, their
+/// A model without colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun, or seen from their front, their
 /// slopes are shaded steeper. `stretch`: heights are shown so many times as high.
 export function shownLook(look: Look, rig: Rig, stretch: number, { terrain, hasColours, hasTriangles, hasAttributes }: KnownModel): Look {
   const wished = look.colours === 'attribute' && hasAttributes === false ? 'vertex' : look.colours;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of a shape is its outline, from wherever it is seen.
+// Finds the points of a shape that are its outline, from wherever it is seen.
 import type { Tile } from '../hierarchy/tile.js';
 
 const DIRECTIONS = 256; // what lies between them sticks out by less than a hundredth of the size

@@ -15,7 +15,7 @@ export const DEFAULT_STANDING: Standing = { up: 'file', stretch: 1 };
 export const UPS: readonly Up[] = ['file', 'x', 'y', 'z', '-x', '-y', '-z'];
 export const MOST_STRETCH = 100;
 
-/// Of each, where x, y and z of the mesh come to: rows of a turn that brings it to y.
+/// Where x, y and z of the mesh come to, for each axis that is up: rows of a turn that brings it to y.
 const TURNS: Readonly<Record<Exclude<Up, 'file'>, readonly Vector[]>> = {
   x: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
   y: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],

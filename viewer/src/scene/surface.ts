@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tools may know of a view: the triangles that it draws, and where finer ones come from.
+// Tools may know this of a view: the triangles that it draws, and where finer ones come from.
 import type { Sphere } from 'three';
 import type { Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';

@@ -5,7 +5,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import type { Vector } from '../cut/viewpoint.js';
 
 export interface Terrain {
-  /// Of the heights, in the tiles' coordinates; of length 1.
+  /// The direction of heights, in the tiles' coordinates; of length 1.
   readonly along: Vector;
   /// Heights go up. Otherwise it is a sheet that is seen from its front.
   readonly upright: boolean;
@@ -18,7 +18,7 @@ export interface Terrain {
 
 /// Part of the surface that may look down: holes that were closed, a skirt.
 const MOST_DOWN = 0.03;
-/// Of the extent across.
+/// A terrain's height is at most this part of its extent across.
 const MOST_HEIGHT = 0.35;
 /// The same of a sheet on its side: a thicker one is a relief, and light shows its form.
 const MOST_THICKNESS = 0.03;

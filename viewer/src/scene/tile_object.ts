@@ -26,7 +26,7 @@ export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
   return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (shown ? memoryOfPicture(shown, level) : 0);
 }
 
-/// What is drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
+/// Returns the bytes that are drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
 export function vertexBytesOf(tile: Tile): number {
   return 12 + 4 * tile.normals.BYTES_PER_ELEMENT + (tile.colours ? 4 : 0) + 4 * valueWidth(tile);
 }
@@ -37,12 +37,12 @@ export function texelBytesOf({ picture, normalMap }: Tile): number {
   return shown ? bytesOfTexel(shown) : BITMAP_TEXEL_BYTES;
 }
 
-/// What a tile's record does not tell.
+/// A tile's record does not tell these.
 export interface Extent {
   readonly level: number;
   readonly vertexBytes: number;
   readonly wires: boolean;
-  /// Of its picture or normal map, on the GPU.
+  /// Bytes of a texel of its picture or normal map, on the GPU.
   readonly texelBytes: number;
 }
 
@@ -56,7 +56,7 @@ export function mostMemory(
   const indexBytes = vertices > 65535 ? 4 : 2;
   const indices = 3 * (interior + border) * indexBytes;
   const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES + TANGENT_BYTES : 0)) + indices;
-  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
+  // A ghost takes its chain, its neighbour's number, start and keys, and what the seam keeps of it; a vertex behind the ghosts takes the last, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
   return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, texelBytes, level);
 }
@@ -78,7 +78,7 @@ function paintingOf(tile: Tile): Painting {
   return { tile, texture, normals };
 }
 
-/// What seams change of a tile, but for texture coordinates and tangents, which are its own; `width`: elements of a vertex.
+/// Lists what seams change of a tile: all but texture coordinates and tangents, which are its own; `width`: elements of a vertex.
 function* changing({ attributes }: BufferGeometry): Iterable<{ readonly values: BufferAttribute | InterleavedBuffer; readonly width: number }> {
   for (const [name, attribute] of Object.entries(attributes)) {
     if (name === 'uv' || name === 'tangent') continue;
@@ -123,7 +123,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.prepare();
     this.triangles = tile.interiorCount;
     this.matrixAutoUpdate = false;
-    // Of equal depths the last one shows: the same one in whatever order tiles came.
+    // Where depths are equal the last one shows: the same one in whatever order tiles came.
     this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
   }
 
@@ -191,7 +191,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     if (this.points !== null) this.points.material = this.pointMaterial();
   }
 
-  /// Of the whole tile.
+  /// Colours the whole tile.
   paint(colour: Color): void {
     this.material.color.copy(colour);
   }

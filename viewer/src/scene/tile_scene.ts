@@ -36,7 +36,7 @@ export class TileScene extends Group {
     this.contexts = new ContextWatch(restored);
   }
 
-  /// Of the whole model: its triangles show their backs to the outside.
+  /// The whole model's triangles show their backs to the outside.
   set insideOut(is: boolean) {
     this.materials.outwards.value = is ? -1 : 1;
   }

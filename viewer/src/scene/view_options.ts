@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view is made with, and what it tells.
+// The options that a view is made with, and the events that it tells.
 import type { Object3DEventMap } from 'three';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { RemoteFiles } from '../hierarchy/files.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What annotations say: texts, pictures and links, in the reader's language where there is a choice.
+// Reads what annotations say: texts, pictures and links, in the reader's language where there is a choice.
 import type { JsonValue } from '../json_value.js';
 import { idOf, isOfType } from './annotation_points.js';
 import { MOST_TEXT } from './note.js';
@@ -20,7 +20,7 @@ function primary(tag: string): string {
   return tag.toLowerCase().split('-')[0];
 }
 
-/// What is in the first of the reader's languages that there is, else what is in none, else the first.
+/// Returns the item in the first of the reader's languages that there is, else one in none, else the first.
 export function chosenOf<Item>(items: readonly Item[], languagesOf: (item: Item) => readonly string[], wanted: Languages): Item | undefined {
   const inLanguage = (tag: string): Item | undefined => items.find((item) => languagesOf(item).some((each) => primary(each) === primary(tag)));
   for (const tag of wanted) {
@@ -61,7 +61,7 @@ export function shortened(text: string): string {
   return text.slice(0, MOST_TEXT);
 }
 
-/// Of a map of languages.
+/// Reads a text out of a map of languages.
 export function labelOf(value: JsonValue, languages: Languages): string {
   if (!value.isObject() || !value.has('label')) return '';
   const label = value.at('label');

@@ -26,7 +26,7 @@ function takePage(page: JsonValue, found: Found): void {
   else ++found.pagesElsewhere;
 }
 
-/// What is painted into a scene, or something else with pages, and what is said of it.
+/// Takes what is painted into a scene, or something else with pages, and what is said of it.
 function takePages(container: JsonValue, found: Found): void {
   for (const page of [...listOf(container, 'items'), ...listOf(container, 'annotations')]) takePage(page, found);
 }

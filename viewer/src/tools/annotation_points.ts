@@ -22,7 +22,7 @@ export function axesOf(value: JsonValue, otherwise: number): Vector {
   return [along('x'), along('y'), along('z')];
 }
 
-/// Of two numbers or three, with `between` between them; null of anything else.
+/// Reads two numbers or three, with `between` between them; null: it is something else.
 function parsePoint(text: string, between: RegExp): Vector | null {
   const [x, y, z = 0, ...more] = text.trim().split(between).map((part) => (part === '' ? NaN : Number(part)));
   return more.length === 0 && areNear([x, y, z]) ? [x, y, z] : null;
@@ -32,7 +32,7 @@ function meanOf(points: readonly Vector[]): Vector {
   return scale(points.reduce(add), 1 / points.length);
 }
 
-/// Of the area within a polygon; of its corners, if it has none.
+/// Returns the middle of the area within a polygon; of its corners, if it has no area.
 function centroidOf(corners: readonly Vector[]): Vector {
   const [first] = corners;
   const fan = corners.slice(2).map((corner, i) => [corners[i + 1], corner] as const);
@@ -66,7 +66,7 @@ function pointInAddress(address: string): Vector | null {
   return match && parsePoint(match[1], /,/);
 }
 
-/// Of a target, a selector or an address. Null: it is no point.
+/// Reads the point of a target, a selector or an address. Null: it is no point.
 export function pointOf(value: JsonValue, refuse: Fail): Vector | null {
   if (!value.isObject()) return value.isText() ? pointInAddress(value.text()) : null;
   const selectors = value.has('selector') ? value.at('selector').oneOrMore() : [value];
@@ -78,7 +78,7 @@ export function pointOf(value: JsonValue, refuse: Fail): Vector | null {
   return source === undefined ? null : pointInAddress(idOf(source));
 }
 
-/// Of the first of an annotation's targets that is at one.
+/// Returns the point of the first of an annotation's targets that is at one.
 export function targetOf(annotation: JsonValue, refuse: Fail): Vector | null {
   if (!annotation.isObject() || !annotation.has('target')) return null;
   for (const target of annotation.at('target').oneOrMore()) {

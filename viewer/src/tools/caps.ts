@@ -15,7 +15,7 @@ function counting(side: Side, op: StencilOp): MeshBasicMaterial {
   });
 }
 
-/// What only decorates the surface does not count.
+/// Parts that only decorate the surface do not count.
 function isSurface(object: Object3D): boolean {
   return 'isMesh' in object || !('isLine' in object || 'isPoints' in object);
 }

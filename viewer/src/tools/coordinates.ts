@@ -4,7 +4,7 @@
 import type { Manifest } from '../hierarchy/manifest.js';
 import { length, vertexAt, type Vector } from './vectors.js';
 
-/// What of a manifest says where a model lies.
+/// These of a manifest say where a model lies.
 export type Placement = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform'>;
 
 /// WGS 84: semi-major axis in metres, flattening.

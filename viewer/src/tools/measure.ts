@@ -3,10 +3,10 @@
 import { add, cross, distanceOf, dot, length as lengthOf, scale, subtract, type Vector } from './vectors.js';
 
 export interface Measures {
-  /// Of each part, from point to point.
+  /// The length of each part, from point to point.
   readonly parts: readonly number[];
   readonly length: number;
-  /// Of the line's plan: as seen from above.
+  /// The length of the line's plan, as seen from above.
   readonly level: number;
   /// From the first point to the last: straight, in plan, and up.
   readonly straight: number;
@@ -35,7 +35,7 @@ function doubledArea(points: readonly Vector[]): Vector {
   return spokes.slice(1).map((spoke, i) => cross(spokes[i], spoke)).reduce(add, [0, 0, 0]);
 }
 
-/// Of what stands upright, not what rounding leaves.
+/// A part is upright where it has a plan of more than rounding leaves.
 function planOf(doubled: Vector, up: Vector): number {
   const along = Math.abs(dot(doubled, up));
   return along > ROUNDING * lengthOf(doubled) ? along / 2 : 0;

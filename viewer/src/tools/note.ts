@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What people tell of a model: notes at points, which are a story in their order, and places of the camera.
+// People tell this of a model: notes at points, which are a story in their order, and places of the camera.
 import type { Vector } from './vectors.js';
 
 /// How a place is looked at. In the input's coordinates.
@@ -30,7 +30,7 @@ export interface Bookmark {
 }
 
 export interface Notebook {
-  /// Of the story that the notes tell in their order.
+  /// The title of the story that the notes tell in their order.
   readonly title?: string;
   readonly notes: readonly Note[];
   readonly bookmarks: readonly Bookmark[];
@@ -38,12 +38,12 @@ export interface Notebook {
   readonly leftOut?: number;
 }
 
-/// Of each list.
+/// Each list has at most so many.
 export const MOST_ENTRIES = 500;
 /// Characters of a text.
 export const MOST_TEXT = 2000;
-/// Of a file.
+/// A file has at most so many bytes.
 export const MOST_STORY_BYTES = 2 ** 24;
 
-/// What is wrong with a file of notes.
+/// Says what is wrong with a file of notes.
 export class NotesProblem extends Error {}

@@ -11,7 +11,7 @@ import { cutsOf, partOfVolume, sumOf, type Triangles, type Volume } from './volu
 
 export interface OriginalVolumeOptions {
   readonly signal: AbortSignal;
-  /// Of the partitions that it takes so many are measured.
+  /// Is told how many of the partitions are measured.
   readonly progress?: (done: number, all: number) => void;
 }
 
@@ -22,7 +22,7 @@ function isCutAway({ min, max }: TileRecord, plane: CutPlane): boolean {
   return sideOf(plane, corner) < 0;
 }
 
-/// Of the tiles at a border triangle the first one counts it.
+/// Lists border triangles: the first of the tiles at one counts it.
 function borderOf(tile: Tile): Triangles {
   const { positions, border, own, ghosts, neighbours, ghostStarts, index } = tile;
   const owners = new Uint32Array(ghosts);

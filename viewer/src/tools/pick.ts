@@ -14,9 +14,9 @@ export interface Hit {
   readonly node: Node;
   /// In the tiles' coordinates.
   readonly point: Vector;
-  /// Of the triangle, of length 1; (0, 0, 0) if it has no area.
+  /// The triangle's normal, of length 1; (0, 0, 0) if it has no area.
   readonly normal: Vector;
-  /// Of the corners that one which is nearest to the point.
+  /// The triangle's corner that is nearest to the point.
   readonly corner: Vector;
   /// From the ray's beginning, in units of the model.
   readonly distance: number;
@@ -25,7 +25,7 @@ export interface Hit {
   readonly atCorner: readonly number[];
 }
 
-/// What of a tile is looked at.
+/// A tile is looked at for these.
 export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
 
 /// All values of a vertex.

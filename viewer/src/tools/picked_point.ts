@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is told of a point that was picked.
+// Tells of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
 import { LEAST_VALUE, labelName, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { Coordinates, type GlobePlace } from './coordinates.js';
@@ -9,11 +9,11 @@ import type { Vector } from './vectors.js';
 export interface PickedPoint {
   /// In the input's coordinates.
   readonly point: Vector;
-  /// Of the triangle, by the order of its corners; of length 1, or (0, 0, 0) if it has no area.
+  /// The triangle's normal, by the order of its corners; of length 1, or (0, 0, 0) if it has no area.
   readonly normal: Vector;
   /// In the tiles' coordinates.
   readonly local: Vector;
-  /// Of the tile that it came from.
+  /// The level of the tile that it came from.
   readonly level: number;
   readonly index: number;
   /// It is a vertex of that tile.
@@ -25,7 +25,7 @@ export interface PickedPoint {
   /// No more is it from the input's surface; Infinity: not known.
   readonly bound: number;
   readonly globe: GlobePlace | null;
-  /// What the point has besides, in the order of the manifest: of labels that of the nearest vertex. Null: no value. `label`: its name, or ''.
+  /// Values at the point, in the order of the manifest: a label is that of the nearest vertex. Null: no value. `label`: its name, or ''.
   readonly values: readonly { readonly name: string; readonly value: number | null; readonly label: string }[];
 }
 
@@ -39,7 +39,7 @@ function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribu
 
 type Stored = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform' | 'worstRounding' | 'partitions'> & { readonly source: Pick<Manifest['source'], 'doublePrecision'> & Partial<Pick<Manifest['source'], 'values'>> };
 
-/// What storing coordinates did to a point of a partition.
+/// Returns how far storing coordinates may have moved a point of a partition.
 function storedBound(local: Vector, { worstRounding, source, place }: Stored): number {
   const HALF_STEP = 2 ** -24; // of a float, in parts of it
   const largest = Math.max(...local.map((value, axis) => Math.abs(value + place[axis])));

@@ -5,7 +5,7 @@ import { dot, unit, type Vector } from './vectors.js';
 
 /// Kept is where normal · point + constant >= 0.
 export interface CutPlane {
-  /// Of length 1.
+  /// Has length 1.
   readonly normal: Vector;
   readonly constant: number;
 }
@@ -26,7 +26,7 @@ export function flipped({ normal: [x, y, z], constant }: CutPlane): CutPlane {
   return { normal: [-x, -y, -z], constant: -constant };
 }
 
-/// Of a box the six sides: its inside is kept.
+/// Returns the six sides of a box: its inside is kept.
 export function boxPlanes(min: Vector, max: Vector): CutPlane[] {
   const along = (axis: number, sign: number): Vector => [0, 1, 2].map((each) => (each === axis ? sign : 0)) as unknown as Vector;
   return [0, 1, 2].flatMap((axis) => [
@@ -40,7 +40,7 @@ export function worldPlane({ normal, constant }: CutPlane, matrix: Readonly<Matr
   return new Plane(new Vector3(...normal), constant).applyMatrix4(matrix);
 }
 
-/// Of a plane across a direction of that world, the normal in the coordinates that `matrix` brings into it.
+/// Returns the normal of a plane across a direction of the world, in the coordinates that `matrix` brings into it.
 export function localNormal(direction: Vector, { elements: e }: Readonly<Matrix4>): Vector {
   return unit([dot([e[0], e[1], e[2]], direction), dot([e[4], e[5], e[6]], direction), dot([e[8], e[9], e[10]], direction)]);
 }

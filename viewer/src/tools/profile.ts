@@ -19,7 +19,7 @@ function mixed(a: Vector, b: Vector, part: number): Vector {
   return [0, 1, 2].map((axis) => a[axis] + (b[axis] - a[axis]) * part) as unknown as Vector;
 }
 
-/// What of a line lies between the distances 0 and `most`, in pieces, in the direction in which distances grow.
+/// Returns the part of a line between the distances 0 and `most`, in pieces, in the direction in which distances grow.
 function within({ points, isClosed }: Polyline, distanceOf: (point: Vector) => number, most: number): ProfilePoint[][] {
   const walked = isClosed ? [...points, points[0]] : points;
   const pieces: ProfilePoint[][] = [];

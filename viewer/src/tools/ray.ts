@@ -5,7 +5,7 @@ import { unit, type Vector } from './vectors.js';
 
 export interface Ray {
   readonly from: Vector;
-  /// Of any length but 0.
+  /// Has any length but 0.
   readonly direction: Vector;
 }
 
@@ -13,9 +13,9 @@ export interface Ray {
 const SLACK = 1e-15;
 
 export class RayProbe {
-  /// Of length 1.
+  /// Has length 1.
   readonly direction: Vector;
-  /// Of the last triangle hit: what part of the point each corner has.
+  /// Each corner of the last triangle hit has this part of the point.
   weights: Vector = [0, 0, 0];
   private readonly axes: readonly [number, number, number];
   private readonly shear: Vector;

@@ -7,7 +7,7 @@ export interface PictureSize {
   readonly height: number;
 }
 
-/// Of a picture, in pixels from its upper left corner.
+/// A part of a picture, in pixels from its upper left corner.
 export interface Part extends PictureSize {
   readonly x: number;
   readonly y: number;
@@ -39,7 +39,7 @@ function settle(pixels: Uint8Array, ground: readonly number[] | null): void {
   }
 }
 
-/// Of one row of parts, put side by side, the uppermost row first.
+/// Writes one row of parts, put side by side, the uppermost row first.
 function rowsOf(size: PictureSize, parts: readonly Part[], draw: DrawPart): Uint8Array {
   const bytes = 4 * size.width;
   const rows = new Uint8Array(bytes * parts[0].height);

@@ -17,7 +17,7 @@ function nameOf([x, y, z]: Vector): string {
 }
 
 interface Cut {
-  /// Of the edge.
+  /// Names the edge.
   readonly name: string;
   readonly point: Vector;
 }

@@ -9,7 +9,7 @@ export type Axes = readonly [Vector, Vector];
 
 const AXES: readonly Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-/// Of a plane in the input's coordinates; `up`: as `HierarchyView.upwards`. Across an axis the drawing has the two others' own numbers.
+/// Returns the axes of a drawing in a plane of the input's coordinates; `up`: as `HierarchyView.upwards`. Across an axis the drawing has the two others' own numbers.
 export function drawingAxes(normal: Vector, up: Vector): Axes {
   const along = normal.findIndex((value) => Math.abs(value) > 1 - 1e-12);
   const [one, other] = AXES.filter((_, axis) => axis !== along);

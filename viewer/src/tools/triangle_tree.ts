@@ -22,7 +22,7 @@ function emptyBoxes(count: number): Float32Array {
   return Float32Array.from({ length: FLOATS * count }, (_, i) => (i % FLOATS < 3 ? Infinity : -Infinity));
 }
 
-/// What the box lacks of three more numbers, from `low`, and three, from `high`.
+/// Widens a box by three numbers from `low` on, and three from `high` on.
 function widen(boxes: Float32Array, box: number, from: ArrayLike<number>, low: number, high: number): void {
   for (let axis = 0; axis < 3; ++axis) {
     const at = FLOATS * box + axis;
@@ -36,7 +36,7 @@ export class TriangleTree {
   private readonly boxes: Float32Array;
   private readonly firstRun: number;
 
-  /// Of the first `count` triangles; positions and corners must stay as they are.
+  /// Holds the first `count` triangles; positions and corners must stay as they are.
   constructor(
     private readonly positions: Float32Array,
     private readonly corners: Indices,

@@ -35,7 +35,7 @@ export function unitOfMetres(metres: number | null): UnitName | null {
   return UNIT_NAMES.find((name) => metres !== null && Math.abs((UNITS[name].metres ?? 0) - metres) < 1e-9 * metres) ?? null;
 }
 
-/// Of a model; null: not known.
+/// Returns the unit of a model; null: it is not known.
 export function unitOfModel(manifest: Manifest): UnitName | null {
   if (manifest.units !== null) return manifest.units === 'us_ft' ? 'ftUS' : manifest.units;
   return unitOfMetres(new Coordinates(manifest).metresPerUnit);
@@ -54,7 +54,7 @@ export function within(text: string, bound: number): string {
 
 /// How lengths of a model are told: in which unit they are, and in which one they are shown.
 export class LengthScale {
-  /// What a length of the model is multiplied by.
+  /// A length of the model is multiplied by it.
   readonly factor: number;
   readonly sign: string;
 

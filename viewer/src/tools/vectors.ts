@@ -32,7 +32,7 @@ export function distanceOf(a: Vector, b: Vector): number {
   return length(subtract(a, b));
 }
 
-/// Of length 1; (0, 0, 0) stays so.
+/// Returns the vector at length 1; (0, 0, 0) stays so.
 export function unit(a: Vector): Vector {
   const long = length(a);
   return long > 0 ? scale(a, 1 / long) : [0, 0, 0];

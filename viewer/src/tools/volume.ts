@@ -26,12 +26,12 @@ function regionOf([base, top, ...sides]: readonly CutPlane[]): Region {
   return { base, height: top === undefined ? Infinity : base.constant + top.constant, sides };
 }
 
-/// What a plane cuts away of all of a tile, or of nothing of it.
+/// Tells whether a plane cuts away all of a tile, or nothing of it.
 function isBelow(plane: CutPlane, { sphere }: DrawnTile, reach: number): boolean {
   return sideOf(plane, sphere.center.toArray()) < -sphere.radius * (1 + 1e-6) - reach;
 }
 
-/// What of a flat, convex polygon a plane keeps.
+/// Returns the part of a flat, convex polygon that a plane keeps.
 function clipped(polygon: readonly Vector[], plane: CutPlane): readonly Vector[] {
   const sides = polygon.map((point) => sideOf(plane, point));
   if (sides.every((side) => side >= 0)) return polygon;
