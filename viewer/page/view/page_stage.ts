@@ -37,10 +37,9 @@ export class PageStage implements Stage {
   }
 
   jump(pose: CameraPose): void {
-    this.moves.navigation.jump(pose);
+    if (isStanding(pose)) this.moves.navigation.jump(pose);
   }
 
-  /// Places may be from a file.
   fly(pose: CameraPose): void {
     if (isStanding(pose)) this.moves.navigation.fly(pose);
   }

@@ -109,7 +109,7 @@ export class Tree {
 /// More tiles of a level are in several directories.
 export const TILES_A_DIRECTORY = 10_000;
 
-/// Where a tile's file is, relative to the hierarchy.
+/// Returns the path of a tile's file, relative to the hierarchy.
 export function tilePath({ level, index }: Node): string {
   const digits = (count: number) => String(count).padStart(6, '0');
   const first = index - (index % TILES_A_DIRECTORY);

@@ -21,41 +21,45 @@ export interface StageOf<View> extends Frame {
   readonly surface: HTMLElement;
   /// Aborts when the view is closed.
   readonly signal: AbortSignal;
+  /// Returns where the camera stands and what it looks at.
   pose(): CameraPose;
-  /// At once, or on a way that is seen where the stage has one; and only to where a camera can stand.
+  /// Moves the camera at once. Nothing happens where no camera can stand so, here and in the next two.
   jump(pose: CameraPose): void;
+  /// Moves the camera on a way that is seen, where the stage has one.
   fly(pose: CameraPose): void;
-  /// As stories go from place to place. Returns the milliseconds that it takes.
+  /// Moves the camera as stories go from place to place. Returns the milliseconds that it takes.
   travel(pose: CameraPose): number;
-  /// A frame is wanted.
+  /// Asks for a frame, as after a change that the view cannot see.
   redraw(): void;
-  /// Frames are drawn by somebody else, until what it returns is called.
+  /// Frames are drawn by somebody else, until the function that it returns is called.
   suspend(): () => void;
   /// Shows the model so from now on, as links say it. A stage without links lacks it.
   present?(choices: string): void;
 }
 
-/// A plug-in may lack everything but the name. Places of the picture are from -1 to 1, to the right and up.
+/// A plug-in may lack everything but the name. Places of the picture are from -1 to 1, to the right and up. It may register and take away others
+/// in `init` and `enter`. One that throws in `init` or `enter` is taken away; a later member that throws is told as an error that nobody has
+/// caught, and not asked again until the plug-in is registered anew.
 export interface PluginOf<View> {
   /// No two plug-ins of a view have the same.
   readonly name: string;
-  /// Changes how tiles are shaded.
+  /// Changes how tiles are shaded; the same object as long as the plug-in is registered.
   readonly shading?: Shading;
-  /// It belongs to a view from now on.
+  /// It belongs to a view from now on, which may know nothing of the model yet. Called once each time that it is registered.
   init?(view: View): void;
-  /// The view is on a stage: one in a scene of your own is not.
+  /// The view is on a stage: one in a scene of your own is not. Called after `init`, at once or when the stage is there.
   enter?(stage: StageOf<View>): void;
-  /// Draws the scene in its own way, instead of `renderer.render`. False: it does not now.
+  /// Draws the scene in its own way, instead of `renderer.render`, and keeps later plug-ins from doing so. False: it does not now.
   paint?(frame: Frame): boolean;
   /// Draws over what `renderer.render` has drawn; not over what a plug-in has painted.
   shade?(frame: Frame): void;
   /// A frame is complete: time for what lies over the canvas.
   drawn?(frame: Frame): void;
-  /// Tells whether a point of the world is drawn.
+  /// Tells whether a point of the world is drawn: one that any plug-in leaves out is not picked. Called for each hit of a ray.
   keeps?(point: Vector3): boolean;
-  /// A place of the picture was tapped. True: it was meant for this plug-in.
+  /// A place of the picture was tapped. True: it was meant for this plug-in, and no later one is asked.
   tapped?(right: number, up: number): boolean;
-  /// It was taken away, or the view was disposed of.
+  /// It was taken away, or the view was disposed of, or it could not begin. It may be registered again afterwards.
   dispose?(): void;
 }
 

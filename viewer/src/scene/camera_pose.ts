@@ -4,13 +4,13 @@ import { Vector3 } from 'three';
 
 export type Triple = readonly [number, number, number];
 
-/// In the world, in numbers.
+/// A pose in the world, in numbers.
 export interface Pose {
   readonly position: Triple;
   readonly target: Triple;
 }
 
-/// Nothing changes what it holds.
+/// A pose with vectors: nothing changes them, and neither should you.
 export class CameraPose {
   constructor(
     readonly position: Vector3,

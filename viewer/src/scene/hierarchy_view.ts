@@ -18,21 +18,23 @@ import { TileScene } from './tile_scene.js';
 import { ViewContext } from './view_context.js';
 import type { ViewEvents, ViewOptions } from './view_options.js';
 
-/// A plug-in of a view, and what shows a view with its plug-ins.
+/// A plug-in of a view, and a stage that shows a view with its plug-ins.
 export type Plugin = PluginOf<HierarchyView>;
 export type Stage = StageOf<HierarchyView>;
 
+/// Add it to a scene, call `update` before each frame, and draw when that returns true or a `change` event came. Until something is known
+/// of the model, members say so: none throws for being asked early.
 export class HierarchyView extends Group<ViewEvents> {
-  /// Resolves when the root can be drawn: after one request. Rejects with an Error that names the file.
+  /// Resolves when the root can be drawn: after one request. Rejects with HierarchyProblem, which names the file; nobody must wait for it.
   readonly opened: Promise<void>;
-  /// For what shows the view.
+  /// A stage enters here, and asks the plug-ins.
   readonly plugins: Plugins<HierarchyView>;
   private readonly tiles = new TileScene(() => { this.loading.askAgain(); }, () => { this.context.changed(); });
   private readonly context: ViewContext;
   private readonly loading: Loading;
   private readonly frames: Frames;
 
-  /// `url`: of the hierarchy's directory, or of its archive.
+  /// Begins to fetch at once. `url`: of the hierarchy's directory, or of its archive. Throws RangeError for settings or a standing out of range.
   constructor(url: string, options: ViewOptions = {}) {
     super();
     this.context = new ViewContext(options, this.tiles, this);
@@ -55,6 +57,7 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.context.settings;
   }
 
+  /// Holds from the next frame on. Throws RangeError for a number out of its range, and then changes nothing.
   setSettings(change: Partial<Settings>): void {
     const { context, loading, frames } = this;
     context.settings = changedSettings(change, context.settings);
@@ -67,6 +70,7 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.context.look;
   }
 
+  /// Holds from the next frame on. A look that asks for what the model lacks shows what it has.
   setLook(change: Partial<Look>): void {
     this.context.look = { ...this.context.look, ...change };
     this.loading.store.recount();
@@ -77,7 +81,7 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.context.standing;
   }
 
-  /// `box` is another one afterwards.
+  /// `box` is another one afterwards. Throws RangeError for what is out of range, and then changes nothing.
   setStanding(change: Partial<Standing>): void {
     const { context } = this;
     context.standing = changedStanding(change, context.standing);
@@ -85,7 +89,7 @@ export class HierarchyView extends Group<ViewEvents> {
     context.changed();
   }
 
-  /// Whether the inside is in view, as of a model that is cut open: backs are then refined as fronts are.
+  /// True while the inside is in view, as of a model that is cut open: backs are then refined as fronts are.
   get showsInside(): boolean {
     return this.context.showsInside;
   }
@@ -97,7 +101,7 @@ export class HierarchyView extends Group<ViewEvents> {
 
   // ---- what the model is
 
-  /// Of the model, upright, in the coordinates of this group.
+  /// The model's box, upright, in the coordinates of this group; empty until the root is there.
   get box(): Box3 {
     return this.context.form.box;
   }
@@ -107,56 +111,56 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.loading.manifest;
   }
 
-  /// What the mesh is like as a terrain, as it stands; null: it is none, or not known yet.
+  /// The mesh as a terrain, as it stands; null: it is none, or not known yet.
   get terrain(): Terrain | null {
     return this.context.form.terrain;
   }
 
-  /// Which way is up as the mesh stands, in its own coordinates.
+  /// The direction that is up as the mesh stands, in its own coordinates, of length 1.
   get upwards(): Vector {
     return this.context.form.upwards(this.standing);
   }
 
-  /// From where the model is looked at first: to the viewer, of length 1, in the coordinates of this group. Null: not known yet, an older
+  /// The model is looked at first from this side: to the viewer, of length 1, in the coordinates of this group. Null: not known yet, an older
   /// hierarchy does not say it, or the mesh stands on another axis.
   get firstDirection(): Vector | null {
     return this.context.form.firstDirection(this.standing);
   }
 
-  /// Points of the root's outline from all sides, as they stand in this group, in one and the same vector. None: not known yet.
+  /// Yields points of the root's outline from all sides, as they stand in this group, in one and the same vector. None: not known yet.
   shape(): Iterable<Vector3> {
     return this.context.form.shape();
   }
 
-  /// Whether the mesh has colours or pictures of its own; those that are white everywhere say nothing. Null: not known yet.
+  /// True where the mesh has colours or pictures of its own; those that are white everywhere say nothing. Null: not known yet.
   get hasColours(): boolean | null {
     return this.context.form.hasColours;
   }
 
-  /// Whether vertices have something besides normals, colours and texture coordinates; null: not known yet.
+  /// True where vertices have something besides normals, colours and texture coordinates; null: not known yet.
   get hasAttributes(): boolean | null {
     return this.context.form.hasAttributes;
   }
 
-  /// Whether the mesh has triangles, and not only points; null: not known yet.
+  /// True where the mesh has triangles, and not only points; null: not known yet.
   get hasTriangles(): boolean | null {
     return this.context.form.hasTriangles;
   }
 
-  /// No open border: it has an inside.
+  /// True where the mesh has no open border, and so an inside; false until the root is there.
   get closed(): boolean {
     return this.context.form.root?.closed ?? false;
   }
 
   // ---- what is shown
 
-  /// Call before each frame; `now` as given to callbacks of requestAnimationFrame. Returns whether the picture is
-  /// another one than that of the last frame.
+  /// Chooses the cut, and asks for what it lacks. Call it before each frame; `now` as given to callbacks of requestAnimationFrame, `viewport` in
+  /// pixels of the picture. Returns whether the picture is another one than that of the last frame; false until the root is there.
   update(camera: PerspectiveCamera, viewport: Viewport, now: number): boolean {
     return this.frames.update(camera, viewport, now);
   }
 
-  /// Instead of `renderer.render(scene, camera)`, where plug-ins draw.
+  /// Draws a frame as plug-ins want it: call it instead of `renderer.render(scene, camera)` where there are some that draw.
   draw(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void {
     const frame = { renderer, scene, camera };
     this.plugins.paint(frame);
@@ -173,27 +177,30 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.tiles.drawn();
   }
 
+  /// Brings the tiles' coordinates into the world; of the last `update`.
   get surfaceMatrix(): Readonly<Matrix4> {
     return this.tiles.matrixWorld;
   }
 
-  /// Null until `manifest` is there.
+  /// Gives tools the tiles that are not drawn. Null until `manifest` is there.
   get source(): TileSource | null {
     return this.loading.source;
   }
 
+  /// Figures as of now; they cost little, and may be asked for in each frame.
   stats(): Stats {
     return this.frames.stats();
   }
 
   // ---- plug-ins, and the host
 
-  /// Throws Error where there is one of that name.
+  /// Throws Error where there is one of that name, and what `init` or `enter` throws: then it is not there. May be called at any time.
   registerPlugin(plugin: Plugin): this {
     this.plugins.register(plugin);
     return this;
   }
 
+  /// Takes a plug-in away, and calls its `dispose`; nothing happens where it is not there.
   unregisterPlugin(plugin: Plugin): void {
     this.plugins.unregister(plugin);
   }
@@ -204,12 +211,12 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.loading.reload();
   }
 
-  /// Asks at once for what failed.
+  /// Asks at once for what failed; the view does so by itself, but later.
   retry(): void {
     this.loading.retry();
   }
 
-  /// Frees everything, also on the GPU; the view is of no use afterwards.
+  /// Frees everything, also on the GPU, and disposes of plug-ins; the view is of no use afterwards.
   dispose(): void {
     this.context.ending.abort(new Error('the view was closed'));
     this.plugins.dispose();

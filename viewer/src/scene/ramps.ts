@@ -20,7 +20,7 @@ function rgbOf(hex: number): Rgb {
   return [hex >> 16, (hex >> 8) & 255, hex & 255];
 }
 
-/// `part`: 0 … 1 of the way; what lies outside has the colour of that end.
+/// Returns a ramp's colour at `part` of the way, 0 … 1; what lies outside has the colour of that end.
 export function rampColour(name: RampName, part: number): Rgb {
   const stops = STOPS[name];
   const at = Math.min(Math.max(part, 0), 1) * (stops.length - 1);

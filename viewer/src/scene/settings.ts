@@ -57,13 +57,13 @@ export const DEFAULT_LOOK: Look = {
   attribute: '', ramp: 'viridis', range: null, isolines: false, hidden: [],
 };
 
-/// At the ends of the ramp if nothing is said.
+/// Returns the values at the ends of the ramp if a look does not say them.
 export function wholeRange({ min, max }: ScalarAttribute, ramp: RampName): readonly [number, number] {
   const most = Math.max(-min, max);
   return ramp === 'coolwarm' && min < 0 && max > 0 ? [-most, most] : [min, max];
 }
 
-/// The attribute of that name, else the first one; -1: there is none.
+/// Returns the place of the attribute of that name, else of the first one; -1: there is none.
 export function attributeIndex(attributes: readonly ScalarAttribute[], name: string): number {
   return Math.max(attributes.findIndex((each) => each.name === name), Math.min(0, attributes.length - 1));
 }
@@ -94,7 +94,7 @@ export type Mode = 'CWV' | 'ZSV' | 'DZM';
 
 export interface Stats {
   mode: Mode;
-  /// Measured while the camera moves; of the last movement when it stands still.
+  /// Frames per second while the camera moves; of the last movement when it stands still.
   framesPerSecond: number;
   moving: boolean;
   /// The view stands still, and nothing is left to fetch or refine.

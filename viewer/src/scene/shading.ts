@@ -8,7 +8,9 @@ import type { Look } from './settings.js';
 
 export type Shader = WebGLProgramParametersWithUniforms;
 
-/// Changes the material of lit surfaces. All tiles of a view share it.
+/// Changes the material of lit surfaces. All tiles of a view share it. Its members are called whenever tiles are shown otherwise, in the order
+/// `show`, `key`, `parameters`, `prepare`, and `edit` once a program is compiled. If one of them throws, the error is told and the shading left
+/// out, until its plug-in is registered anew.
 export interface Shading {
   /// They are declared by `edit`, and there in all programs that it edits.
   readonly uniforms: Readonly<Record<string, IUniform>>;
@@ -17,7 +19,7 @@ export interface Shading {
   /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too: what they add runs in the order
   /// in which the plug-ins came, after what every view adds.
   readonly edit: (shader: Shader, look: Look, tile: Tile) => void;
-  /// Returns what the material is made with besides.
+  /// Returns parameters that the material is made with besides.
   parameters?(look: Look): MaterialParameters & Readonly<Record<string, unknown>>;
   /// Tiles are shown so from now on; `attributes`: what the model's vertices have, none while that is not known.
   show?(look: Look, attributes: readonly ScalarAttribute[]): void;
@@ -84,7 +86,7 @@ export function numberOf(object: object): number {
   return number;
 }
 
-/// Replaces `#include <chunk>` of a shader.
+/// Replaces `#include <chunk>` of a shader; nothing happens where it has none.
 export function replaceChunk(shader: Shader, where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void {
   shader[where] = shader[where].replace(`#include <${chunk}>`, by);
 }

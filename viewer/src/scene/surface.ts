@@ -6,7 +6,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Node } from '../hierarchy/tree.js';
 
-/// Its first `triangles` are drawn, of `tile.indices`; the interior ones never change.
+/// A tile that is drawn: the first `triangles` of its `tile.indices`, of which the interior ones never change. It holds until the next `update`.
 export interface DrawnTile {
   readonly node: Node;
   readonly tile: Tile;
@@ -16,6 +16,6 @@ export interface DrawnTile {
 }
 
 export interface TileSource extends Directory {
-  /// As it is in its file: whoever asks owns it, and lets go of its picture.
+  /// Fetches a tile as it is in its file: whoever asks owns it, and lets go of its picture. Rejects with HierarchyProblem, and with the reason of `signal`.
   load(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile>;
 }

@@ -12,10 +12,11 @@ export interface ViewOptions {
   standing?: Partial<Standing>;
   /// Makes a worker of the module `tile_worker`; without it tiles are decoded where the view is.
   createWorker?: () => Worker;
+  /// Workers that decode, at the most.
   workers?: number;
-  /// Instead of the global one.
+  /// Called instead of the global one.
   fetch?: Fetch;
-  /// Instead of those at the URL.
+  /// Read instead of those at the URL.
   files?: RemoteFiles;
   /// Most tiles on their way at once.
   requests?: number;
