@@ -9,7 +9,6 @@ import { modelOfPath, readable, withoutWarnings, type Listing, type Model } from
 import { ModelEntry } from './model_entry.js';
 import { Page } from './page.js';
 import { readQuery, shortened, type Query } from './query.js';
-import { watchInput } from './parts/input.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
 import { maySend } from './upload/permission.js';
 import { UploadPlace } from './upload/upload_place.js';
@@ -32,6 +31,13 @@ function messageOf(error: unknown): string {
 /// The view's code: once, when it is likely to be wanted.
 function loadView(): Promise<typeof import('./view/model_view.js')> {
   return import('./view/model_view.js');
+}
+
+/// The focus is moved by keys, or not: some is only for those who do so.
+function watchInput(): void {
+  const note = (input: 'keys' | 'pointer'): void => { document.documentElement.dataset.input = input; };
+  window.addEventListener('keydown', ({ key }) => { if (key === 'Tab') note('keys'); }, { capture: true });
+  window.addEventListener('pointerdown', () => { note('pointer'); }, { capture: true });
 }
 
 export class App {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How a model is shown: its colours and surface, its light, how it stands. What of it a link and the browser keep.
+import { asObject, type Json } from '../src/json_value.js';
 import { RAMPS } from '../src/scene/ramps.js';
 import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';
 import { DEFAULT_STANDING, MOST_STRETCH, UPS, type Standing } from '../src/scene/standing.js';
@@ -27,12 +28,6 @@ export const DEFAULT_LIGHT: Light = { name: 'auto', key: null, occlusion: false 
 
 const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline', 'isolines'] as const;
 type Switches = Pick<Look, (typeof SWITCHES)[number]>;
-
-type Json = Record<string, unknown>;
-
-function asObject(value: unknown): Json {
-  return typeof value === 'object' && value !== null ? (value as Json) : {};
-}
 
 export function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], otherwise: Otherwise): T | Otherwise {
   return choices.find((choice) => choice === value) ?? otherwise;

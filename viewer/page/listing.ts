@@ -4,6 +4,7 @@
 import { isArchiveUrl } from '../src/hierarchy/archive_format.js';
 import type { RemoteFiles } from '../src/hierarchy/files.js';
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
+import type { Json } from '../src/json_value.js';
 import { words } from './words/words.js';
 
 export interface Model {
@@ -62,8 +63,6 @@ export class ListingError extends Error {}
 const MOST_ENTRIES = 10_000;
 const MOST_TEXT = 1000;
 const MOST_WARNINGS = 100; // of a model
-
-type Json = Record<string, unknown>;
 
 function isObject(value: unknown): value is Json {
   return typeof value === 'object' && value !== null && !Array.isArray(value);

@@ -7,7 +7,7 @@ const UNITS = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte', 'petabyte
 const LAST_SECOND = 8.64e12; // since 1970, that dates know
 const THREE_DIGITS = { minimumSignificantDigits: 3, maximumSignificantDigits: 3 } as const;
 
-type Unit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
+type NumberUnit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
 
 export interface Numbers {
   /// 28,184,526.
@@ -45,7 +45,7 @@ export function numbersOf(locale: string): Numbers {
     const format = new Intl.NumberFormat(locale, options);
     return (value) => format.format(value);
   };
-  const unit = (name: Unit, options: Intl.NumberFormatOptions = {}) => formats({ style: 'unit', unit: name, ...options });
+  const unit = (name: NumberUnit, options: Intl.NumberFormatOptions = {}) => formats({ style: 'unit', unit: name, ...options });
   const count = formats({ maximumFractionDigits: 0 });
   const compact = formats({ notation: 'compact', ...THREE_DIGITS });
   const day = new Intl.DateTimeFormat(locale, { dateStyle: 'medium' });

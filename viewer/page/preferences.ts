@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Keeps in the browser what the user chose. Whatever is stored there, what comes out is sound.
+import { asObject, type Json } from '../src/json_value.js';
 import { changedSettings, type Look, type Settings } from '../src/scene/settings.js';
 import { oneOf, readLight, readLook, readStandings, type Light, type Standings } from './appearance.js';
-import { ORDERS, type Order } from './gallery/orders.js';
 import { LANGUAGES, type Language } from './words/languages.js';
+
+/// Models may be shown in these orders. `folder`: in groups by folder, in each by name.
+export const ORDERS = ['folder', 'name', 'newest', 'size', 'triangles'] as const;
+export type Order = (typeof ORDERS)[number];
 
 export type Theme = 'auto' | 'light' | 'dark';
 
@@ -39,12 +43,6 @@ export const RANGES = {
 } as const satisfies Record<string, Range>;
 
 const KEY = 'meshhier';
-
-type Json = Record<string, unknown>;
-
-function asObject(value: unknown): Json {
-  return typeof value === 'object' && value !== null ? (value as Json) : {};
-}
 
 function within(value: unknown, { least, most }: Range, otherwise: number): number {
   return typeof value === 'number' && value >= least && value <= most ? value : otherwise;

@@ -2,6 +2,14 @@
 // JSON of strangers: each value is asked for as the type that it must have.
 import { areNear, FARTHEST } from './farthest.js';
 
+/// An object whose values may be anything.
+export type Json = Readonly<Record<string, unknown>>;
+
+/// Returns an object as it is, and one without anything for all else.
+export function asObject(value: unknown): Json {
+  return typeof value === 'object' && value !== null ? (value as Json) : {};
+}
+
 /// Is told what is wrong, and must throw.
 export type Fail = (what: string) => never;
 

@@ -3,7 +3,7 @@
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
 import { readable, type Job, type Model } from '../listing.js';
 import { locale } from '../words/words.js';
-import type { Order } from './orders.js';
+import type { Order } from '../preferences.js';
 
 export interface Wish {
   /// Words that a name or a folder must have, in any order; empty: all.

@@ -13,7 +13,7 @@ const BESIDE_FORM = 0.3; // how strong lines of sectors are where others draw th
 const [NEAR, FAR] = [0.25, 0.85]; // depths where lines begin to fade and have done so
 
 /// The first segment, and the one after the last.
-type Range = readonly [number, number];
+type Segments = readonly [number, number];
 
 /// Four numbers a segment, in pixels, and its shade.
 interface Projected {
@@ -44,7 +44,7 @@ function project(ends: Float32Array, m: readonly number[], width: number, height
   return projected;
 }
 
-function strokeShade(context: CanvasRenderingContext2D, { ends, shades }: Projected, shade: number, [begin, end]: Range, strength: number): void {
+function strokeShade(context: CanvasRenderingContext2D, { ends, shades }: Projected, shade: number, [begin, end]: Segments, strength: number): void {
   context.globalAlpha = strength * (1 - (1 - FAINTEST) * (shade / (SHADES - 1)));
   context.beginPath();
   for (let i = begin; i < end; ++i) {
@@ -55,7 +55,7 @@ function strokeShade(context: CanvasRenderingContext2D, { ends, shades }: Projec
   context.stroke();
 }
 
-function stroke(context: CanvasRenderingContext2D, projected: Projected, range: Range, strength: number): void {
+function stroke(context: CanvasRenderingContext2D, projected: Projected, range: Segments, strength: number): void {
   for (let shade = SHADES - 1; shade >= 0; --shade) strokeShade(context, projected, shade, range, strength);
 }
 

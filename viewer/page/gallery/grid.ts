@@ -13,20 +13,20 @@ export interface Metrics {
   headingHeight: number;
 }
 
-export interface Extent {
+export interface GroupSize {
   /// Number of items.
   count: number;
   hasHeading: boolean;
 }
 
 /// The items [first, end) of a group.
-export interface Run {
+export interface CellRun {
   group: number;
   first: number;
   end: number;
 }
 
-interface Band {
+interface GroupPlace {
   top: number;
   /// The top of the first row of cells.
   cellsTop: number;
@@ -44,9 +44,9 @@ export class Grid {
   readonly cellHeight: number;
   /// The height of all groups together.
   readonly height: number;
-  private readonly bands: Band[] = [];
+  private readonly bands: GroupPlace[] = [];
 
-  constructor(extents: readonly Extent[], private readonly metrics: Metrics) {
+  constructor(extents: readonly GroupSize[], private readonly metrics: Metrics) {
     const { width, leastWidth, gap, textHeight } = metrics;
     this.columns = Math.max(Math.floor((width + gap) / (leastWidth + gap)), 1);
     this.cellWidth = Math.max((width - gap * (this.columns - 1)) / this.columns, 1);
@@ -74,14 +74,14 @@ export class Grid {
   }
 
   /// The cells that lie between two heights, in whole rows; of each group that reaches between them a run, perhaps empty.
-  runsBetween(top: number, bottom: number): Run[] {
-    const runs: Run[] = [];
+  runsBetween(top: number, bottom: number): CellRun[] {
+    const runs: CellRun[] = [];
     for (let group = this.firstBandBelow(top); group < this.bands.length && this.bands[group].top < bottom; ++group)
       runs.push(this.runOf(group, top, bottom));
     return runs;
   }
 
-  private add({ count, hasHeading }: Extent, top: number): number {
+  private add({ count, hasHeading }: GroupSize, top: number): number {
     const { gap, headingHeight } = this.metrics;
     const cellsTop = top + (hasHeading ? headingHeight : 0);
     const bottom = cellsTop + Math.ceil(count / this.columns) * (this.cellHeight + gap);
@@ -100,7 +100,7 @@ export class Grid {
     return first;
   }
 
-  private runOf(group: number, top: number, bottom: number): Run {
+  private runOf(group: number, top: number, bottom: number): CellRun {
     const { cellsTop, count } = this.bands[group];
     const pitch = this.cellHeight + this.metrics.gap;
     const row = (height: number, round: (rows: number) => number): number => clamp(round((height - cellsTop) / pitch) * this.columns, 0, count);

@@ -3,7 +3,7 @@
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 import type { Wish } from './arrangement.js';
-import { ORDERS, type Order } from './orders.js';
+import { ORDERS, type Order } from '../preferences.js';
 
 const PAUSE = 120; // milliseconds without a key before a search
 

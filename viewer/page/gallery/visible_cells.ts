@@ -34,7 +34,7 @@ class Band {
   }
 }
 
-interface Spot {
+interface CellSpot {
   group: number;
   item: number;
 }
@@ -47,7 +47,7 @@ export interface Entry {
 export class VisibleCells<One extends Entry> {
   readonly root = element('div', { class: 'groups' });
   private groups: readonly Group<One>[] = [];
-  private spots = new Map<string, Spot>(); // of all entries, by key
+  private spots = new Map<string, CellSpot>(); // of all entries, by key
   private grid = new Grid([], metricsOf(0));
   private width = 0;
   private readonly bands = new Map<string, Band>(); // by their groups' keys
@@ -95,7 +95,7 @@ export class VisibleCells<One extends Entry> {
     for (const [key, { name }] of [...this.bands]) if (names.get(key) !== name) this.bands.delete(key);
   }
 
-  private entryAt({ group, item }: Spot): One {
+  private entryAt({ group, item }: CellSpot): One {
     return this.groups[group].items[item];
   }
 
@@ -129,7 +129,7 @@ export class VisibleCells<One extends Entry> {
     return wanted;
   }
 
-  private focused(): Spot | undefined {
+  private focused(): CellSpot | undefined {
     const key = this.keys.get(document.activeElement?.closest('li') ?? this.root);
     return key === undefined ? undefined : this.spots.get(key);
   }
@@ -145,7 +145,7 @@ export class VisibleCells<One extends Entry> {
     return band;
   }
 
-  private showCell(spot: Spot, before: ReadonlyMap<Cell, number>): Cell {
+  private showCell(spot: CellSpot, before: ReadonlyMap<Cell, number>): Cell {
     const entry = this.entryAt(spot);
     const cell = this.cellOf(entry);
     this.keys.set(cell.root, entry.key);
@@ -154,7 +154,7 @@ export class VisibleCells<One extends Entry> {
     return cell;
   }
 
-  private place(root: HTMLElement, spot: Spot): void {
+  private place(root: HTMLElement, spot: CellSpot): void {
     const { left, top } = this.grid.placeOf(spot);
     const { cellWidth: width, cellHeight: height } = this.grid;
     Object.assign(root.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });

@@ -4,6 +4,7 @@ import type { Manifest } from '../../src/index.js';
 import { UNITS, unitOfModel } from '../../src/tools/units.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatDate, formatLength } from '../numbers.js';
+import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 
 export type Fact = readonly [name: string, text: string];
@@ -44,4 +45,16 @@ export function factsOf(model: Model, manifest: Manifest): Fact[] {
 export function summaryOf(model: Model, manifest: Manifest): string {
   const { triangles } = manifest.source;
   return words.info.summary(model.name, words.counts.triangles(triangles, formatCount(triangles)), extentOf(manifest));
+}
+
+export class InfoSheet {
+  readonly root = element('dl', { class: 'figures info' });
+  private shown: Manifest | null = null;
+
+  show(model: Model, manifest: Manifest): void {
+    if (manifest === this.shown) return;
+    this.shown = manifest;
+    const rows = factsOf(model, manifest).map(([name, text]) => element('div', {}, element('dt', {}, name), element('dd', {}, text)));
+    this.root.replaceChildren(...rows);
+  }
 }

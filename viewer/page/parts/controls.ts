@@ -12,7 +12,7 @@ export interface Control<Value> {
 }
 
 /// One of several values, of which some may not be there to be chosen.
-export interface Choice<Value> extends Control<Value> {
+export interface ChoiceControl<Value> extends Control<Value> {
   offer(value: Value, is: boolean): void;
 }
 
@@ -28,7 +28,7 @@ export function choice<Value extends string>(
   name: string,
   choices: readonly (readonly [Value, string])[],
   chosen: (value: Value) => void,
-): Choice<Value> {
+): ChoiceControl<Value> {
   const group = `choice-${++made}`;
   const inputs = choices.map(([value]) => element('input', { type: 'radio', name: group, value }));
   const labels = choices.map(([, text], i) => element('label', {}, inputs[i], element('span', {}, text)));

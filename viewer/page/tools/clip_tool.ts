@@ -23,16 +23,16 @@ const STEPS = 500; // of a slider
 const LEVEL = 0.7;
 const UNIT_AXES: readonly Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-type Mode = keyof typeof words.clip.modes;
+type CutMode = keyof typeof words.clip.modes;
 type Direction = keyof typeof words.clip.directions;
 
-interface Extent {
+interface BoxCorners {
   readonly min: Vector;
   readonly max: Vector;
 }
 
 /// Returns the range of the model along a direction.
-function rangeAlong({ min, max }: Extent, normal: Vector): readonly [number, number] {
+function rangeAlong({ min, max }: BoxCorners, normal: Vector): readonly [number, number] {
   const ends = normal.map((part, axis) => [part * min[axis], part * max[axis]]);
   return [ends.reduce((sum, pair) => sum + Math.min(...pair), 0), ends.reduce((sum, pair) => sum + Math.max(...pair), 0)];
 }
@@ -45,7 +45,7 @@ export class ClipTool implements Tool {
   readonly root: HTMLElement;
   private readonly coordinates: Coordinates;
   private readonly clipping = new Clipping('page clipping');
-  private readonly extent: Extent;
+  private readonly extent: BoxCorners;
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
@@ -57,9 +57,9 @@ export class ClipTool implements Tool {
   private exact: { planes: string; volume: Volume } | null = null;
   private measuring = new AbortController();
   private readonly caps: Control<boolean>;
-  private readonly modes: Control<Mode>;
+  private readonly modes: Control<CutMode>;
   private position = element('div', {});
-  private mode: Mode = 'off';
+  private mode: CutMode = 'off';
   private normal: Vector = UNIT_AXES[0];
   private offset = 0;
   private isFlipped = false;
@@ -75,7 +75,7 @@ export class ClipTool implements Tool {
     this.extent = { min, max };
     this.sides = { min: [...min], max: [...max] };
     const { clip } = words;
-    this.modes = choice(clip.mode, Object.entries(clip.modes) as [Mode, string][], (mode) => { this.setMode(mode); });
+    this.modes = choice(clip.mode, Object.entries(clip.modes) as [CutMode, string][], (mode) => { this.setMode(mode); });
     this.caps = checkbox(clip.caps, null, (on) => { this.isCapped = on; this.apply(); });
     this.caps.show(view.closed);
     this.caps.root.hidden = !view.closed;
@@ -111,7 +111,7 @@ export class ClipTool implements Tool {
     return element('div', { class: 'tool-form' }, ...sliders);
   }
 
-  private setMode(mode: Mode): void {
+  private setMode(mode: CutMode): void {
     this.mode = mode;
     this.modes.show(mode);
     this.planeForm.hidden = mode !== 'plane';

@@ -6,7 +6,7 @@ import { Coordinates } from '../../src/tools/coordinates.js';
 import { PROFILE_AXES, profileCsv, profileLines, profileOf } from '../../src/tools/profile.js';
 import { recordedBound } from '../../src/tools/shown_bound.js';
 import { sectionSvg } from '../../src/tools/section_svg.js';
-import { within } from '../../src/tools/units.js';
+import { UNIT_NAMES, UNITS, within, type UnitName } from '../../src/tools/units.js';
 import type { Vector } from '../../src/tools/vectors.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
@@ -14,7 +14,6 @@ import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
 import type { Tool } from './tool.js';
-import { unitsForm } from './units_form.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
@@ -22,6 +21,25 @@ const ANGLE_DIGITS = 2;
 
 function degrees(radians: number): number {
   return (radians * 180) / Math.PI;
+}
+
+function select(name: string, unknown: string, value: UnitName, chosen: (unit: UnitName) => void): HTMLElement {
+  const box = element('select', { class: 'tool-select' }, ...UNIT_NAMES.map((unit) => element('option', { value: unit }, unit === 'unit' ? unknown : UNITS[unit].sign)));
+  box.value = value;
+  box.addEventListener('change', () => { chosen(box.value as UnitName); });
+  return element('label', { class: 'tool-field' }, name, box);
+}
+
+/// `changed`: after the settings have.
+function unitsForm(shop: Workshop, changed: () => void): HTMLElement {
+  const set = (key: 'modelUnit' | 'shownUnit') => (unit: UnitName): void => {
+    shop.setSettings({ [key]: unit });
+    changed();
+  };
+  const { settings } = shop;
+  return element('div', { class: 'tool-units tool-extra' },
+    select(words.units.model, words.units.unknown, settings.modelUnit, set('modelUnit')),
+    select(words.units.shown, words.units.asModel, settings.shownUnit, set('shownUnit')));
 }
 
 export class MeasureTool implements Tool {

@@ -1,7 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Who may put meshes to where a listing is from, as far as the page can tell; the server decides for itself.
+// Who may put meshes to where a listing is from, as far as the page can tell; the server decides for itself. The word that
+// it may ask for is kept as long as the tab.
 import type { UploadOffer } from '../listing.js';
-import { storedToken } from './stored_token.js';
+
+const KEY = 'meshhier-upload-token';
+
+/// Null: it is not known, or the browser keeps nothing.
+export function storedToken(): string | null {
+  try {
+    return sessionStorage.getItem(KEY);
+  } catch {
+    return null;
+  }
+}
+
+/// Null: it is forgotten.
+export function storeToken(token: string | null): void {
+  try {
+    if (token === null) sessionStorage.removeItem(KEY);
+    else sessionStorage.setItem(KEY, token);
+  } catch {
+    // it is known until the page is left
+  }
+}
 
 function isLoopback(host: string): boolean {
   return host === 'localhost' || host === '[::1]' || /^127(\.\d+){3}$/.test(host);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Sends an upload to the server. XMLHttpRequest tells how much has gone; fetch does not.
+import { words } from '../words/words.js';
 import type { Upload } from './plan.js';
 
-export interface Answer {
+export interface ServerAnswer {
   /// 0: there was none.
   status: number;
   /// The server said so, in one line.
@@ -27,7 +28,7 @@ export function requestOf({ name, files, isFolder }: Upload): { method: string; 
 }
 
 /// Null if it was ended.
-export function send(upload: Upload, { inbox, token, told, ended }: Sending): Promise<Answer | null> {
+export function send(upload: Upload, { inbox, token, told, ended }: Sending): Promise<ServerAnswer | null> {
   const { method, path, body } = requestOf(upload);
   return new Promise((resolve) => {
     const request = new XMLHttpRequest();
@@ -41,4 +42,13 @@ export function send(upload: Upload, { inbox, token, told, ended }: Sending): Pr
     if (ended.aborted) resolve(null);
     else request.send(body);
   });
+}
+
+/// Says why the server did not take an upload.
+export function refusalText(name: string, { status, text }: ServerAnswer): string {
+  const { upload } = words;
+  if (status === 0) return upload.lost(name);
+  if (status === 409) return upload.taken(name);
+  if (status === 507) return upload.noRoom(name);
+  return upload.refused(name, text === '' ? String(status) : text);
 }

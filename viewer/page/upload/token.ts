@@ -2,7 +2,7 @@
 // The word that a server asks for before it takes meshes: known as long as the tab.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
-import { storedToken, storeToken } from './stored_token.js';
+import { storedToken, storeToken } from './permission.js';
 
 export class Token {
   private known = storedToken();

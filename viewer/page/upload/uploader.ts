@@ -8,8 +8,7 @@ import type { Problems } from '../problems.js';
 import { words } from '../words/words.js';
 import { droppedFiles, listedFiles } from './chosen_files.js';
 import { plan, type Chosen, type Upload } from './plan.js';
-import { refusalText } from './refusal.js';
-import { send, type Answer } from './send.js';
+import { refusalText, send, type ServerAnswer } from './send.js';
 import { Token } from './token.js';
 import { UploadRow } from './upload_row.js';
 
@@ -117,7 +116,7 @@ export class Uploader {
   }
 
   /// Null if it was ended. A wrong token is asked for again; who tells none ends all.
-  private async sendOne(waiting: Waiting): Promise<Answer | null> {
+  private async sendOne(waiting: Waiting): Promise<ServerAnswer | null> {
     for (;;) {
       const token = this.offer?.token === true ? await this.token.get() : null;
       if (this.offer?.token === true && token === null) {
@@ -130,7 +129,7 @@ export class Uploader {
     }
   }
 
-  private sendWith(token: string | null, { row, ending }: Waiting): Promise<Answer | null> {
+  private sendWith(token: string | null, { row, ending }: Waiting): Promise<ServerAnswer | null> {
     const told = (sent: number, total: number): void => { row.show(sent, total, performance.now()); };
     told(0, row.upload.bytes);
     return send(row.upload, { inbox: this.inbox, token, told, ended: ending.signal });

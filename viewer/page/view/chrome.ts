@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Everything around the picture: bars, badge, sheets.
-import type { Manifest } from '../../src/index.js';
+import type { Manifest, Mode } from '../../src/index.js';
 import { immersionModes, type ImmersionMode } from '../../src/plugins/immersion_modes.js';
-import { summaryOf } from '../info/facts.js';
-import { InfoSheet } from '../info/info_sheet.js';
+import { InfoSheet, summaryOf } from '../info/facts.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
-import { ModeBadge } from '../parts/mode_badge.js';
 import { ShareSheet } from '../share/share_sheet.js';
 import { words } from '../words/words.js';
-import { help } from './help.js';
 import { Panel } from './panel.js';
 import type { ContextEvents } from './page_context.js';
 import { SettingsForm } from './settings_form.js';
@@ -17,6 +14,16 @@ import { Sheet, Sheets } from './sheets.js';
 import type { ViewParts } from './view_parts.js';
 
 const ZOOM_STEP = 0.45;
+
+function rows(pairs: readonly (readonly string[])[]): HTMLElement {
+  return element('dl', { class: 'help' }, ...pairs.map(([what, does]) => element('div', {}, element('dt', {}, what), element('dd', {}, does))));
+}
+
+/// Tells what hands and keys do, and what the modes are called.
+function help(): HTMLElement {
+  const { hands, keys, modesTitle, modes } = words.help;
+  return element('div', {}, rows([...hands, ...keys]), element('h3', { class: 'help-title' }, modesTitle), rows(modes));
+}
 
 export class Chrome {
   readonly sheets: Sheets;
@@ -27,7 +34,7 @@ export class Chrome {
   private readonly info: Sheet;
   private readonly story: HTMLButtonElement;
   private readonly immersions: Readonly<Record<ImmersionMode, HTMLButtonElement>>;
-  private readonly badge = new ModeBadge();
+  private readonly badge = element('p', { class: 'badge', 'aria-live': 'polite', 'aria-atomic': 'true' });
   private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
   private readonly form: SettingsForm;
   private readonly figures = new Panel();
@@ -83,8 +90,15 @@ export class Chrome {
     this.story.setAttribute('aria-pressed', String(isTold));
   }
 
+  /// Names the mode in force; the same one again is not read out again.
+  private name(mode: Mode): void {
+    if (mode === this.badge.dataset.mode) return;
+    this.badge.dataset.mode = mode;
+    this.badge.textContent = words.modes[mode];
+  }
+
   private report({ stats, working }: ContextEvents['report']): void {
-    this.badge.show(stats.mode);
+    this.name(stats.mode);
     this.busy.classList.toggle('working', working);
     if (this.panel.isOpen) this.figures.show(stats, this.parts.context.view.settings.framesPerSecond);
   }
@@ -105,7 +119,7 @@ export class Chrome {
     const whole = iconButton(words.view.whole, ICONS.home, () => { parts.camera.navigation.goHome(); });
     const tools = iconButton(words.view.tools, ICONS.tools, () => void parts.tools.use(null));
     const bar = element('div', { class: 'bar' }, whole, tools, this.story, ...Object.values(this.immersions), ...sheets.map(({ button }) => button));
-    return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
+    return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge);
   }
 
   /// The model's name, which tells more of it.

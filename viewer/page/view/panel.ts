@@ -3,7 +3,7 @@
 import type { Manifest, Stats } from '../../src/index.js';
 import { formatBytes, formatCount, formatDecimal, formatMilliseconds, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
-import type { Shown } from './presentation.js';
+import type { ShownAppearance } from './presentation.js';
 import { words } from '../words/words.js';
 
 const text = words.figures;
@@ -77,7 +77,7 @@ export class Panel {
   }
 
   /// Null: the model is no terrain.
-  tellTerrain(shown: Shown | null): void {
+  tellTerrain(shown: ShownAppearance | null): void {
     this.terrain.hidden = shown === null;
     if (shown === null) return;
     const { terrain, byHeight, sunlit } = words.light;

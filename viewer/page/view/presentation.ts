@@ -6,7 +6,7 @@ import { LIGHTS, type Appearance, type Light } from '../appearance.js';
 import { keyOf, turned, type Angles, type Lighting, type Rig } from '../../src/scene/lighting.js';
 
 /// This is shown of what was chosen.
-export interface Shown {
+export interface ShownAppearance {
   look: Look;
   rig: Rig;
   key: Angles;
@@ -21,7 +21,7 @@ function materialOf({ name }: Light): Look['material'] {
   return name === 'matcap' || name === 'relief' ? name : 'lit';
 }
 
-export function shownOf({ look, light, standing }: Appearance, model: KnownModel): Shown {
+export function shownOf({ look, light, standing }: Appearance, model: KnownModel): ShownAppearance {
   const rig = rigOf(light, model);
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
   return { look: { ...shownLook(look, rig, standing.stretch, model), material: materialOf(light) }, rig, key };
@@ -42,7 +42,7 @@ export class Presentation {
     public chosen: Appearance,
   ) {}
 
-  get shown(): Shown {
+  get shown(): ShownAppearance {
     return shownOf(this.chosen, this.view);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Look, quality and theme.
 import { changedSettings, type Colours, type Settings } from '../../src/scene/settings.js';
-import { checkbox, choice, slider, type Choice, type Control } from '../parts/controls.js';
+import { checkbox, choice, slider, type ChoiceControl, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { languageSelect } from '../parts/language_select.js';
 import { COLOURS } from '../appearance.js';
@@ -23,7 +23,7 @@ function named<Value extends string>(values: readonly Value[], names: Readonly<R
 
 export class SettingsForm {
   readonly root: HTMLElement;
-  private readonly colours: Choice<Colours>;
+  private readonly colours: ChoiceControl<Colours>;
   private readonly attribute: AttributeForm;
   private readonly theme: Control<Theme>;
   private readonly quality: Control<Quality | ''>;

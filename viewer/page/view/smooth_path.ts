@@ -33,24 +33,24 @@ function zoomBetween(from: number, to: number, distance: number): Zoom {
 }
 
 /// To the viewer: around the vertical, and up from the horizon.
-interface Side {
+interface ViewSide {
   readonly around: number;
   readonly up: number;
 }
 
-function sideOf({ forward }: CameraPose): Side {
+function sideOf({ forward }: CameraPose): ViewSide {
   return { around: Math.atan2(-forward.x, -forward.z), up: Math.asin(Math.min(Math.max(-forward.y, -1), 1)) };
 }
 
-function directionOf({ around, up }: Side): Vector3 {
+function directionOf({ around, up }: ViewSide): Vector3 {
   return new Vector3(Math.cos(up) * Math.sin(around), Math.sin(up), Math.cos(up) * Math.cos(around));
 }
 
 export class SmoothPath {
   readonly milliseconds: number;
   private readonly zoom: Zoom;
-  private readonly side: Side;
-  private readonly turn: Side;
+  private readonly side: ViewSide;
+  private readonly turn: ViewSide;
 
   constructor(private readonly from: CameraPose, private readonly to: CameraPose) {
     this.zoom = zoomBetween(from.distance, to.distance, from.target.distanceTo(to.target));

@@ -8,7 +8,7 @@ import { ToldLook } from '../story/told_look.js';
 import { nextLight, Presentation } from './presentation.js';
 import type { PageContext } from './page_context.js';
 
-export interface Choice {
+export interface ViewChange {
   readonly look?: Partial<Look>;
   readonly light?: Partial<Light>;
   readonly standing?: Partial<Standing>;
@@ -51,7 +51,7 @@ export class ViewChoices {
   }
 
   /// Kept for other models too; but not how this one stands.
-  choose({ look, light, standing }: Choice): void {
+  choose({ look, light, standing }: ViewChange): void {
     const { context: { page, model }, chosen } = this;
     const { preferences } = page;
     this.presentation.chosen = {

@@ -29,7 +29,7 @@ export interface StoreHost {
   failed(node: Node, problem: unknown): void;
 }
 
-interface Entry {
+interface TileEntry {
   readonly node: Node;
   readonly key: number;
   readonly parent: number | null;
@@ -65,7 +65,7 @@ export class TileStore {
   evicted = 0;
   peakBytes = 0;
   usedBytes = 0;
-  private readonly entries = new Map<number, Entry>();
+  private readonly entries = new Map<number, TileEntry>();
   private readonly failures = new Map<number, Failure>();
   private loading = 0;
   private isOver = false;
@@ -193,7 +193,7 @@ export class TileStore {
     if (entry) entry.useful = now;
   }
 
-  private canGo(entry: Entry, now: number): boolean {
+  private canGo(entry: TileEntry, now: number): boolean {
     return entry.resident !== null && entry.below === 0 && entry.useful < now && entry.parent !== null;
   }
 
@@ -202,25 +202,25 @@ export class TileStore {
     this.peakBytes = Math.max(this.peakBytes, this.usedBytes);
   }
 
-  private enter(node: Node, bytes: number, now: number): Entry {
+  private enter(node: Node, bytes: number, now: number): TileEntry {
     const key = keyOf(node.level, node.index);
     const above = node.level === 0 ? null : this.tree().parent(node);
     const parent = above ? keyOf(above.level, above.index) : null;
-    const entry: Entry = { node, key, parent, bytes, resident: null, abort: new AbortController(), below: 0, useful: now };
+    const entry: TileEntry = { node, key, parent, bytes, resident: null, abort: new AbortController(), below: 0, useful: now };
     this.entries.set(key, entry);
     this.count(bytes);
     if (parent !== null) ++this.entries.get(parent)!.below;
     return entry;
   }
 
-  private remove(entry: Entry): void {
+  private remove(entry: TileEntry): void {
     this.entries.delete(entry.key);
     this.count(-entry.bytes);
     const above = entry.parent === null ? undefined : this.entries.get(entry.parent);
     if (above) --above.below;
   }
 
-  private evict(entry: Entry): void {
+  private evict(entry: TileEntry): void {
     this.remove(entry);
     ++this.evicted;
     if (entry.resident) this.lose(entry.resident);
@@ -248,7 +248,7 @@ export class TileStore {
     return true;
   }
 
-  private finish(entry: Entry, tile: Tile): void {
+  private finish(entry: TileEntry, tile: Tile): void {
     if (this.isOver || entry.abort.signal.aborted) {
       letGo(tile);
       return;
@@ -267,7 +267,7 @@ export class TileStore {
     this.host.came(resident);
   }
 
-  private arrive(entry: Entry, tile: Tile, tree: Tree): ResidentTile {
+  private arrive(entry: TileEntry, tile: Tile, tree: Tree): ResidentTile {
     const seam = new Seam(tile, tree);
     const bytes = this.host.bytesOf(tile, seam);
     entry.resident = { node: entry.node, key: entry.key, tile, seam };
@@ -276,7 +276,7 @@ export class TileStore {
     return entry.resident;
   }
 
-  private fail(entry: Entry, problem: unknown): void {
+  private fail(entry: TileEntry, problem: unknown): void {
     if (this.isOver || entry.abort.signal.aborted) return;
     const { tries: before = 0, wasHurried = false } = this.failures.get(entry.key) ?? {};
     const tries = before + 1;
@@ -295,7 +295,7 @@ export class TileStore {
   }
 
   /// Removes an entry and all below it.
-  private drop(entry: Entry): void {
+  private drop(entry: TileEntry): void {
     for (const below of [...this.entries.values()].filter(({ parent }) => parent === entry.key)) this.cancel(below);
     if (entry.resident) {
       this.evict(entry);
@@ -305,7 +305,7 @@ export class TileStore {
     this.remove(entry);
   }
 
-  private cancel(entry: Entry): void {
+  private cancel(entry: TileEntry): void {
     if (!entry.resident) ++this.aborted;
     entry.abort.abort();
     this.drop(entry);

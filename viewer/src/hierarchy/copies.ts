@@ -6,7 +6,7 @@
 export type Indices = Uint16Array | Uint32Array;
 
 /// A tile has these.
-export interface Places {
+export interface TilePlaces {
   readonly own: number;
   readonly ghosts: number;
   /// The place of each copy, own or ghost; ascending.
@@ -28,18 +28,18 @@ export function firstOf(ascending: Indices, value: number): number {
 }
 
 /// The number of vertices that are no splits.
-export function unsplitOf({ own, ghosts, copyOf }: Places): number {
+export function unsplitOf({ own, ghosts, copyOf }: TilePlaces): number {
   return own + ghosts + copyOf.length;
 }
 
-function addWithSplits(of: Places, vertex: number, to: number[]): void {
+function addWithSplits(of: TilePlaces, vertex: number, to: number[]): void {
   const { splitOf } = of;
   to.push(vertex);
   for (let split = firstOf(splitOf, vertex); splitOf[split] === vertex; ++split) to.push(unsplitOf(of) + split);
 }
 
 /// The place's first, then its copies, each with its splits behind it.
-export function verticesAt(of: Places, place: number): readonly number[] {
+export function verticesAt(of: TilePlaces, place: number): readonly number[] {
   const { own, ghosts, copyOf } = of;
   const vertices: number[] = [];
   addWithSplits(of, place, vertices);
@@ -48,7 +48,7 @@ export function verticesAt(of: Places, place: number): readonly number[] {
 }
 
 /// Where a vertex is.
-export function placeOf(of: Places, vertex: number): number {
+export function placeOf(of: TilePlaces, vertex: number): number {
   const places = of.own + of.ghosts;
   const unsplit = unsplitOf(of);
   const whole = vertex < unsplit ? vertex : of.splitOf[vertex - unsplit];
@@ -56,7 +56,7 @@ export function placeOf(of: Places, vertex: number): number {
 }
 
 /// Triangles of places.
-export function toPlaces(of: Places, triangles: Indices): Indices {
+export function toPlaces(of: TilePlaces, triangles: Indices): Indices {
   const isPlain = of.copyOf.length === 0 && of.splitOf.length === 0;
   return isPlain ? triangles : triangles.map((vertex) => placeOf(of, vertex));
 }

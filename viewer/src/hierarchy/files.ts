@@ -3,7 +3,7 @@
 import { unpacked } from './bytes.js';
 
 /// Where a file in an archive begins: so many bytes behind the start of another one.
-export interface Whereabouts {
+export interface FilePlace {
   readonly anchor: string;
   readonly distance: number;
   /// The length of the file.
@@ -13,7 +13,7 @@ export interface Whereabouts {
 /// Names are relative to the hierarchy. Every failure throws HierarchyProblem, or what ends `init.signal`.
 export interface RemoteFiles {
   /// A file of at most `most` bytes as it is stored, perhaps in gzip; a host may have unpacked it. `where`: if it is known.
-  stored(name: string, most: number, init?: RequestInit, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>>;
+  stored(name: string, most: number, init?: RequestInit, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>>;
   /// Whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
   lacks?(name: string): boolean;
   /// Bytes [first, end) of a file of `length`; or all of it, where a host knows no ranges.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
+import { asObject, type Json } from '../json_value.js';
 import { readFirstView, type FirstView } from './first_view.js';
 import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
@@ -26,27 +27,21 @@ const MOST_BYTES = 2 ** 20;
 const MOST_SHORT_VERTICES = 65535;
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-interface Counts {
+interface OutlineCounts {
   vertices: number;
   segments: number;
   formSegments: number;
 }
 
-type Json = Record<string, unknown>;
-
 function need(good: boolean, problem: string): asserts good {
   if (!good) throw new HierarchyProblem(FILE, problem);
-}
-
-function asObject(value: unknown): Json {
-  return typeof value === 'object' && value !== null ? (value as Json) : {};
 }
 
 function isCount(value: unknown): value is number {
   return typeof value === 'number' && Number.isInteger(value) && value >= 0 && value < 2 ** 32;
 }
 
-function readCounts(document: Json): Counts {
+function readCounts(document: Json): OutlineCounts {
   const extension = asObject(asObject(document.extensions).MESHHIER_outline);
   need(extension.version === 1, 'is no outline of version 1');
   const { vertexCount, segmentCount, formSegmentCount = 0 } = extension;
@@ -79,7 +74,7 @@ function upOf(matrix: readonly number[]): 'y' | 'z' {
   return matrix[6] === -1 && matrix[9] === 1 ? 'z' : 'y';
 }
 
-function readLines(bin: Uint8Array | null, { vertices, segments }: Counts): Pick<Outline, 'positions' | 'segments'> {
+function readLines(bin: Uint8Array | null, { vertices, segments }: OutlineCounts): Pick<Outline, 'positions' | 'segments'> {
   const short = vertices <= MOST_SHORT_VERTICES;
   need(bin?.byteLength === 12 * vertices + (short ? 4 : 8) * segments, 'has another length than its counts ask for');
   const buffer = bin.slice().buffer;
@@ -90,7 +85,7 @@ function readLines(bin: Uint8Array | null, { vertices, segments }: Counts): Pick
   return { positions, segments: corners };
 }
 
-/// The outline in a file's bytes. Throws HierarchyProblem.
+/// Reads the outline in a file's bytes. Throws HierarchyProblem for what is none.
 export function readOutline(bytes: Uint8Array): Outline {
   const { document, bin } = readContainer(bytes, FILE);
   const root = asObject(document);

@@ -11,7 +11,7 @@ const MOST_TOGETHER = 2 ** 23;
 const MOST_WHOLE = 2 ** 26;
 
 /// A part that is asked for.
-interface Wanted {
+interface WantedPart {
   readonly first: number;
   readonly end: number;
   readonly init: RequestInit;
@@ -58,9 +58,9 @@ function problemOfLength(total: number | null): string | null {
 
 /// Copies what comes into the parts that it belongs to; each is given as soon as it is there.
 class Parts {
-  private readonly waiting: { wanted: Wanted; bytes: Uint8Array<ArrayBuffer> }[];
+  private readonly waiting: { wanted: WantedPart; bytes: Uint8Array<ArrayBuffer> }[];
 
-  constructor(wanted: readonly Wanted[]) {
+  constructor(wanted: readonly WantedPart[]) {
     this.waiting = wanted.map((each) => ({ wanted: each, bytes: new Uint8Array(each.end - each.first) }));
   }
 
@@ -79,7 +79,7 @@ class Parts {
 export class RangedFile {
   private version: Version | null = null;
   private whole: Uint8Array<ArrayBuffer> | null = null; // of a host that knows no ranges
-  private queue: Wanted[] = [];
+  private queue: WantedPart[] = [];
 
   /// `name`: for messages.
   constructor(
@@ -134,7 +134,7 @@ export class RangedFile {
     });
     this.queue = [];
     queue.sort((a, b) => a.first - b.first);
-    let group: Wanted[] = [];
+    let group: WantedPart[] = [];
     let end = 0;
     for (const wanted of queue) {
       const isNear = wanted.first - end <= MOST_GAP && group.length > 0 && wanted.end - group[0].first <= MOST_TOGETHER;
@@ -147,7 +147,7 @@ export class RangedFile {
   }
 
   /// Ends when all who wait for it have gone.
-  private async fetchTogether(group: readonly Wanted[], end: number): Promise<void> {
+  private async fetchTogether(group: readonly WantedPart[], end: number): Promise<void> {
     const ending = new AbortController();
     const done = new AbortController(); // nobody listens any more
     let left = group.length;
@@ -165,7 +165,7 @@ export class RangedFile {
     }
   }
 
-  private async fetchParts(group: readonly Wanted[], end: number, signal: AbortSignal): Promise<void> {
+  private async fetchParts(group: readonly WantedPart[], end: number, signal: AbortSignal): Promise<void> {
     const { first } = group[0];
     const init = { ...group[0].init, signal, headers: rangeHeader(first, end) };
     const response = await respond(this.fetch, this.url, this.name, init);

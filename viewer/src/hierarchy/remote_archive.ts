@@ -10,7 +10,7 @@ import { readManifest, type Manifest } from './manifest.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { HierarchyProblem } from './problem.js';
 import { RangedFile } from './ranged_file.js';
-import type { RemoteFiles, Whereabouts } from './files.js';
+import type { RemoteFiles, FilePlace } from './files.js';
 import { tilePath } from './tree.js';
 
 /// Read of the end: index and directory of some 700 files.
@@ -61,7 +61,7 @@ export class RemoteArchive implements RemoteFiles {
     this.file = new RangedFile(url, this.name, fetch);
   }
 
-  async stored(name: string, most: number, init: RequestInit = {}, where?: Whereabouts): Promise<Uint8Array<ArrayBuffer>> {
+  async stored(name: string, most: number, init: RequestInit = {}, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>> {
     return this.fromVisits(name, () => (where === undefined ? this.contentOf(name, most, init) : this.contentAt(name, where, most, init)));
   }
 
@@ -198,7 +198,7 @@ export class RemoteArchive implements RemoteFiles {
   }
 
   /// Reads a file whose place and size are known.
-  private async contentAt(name: string, { anchor, distance, bytes }: Whereabouts, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+  private async contentAt(name: string, { anchor, distance, bytes }: FilePlace, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
     if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
     const at = (await this.offsetOf(anchor)) + distance;
     const all = await this.file.read(at, at + archivedBytes(name, bytes), init);

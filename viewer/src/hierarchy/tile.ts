@@ -5,9 +5,9 @@ import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
 import { decodePicture, dropPicture, findPicture, partsOfPicture, type Picture } from './picture.js';
-import { placeOf, toPlaces, unsplitOf, type Indices, type Places } from './copies.js';
+import { placeOf, toPlaces, unsplitOf, type Indices, type TilePlaces } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
-import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
+import { readCounts, withAbsent, type TileCounts, type ExpectedCounts, type TileValues } from './tile_counts.js';
 import { readScalarValues } from './scalar_values.js';
 import { detached, readColours, readMapTexcoords, readNormals, readPositions, readTangents, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
 
@@ -17,7 +17,7 @@ export type NormalSource = 'input' | 'build' | 'viewer';
 
 /// Vertices 0 … own - 1 are the tile's; behind them its ghosts, then copies: further vertices at places of these; then splits:
 /// any of these once more, with another normal or texture coordinate. All positions are exact.
-export interface Tile extends Places {
+export interface Tile extends TilePlaces {
   readonly level: number;
   readonly index: number;
   /// x, y, z of each vertex, relative to the place that all tiles of a hierarchy share.
@@ -82,13 +82,13 @@ function readRepeated(glb: Glb, number: number, length: number, end: number, wha
   return repeated;
 }
 
-function readPlaces(glb: Glb, values: TileValues, { own, ghosts, copies, splits }: Counts): Places {
+function readPlaces(glb: Glb, values: TileValues, { own, ghosts, copies, splits }: TileCounts): TilePlaces {
   const copyOf = readRepeated(glb, values.copyOf, copies, own + ghosts, 'copies');
   return { own, ghosts, copyOf, splitOf: readRepeated(glb, values.splitOf, splits, own + ghosts + copies, 'splits') };
 }
 
 /// A split has the values of its vertex, `width` each.
-function checkSplits(glb: Glb, places: Places, values: Float32Array | Uint8Array | Normals, width: number): void {
+function checkSplits(glb: Glb, places: TilePlaces, values: Float32Array | Uint8Array | Normals, width: number): void {
   const unsplit = unsplitOf(places);
   places.splitOf.forEach((vertex, split) => {
     for (let k = 0; k < width; ++k)
@@ -97,7 +97,7 @@ function checkSplits(glb: Glb, places: Places, values: Float32Array | Uint8Array
 }
 
 /// Alike at all vertices of a place; triangles of places.
-function normalsByPlace(positions: Float32Array, of: Places, interior: Indices, border: Indices): Normals {
+function normalsByPlace(positions: Float32Array, of: TilePlaces, interior: Indices, border: Indices): Normals {
   const normals = vertexNormals(positions, interior, border);
   for (let vertex = of.own + of.ghosts; 4 * vertex < normals.length; ++vertex) {
     const place = placeOf(of, vertex);
@@ -106,7 +106,7 @@ function normalsByPlace(positions: Float32Array, of: Places, interior: Indices, 
   return normals;
 }
 
-function checkStarts(glb: Glb, starts: Uint32Array, { neighbours, ghosts }: Counts): void {
+function checkStarts(glb: Glb, starts: Uint32Array, { neighbours, ghosts }: TileCounts): void {
   if (neighbours === 0 && ghosts === 0) return;
   let before = -1;
   for (const start of starts) {
@@ -137,7 +137,7 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
 }
 
 /// Reads the texture coordinates of the tile's picture or normal map.
-function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, isNormalMap }: Counts, vertices: number): Float32Array | null {
+function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, isNormalMap }: TileCounts, vertices: number): Float32Array | null {
   if (pictureWidth === 0) return null;
   const set = isNormalMap ? (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0) : 0;
   const accessor = attribute(`TEXCOORD_${set}`) ?? glb.fail('a picture without texture coordinates');
@@ -145,7 +145,7 @@ function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined
 }
 
 /// All but the picture and the normal map.
-function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'picture' | 'normalMap'> {
+function decode(glb: Glb, values: TileValues, counts: TileCounts): Omit<Tile, 'picture' | 'normalMap'> {
   const { gltf } = glb;
   const primitive = gltf.meshes?.[0]?.primitives?.[0];
   if (primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');

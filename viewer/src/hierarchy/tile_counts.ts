@@ -18,7 +18,7 @@ export interface ExpectedCounts {
   readonly pictureHeight: number;
 }
 
-export interface Counts extends ExpectedCounts {
+export interface TileCounts extends ExpectedCounts {
   /// Colours are values of a screen; else they are light, as glTF has it.
   readonly screenColours: boolean;
   /// It is no picture.
@@ -48,7 +48,7 @@ function count(glb: Glb, values: TileValues, key: string, least: number, most: n
   return value;
 }
 
-function parse(glb: Glb, values: TileValues): Counts {
+function parse(glb: Glb, values: TileValues): TileCounts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
   const isKnown = [VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
   if (!isKnown) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
@@ -71,7 +71,7 @@ function parse(glb: Glb, values: TileValues): Counts {
   };
 }
 
-function check(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
+function check(glb: Glb, counts: TileCounts, expected: ExpectedCounts | null): void {
   if (expected !== null && KEYS.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
   if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
   if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
@@ -80,7 +80,7 @@ function check(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void 
 }
 
 /// `expected`: null of a root of which nothing is known yet.
-export function readCounts(glb: Glb, values: TileValues, expected: ExpectedCounts | null): Counts {
+export function readCounts(glb: Glb, values: TileValues, expected: ExpectedCounts | null): TileCounts {
   const counts = parse(glb, values);
   check(glb, counts, expected);
   return counts;

@@ -15,7 +15,7 @@ interface Answer {
   milliseconds?: number;
 }
 
-interface Task {
+interface WaitingTile {
   readonly worker: Worker;
   readonly bytes: Uint8Array<ArrayBuffer>;
   readonly wanted: TileWanted;
@@ -27,7 +27,7 @@ export class TileDecoder {
   /// Time spent in decoding, all workers together.
   milliseconds = 0;
   private readonly workers: Worker[] = [];
-  private readonly tasks = new Map<number, Task>();
+  private readonly tasks = new Map<number, WaitingTile>();
   private next = 0;
   private isOver = false;
 

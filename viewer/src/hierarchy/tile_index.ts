@@ -4,10 +4,10 @@
 import { archivedBytes } from './archive_format.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_SIDE, mostSplits } from './limits.js';
 import { HierarchyProblem } from './problem.js';
-import type { Whereabouts } from './files.js';
+import type { FilePlace } from './files.js';
 import { keyOf, tilePath, type Node, type Tree } from './tree.js';
 
-type Triple = readonly [number, number, number];
+type Corner = readonly [number, number, number];
 
 export interface TileRecord {
   readonly own: number;
@@ -25,8 +25,8 @@ export interface TileRecord {
   readonly bound: number;
   /// Box of all of the input that the tile stands for, in the coordinates of decoded tiles: that of its vertices, larger by
   /// its bound.
-  readonly min: Triple;
-  readonly max: Triple;
+  readonly min: Corner;
+  readonly max: Corner;
   /// The length of the tile's file.
   readonly bytes: number;
   /// XXH3-64 of the tile's file.
@@ -63,12 +63,12 @@ function firstOf(page: number): number {
   return page === 0 ? 1 : 0;
 }
 
-function readRecord(view: DataView, at: number, place: Triple): TileRecord {
+function readRecord(view: DataView, at: number, place: Corner): TileRecord {
   const u32 = (offset: number): number => view.getUint32(at + offset, true);
   const f32 = (offset: number): number => view.getFloat32(at + offset, true);
   const bound = f32(52);
-  const corner = (offset: number, more: number): Triple =>
-    [0, 1, 2].map((axis) => f32(offset + 4 * axis) - place[axis] + more) as unknown as Triple;
+  const corner = (offset: number, more: number): Corner =>
+    [0, 1, 2].map((axis) => f32(offset + 4 * axis) - place[axis] + more) as unknown as Corner;
   return {
     own: u32(8),
     ghosts: u32(16),
@@ -109,7 +109,7 @@ export class TileIndex {
   /// page has come, `onProblem` when one did not, or a record is damaged. `lacks`: tiles that will not come.
   constructor(
     private readonly tree: Tree,
-    private readonly place: Triple,
+    private readonly place: Corner,
     private readonly read: ReadRange,
     private readonly onPage: () => void,
     private readonly onProblem: (problem: unknown) => void,
@@ -139,7 +139,7 @@ export class TileIndex {
   }
 
   /// Where the file of a tile, but for the root, lies in an archive, in which tiles are side by side; null while its page is not there.
-  whereabouts(node: Node): Whereabouts | null {
+  whereabouts(node: Node): FilePlace | null {
     const number = this.tree.record(node);
     const page = Math.floor(number / PAGE_RECORDS);
     const view = this.pages.get(page);

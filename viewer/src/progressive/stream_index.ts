@@ -18,7 +18,7 @@ export interface StreamFile {
 
 export type ColourType = 'none' | 'u8' | 'u16' | 'f32';
 
-export interface Attributes {
+export interface StreamAttributes {
   normals: boolean;
   colours: ColourType;
   alpha: boolean;
@@ -38,7 +38,7 @@ export interface StreamIndex {
   up: 'y' | 'z';
   licence: string;
   /// Bounds in input coordinates.
-  source: { file_name: string; attributes: Attributes; bounds: Bounds };
+  source: { file_name: string; attributes: StreamAttributes; bounds: Bounds };
   files: StreamFile[];
 }
 
@@ -64,7 +64,7 @@ function readFile(file: JsonValue): StreamFile {
   };
 }
 
-function readAttributes(attributes: JsonValue): Attributes {
+function readAttributes(attributes: JsonValue): StreamAttributes {
   return {
     normals: attributes.at('normals').flag(),
     colours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32'),
@@ -105,7 +105,7 @@ export function parseStreamIndex(text: string, name: string): StreamIndex {
 }
 
 /// Bytes that each value of a vertex is kept in: x, y, z, then the attributes.
-export function valueBytes(attributes: Attributes): number[] {
+export function valueBytes(attributes: StreamAttributes): number[] {
   const bytes = [4, 4, 4];
   if (attributes.normals) bytes.push(4, 4, 4);
   const colour = { none: 0, u8: 1, u16: 2, f32: 4 }[attributes.colours];

@@ -38,7 +38,7 @@ export function texelBytesOf({ picture, normalMap }: Tile): number {
 }
 
 /// A tile's record does not tell these.
-export interface Extent {
+export interface UnrecordedSizes {
   readonly level: number;
   readonly vertexBytes: number;
   readonly wires: boolean;
@@ -49,7 +49,7 @@ export interface Extent {
 /// The same from counts alone; not less.
 export function mostMemory(
   record: Omit<TileRecord, 'error' | 'bound' | 'min' | 'max' | 'bytes' | 'checksum'>,
-  { level, vertexBytes, wires, texelBytes }: Extent,
+  { level, vertexBytes, wires, texelBytes }: UnrecordedSizes,
 ): number {
   const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
   const vertices = own + ghosts + copies + splits;

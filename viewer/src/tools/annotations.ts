@@ -2,7 +2,7 @@
 // A story as a page of annotations: W3C Web Annotations with the cameras and points that IIIF's Presentation API 4 has for
 // scenes. Points are in the input's coordinates. Of other people's pages, scenes and manifests the comments at points are read, and the
 // cameras; all else is counted, but for the models, which are shown.
-import type { Fail, JsonValue } from '../json_value.js';
+import type { Fail, Json, JsonValue } from '../json_value.js';
 import { bodiesOf, labelOf, saidBy, type Languages } from './annotation_bodies.js';
 import { cameraBodyOf, CHOICES, readCamera, type Camera } from './annotation_cameras.js';
 import { annotationsIn, annotationsWithin, DOCUMENTS } from './annotation_pages.js';
@@ -17,8 +17,6 @@ const FIELD_OF_VIEW = 45;
 const MOST_ANNOTATIONS = 3 * MOST_ENTRIES;
 
 // ---- writing
-
-type Json = Readonly<Record<string, unknown>>;
 
 function pointOf([x, y, z]: Vector): Json {
   return { type: 'PointSelector', x, y, z };

@@ -5,7 +5,7 @@ import type { Manifest } from '../hierarchy/manifest.js';
 import { length, vertexAt, type Vector } from './vectors.js';
 
 /// These of a manifest say where a model lies.
-export type Placement = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform'>;
+export type ModelPlace = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform'>;
 
 /// WGS 84: semi-major axis in metres, flattening.
 const EARTH = { axis: 6378137, flattening: 1 / 298.257223563 };
@@ -45,7 +45,7 @@ export function globePlace([x, y, z]: Vector): GlobePlace {
 }
 
 export class Coordinates {
-  constructor(private readonly placement: Placement) {}
+  constructor(private readonly placement: ModelPlace) {}
 
   /// From the tiles' coordinates to the input's.
   toInput(point: Vector): Vector {

@@ -5,12 +5,12 @@ import type { Polyline } from './section.js';
 import { cross, dot, unit, type Vector } from './vectors.js';
 
 /// To the right and up in the drawing.
-export type Axes = readonly [Vector, Vector];
+export type DrawingAxes = readonly [Vector, Vector];
 
 const AXES: readonly Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /// Returns the axes of a drawing in a plane of the input's coordinates; `up`: as `HierarchyView.upwards`. Across an axis the drawing has the two others' own numbers.
-export function drawingAxes(normal: Vector, up: Vector): Axes {
+export function drawingAxes(normal: Vector, up: Vector): DrawingAxes {
   const along = normal.findIndex((value) => Math.abs(value) > 1 - 1e-12);
   const [one, other] = AXES.filter((_, axis) => axis !== along);
   if (along >= 0) return Math.abs(dot(one, up)) > Math.abs(dot(other, up)) ? [other, one] : [one, other];
@@ -18,7 +18,7 @@ export function drawingAxes(normal: Vector, up: Vector): Axes {
   return [right, cross(normal, right)];
 }
 
-interface Frame {
+interface DrawingFrame {
   readonly left: number;
   readonly bottom: number;
   readonly width: number;
@@ -27,7 +27,7 @@ interface Frame {
 
 type Flat = readonly (readonly [number, number])[];
 
-function frameOf(lines: readonly Flat[]): Frame {
+function frameOf(lines: readonly Flat[]): DrawingFrame {
   let [left, bottom, right, top] = [Infinity, Infinity, -Infinity, -Infinity];
   for (const [x, y] of lines.flat()) {
     [left, right] = [Math.min(left, x), Math.max(right, x)];
@@ -36,7 +36,7 @@ function frameOf(lines: readonly Flat[]): Frame {
   return left <= right ? { left, bottom, width: right - left, height: top - bottom } : { left: 0, bottom: 0, width: 0, height: 0 };
 }
 
-function pathOf(line: Flat, isClosed: boolean, { left, bottom, height }: Frame): string {
+function pathOf(line: Flat, isClosed: boolean, { left, bottom, height }: DrawingFrame): string {
   const places = line.map(([x, y]) => `${x - left} ${height - (y - bottom)}`);
   return `  <path d="M${places.join('L')}${isClosed ? 'Z' : ''}"/>`;
 }
@@ -46,7 +46,7 @@ function escaped(text: string): string {
 }
 
 export interface Drawing {
-  readonly axes: Axes;
+  readonly axes: DrawingAxes;
   readonly unit: UnitName;
   readonly title: string;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { Grid, type Extent, type Metrics } from '../../page/gallery/grid.js';
+import { Grid, type GroupSize, type Metrics } from '../../page/gallery/grid.js';
 import { random } from '../support/random.js';
 
 const METRICS: Metrics = { width: 1000, leastWidth: 200, gap: 10, textHeight: 50, headingHeight: 40 };
 
-function plain(count: number): Extent {
+function plain(count: number): GroupSize {
   return { count, hasHeading: false };
 }
 

@@ -3,8 +3,7 @@ import { afterEach, describe, expect, it, vi } from 'vitest';
 import { droppedFiles } from '../../page/upload/chosen_files.js';
 import type { Upload } from '../../page/upload/plan.js';
 import { RateMeter } from '../../page/upload/rate.js';
-import { refusalText } from '../../page/upload/refusal.js';
-import { requestOf, send, type Answer } from '../../page/upload/send.js';
+import { refusalText, requestOf, send, type ServerAnswer } from '../../page/upload/send.js';
 import { progressText } from '../../page/upload/upload_row.js';
 
 const SCAN = new File(['mesh'], 'scan.ply');
@@ -89,7 +88,7 @@ class FakeRequest extends EventTarget {
 describe('sending', () => {
   afterEach(() => { vi.unstubAllGlobals(); });
 
-  function begin(token: string | null): { answer: Promise<Answer | null>; ending: AbortController; told: number[][] } {
+  function begin(token: string | null): { answer: Promise<ServerAnswer | null>; ending: AbortController; told: number[][] } {
     vi.stubGlobal('XMLHttpRequest', FakeRequest);
     const ending = new AbortController();
     const told: number[][] = [];

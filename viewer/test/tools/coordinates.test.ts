@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { Coordinates, globePlace, type Placement } from '../../src/tools/coordinates.js';
+import { Coordinates, globePlace, type ModelPlace } from '../../src/tools/coordinates.js';
 import { distanceOf, type Vector } from '../../src/tools/vectors.js';
 
-const PLAIN: Placement = { origin: [0, 0, 0], place: [0, 0, 0], up: 'y', transform: null };
+const PLAIN: ModelPlace = { origin: [0, 0, 0], place: [0, 0, 0], up: 'y', transform: null };
 const AXIS = 6378137;
 const POLE = 6356752.314245179;
 
