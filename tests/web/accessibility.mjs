@@ -32,7 +32,7 @@ async function open(browser, address, options) {
   return page;
 }
 
-/// What axe-core finds, in a line each.
+/// Lists what axe-core finds, in a line each.
 async function findings(page) {
   const { violations, passes } = await page.evaluate((values) => window.axe.run({ runOnly: { type: 'tag', values } }), RULES);
   if (passes.length < LEAST_PASSED) return [`only ${passes.length} rules were checked`];

@@ -38,7 +38,7 @@ function filledIn(address, host) {
     .replace(/…$/, '');
 }
 
-/// Of the page, with what stands in front of the query left out.
+/// Returns the page's address, without what stands in front of the query.
 function addressesIn(text, host) {
   const found = new Set();
   for (const [, behind] of text.matchAll(/(?:^|[\s`"'(/.a-z])((?:\?(?:models?|lang)=[^\s`"'|)<>]*|#PATH[^\s`"'|)<>]*))/gm)) found.add(filledIn(behind, host));
@@ -78,7 +78,7 @@ class Visits {
     return page;
   }
 
-  /// What there is to see once all is quiet, and all messages.
+  /// Returns what there is to see once all is quiet, and all messages.
   async seen(page, awaitsStory) {
     if (awaitsStory) {
       await page.locator('.story-card').getByRole('button').nth(2).or(page.locator('.problem')).first().waitFor();

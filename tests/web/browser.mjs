@@ -1,4 +1,4 @@
-// What the scripts that show hierarchies share: Chromium, its pages, and the account of the checks.
+// The scripts that show hierarchies share this: Chromium, its pages, and the account of the checks.
 import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';

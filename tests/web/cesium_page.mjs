@@ -71,7 +71,7 @@ async function settle(errorTarget) {
   return { visible: [...names].sort(), failures };
 }
 
-/// What is covered now, and its pixels.
+/// Returns what is covered now, and its pixels.
 function picture() {
   draw();
   const { canvas } = scene;
@@ -103,7 +103,7 @@ function compare(errorTarget) {
   return { covered, outline: outline / covered, holes };
 }
 
-/// What stands in the picture (pixels.mjs).
+/// Tells what stands in the picture (pixels.mjs).
 function stand() {
   const { covered, width, pixels } = picture();
   return standing({ covered, width }, pixels);

@@ -60,7 +60,7 @@ function line(what, good, text) {
   console.log(`${good ? 'ok' : 'NOT OK'}  package ${what}: ${text}`);
 }
 
-/// What a program writes; a failure of it is a problem.
+/// Returns what a program writes; a failure of it is a problem.
 function run(what, cwd, program, ...parameters) {
   try {
     const said = execFileSync(program, parameters, { cwd, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });

@@ -1,4 +1,4 @@
-// What the page gives to other pages, in headless Chromium: the link, the frame and the element of its sheet "Share", each in a page of
+// Checks what the page gives to other pages, in headless Chromium: the link, the frame and the element of its sheet "Share", each in a page of
 // its own; and that a frame leaves the Back button of the page around it alone.
 //
 //   node embedding.mjs PICTURES PAGE HIERARCHY
@@ -35,7 +35,7 @@ async function host(browser, origin, code, complaints) {
   return page;
 }
 
-/// What the sheet has, of a camera that was moved.
+/// Returns what the sheet has, of a camera that was moved.
 async function share(browser, report, origin, { name }, pictures) {
   const page = await open(browser, `${origin}/index.html#models/${name}.hier`);
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);

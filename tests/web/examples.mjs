@@ -23,7 +23,7 @@ const OWN_READER = 'engine';
 const PLAIN = 'plain';
 /// Parts of the picture that the model covers at least and at most.
 const COVERED = [0.05, 0.8];
-/// Of the covered pixels' brightness (0 to 255): how far the 5th and the 95th percentile are apart at least. A silhouette has 0.
+/// The 5th and the 95th percentile of the covered pixels' brightness (0 to 255) are so far apart at least. A silhouette has 0.
 const LEAST_CONTRAST = 40;
 /// How far the middle of what is covered may be from the picture's, in parts of its size.
 const OFF_CENTRE = 0.1;
@@ -38,7 +38,7 @@ function servePages() {
   });
 }
 
-/// What users install must be what is tested here.
+/// Users must install what is tested here.
 function checkVersions(report) {
   const versionsOf = (file) => JSON.parse(readFileSync(path.join(ROOT, file), 'utf8')).dependencies;
   const tested = { ...versionsOf('tests/web/package.json'), ...versionsOf('viewer/package.json') };
@@ -46,7 +46,7 @@ function checkVersions(report) {
   report.line('examples packages', others.length === 0, others.map(([name, version]) => `${name} ${version} is not the tested ${tested[name]}`).join('; ') || 'of the tested versions');
 }
 
-/// What is not background: which part of the picture, how far from its middle, whether it reaches the edge, and its contrast.
+/// Tells what is not background: which part of the picture, how far from its middle, whether it reaches the edge, and its contrast.
 function measure(pixels) {
   const places = [...Array(SIZE * SIZE).keys()].filter((i) => BACKGROUND.some((value, k) => Math.abs(pixels[4 * i + k] - value) > 8));
   const [xs, ys] = [places.map((i) => i % SIZE), places.map((i) => Math.floor(i / SIZE))];

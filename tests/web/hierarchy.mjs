@@ -79,7 +79,7 @@ async function checkSeams(page, name, most, pictures, report) {
 }
 
 const SIDES = [[1, 0.2, 0], [-1, 0.2, 0], [0, 1, 0.1], [0, -1, 0.1], [0, 0.2, 1], [0, 0.2, -1]];
-/// Of the error allowed, which is an estimate of the mean.
+/// Times the error allowed, which is an estimate of the mean.
 const MOST_DEVIATION = 6;
 
 /// From all sides, what is seen is as fine as was asked for: nothing in sight is taken for hidden.

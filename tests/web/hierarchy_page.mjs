@@ -97,7 +97,7 @@ function measure(scene, material, from = camera) {
   return Float32Array.from({ length: width * height }, (_, i) => pixels[4 * i]);
 }
 
-/// What was asked for has come, as it does within the seconds of the view's time, or the machine is busy.
+/// All that was asked for has come, as it does within the seconds of the view's time, or the machine is busy.
 async function arrived() {
   for (let waits = 0; waits === 0 || (view.stats().pending > 0 && waits < 50); ++waits) await new Promise((resolve) => setTimeout(resolve, waits === 0 ? 0 : 2));
 }
@@ -154,7 +154,7 @@ const EDGE = 3;
 /// Where one part of the surface ends before another: neighbours further from each other than a surface as steep as this.
 const STEEPEST = 8;
 
-/// What the original certainly covers: not next to where its silhouette, or that of one of its parts, runs.
+/// Marks what the original certainly covers: not next to where its silhouette, or that of one of its parts, runs.
 function innerPart() {
   const { width, height } = viewport;
   const depth = measure(original, depthMaterial);

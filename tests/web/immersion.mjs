@@ -49,7 +49,7 @@ async function seen(page) {
   return picture(page);
 }
 
-/// Of the eyes' halves, how much of each is not the ground.
+/// Returns how much of each eye's half is not the ground.
 function covered(page, shot) {
   return page.evaluate(async (data) => {
     const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());

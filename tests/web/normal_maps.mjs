@@ -8,7 +8,7 @@ import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { call, decodePicture, inChromium, readHierarchy, withPage } from './browser.mjs';
 
-/// Of the difference that a root without a map has, at the most.
+/// At the most this part of the difference that a root without a map has.
 const MOST = 0.6;
 const POSE = { direction: [1, -2, 1], distance: 2.2 };
 const ROOT_ALONE = 8; // of a tileset that has less, CesiumJS shows nothing

@@ -1,4 +1,4 @@
-// What pictures tell. A picture: {covered, width}, where `covered[i]` says whether something is drawn
+// Reads pictures. A picture: {covered, width}, where `covered[i]` says whether something is drawn
 // at pixel i.
 
 /// Whether all pixels within `reach` of pixel `i` are covered.
@@ -21,7 +21,7 @@ export function pixelsOf(canvas) {
   return pixels;
 }
 
-/// What stands in a picture, its lowest row first: how much of it is in the lower and in the upper
+/// Tells what stands in a picture, its lowest row first: how much of it is in the lower and in the upper
 /// half of the rows it takes, and its mean colour.
 export function standing({ covered, width }, pixels) {
   const places = [...covered.keys()].filter((i) => covered[i]);

@@ -14,7 +14,7 @@ import { fileURLToPath } from 'node:url';
 import { call, inChromium, withPage } from './browser.mjs';
 
 const HERE = path.dirname(fileURLToPath(import.meta.url));
-/// Of 512 x 512: the model fills about a tenth of the picture.
+/// The least of 512 x 512 pixels: the model fills about a tenth of the picture.
 const LEAST_PIXELS = 5000;
 
 /// The corners' places of a binary PLY of floats, triangle by triangle, in SHA-256.

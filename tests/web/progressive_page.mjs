@@ -37,7 +37,7 @@ function show() {
   camera.lookAt(sphere.center);
 }
 
-/// Of the corners' places, triangle by triangle: what two clients have in common if they show the same.
+/// Returns a checksum of the corners' places, triangle by triangle: two clients that show the same have it in common.
 async function digest() {
   const { triangles, values, width } = mesh;
   const places = new Float32Array(3 * triangles.length);

@@ -20,7 +20,7 @@ const ACTS = ['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'co
 const TOOLS = ['i', 'm', 'x', 'n', 'k'];
 
 const EARLY = 0.4; // of the time: by then the code of most tools is there
-/// What may be held later beside what was held early.
+/// So much may be held later beside what was held early.
 const MORE = { heap: { factor: 1.3, some: 6e6 }, nodes: { factor: 1.5, some: 1000 }, listeners: { factor: 1.5, some: 150 } };
 
 class Hand {
@@ -122,7 +122,7 @@ class Hand {
   }
 }
 
-/// What was done before may still lead to another page.
+/// An earlier step may still lead to another page.
 async function opened(page, address) {
   for (let interrupted = true; interrupted; ) {
     interrupted = false;
@@ -134,7 +134,7 @@ async function opened(page, address) {
   await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
 }
 
-/// What the page holds, with the model open afresh.
+/// Returns what the page holds, with the model open afresh.
 async function held(page, session, address) {
   await page.keyboard.press('Escape');
   await page.evaluate(() => { window.meshhier.close(); });

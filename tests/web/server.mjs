@@ -38,7 +38,7 @@ function fileOf(url, directories) {
   return null;
 }
 
-/// Of a file of `size` bytes, as {start, end}, the last one included; null: the request asks for no part.
+/// Returns the part of a file of `size` bytes, as {start, end}, the last one included; null: the request asks for no part.
 function partOf(request, size) {
   const match = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
   return match && { start: Number(match[1]), end: Math.min(Number(match[2]), size - 1) };

@@ -13,7 +13,7 @@ import { collectComplaints, comparePictures, inChromium, until, withoutRestDetai
 import { serve } from './server.mjs';
 
 const PATIENCE = 60_000; // milliseconds
-/// Of a page with all tiles, a part whose coarsest tile is off by more than a rounding to 16 bits.
+/// The part of a page with all tiles whose coarsest tile is off by more than a rounding to 16 bits.
 const ROUNDED_SHARE = 0.3;
 const PHONE = { viewport: { width: 390, height: 700 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 

@@ -9,11 +9,11 @@ import path from 'node:path';
 import { readGlb } from '../gltf/glb.mjs';
 import { call, inChromium, readHierarchy, withPage } from './browser.mjs';
 
-// What a lattice of the tests' 14 bits and a viewer's floats may move bounds by, in parts of their size.
+// A lattice of the tests' 14 bits and a viewer's floats may move bounds by this, in parts of their size.
 const LATTICE = 1e-3;
 const tileOf = (level) => `tiles/${String(level).padStart(2, '0')}/000000.glb`;
 
-/// What the tile's JSON says that is in it.
+/// Returns what the tile's JSON says that is in it.
 function countsOf(file) {
   const bytes = readGlb(file);
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);

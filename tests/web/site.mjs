@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { serve } from './server.mjs';
 
-/// What a listing says of a hierarchy.
+/// Returns what a listing says of a hierarchy.
 function entryOf({ name, vertices, triangles, bytes }) {
   return { name, path: `models/${name}.hier`, vertices, triangles, bytes };
 }

@@ -11,11 +11,12 @@ import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { collectComplaints, inChromium, withoutRestDetail } from './browser.mjs';
+import { collectComplaints, inChromium, until, withoutRestDetail } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
 const PATIENCE = 120_000; // milliseconds
+const SOON = 500;
 const WIDE = { viewport: { width: 1280, height: 800 } };
 const PHONE = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const MODEL = 'told';
@@ -92,10 +93,16 @@ async function write(page, i, text) {
   await field.press('Control+Enter');
 }
 
-/// What is typed into fields reaches neither the view nor the tools, and Escape leaves the field alone.
+/// Keys that are typed into fields reach neither the view nor the tools, and Escape leaves the field alone.
 async function typeKeys(visit, page) {
   const state = () => page.evaluate(() => JSON.stringify([window.meshhier.camera(), window.meshhier.view.look, location.hash, [...document.querySelectorAll('.sheet, .tool-card')].map(({ hidden }) => hidden)]));
-  const before = await state();
+  let before = await state();
+  await until(page, async () => { // points come from the original, and with them the address
+    const last = before;
+    await page.waitForTimeout(SOON);
+    before = await state();
+    return before === last;
+  });
   for (const field of [page.getByLabel('Title'), page.locator('.tool-list textarea').first()]) {
     const text = await field.inputValue();
     await field.focus();
@@ -219,7 +226,7 @@ async function shared(visit, url, seen) {
   await visit.close(page, 'shared');
 }
 
-/// Of the camera from now on, in `window.places`.
+/// Notes the camera's places from now on, in `window.places`.
 function recordPlaces(page) {
   return page.evaluate(() => {
     window.places = new Set();

@@ -13,7 +13,7 @@ import { CORNERS } from './textured_square.mjs';
 /// From the picture's middle to where a corner's colour is looked up: in each viewer the square is more than twice as large.
 const OFFSET = 45;
 const REACH = 8;
-/// What lossy coders and the arithmetic of viewers may change of a colour, of 255.
+/// Lossy coders and the arithmetic of viewers may change a colour by so much, of 255.
 const TOLERANCE = 4;
 /// In viewers whose camera stands elsewhere: part of what is covered that has one of the four colours.
 const LEAST_FLAT = 0.9;

@@ -196,7 +196,7 @@ function comparePictures() {
   return signalToNoise(pictures, covered);
 }
 
-/// What stands in the tileset's picture (pixels.mjs).
+/// Tells what stands in the tileset's picture (pixels.mjs).
 function stand() {
   const covered = depthOf(shown);
   renderer.render(shown, camera);

@@ -160,6 +160,7 @@ async function checkMeasure(visitor) {
   await page.locator('.tool-card', { hasText: 'Measure' }).waitFor();
   for (const up of [0, 80, 160]) await page.mouse.click(x, y - up);
   await settle(page);
+  await until(page, async () => !(await page.locator('.tool-figures').innerText()).includes('±')); // points come from the original
   const figures = await figuresOf(page);
   const number = (text) => Number.parseFloat(text);
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
@@ -208,7 +209,7 @@ async function capPixels(page, surface = '.surface') {
   }, [picture.toString('base64'), CAP]);
 }
 
-/// Of a cut whose card is closed, the tools too: a sign says so, and ends it.
+/// Closes the card of a cut, and the tools: a sign tells of the cut, and ends it.
 async function checkLasting(visitor, page) {
   await page.getByRole('radio', { name: 'Plane' }).check();
   const sign = page.getByRole('button', { name: 'The model is cut open' });
@@ -265,7 +266,7 @@ async function volumeOf(page) {
   return { value: Number(value), bound: Number(bound ?? 0), text };
 }
 
-/// What the plane keeps and what it cuts away are the whole.
+/// The volumes that a plane keeps and cuts away are that of the whole.
 async function checkVolume(visitor, page) {
   const kept = await volumeOf(page);
   await page.getByRole('button', { name: 'Other side' }).click();
@@ -283,7 +284,7 @@ async function checkVolume(visitor, page) {
   await settle(page);
 }
 
-/// Of the ring, in the middle: closed lines, as wide and high as the model is there.
+/// The section through the ring's middle has closed lines, as wide and high as the model is there.
 async function checkSection(visitor, page) {
   const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Section as SVG' }).click()]);
   const svg = readFileSync(await file.path(), 'utf8');

@@ -92,7 +92,7 @@ function settle(page) {
   return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
 }
 
-/// Of the view, by Kim & Lee's names.
+/// Returns the view's mode, by Kim & Lee's names.
 function mode(page) {
   return page.locator('.badge:visible').getAttribute('data-mode');
 }
@@ -172,7 +172,7 @@ async function checkTurning(visitor, page) {
   visitor.check('gallery arrow keys', await changes(stage, dragged), 'turned');
 }
 
-/// What is pointed at turns, and nothing else.
+/// The cell that is pointed at turns, and no other.
 async function checkMotion(visitor, names) {
   const page = await visitor.open('', { ...WIDE, reducedMotion: 'no-preference' });
   await paintedCells(page, names);

@@ -94,7 +94,7 @@ const FINE: TileParts = {
   neighbours: [1], ghostStarts: [0, 2], chains: [0, 1, 1, 0],
 };
 
-/// What 2/1 is part of, one level up: vertex 0 with one normal, vertex 1 with two.
+/// Tile 2/1 is part of this one, one level up: vertex 0 with one normal, vertex 1 with two.
 const COARSE: TileParts = {
   level: 1, index: 0, own: 3,
   copyOf: [1],

@@ -12,7 +12,7 @@ import { fetchFrom, hasProgram, MESHHIER, Workshop } from './support/meshhier.js
 const MEBIBYTE = 2 ** 20;
 const NAME = 'base.bin';
 
-/// Of the base: its three lists, each of one run at the most.
+/// The three lists of the base, each of one run at the most.
 function baseOf(...lists: [count: number, content: Uint8Array][]): Uint8Array<ArrayBuffer> {
   const parts: Uint8Array[] = [Buffer.from('MHDETAIL'), new Uint8Array(new Uint32Array([1, 0]).buffer)];
   lists.forEach(([count, content], at) => {

@@ -93,7 +93,7 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
     const archive = new Uint8Array(readFileSync(workshop.buildArchive('small', mesh, config)));
     return { directory: workshop.build('small', mesh, config), archive };
   };
-  /// Of more tiles than a page of the index has.
+  /// Makes an archive of more tiles than a page of the index has.
   const large = (): Uint8Array<ArrayBuffer> =>
     new Uint8Array(readFileSync(workshop.buildArchive('large', ['surface', '--triangles', '12000'], { partition: { vertices: 8 }, simplify: { vertices: 8 } })));
 

@@ -58,7 +58,7 @@ describe.skipIf(!hasProgram)('a hierarchy that is replaced', () => {
     return session;
   }
 
-  /// Of all vertices that are drawn.
+  /// Returns the colours of all vertices that are drawn.
   function colours(session: Session): Set<Colour | 'mixed'> {
     const seen = new Set<Colour | 'mixed'>();
     for (const { geometry: { attributes: { color } } } of session.meshes())

@@ -42,7 +42,7 @@ function named(corners: readonly Point[]): string {
 
 interface Assembled {
   readonly triangles: Point[][];
-  /// Of each corner, where there are any: r, g, b.
+  /// The colours of each corner, where there are any: r, g, b.
   readonly colours: Point[][];
   readonly closed: boolean;
 }

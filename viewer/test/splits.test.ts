@@ -140,7 +140,7 @@ const NEARLY_UP = [10, 0, 126];
 const NEARLY_SIDE = [120, 0, 41];
 const SLANTED = [0, 100, 78];
 
-/// What 2/1 is part of, one level up. Vertex 1 is red and looks up, its blue copy 3 to the side, as the copy's split 5 does less;
+/// Tile 2/1 is part of this one, one level up. Vertex 1 is red and looks up, its blue copy 3 to the side, as the copy's split 5 does less;
 /// split 4 of vertex 1 looks aside too. Vertex 0 has one normal.
 const COARSE: TileParts = {
   level: 1, index: 0, own: 3,

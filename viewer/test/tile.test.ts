@@ -40,7 +40,7 @@ function withCount(bytes: Uint8Array, key: string, count: number): Uint8Array {
   return withJson(bytes, (text) => text.replace(new RegExp(`"${key}":\\d+`), `"${key}":${count}`));
 }
 
-/// What a tile may never be, whatever its bytes are: what is drawn of it would read outside of it.
+/// True of every tile, whatever its bytes are: else what is drawn of it would read outside of it.
 function isSound({ own, ghosts, copyOf, splitOf, positions, indices, border, ghostStarts, interiorCount, normals }: Tile): boolean {
   const unsplit = own + ghosts + copyOf.length;
   const vertices = unsplit + splitOf.length;

@@ -14,7 +14,7 @@ import { FakeBitmap, fakeDecode, png } from './support/pictures.js';
 import { Session, type Place } from './support/session.js';
 import { tileBytes } from './support/tile_bytes.js';
 
-/// What draws: tells whom it draws, and that pictures have come to the GPU.
+/// Draws: tells whom it draws, and that pictures have come to the GPU.
 class Device {
   readonly canvas = new EventTarget();
 

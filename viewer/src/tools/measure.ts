@@ -14,8 +14,8 @@ export interface Measures {
   readonly rise: number;
   /// Between the last two parts, radians; null: there are fewer, or one is 0 long.
   readonly angle: number | null;
-  /// Of the polygon through all points and back to the first, and of its plan: of one that is not flat, as seen from where it is largest. Null: of
-  /// fewer than three points.
+  /// The area of the polygon through all points and back to the first, and of its plan: of one that is not flat, as seen from where it is
+  /// largest. Null: there are fewer than three points.
   readonly area: number | null;
   readonly areaLevel: number | null;
 }

@@ -137,7 +137,7 @@ export function cutsOf(planes: readonly CutPlane[]): readonly CutPlane[] {
   return planes.filter((_, i) => i !== 1);
 }
 
-/// Of what is drawn, in the tiles' coordinates. A volume that grows on one side of the surface and shrinks on the other changes by no more than one of the
+/// Measures what is drawn, in the tiles' coordinates. A volume that grows on one side of the surface and shrinks on the other changes by no more than one of the
 /// two. `planes`: one, or the six of a box as boxPlanes() has them. `boundOf`: how far a drawn tile may be off. O(drawn triangles).
 export function volumeOf(surface: readonly DrawnTile[], planes: readonly CutPlane[], boundOf: (node: Node) => number): Volume {
   const cuts = cutsOf(planes);

@@ -4,7 +4,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { fetchBytes, type Fetch } from '../../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';
 
-/// What comes of it after so many seconds.
+/// Returns what comes of it after so many seconds.
 async function after(seconds: number, fetch: Fetch, init?: RequestInit): Promise<unknown> {
   let outcome: unknown = 'nothing yet';
   fetchBytes(fetch, 'a.glb', 'a.glb', 1000, init).then((bytes) => { outcome = bytes; }, (problem: unknown) => { outcome = problem; });

@@ -26,7 +26,7 @@ function contrast(a: Colour, b: Colour): number {
   return (light + 0.05) / (dark + 0.05);
 }
 
-/// Of 84 % card over the stage, as bars and badges have it.
+/// Returns 84 % card over the stage, as bars and badges have it.
 function veil(card: Colour, below: Colour): Colour {
   const mixed = card.map((value, k) => 0.84 * value + 0.16 * below[k]);
   return [mixed[0], mixed[1], mixed[2]];

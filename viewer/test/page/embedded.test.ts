@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a page has within it, and what it goes on with.
+// A page has a model within it, and goes on with what its host has.
 import { gzipSync } from 'node:zlib';
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { embeddedModel, EmbeddedFiles } from '../../page/embedded.js';
@@ -19,7 +19,7 @@ function pageWith(content: unknown): Pick<Document, 'getElementById' | 'baseURI'
   return { baseURI: 'file:///a/david.html', getElementById: () => ({ textContent }) as HTMLElement };
 }
 
-/// Of which each file is its name.
+/// Plays a host whose files are their own names.
 function link(fails: () => unknown = () => null): RemoteFiles & { asked: string[] } {
   const asked: string[] = [];
   const answer = (name: string): Promise<Uint8Array<ArrayBuffer>> => {

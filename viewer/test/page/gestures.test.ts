@@ -28,7 +28,7 @@ function send(type: string, pointerId: number, clientX: number, clientY: number)
   surface.dispatchEvent(Object.assign(new Event(type), { pointerId, clientX, clientY, button: 0, shiftKey: false }));
 }
 
-/// What the last movement had.
+/// Returns what the last movement had.
 function moved(): string[] {
   return Object.keys(navigation.move.mock.lastCall?.[0] ?? {});
 }

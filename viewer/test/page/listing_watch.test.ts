@@ -28,7 +28,7 @@ const page = { hidden: false };
 let told: string[] = [];
 let asked: RequestInit['signal'][] = [];
 
-/// Of a host with these answers, one after the other, the last one for ever.
+/// Plays a host with these answers, one after the other, the last one for ever.
 function watchOf(...answers: (() => Answer)[]): ListingWatch {
   vi.stubGlobal('fetch', async (_: string, { signal }: RequestInit) => {
     const answer = answers[Math.min(asked.push(signal), answers.length) - 1]();

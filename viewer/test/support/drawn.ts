@@ -10,7 +10,7 @@ export function drawnTile(positions: readonly number[], corners: readonly number
   return { node: { level: 0, index: 0 }, tile: tile as DrawnTile['tile'], triangles: corners.length / 3, sphere: new Box3().setFromPoints(points).getBoundingSphere(new Sphere()) };
 }
 
-/// Of two units from `at`: its twelve triangles show their fronts to the outside.
+/// A cube of two units from `at`: its twelve triangles show their fronts to the outside.
 export function cube([x, y, z]: readonly [number, number, number] = [0, 0, 0]): DrawnTile {
   const positions = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((bits) => [x + 2 * (bits & 1), y + (bits & 2), z + (bits & 4) / 2]);
   const corners = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];

@@ -34,7 +34,7 @@ export function webp(kind: 'VP8 ' | 'VP8L' | 'VP8X', width: number, height: numb
   return bytesOf('RIFF', [99, 0, 0, 0], 'WEBP', kind, [10, 0, 0, 0], heads[kind]);
 }
 
-/// What a browser makes of a picture.
+/// Returns what a browser makes of a picture.
 export class FakeBitmap {
   static open = 0;
   isClosed = false;

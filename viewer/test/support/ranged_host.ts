@@ -16,7 +16,7 @@ export class RangedHost {
   readonly asked: string[] = [];
   tag = '"1"';
   sentBytes = 0;
-  /// Of the next answer, instead of the right one.
+  /// The next answer has it, instead of the right one.
   next: ((right: Response) => Response) | null = null;
 
   constructor(

@@ -9,7 +9,7 @@ const VIEWPORT = { width: 800, height: 600 };
 const FRAME = 50;
 const SOON = 100; // frames that need no waiting
 
-/// Of the real clock, as long as no test has put another in its place.
+/// The real clock's, as long as no test has put another in its place.
 const realTimeout = globalThis.setTimeout;
 
 export type Place = readonly [number, number, number];

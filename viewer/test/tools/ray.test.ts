@@ -62,7 +62,7 @@ describe('a ray and a triangle', () => {
   });
 });
 
-/// Of the plane through `from` and the vertices 0 and 2.
+/// Tells on which side of the plane through `from` and the vertices 0 and 2 a vertex lies.
 function sideOf(positions: Float32Array, vertex: number, from: Vector): number {
   const [a, b, c] = [0, 2, vertex].map((each) => subtract([positions[3 * each], positions[3 * each + 1], positions[3 * each + 2]], from));
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
