@@ -42,7 +42,7 @@ export function linkPath(path: string): string {
   return path.split(/([/:])/).map((part, i) => (i % 2 === 1 ? part : encodeURIComponent(readable(part)))).join('');
 }
 
-/// Null of what is no path.
+/// Reads a path; null: it is none.
 function parsePath(text: string): string | null {
   try {
     decodeURIComponent(text);
@@ -64,7 +64,7 @@ export function problemOfPose(position: readonly unknown[], target: readonly unk
   return position.every((value, axis) => rounded(value) === rounded(target[axis])) ? 'position and target are the same point' : null;
 }
 
-/// Null of what is no pose.
+/// Reads a pose; null: it is none.
 function parsePose(text: string): Pose | null {
   const parts = text.split(',');
   const values = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));

@@ -10,7 +10,7 @@ const PAUSE = 2000; // milliseconds
 const PATIENCE = 30_000; // milliseconds, with a host that says nothing or little
 const MOST_BYTES = 2 ** 24; // room for the 10,000 entries that are read, of 1600 bytes each
 
-/// Its text. Throws ListingError.
+/// Fetches the listing's text. Throws ListingError.
 async function fetchListing(url: string, ended: AbortSignal): Promise<string> {
   const ending = new AbortController();
   const timer = window.setTimeout(() => { ending.abort(); }, PATIENCE);

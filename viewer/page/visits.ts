@@ -4,7 +4,7 @@
 
 const FRAMED = window.parent !== window;
 
-/// To another hash of this page.
+/// Goes to another hash of this page.
 export function visit(hash: string): void {
   if (FRAMED) location.replace(hash);
   else location.hash = hash;

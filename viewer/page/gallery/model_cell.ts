@@ -18,7 +18,7 @@ import { Turning } from './turning.js';
 
 type Sizes = Pick<Facts, 'vertices' | 'triangles' | 'bytes'>;
 
-/// As people read them.
+/// Returns sizes as people read them.
 function roughSizes({ triangles, bytes }: Sizes): string[] {
   const parts = [];
   if (triangles !== null) parts.push(words.counts.triangles(triangles, formatRough(triangles)));

@@ -10,7 +10,7 @@ export interface Shape {
   formBegin: number;
   ball: Ball;
   up: 'y' | 'z';
-  /// As it is seen first.
+  /// The turn in which it is seen first.
   first: Turn;
   /// Shows it then as large as its preview is.
   fit: Fit;

@@ -15,7 +15,7 @@ export class Solid {
   /// `url`: of the hierarchy; `stage`: its class `solid` says that the picture is there.
   constructor(private readonly url: string, private readonly stage: HTMLElement) {}
 
-  /// As the outline is seen.
+  /// Shows the root as the outline is seen, after a while.
   await(shape: Shape, turn: Turn): void {
     if (this.timer !== 0) return;
     this.turn = turn;

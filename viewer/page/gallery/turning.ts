@@ -37,7 +37,7 @@ export class Turning {
     link.addEventListener('blur', () => { this.calm('focus'); });
   }
 
-  /// Pointed at, or focused.
+  /// It is pointed at, or focused.
   get lively(): boolean {
     return this.reasons.size > 0;
   }
@@ -48,7 +48,7 @@ export class Turning {
     if (!this.byHand) this.turn = first;
   }
 
-  /// Unless it is held.
+  /// Turns it by an angle, unless it is held.
   advance(angle: number): void {
     if (this.held === null) this.turn = { ...this.turn, yaw: this.turn.yaw + angle };
   }

@@ -68,7 +68,6 @@ export class CameraTool implements Tool {
     return true;
   }
 
-  /// After each frame.
   drawn(): void {
     if (!this.table.isOn) return;
     const { bench } = this.shop;

@@ -138,7 +138,7 @@ export class ClipTool implements Tool {
     return localNormal(bench.pose().forward.toArray(), bench.view.surfaceMatrix);
   }
 
-  /// In the input's coordinates.
+  /// Returns the planes in the input's coordinates.
   private planes(): CutPlane[] {
     if (this.mode === 'off') return [];
     if (this.mode === 'box') return boxPlanes(this.sides.min, this.sides.max);
@@ -146,7 +146,7 @@ export class ClipTool implements Tool {
     return [this.isFlipped ? flipped(plane) : plane];
   }
 
-  /// In the tiles' coordinates.
+  /// Returns the planes in the tiles' coordinates.
   private localPlanes(): CutPlane[] {
     const shift = this.coordinates.toInput([0, 0, 0]);
     return this.planes().map(({ normal, constant }) => ({ normal, constant: constant + dot(normal, shift) }));

@@ -30,7 +30,7 @@ function select(name: string, unknown: string, value: UnitName, chosen: (unit: U
   return element('label', { class: 'tool-field' }, name, box);
 }
 
-/// `changed`: after the settings have.
+/// Makes selects of units; `changed` is called after the settings have changed.
 function unitsForm(shop: Workshop, changed: () => void): HTMLElement {
   const set = (key: 'modelUnit' | 'shownUnit') => (unit: UnitName): void => {
     shop.setSettings({ [key]: unit });

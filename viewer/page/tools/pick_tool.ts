@@ -16,7 +16,7 @@ const VALUE_DIGITS = 7;
 
 type State = 'refining' | 'done' | 'missing';
 
-/// All digits that a double has.
+/// Writes all digits that a double has.
 function coordinates({ point }: PickedPoint): string[] {
   return point.map((value) => (Object.is(value, -0) ? '-0' : String(value)));
 }

@@ -12,7 +12,7 @@ export class ScaleLine {
 
   constructor(private readonly shop: Workshop) {}
 
-  /// For the camera as it is.
+  /// Shows the scale for the camera as it is.
   show(): void {
     const { bench } = this.shop;
     const perPixel = unitsPerPixel(bench.pose().distance, bench.camera.projectionMatrix.elements[5], bench.surface.clientHeight);

@@ -12,11 +12,11 @@ export interface Tool {
   /// One step back. False: there is none.
   undo?(): boolean;
   marks?(): readonly Mark[];
-  /// After each frame.
+  /// Called after each frame.
   drawn?(): void;
   /// Says what goes on when its card is closed, in a few words; null: nothing does.
   lasting?(): string | null;
-  /// Ends that.
+  /// Ends what goes on.
   end?(): void;
   /// It is put away.
   close?(): void;

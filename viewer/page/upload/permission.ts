@@ -14,7 +14,7 @@ export function storedToken(): string | null {
   }
 }
 
-/// Null: it is forgotten.
+/// Keeps the word; null: forgets it.
 export function storeToken(token: string | null): void {
   try {
     if (token === null) sessionStorage.removeItem(KEY);

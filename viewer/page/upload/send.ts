@@ -27,7 +27,7 @@ export function requestOf({ name, files, isFolder }: Upload): { method: string; 
   return { method: 'POST', path, body };
 }
 
-/// Null if it was ended.
+/// Sends an upload. Resolves to null if it was ended.
 export function send(upload: Upload, { inbox, token, told, ended }: Sending): Promise<ServerAnswer | null> {
   const { method, path, body } = requestOf(upload);
   return new Promise((resolve) => {

@@ -96,7 +96,7 @@ export class Refinement {
     return drawn;
   }
 
-  /// Whether it can be drawn finer.
+  /// True where it can be drawn finer.
   private isThere({ children }: ChosenNode): boolean {
     return children.length > 0 && children.every(({ key }) => this.store.has(key));
   }

@@ -3,7 +3,7 @@
 import { areNear } from '../farthest.js';
 import type { Pose } from '../scene/camera_pose.js';
 
-/// Null of what is none.
+/// Reads the attribute; null: it is no camera.
 export function parseCamera(text: string | null): Pose | null {
   const parts = (text ?? '').split(',');
   const [a, b, c, d, e, f] = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));

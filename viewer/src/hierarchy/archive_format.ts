@@ -142,7 +142,7 @@ export async function findInIndex(md5: Uint8Array, { offset, count }: IndexPlace
   throw new HierarchyProblem(archive, 'its index of files is not in order');
 }
 
-/// By halving.
+/// Searches by halving.
 function findAmong(wanted: Key, places: Uint8Array): number | null {
   let [low, high] = [0, places.length / PLACE_BYTES];
   while (low < high) {

@@ -44,11 +44,11 @@ interface Transcoder {
   readonly WASM: string;
 }
 
-/// As the transcoder counts them.
+/// The transcoder's numbers of the formats.
 const TARGETS: Readonly<Record<TexelFormat, number>> = { etc2: 0, etc2_alpha: 1, bc1: 2, bc3: 3, bc7: 6, astc: 10, rgba: 13 };
 const BYTES: Readonly<Record<TexelFormat, number>> = { etc2: 0.5, etc2_alpha: 1, bc1: 0.5, bc3: 1, bc7: 1, astc: 1, rgba: 4 };
 
-/// A texel's, on the GPU.
+/// Returns the bytes of a texel on the GPU.
 export function texelBytes(format: TexelFormat): number {
   return BYTES[format];
 }

@@ -26,7 +26,7 @@ export async function inTime<T>(awaited: Promise<T>, name: string, giveUp: () =>
 /// Reads the next piece of a stream.
 type NextPiece = (reader: ReadableStreamDefaultReader<Uint8Array>) => Promise<ReadableStreamReadResult<Uint8Array>>;
 
-/// In time.
+/// Receives pieces in time.
 function receivePiece(name: string): NextPiece {
   return (reader) => inTime(reader.read(), name, () => { reader.cancel().catch(() => undefined); });
 }

@@ -156,7 +156,7 @@ function add(sums: Sums, lane: number, low: number, high: number): void {
   sums[2 * lane + 1] = (sums[2 * lane + 1] + high + Math.floor(all / 2 ** 32)) % 2 ** 32;
 }
 
-/// Behind each whole block.
+/// Mixes the sums behind each whole block.
 function scramble(sums: Sums): void {
   const prime = BigInt(PRIME32_1);
   const key = (SECRET.length - STRIPE) / 4;

@@ -47,7 +47,7 @@ export function verticesAt(of: TilePlaces, place: number): readonly number[] {
   return vertices;
 }
 
-/// Where a vertex is.
+/// Returns the place of a vertex.
 export function placeOf(of: TilePlaces, vertex: number): number {
   const places = of.own + of.ghosts;
   const unsplit = unsplitOf(of);
@@ -55,7 +55,7 @@ export function placeOf(of: TilePlaces, vertex: number): number {
   return whole < places ? whole : of.copyOf[whole - places];
 }
 
-/// Triangles of places.
+/// Returns triangles with places for corners.
 export function toPlaces(of: TilePlaces, triangles: Indices): Indices {
   const isPlain = of.copyOf.length === 0 && of.splitOf.length === 0;
   return isPlain ? triangles : triangles.map((vertex) => placeOf(of, vertex));

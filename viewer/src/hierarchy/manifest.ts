@@ -107,7 +107,7 @@ function readFile(file: JsonValue, leastBytes: number, mostBytes: number): Named
   return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes), checksum: BigInt(`0x${file.at('checksum').checksum()}`) };
 }
 
-/// Throws HierarchyProblem.
+/// Reads a manifest. Throws HierarchyProblem for what is none.
 export function readManifest(text: string): Manifest {
   const refuse: Fail = (what) => {
     throw new HierarchyProblem(MANIFEST, what);

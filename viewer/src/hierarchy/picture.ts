@@ -40,13 +40,13 @@ export function partsOfPicture({ texels }: Picture): Transferable[] {
   return isCompressed(texels) ? texels.levels.map(({ data }) => data.buffer) : [texels];
 }
 
-/// Lets go of that.
+/// Lets go of what the GPU has a copy of.
 export function dropPicture({ texels }: Picture): void {
   if (isCompressed(texels)) texels.levels.length = 0;
   else texels.close();
 }
 
-/// Whether it was let go.
+/// True once it was let go.
 export function isDropped({ texels }: Picture): boolean {
   return isCompressed(texels) ? texels.levels.length === 0 : texels.width === 0;
 }

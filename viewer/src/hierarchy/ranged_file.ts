@@ -107,7 +107,7 @@ export class RangedFile {
     });
   }
 
-  /// Bytes of the file.
+  /// Returns the bytes of the file.
   async size(): Promise<number> {
     if (this.whole !== null) return this.whole.length;
     if (this.version?.total != null) return this.version.total;

@@ -76,7 +76,7 @@ export class RemoteHierarchy {
     }
   }
 
-  /// After the directory.
+  /// Call it once the directory is there.
   async outline(manifest: Manifest): Promise<Outline> {
     try {
       return await fetchOutlineOf(manifest, this.files, this.signal);

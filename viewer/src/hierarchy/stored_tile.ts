@@ -36,7 +36,7 @@ export function fits(bytes: Uint8Array, sum: bigint, seal: Seal): boolean | null
   return bytes.length === seal.bytes && sum === seal.checksum;
 }
 
-/// Throws HierarchyProblem of `wanted.name`.
+/// Unpacks, compares and decodes a tile. Throws HierarchyProblem of `wanted.name`.
 export async function openTile(bytes: Uint8Array<ArrayBuffer>, { name, most, expected, seal }: TileWanted): Promise<OpenedTile> {
   const sum = checksum(bytes);
   const isFitting = seal && fits(bytes, sum, seal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Opens tiles beside the page: {id, bytes, wanted, transcoder} in, {id, opened} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
+// Opens tiles beside the page: {id, bytes, wanted, transcoder} in, {id, opened} out; {id, what} where the file is wrong, {id, defect} where anything else is.
 import { setTranscoderUrl } from './basis.js';
 import { HierarchyProblem } from './problem.js';
 import { openTile, type TileWanted } from './stored_tile.js';

@@ -94,7 +94,7 @@ function codedNormals(glb: Glb, { bufferView, normalized, type }: Accessor, vert
   return new Int8Array(detached(glb.section(bufferView, 4 * vertices)));
 }
 
-/// The input's own.
+/// Reads the input's own normals.
 function givenNormals(glb: Glb, { bufferView }: Accessor, vertices: number): Int16Array {
   const given = floats(glb.section(bufferView, 12 * vertices));
   const normals = new Int16Array(4 * vertices);

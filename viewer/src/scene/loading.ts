@@ -102,7 +102,7 @@ export class Loading implements FileHost {
     this.context.changed();
   }
 
-  /// For what went with the device.
+  /// Asks anew for what went with the device.
   askAgain(): void {
     this.store.dropLost(isOnlyOnGpu);
     this.context.changed();

@@ -138,7 +138,7 @@ function edit(shader: Shader, { colours, cavities, material }: Look, vertexColor
   shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
 }
 
-/// Facets are shown as they are.
+/// Facets are shown without their map, as they are.
 function normalMap({ shading }: Look, normals: Texture | null): { normalMap?: Texture } {
   return normals === null || shading === 'flat' ? {} : { normalMap: normals };
 }
@@ -165,7 +165,7 @@ function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: S
   return material;
 }
 
-/// Whether tiles with pictures show them.
+/// True where tiles with pictures show them.
 export function showsPictures({ colours, texture }: Look): boolean {
   return colours === 'vertex' && texture;
 }
@@ -190,7 +190,7 @@ function wireMaterial(): Material {
   return new LineBasicMaterial({ color: WIRES, transparent: true, opacity: 0.45, depthWrite: false });
 }
 
-/// Round, and over the wires.
+/// Makes the material of points: round, and over the wires.
 function pointMaterial(color: number, size: number, vertexColors = false): Material {
   const material = new PointsMaterial({ color, size, vertexColors, sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {

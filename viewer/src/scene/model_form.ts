@@ -16,7 +16,7 @@ function saysColour({ colours }: Tile): boolean {
 
 /// A fact that is null is not known yet.
 export class ModelForm {
-  /// Upright.
+  /// The mesh's box, upright.
   readonly box = new Box3();
   root: Tile | null = null;
   /// The mesh as a terrain, as it stands; null also if it is none.
@@ -43,7 +43,7 @@ export class ModelForm {
     this.setBox();
   }
 
-  /// Upright, as it is wished.
+  /// Stands the mesh upright, as it is wished.
   stand(standing: Standing): void {
     const { root } = this;
     if (root === null) return;

@@ -14,7 +14,7 @@ const MOST_TRIES = 5;
 
 export interface OpenRoot {
   readonly root: Tile;
-  /// Was asked for already.
+  /// The manifest, which was asked for already.
   readonly early: Promise<Manifest>;
   /// Once there is a picture of the root: nothing but the root is fetched of the mesh before.
   readonly drawn?: Promise<void>;

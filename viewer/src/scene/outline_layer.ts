@@ -23,7 +23,7 @@ export class OutlineLayer {
     else if (isWanted && this.loading === null) void this.load(fetch, place);
   }
 
-  /// As before it was asked for.
+  /// Forgets the outline, as before it was asked for.
   clear(): void {
     this.object?.dispose();
     this.object = this.loading = null;

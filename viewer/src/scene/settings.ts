@@ -22,7 +22,7 @@ export interface AttributeLook {
 export interface Look extends AttributeLook {
   /// `attribute`: of a mesh without any it is `plain`. `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
   colours: Colours;
-  /// False: no pictures.
+  /// Pictures are shown.
   texture: boolean;
   /// Pictures that have their light already are lit all the same.
   relight: boolean;
@@ -30,9 +30,9 @@ export interface Look extends AttributeLook {
   material: 'lit' | 'matcap' | 'relief';
   /// So many times steeper slopes are shaded than they are, 1 … 1000; each triangle's own normal stays.
   relief: number;
-  /// Hollows darker, edges lighter.
+  /// Hollows are darker, edges lighter.
   cavities: boolean;
-  /// `flat`: each triangle its own normal.
+  /// `flat`: each triangle has its own normal.
   shading: 'smooth' | 'flat';
   wires: boolean;
   points: boolean;

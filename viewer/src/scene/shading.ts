@@ -45,7 +45,7 @@ export class Shadings {
     for (const each of this.failed) if (!shadings.includes(each)) this.failed.delete(each);
   }
 
-  /// `otherwise`: where it throws.
+  /// Returns what `call` does, `otherwise` where it throws.
   ask<Answer>(shading: Shading, call: () => Answer, otherwise: Answer): Answer {
     return attempt(call, () => {
       this.failed.add(shading);
@@ -79,7 +79,7 @@ export class Shadings {
 const numbers = new WeakMap<object, number>();
 let numbered = 0;
 
-/// No other object has the same.
+/// Returns the number of an object, which no other has.
 export function numberOf(object: object): number {
   const number = numbers.get(object) ?? ++numbered;
   numbers.set(object, number);

@@ -127,7 +127,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
   }
 
-  /// Has what shaders look for.
+  /// Gives the geometry what shaders look for.
   private prepare(): void {
     this.shared.shadings.prepare(this.geometry, this.resident.tile, this.look);
   }
@@ -164,7 +164,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     if (this.wires) this.setWires(true);
   }
 
-  /// Once resolved.
+  /// Tells what is drawn, once it is resolved.
   drawn(): DrawnTile {
     const { node, tile } = this.resident;
     return { node, tile, triangles: this.triangles, sphere: this.geometry.boundingSphere! };

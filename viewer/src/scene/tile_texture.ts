@@ -52,7 +52,7 @@ function compressedTexture({ format, levels }: CompressedTexels): Texture {
   return texture;
 }
 
-/// `content`: what its numbers are.
+/// Makes the texture of a picture; `content`: its numbers are these.
 export function tileTexture(picture: Picture, level: number, content: 'colours' | 'directions' = 'colours'): Texture {
   const { texels } = picture;
   const texture = isCompressed(texels) ? compressedTexture(texels) : new Texture(texels);
