@@ -14,7 +14,7 @@ import type { Turn } from './layout.js';
 import { ModelSource, type Facts } from './model_source.js';
 import type { Shape } from './shape.js';
 import { Solid } from './solid.js';
-import { Turning } from './turning.js';
+import { Turning, type Turned } from './turning.js';
 
 type Sizes = Pick<Facts, 'vertices' | 'triangles' | 'bytes'>;
 
@@ -41,7 +41,7 @@ export interface Studio {
   animation: Animation;
 }
 
-export class ModelCell implements Cell {
+export class ModelCell implements Cell, Turned {
   readonly root: HTMLLIElement;
   private readonly picture = element('img', { class: 'cell-picture', alt: '', decoding: 'async', draggable: 'false', hidden: true });
   private readonly canvas = element('canvas', { class: 'cell-outline', 'aria-hidden': 'true', hidden: true });
@@ -69,7 +69,7 @@ export class ModelCell implements Cell {
     if (warnings.length > 0) this.stage.append(element('span', { class: 'cell-warning' }, words.counts.warnings(warnings.length, formatCount(warnings.length))));
     this.root = element('li', {}, this.link);
     this.solid = new Solid(model.url, this.stage);
-    this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });
+    this.turning = new Turning(this.link, this.stage, this);
   }
 
   /// As its outline is turned just now; null: it shows none.
@@ -165,7 +165,7 @@ export class ModelCell implements Cell {
     this.note.hidden = false;
   }
 
-  private enlivened(lively: boolean): void {
+  enlivened(lively: boolean): void {
     if (lively) this.askOutline();
     if (!lively) this.solid.end();
     else if (this.shape !== null) this.solid.await(this.shape, this.turning.turn);
@@ -174,7 +174,7 @@ export class ModelCell implements Cell {
     this.arrange();
   }
 
-  private turned(): void {
+  turned(): void {
     this.askOutline();
     this.solid.show(this.turning.turn);
     this.redraw();

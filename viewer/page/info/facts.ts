@@ -5,6 +5,7 @@ import { UNITS, unitOfModel } from '../../src/tools/units.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatDate, formatLength } from '../numbers.js';
 import { element } from '../parts/element.js';
+import type { PageContext } from '../view/page_context.js';
 import { words } from '../words/words.js';
 
 export type Fact = readonly [name: string, text: string];
@@ -51,7 +52,11 @@ export class InfoSheet {
   readonly root = element('dl', { class: 'figures info' });
   private shown: Manifest | null = null;
 
-  show(model: Model, manifest: Manifest): void {
+  constructor(context: PageContext) {
+    context.addEventListener('known', ({ manifest }) => { this.show(context.model, manifest); });
+  }
+
+  private show(model: Model, manifest: Manifest): void {
     if (manifest === this.shown) return;
     this.shown = manifest;
     const rows = factsOf(model, manifest).map(([name, text]) => element('div', {}, element('dt', {}, name), element('dd', {}, text)));

@@ -2,7 +2,8 @@
 // A link to what is shown, and the code for other pages; each with a button that copies it.
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
-import { elementCode, frameCode, type Shared } from './embed_code.js';
+import type { ViewParts } from '../view/view_parts.js';
+import { elementCode, frameCode } from './embed_code.js';
 
 const TOLD = 2500; // milliseconds that a success is told
 
@@ -46,13 +47,14 @@ export class ShareSheet {
 
   private readonly codes = element('div', { class: 'share' }, this.frame.root, this.element.root, element('p', { class: 'hint' }, words.share.elementHint));
 
-  constructor() {
+  constructor(private readonly parts: ViewParts) {
     this.root = element('div', { class: 'share' }, this.link.root, this.codes, this.status);
   }
 
-  /// `link`: to what is shown in this page.
-  show(link: string, shared: Shared): void {
-    this.link.field.value = link;
+  /// Takes what is seen now: the page's address tells of it once the view was asked.
+  show(): void {
+    const shared = this.parts.shared();
+    this.link.field.value = location.href;
     this.codes.hidden = shared.isWhole;
     this.frame.field.value = frameCode(shared);
     this.element.field.value = elementCode(shared);

@@ -36,19 +36,17 @@ export class Chrome {
   private readonly immersions: Readonly<Record<ImmersionMode, HTMLButtonElement>>;
   private readonly badge = element('p', { class: 'badge', 'aria-live': 'polite', 'aria-atomic': 'true' });
   private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
-  private readonly form: SettingsForm;
-  private readonly figures = new Panel();
   private readonly summary = element('p', { class: 'unseen', id: 'model-summary' });
-  private readonly sharing = new ShareSheet();
-  private readonly about = new InfoSheet();
+  private readonly sharing: ShareSheet;
 
   constructor(private readonly parts: ViewParts) {
-    const { context: { root, surface, signal }, story, extensions } = parts;
-    this.form = new SettingsForm(parts);
-    this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [this.form.root]);
-    this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [this.figures.root]);
+    const { context, story, extensions } = parts;
+    const { root, surface, signal } = context;
+    this.sharing = new ShareSheet(parts);
+    this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [new SettingsForm(parts).root]);
+    this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [new Panel(parts).root]);
     this.share = new Sheet('share', words.share.title, ICONS.share, [this.sharing.root]);
-    this.info = new Sheet('info', words.info.title, ICONS.help, [this.about.root]);
+    this.info = new Sheet('info', words.info.title, ICONS.help, [new InfoSheet(context).root]);
     this.story = iconButton(words.story.title, ICONS.story, () => { story.toggle(); });
     this.immersions = {
       'immersive-vr': iconButton(words.view.vr, ICONS.vr, () => void extensions.immerse('immersive-vr')),
@@ -66,17 +64,10 @@ export class Chrome {
   private listen(): void {
     const { context } = this.parts;
     context.addEventListener('lightKey', () => { this.settings.toggle(); });
-    context.addEventListener('chosen', () => { this.showChosen(); });
-    context.addEventListener('known', ({ manifest }) => { this.tellSource(manifest); });
+    context.addEventListener('known', ({ manifest }) => { this.summarize(manifest); });
     context.addEventListener('report', (report) => { this.report(report); });
     context.addEventListener('story', ({ isTold }) => { this.tellStory(isTold); });
     context.addEventListener('opened', () => { immersionModes().then((modes) => { this.tellImmersions(modes); }, () => undefined); });
-  }
-
-  private showChosen(): void {
-    const { context: { view }, choices: { presentation: { shown } } } = this.parts;
-    this.form.show();
-    this.figures.tellTerrain(view.terrain === null ? null : shown);
   }
 
   /// Shows buttons for what the device can do.
@@ -100,15 +91,10 @@ export class Chrome {
   private report({ stats, working }: ContextEvents['report']): void {
     this.name(stats.mode);
     this.busy.classList.toggle('working', working);
-    if (this.panel.isOpen) this.figures.show(stats, this.parts.context.view.settings.framesPerSecond);
   }
 
-  private tellSource(manifest: Manifest): void {
-    const { model } = this.parts.context;
-    this.figures.tellSource(manifest);
-    this.form.tellAttributes(manifest.source.values);
-    this.about.show(model, manifest);
-    const summary = summaryOf(model, manifest);
+  private summarize(manifest: Manifest): void {
+    const summary = summaryOf(this.parts.context.model, manifest);
     if (this.summary.textContent !== summary) this.summary.textContent = summary;
   }
 
@@ -146,12 +132,6 @@ export class Chrome {
     if (sheet === this.panel) {
       parts.context.page.keep({ panel: open });
       parts.frames.reportSoon();
-    } else if (sheet === this.share && open) this.showShared();
-  }
-
-  /// The address is that of now once the view was asked.
-  private showShared(): void {
-    const shared = this.parts.shared();
-    this.sharing.show(location.href, shared);
+    } else if (sheet === this.share && open) this.sharing.show();
   }
 }

@@ -4,6 +4,7 @@ import type { Manifest, Stats } from '../../src/index.js';
 import { formatBytes, formatCount, formatDecimal, formatMilliseconds, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
 import type { ShownAppearance } from './presentation.js';
+import type { ViewParts } from './view_parts.js';
 import { words } from '../words/words.js';
 
 const text = words.figures;
@@ -65,19 +66,23 @@ export class Panel {
   private readonly terrain = element('p', { class: 'source' });
   private readonly values = ROWS.map(() => element('dd', {}));
 
-  constructor() {
+  constructor({ context, choices: { presentation } }: ViewParts) {
+    const { view } = context;
+    context.addEventListener('known', ({ manifest }) => { this.tellSource(manifest); });
+    context.addEventListener('chosen', () => { this.tellTerrain(view.terrain === null ? null : presentation.shown); });
+    context.addEventListener('report', ({ stats }) => { if (this.root.closest('[hidden]') === null) this.show(stats, view.settings.framesPerSecond); });
     const rows = ROWS.map(({ name, tip }, i) => element('div', { title: tip }, element('dt', {}, name), this.values[i]));
     this.root = element('div', {}, this.source, this.terrain, element('dl', { class: 'figures' }, ...rows));
   }
 
   /// Tells what the model was made from, and its licence.
-  tellSource({ source, licence }: Manifest): void {
+  private tellSource({ source, licence }: Manifest): void {
     const [vertices, triangles] = (['vertices', 'triangles'] as const).map((what) => words.counts[what](source[what], formatCount(source[what])));
     this.source.textContent = `${text.source(source.fileName, vertices, triangles)}${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;
   }
 
   /// Null: the model is no terrain.
-  tellTerrain(shown: ShownAppearance | null): void {
+  private tellTerrain(shown: ShownAppearance | null): void {
     this.terrain.hidden = shown === null;
     if (shown === null) return;
     const { terrain, byHeight, sunlit } = words.light;
@@ -86,7 +91,7 @@ export class Panel {
   }
 
   /// `wanted`: frames per second.
-  show(stats: Stats, wanted: number): void {
+  private show(stats: Stats, wanted: number): void {
     ROWS.forEach(({ figure }, i) => {
       const value = figure(stats, wanted);
       if (this.values[i].textContent !== value) this.values[i].textContent = value;

@@ -33,7 +33,10 @@ export class SettingsForm {
   private readonly sliders: Record<Exclude<keyof Settings, 'restDetail'>, Control<number>>;
 
   constructor(private readonly parts: ViewParts) {
-    const { choices, context: { page } } = parts;
+    const { choices, context } = parts;
+    const { page } = context;
+    context.addEventListener('chosen', () => { this.show(); });
+    context.addEventListener('known', ({ manifest }) => { this.tellAttributes(manifest.source.values); });
     const text = words.settings;
     const settings = (change: Partial<Settings>): void => { choices.setSettings(change); };
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { choices.choose({ look: { colours } }); });
@@ -57,13 +60,13 @@ export class SettingsForm {
   }
 
   /// The model can be coloured by these.
-  tellAttributes(attributes: readonly ScalarAttribute[]): void {
+  private tellAttributes(attributes: readonly ScalarAttribute[]): void {
     this.attribute.tell(attributes);
     this.colours.offer('attribute', attributes.length > 0);
   }
 
   /// As it is chosen now.
-  show(): void {
+  private show(): void {
     const { choices, context: { page: { preferences: { settings, theme } } } } = this.parts;
     const { look } = choices.chosen;
     this.light.show();
