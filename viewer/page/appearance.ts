@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a model is shown: its colours and surface, its light, how it stands. What of it a link and the browser keep.
+// How a model is shown: its colours and surface, its light, how it stands; and what a link and the browser keep of it.
 import { asObject, type Json } from '../src/json_value.js';
 import { RAMPS } from '../src/scene/ramps.js';
 import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';

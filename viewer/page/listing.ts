@@ -54,7 +54,7 @@ export interface Listing {
 export interface UploadOffer {
   /// The most bytes of one upload.
   limit: number;
-  /// Whether the server asks for a word.
+  /// The server asks for a word.
   token: boolean;
 }
 

@@ -48,7 +48,7 @@ function within(value: unknown, { least, most }: Range, otherwise: number): numb
   return typeof value === 'number' && value >= least && value <= most ? value : otherwise;
 }
 
-/// Whether the browser was told to fetch little.
+/// Tells whether the browser was told to fetch little.
 function savesData(): boolean {
   return (globalThis.navigator as { connection?: { saveData?: boolean } } | undefined)?.connection?.saveData === true;
 }

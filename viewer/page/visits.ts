@@ -16,7 +16,7 @@ export function showAddress(address: string): void {
   else history.pushState(null, '', address);
 }
 
-/// Whether going back leads to where the visitor was before.
+/// Tells whether going back leads to where the visitor was before.
 export const leavesEntries = !FRAMED;
 
 /// Links to hashes within `root` are visits, too.

@@ -5,7 +5,7 @@
 /// double precision (1.8e308).
 export const FARTHEST = 1e30;
 
-/// Whether all of them are numbers, and no farther.
+/// Tells whether all of them are numbers, and no farther.
 export function areNear(values: readonly unknown[]): values is readonly number[] {
   return values.every((value) => typeof value === 'number' && Math.abs(value) <= FARTHEST);
 }

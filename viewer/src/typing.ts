@@ -6,7 +6,7 @@ export type Typed = Pick<KeyboardEvent, 'key' | 'isComposing' | 'composedPath'>;
 
 const WRITTEN_IN: readonly string[] = ['textarea', 'select'];
 
-/// Whether an input of that type needs the key for itself; what is written in needs them all.
+/// Tells whether an input of that type needs the key for itself; what is written in needs them all.
 export function needsKey(type: string, key: string): boolean {
   if (type === 'checkbox' || type === 'button') return key === ' ';
   if (type === 'radio' || type === 'range') return /^(Arrow|Page|Home$|End$| $)/.test(key);
@@ -21,7 +21,7 @@ export function fieldOf(event: Typed): HTMLElement | null {
   return takes ? (target as HTMLElement) : null;
 }
 
-/// Whether a view's keys leave it alone.
+/// Tells whether a view's keys leave it alone.
 export function isTyped(event: Typed): boolean {
   return fieldOf(event) !== null;
 }

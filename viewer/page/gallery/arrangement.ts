@@ -30,7 +30,7 @@ function folderOf({ path }: Model): string {
   return readable(path.slice(0, Math.max(withoutLastSlashes(path).lastIndexOf('/'), 0)));
 }
 
-/// Whether a text has all the words of a search.
+/// Tells whether a text has all the words of a search.
 function matches(words: readonly string[], text: string): boolean {
   const plainText = plain(text);
   return words.every((word) => plainText.includes(word));

@@ -3,7 +3,7 @@
 
 export const INNER_KEYS = { snap: 'V', bookmark: 'B', spin: 'R', fullScreen: 'E' } as const;
 
-/// Whether `key`, as an event has it, is one of the above.
+/// Tells whether `key`, as an event has it, is one of the above.
 export function isKey(key: string, name: keyof typeof INNER_KEYS): boolean {
   return key.toUpperCase() === INNER_KEYS[name];
 }

@@ -49,7 +49,7 @@ export class NoteList {
     notebook.changed();
   }
 
-  /// Where the camera is, and how the model is shown.
+  /// Keeps where the camera is, and how the model is shown.
   private keepView(i: number): void {
     const { bench, places } = this.shop;
     const { position, target } = bench.pose();

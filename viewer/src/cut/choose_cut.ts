@@ -22,13 +22,13 @@ export interface Sources {
   /// null: not known yet.
   readonly record: (node: Node) => TileRecord | null;
   readonly bytesOf: (record: TileRecord, node: Node) => number;
-  /// Whether nothing of the node can be seen although it is in view.
+  /// Tells whether nothing of the node can be seen although it is in view.
   readonly isHidden: (key: number, record: TileRecord) => boolean;
-  /// Whether a tile, or its record, could not be had: the one above stands for it.
+  /// Tells whether a tile, or its record, could not be had: the one above stands for it.
   readonly isLost: (node: Node) => boolean;
-  /// Whether the node was refined in the last cut, and is to stay so for a while.
+  /// Tells whether the node was refined in the last cut, and is to stay so for a while.
   readonly wasRefined: (key: number) => boolean;
-  /// Whether the node may be finer than the threshold.
+  /// Tells whether the node may be finer than the threshold.
   readonly mayBeFine: (key: number) => boolean;
 }
 

@@ -91,7 +91,7 @@ export class FrameRate {
     this.change(Math.max(this.floor?.vertices ?? 0, Math.min(this.budget, now.vertices) / ratio), false);
   }
 
-  /// Whether the last step down saved hardly anything.
+  /// Tells whether the last step down saved hardly anything.
   private wasOfNoUse({ vertices, milliseconds }: Measured): boolean {
     if (this.before === null || vertices > 0.9 * this.before.vertices) return false;
     const perVertex = (this.before.milliseconds - milliseconds) / (this.before.vertices - vertices);

@@ -18,7 +18,7 @@ export class RestDetail {
     return Math.min(this.divisor, finest);
   }
 
-  /// Whether all of the step is there.
+  /// Tells whether all of the step is there.
   saw(now: number, isComplete: boolean): void {
     if (!isComplete) this.completeSince = null;
     else this.completeSince ??= now;

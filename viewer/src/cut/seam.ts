@@ -217,7 +217,7 @@ export class Seam {
       !this.isSame(a, b) && !this.isSame(b, c) && !this.isSame(c, a);
   }
 
-  /// Whether the tile of a corner is shown coarser, or at the same level with a larger number; ours does.
+  /// Tells whether the tile of a corner is shown coarser, or at the same level with a larger number; ours does.
   private leavesItToUs(corner: number): boolean {
     if (corner < this.tile.own) return true;
     const neighbour = this.neighbourOf[corner - this.tile.own];

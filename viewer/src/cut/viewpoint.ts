@@ -21,7 +21,7 @@ export interface Box {
   readonly max: Vector;
 }
 
-/// Whether a part of the box may be in view.
+/// Tells whether a part of the box may be in view.
 export function isInView({ planes }: Viewpoint, { min, max }: Box): boolean {
   return planes.every(([a, b, c, d]) => {
     const x = a > 0 ? max[0] : min[0];
@@ -31,7 +31,7 @@ export function isInView({ planes }: Viewpoint, { min, max }: Box): boolean {
   });
 }
 
-/// Whether all points are in view; `points`: x, y, z of each.
+/// Tells whether all points are in view; `points`: x, y, z of each.
 export function areInView({ planes }: Viewpoint, points: ArrayLike<number>): boolean {
   return planes.every(([a, b, c, d]) => {
     for (let i = 0; i < points.length; i += 3) if (a * points[i] + b * points[i + 1] + c * points[i + 2] + d < 0) return false;
@@ -66,7 +66,7 @@ export function squarePixels(view: Viewpoint, box: Box, squares: number): number
   return leastPixels(view, box, Math.sqrt((a * b + b * c + c * a) / squares));
 }
 
-/// Whether all directions of the cone look away from the eye, from anywhere in the box, by `margin` radians more
+/// Tells whether all directions of the cone look away from the eye, from anywhere in the box, by `margin` radians more
 /// than they must. Of what is stretched nobody knows.
 export function looksAway({ eye, stretch }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
   if (cosine <= 0 || Math.max(...stretch) > 1) return false;

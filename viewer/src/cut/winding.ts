@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a point lies inside of a closed surface: its solid angle (van Oosterom & Strackee 1983).
+// Tells whether a point lies inside of a closed surface: its solid angle (van Oosterom & Strackee 1983).
 import type { Tile } from '../hierarchy/tile.js';
 import type { Vector } from './viewpoint.js';
 

@@ -12,7 +12,7 @@ const END_MARK = 0x06054b50;
 const END64_MARK = 0x06064b50;
 const INDEX_FILE = '@3dtilesIndex1@';
 
-/// Whether a URL is that of an archive. One that ends with a slash is that of a directory: of a server that shows what is
+/// Tells whether a URL is that of an archive. One that ends with a slash is that of a directory: of a server that shows what is
 /// in the archive.
 export function isArchiveUrl(url: string): boolean {
   return /^[^?#]*\.3tz([?#]|$)/i.test(url);

@@ -3,7 +3,7 @@ import type { Indices } from './copies.js';
 
 const SPAN = 65536; // above any vertex's number here
 
-/// Whether each edge of the triangles is used as often in one direction as in the other. O(n log n).
+/// Tells whether each edge of the triangles is used as often in one direction as in the other. O(n log n).
 export function isClosed(triangles: Indices): boolean {
   const edges = new Float64Array(triangles.length);
   for (let t = 0; t < triangles.length; t += 3)
@@ -23,7 +23,7 @@ export function isClosed(triangles: Indices): boolean {
   return triangles.length > 0;
 }
 
-/// Whether the triangles of a closed surface show their backs to the outside.
+/// Tells whether the triangles of a closed surface show their backs to the outside.
 export function isInsideOut(positions: Float32Array, triangles: Indices): boolean {
   let volume = 0;
   for (let t = 0; t < triangles.length; t += 3) {

@@ -14,13 +14,13 @@ export interface FilePlace {
 export interface RemoteFiles {
   /// A file of at most `most` bytes as it is stored, perhaps in gzip; a host may have unpacked it. `where`: if it is known.
   stored(name: string, most: number, init?: RequestInit, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>>;
-  /// Whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
+  /// Tells whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
   lacks?(name: string): boolean;
   /// Bytes [first, end) of a file of `length`; or all of it, where a host knows no ranges.
   part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>>;
   /// The manifest as the host has it now, from no cache.
   manifestNow(signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>>;
-  /// Whether a file, or its first `end` bytes, are here already: no host can replace them.
+  /// Tells whether a file, or its first `end` bytes, are here already: no host can replace them.
   holds?(name: string, end?: number): boolean;
   /// Files are asked for as those of that build from now on: no cache gives one of another.
   setBuild?(name: string): void;

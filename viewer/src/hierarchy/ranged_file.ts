@@ -30,7 +30,7 @@ function versionOf({ headers }: Response, total: number | null): Version {
   return { tag: headers.get('ETag')?.replace(/^W\//, '') ?? null, modified: headers.get('Last-Modified'), total };
 }
 
-/// Whether both are known and not the same.
+/// Tells whether both are known and not the same.
 function differ<T>(one: T | null, other: T | null): boolean {
   return one !== null && other !== null && one !== other;
 }

@@ -30,7 +30,7 @@ export interface OpenedTile {
   readonly isSealed: boolean;
 }
 
-/// Whether bytes with that checksum are the file of the seal; null: nobody can tell, a host has unpacked them.
+/// Tells whether bytes with that checksum are the file of the seal; null: nobody can tell, a host has unpacked them.
 export function fits(bytes: Uint8Array, sum: bigint, seal: Seal): boolean | null {
   if (seal.isPacked && !isGzip(bytes)) return null;
   return bytes.length === seal.bytes && sum === seal.checksum;

@@ -133,7 +133,7 @@ export class TileIndex {
     return null;
   }
 
-  /// Whether there will be nothing of a tile: it lies elsewhere, or its record is damaged.
+  /// Tells whether there will be nothing of a tile: it lies elsewhere, or its record is damaged.
   isLost(node: Node): boolean {
     return this.damaged.has(keyOf(node.level, node.index)) || this.lacks(node);
   }

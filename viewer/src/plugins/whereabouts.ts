@@ -2,7 +2,7 @@
 // Tells when a view shows another build whose places are others: then nothing that was measured holds.
 import type { Manifest } from '../hierarchy/manifest.js';
 
-/// Whether places in the tiles of one are the same places in those of the other.
+/// Tells whether places in the tiles of one are the same places in those of the other.
 function isSamePlace(one: Manifest, other: Manifest): boolean {
   const placeOf = ({ origin, place, up, transform, units }: Manifest): string => JSON.stringify([origin, place, up, transform, units]);
   return placeOf(one) === placeOf(other);

@@ -104,7 +104,7 @@ export interface Painting {
 
 export type SurfaceMaterial = MeshStandardMaterial | MeshMatcapMaterial | MeshBasicMaterial;
 
-/// Where a texel counts as a hole. Of what blends it is none at all: tiles hide what lies behind them, in whatever order they are drawn.
+/// A texel of less alpha is a hole. Pictures that blend have hardly any: tiles hide what lies behind them, in whatever order they are drawn.
 const HOLES: Readonly<Record<Alpha, number>> = { OPAQUE: 0, MASK: 0.5, BLEND: 1 / 512 };
 
 /// The picture's part in a material; nothing where there is none.

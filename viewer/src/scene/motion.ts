@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether the camera moves, and what a mesh looks like from where it is.
+// Tells whether the camera moves, and what a mesh looks like from where it is.
 import { Frustum, Matrix4, Plane, Vector3, type Object3D, type PerspectiveCamera } from 'three';
 import type { Viewpoint } from '../cut/viewpoint.js';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a mesh is a terrain: seen from above, no part of it hides another one. Or one that lies on its side, as maps do whose file
+// Tells whether a mesh is a terrain: seen from above, no part of it hides another one. Or one that lies on its side, as maps do whose file
 // says that another axis points up.
 import type { Tile } from '../hierarchy/tile.js';
 import type { Vector } from '../cut/viewpoint.js';

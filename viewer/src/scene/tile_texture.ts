@@ -39,7 +39,7 @@ export function memoryOfPicture(picture: Picture, level: number): number {
   return pictureMemory(picture, bytesOfTexel(picture), level);
 }
 
-/// Whether only the GPU has the tile's picture: it is lost with the device.
+/// Tells whether only the GPU has the tile's picture: it is lost with the device.
 export function isOnlyOnGpu({ picture, normalMap }: Tile): boolean {
   return [picture, normalMap].some((each) => each !== null && isDropped(each));
 }

@@ -34,7 +34,7 @@ function valuesAt(tile: PickedTile, vertex: number): number[] {
   return Array.from((tile.values ?? new Float32Array(0)).subarray(width * vertex, width * (vertex + 1)));
 }
 
-/// Whether a point may be hit: what is cut away may not.
+/// Tells whether a point may be hit: what is cut away may not.
 export type Keeps = (point: Vector) => boolean;
 
 const KEEPS_ALL: Keeps = () => true;
