@@ -57,7 +57,7 @@ Vec3f tangent_of(const exporting::ClippedCorner& from) {
   return {from.attributes[3], from.attributes[4], from.attributes[5]};
 }
 
-/// Facets cut where the region ends, with their skins; those without area, which stand for points,
+/// Cuts facets where the region ends, with their skins; those without area, which stand for points,
 /// stay if they lie in it. O(t).
 render::SceneTile clip_scene(render::SceneTile tile, const exporting::Region& region) {
   const exporting::CornerMixer mixer({}, kMixedChannels);

@@ -19,7 +19,7 @@
 namespace meshhier::server {
 namespace {
 
-// What hierarchies, streams and the viewer's page consist of, besides pictures.
+// The files of hierarchies, streams and the viewer's page, besides pictures.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{
     {{".3tz", "application/vnd.maxar.archive.3tz+zip"},
      {".css", "text/css; charset=utf-8"},
@@ -38,8 +38,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{
      {".woff", "font/woff"},
      {".woff2", "font/woff2"}}};
 
-/// What a file is, by its name, in the words of HTTP; "application/octet-stream" if nothing better
-/// is known.
+/// Returns the type of a file by its name, in the words of HTTP; "application/octet-stream" if
+/// nothing better is known.
 std::string_view content_type(std::string_view file_name) {
   const std::string name = lower_case(file_name);
   for (const auto& [extension, type] : kTypes) {

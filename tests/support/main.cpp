@@ -21,8 +21,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Of a block of memory four callers are kept: to walk the whole stack at each allocation takes a
-/// sixth of the time of tests with sanitizers. ASAN_OPTIONS may ask for more.
+/// Four callers of each block of memory are kept: to walk the whole stack at each allocation takes
+/// a sixth of the time of tests with sanitizers. ASAN_OPTIONS may ask for more.
 extern "C" const char* __asan_default_options() {
   return "malloc_context_size=4";
 }
