@@ -8,6 +8,7 @@
 #include "bench/block_writer.h"
 #include "bench/generator.h"
 #include "bench/noise.h"
+#include "hierarchy/attribute_rules.h"
 #include "hierarchy/error.h"
 
 #include <algorithm>
@@ -133,6 +134,7 @@ class Amplified final : public GeneratedMesh {
       : mesh_(std::move(mesh)),
         options_(options),
         cells_(1u << options.times),
+        rules_(mesh_.attributes),
         table_(edge_table(mesh_.triangles)),
         normals_(vertex_normals(mesh_)),
         numbers_(cells_, {mesh_.positions.size(),
@@ -238,16 +240,13 @@ class Amplified final : public GeneratedMesh {
   }
 
   void average_attributes(const Point& a, const Point& b, Point& point) const {
-    const AttributeLayout& layout = mesh_.attributes;
-    const auto channels = static_cast<std::size_t>(layout.channels());
-    for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t c = 0; c < rules_.channels(); ++c)
       point.attributes[c] = (a.attributes[c] + b.attributes[c]) * 0.5f;
-    normalize_average(layout, std::span(point.attributes).first(channels));
-    if (layout.colour == ColourType::u8 || layout.colour == ColourType::u16) {
-      const auto first = static_cast<std::size_t>(layout.colour_offset());
-      for (std::size_t c = first; c < first + static_cast<std::size_t>(layout.colour_channels());
-           ++c)
-        point.attributes[c] = std::floor(point.attributes[c] + 0.5f);
+    const std::span<float> all = std::span(point.attributes).first(rules_.channels());
+    rules_.normalize(all);
+    if (rules_.are_colours_whole()) {
+      for (float& number : rules_.part(AttributeKind::colours).of(all))
+        number = std::floor(number + 0.5f);
     }
   }
 
@@ -300,6 +299,7 @@ class Amplified final : public GeneratedMesh {
   LoadedMesh mesh_;
   AmplifyOptions options_;
   std::uint32_t cells_;  ///< m
+  AttributeRules rules_;
   EdgeTable table_;
   std::vector<Vec3d> normals_;
   LatticeNumbers numbers_;

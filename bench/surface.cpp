@@ -103,7 +103,7 @@ class Surface final : public GeneratedMesh {
   /// Two pigments mixed by the noise's value, shaded a little by its slopes.
   void set_colour(Vec3d p, std::span<float> attributes) const {
     const NoiseSample pigment = pigment_.at(p);
-    const auto first = static_cast<std::size_t>(content_.attributes.colour_offset());
+    const auto first = content_.attributes.part(AttributeKind::colours).first;
     attributes[first] = colour_byte(150 + 70 * pigment.value);
     attributes[first + 1] = colour_byte(120 - 60 * pigment.value + 4 * pigment.gradient.x);
     attributes[first + 2] = colour_byte(100 + 4 * pigment.gradient.z);

@@ -90,9 +90,9 @@ class MeshLoader {
 
  private:
   void add_attributes(std::span<const float> channels) {
-    const auto uv = static_cast<std::size_t>(layout_.texcoord_offset());
+    const auto uv = layout_.part(AttributeKind::texcoords).first;
     mesh_.texcoords.push_back({channels[uv], channels[uv + 1]});
-    const float material = channels[static_cast<std::size_t>(layout_.material_offset())];
+    const float material = channels[layout_.part(AttributeKind::material).first];
     if (!(material >= 0 && material < static_cast<float>(mesh_.materials.size()))) {
       throw Error(ErrorCode::input,
                   fmt::format("vertex {} has the material {}, of {}", mesh_.texcoords.size() - 1,

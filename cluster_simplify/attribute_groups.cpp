@@ -24,9 +24,9 @@ class GroupMean {
       sum_[k] += wedge.area * summand[k];
   }
 
-  std::array<float, 4> value(const AttributeKind& kind) const {
+  std::array<float, 4> value(const AttributeMetric& metric) const {
     std::array<float, 4> value{};
-    const std::optional<AttributePoint> mean = kind.mean(sum_, weight_);
+    const std::optional<AttributePoint> mean = metric.mean(sum_, weight_);
     if (are_equal_ || !mean)
       std::ranges::copy(part_, value.begin());
     else
@@ -44,31 +44,31 @@ class GroupMean {
 
 }  // namespace
 
-AttributeGroups group_attributes(const AttributeKind& kind, const TileWedges& wedges,
+AttributeGroups group_attributes(const AttributeMetric& metric, const TileWedges& wedges,
                                  std::span<const ClusterWedge> cluster,
                                  std::span<const std::uint32_t> order) {
   const auto part = [&](std::size_t i) {
-    return kind.part(wedges.attributes_of(cluster[i].wedge));
+    return metric.part(wedges.attributes_of(cluster[i].wedge));
   };
-  Leaders<AttributeKind> leaders(kind);
+  Leaders<AttributeMetric> leaders(metric);
   for (const std::uint32_t i : order) {
-    if (const std::optional<AttributePoint> point = kind.point(part(i)))
+    if (const std::optional<AttributePoint> point = metric.point(part(i)))
       leaders.offer(*point);
   }
   AttributeGroups groups;
   groups.group_of.resize(cluster.size());
   std::vector<GroupMean> means(leaders.size());
   for (std::size_t i = 0; i < cluster.size() && !means.empty(); ++i) {
-    const std::optional<AttributePoint> point = kind.point(part(i));
+    const std::optional<AttributePoint> point = metric.point(part(i));
     if (!point)
       continue;
     const auto [leader, distance] = leaders.nearest(*point);
     groups.group_of[i] = leader;
-    if (distance <= kind.limit())
-      means[leader].add(part(i), kind.summand(*point), cluster[i]);
+    if (distance <= metric.limit())
+      means[leader].add(part(i), metric.summand(*point), cluster[i]);
   }
   for (const GroupMean& mean : means)
-    groups.values.push_back(mean.value(kind));
+    groups.values.push_back(mean.value(metric));
   if (means.empty()) {  // nobody says anything: as the first says it
     groups.values.emplace_back();
     std::ranges::copy(part(order.front()), groups.values[0].begin());

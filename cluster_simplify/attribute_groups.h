@@ -1,7 +1,7 @@
 // Which wedges that come together show one normal, or one colour.
 #pragma once
 
-#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/attribute_metric.h"
 #include "cluster_simplify/tile_wedges.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ struct AttributeGroups {
 /// place from another. If some of them lie at the new place it is their mean; if they are equal
 /// they keep their numbers, so that an original vertex that stays keeps its own. Wedges that say
 /// nothing go to the first group. O(n), with Leaders::kMost.
-AttributeGroups group_attributes(const AttributeKind& kind, const TileWedges& wedges,
+AttributeGroups group_attributes(const AttributeMetric& metric, const TileWedges& wedges,
                                  std::span<const ClusterWedge> cluster,
                                  std::span<const std::uint32_t> order);
 

@@ -1,9 +1,8 @@
 #include "cluster_simplify/attribute_seams.h"
 
-#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/attribute_metric.h"
 #include "cluster_simplify/texture_charts.h"
 #include "cluster_simplify/tile_wedges.h"
-#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <compare>
@@ -45,36 +44,33 @@ std::vector<Side> sides_of(const TileWedges& wedges) {
 /// Tells wedges of one place apart.
 class WedgeDifference {
  public:
-  WedgeDifference(const TileWedges& wedges, const AttributeLayout& layout,
+  WedgeDifference(const TileWedges& wedges, const AttributeRules& rules,
                   const WedgeOptions& options)
       : wedges_(wedges),
-        class_of_(texture_classes(wedges, layout)),
-        normals_(AttributeKind::normals(layout, options)),
-        colours_(AttributeKind::colours(layout, options)),
-        values_(layout) {}
+        class_of_(texture_classes(wedges, rules.part(AttributeKind::texcoords))),
+        metrics_(metrics_of(rules, options)),
+        values_(rules.values()) {}
 
   bool operator()(std::uint32_t a, std::uint32_t b) const {
-    return a != b && (class_of_[a] != class_of_[b] || are_apart(normals_, a, b) ||
-                      are_apart(colours_, a, b) ||
+    const auto are_apart = [&](const AttributeMetric& metric) {
+      return metric.are_apart(wedges_.attributes_of(a), wedges_.attributes_of(b));
+    };
+    return a != b && (class_of_[a] != class_of_[b] || std::ranges::any_of(metrics_, are_apart) ||
                       !values_.have_equal_labels(wedges_.attributes_of(a).data(),
                                                  wedges_.attributes_of(b).data()));
   }
 
  private:
-  bool are_apart(const AttributeKind& kind, std::uint32_t a, std::uint32_t b) const {
-    return kind.are_apart(kind.part(wedges_.attributes_of(a)), kind.part(wedges_.attributes_of(b)));
-  }
-
   const TileWedges& wedges_;
   std::vector<std::uint32_t> class_of_;
-  AttributeKind normals_, colours_;
-  ValueMixer values_;
+  std::vector<AttributeMetric> metrics_;
+  const ValueMixer& values_;
 };
 
 /// At which wedges of one place differ.
-std::vector<PlaceEdge> wedge_seams(const TileWedges& wedges, const AttributeLayout& layout,
+std::vector<PlaceEdge> wedge_seams(const TileWedges& wedges, const AttributeRules& rules,
                                    const WedgeOptions& options) {
-  const WedgeDifference differ(wedges, layout, options);
+  const WedgeDifference differ(wedges, rules, options);
   const std::vector<Side> sides = sides_of(wedges);
   std::vector<PlaceEdge> seams;
   for (std::size_t i = 1; i < sides.size(); ++i) {
@@ -89,27 +85,27 @@ std::vector<PlaceEdge> wedge_seams(const TileWedges& wedges, const AttributeLayo
 
 }  // namespace
 
-std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
+std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeRules& rules,
                                        const WedgeOptions& options) {
-  const bool has_labels = ValueMixer(layout).has_labels();
+  const bool has_labels = rules.values().has_labels();
   // Copies without attributes are equal.
-  const bool may_differ = !joined.mesh.copies.empty() && layout.channels() > 0;
+  const bool may_differ = !joined.mesh.copies.empty() && rules.channels() > 0;
   if (!may_differ && !has_labels)
     return {};
   const TileWedges wedges(joined.mesh);
   std::vector<PlaceEdge> seams;
   if (may_differ)
-    seams = wedge_seams(wedges, layout, options);
+    seams = wedge_seams(wedges, rules, options);
   if (!has_labels)
     return seams;
-  const std::vector<PlaceEdge> borders = label_borders(wedges, layout);
+  const std::vector<PlaceEdge> borders = label_borders(wedges, rules);
   std::vector<PlaceEdge> all;
   std::ranges::set_union(seams, borders, std::back_inserter(all));
   return all;
 }
 
-std::vector<PlaceEdge> label_borders(const TileWedges& wedges, const AttributeLayout& layout) {
-  const ValueMixer values(layout);
+std::vector<PlaceEdge> label_borders(const TileWedges& wedges, const AttributeRules& rules) {
+  const ValueMixer& values = rules.values();
   const auto are_equal = [&](std::uint32_t a, std::uint32_t b) {
     return values.have_equal_labels(wedges.attributes_of(a).data(), wedges.attributes_of(b).data());
   };

@@ -3,7 +3,6 @@
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/motion.h"
 #include "cluster_simplify/quadric.h"
-#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <limits>
@@ -23,7 +22,7 @@ struct CellMeans {
 };
 
 CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of,
-                   std::uint32_t cell_count, const ColourLight& colours) {
+                   std::uint32_t cell_count, const AttributeRules& rules) {
   const auto channels = static_cast<std::size_t>(joined.mesh.vertices.channels);
   CellMeans means{std::vector<Vec3d>(cell_count), std::vector<double>(cell_count * channels)};
   std::vector<double> weights(cell_count);
@@ -35,8 +34,7 @@ CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& ce
         means.positions[cell] + to_double(joined.mesh.vertices.positions[i]) * weight;
     const auto values = joined.mesh.vertices.attributes_of(i);
     for (std::size_t k = 0; k < channels; ++k)
-      means.attributes[cell * channels + k] +=
-          weight * (colours.has(k) ? colours.light(values[k]) : double{values[k]});
+      means.attributes[cell * channels + k] += weight * rules.summand(k, values[k]);
   }
   for (std::uint32_t cell = 0; cell < cell_count; ++cell) {
     means.positions[cell] = means.positions[cell] * (1 / weights[cell]);
@@ -121,8 +119,7 @@ std::vector<Vec3d> least_error_vertices(const BuildTile& joined,
 }
 
 /// Gives the representatives the means of values, likewise weighted.
-void put_values(const BuildTile& joined, const AttributeLayout& layout, Contraction& contraction) {
-  const ValueMixer values(layout);
+void put_values(const BuildTile& joined, const ValueMixer& values, Contraction& contraction) {
   if (!values.has_values())
     return;
   std::vector<std::vector<WeightedVertex>> cells(contraction.representatives.size());
@@ -138,13 +135,12 @@ void put_values(const BuildTile& joined, const AttributeLayout& layout, Contract
 
 }  // namespace
 
-Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
+Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeRules& rules,
                     Representative representative) {
   Contraction result;
   result.parent_of =
       kd_cells({joined.mesh.vertices.positions.data(), joined.mesh.own_count}, target);
-  const ColourLight colours(layout);
-  const CellMeans means = means_of(joined, result.parent_of, target, colours);
+  const CellMeans means = means_of(joined, result.parent_of, target, rules);
   std::vector<Vec3d> points;
   switch (representative) {
     case Representative::mean:
@@ -162,14 +158,12 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
   result.representatives.reserve(target);
   std::vector<float> attributes(channels);
   for (std::uint32_t cell = 0; cell < target; ++cell) {
-    for (std::size_t k = 0; k < channels; ++k) {
-      const double mean = means.attributes[cell * channels + k];
-      attributes[k] = static_cast<float>(colours.has(k) ? colours.number(mean) : mean);
-    }
-    normalize_average(layout, attributes);
+    for (std::size_t k = 0; k < channels; ++k)
+      attributes[k] = static_cast<float>(rules.number(k, means.attributes[cell * channels + k]));
+    rules.normalize(attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }
-  put_values(joined, layout, result);
+  put_values(joined, rules.values(), result);
   result.deviation = motion_of(joined, result);
   return result;
 }

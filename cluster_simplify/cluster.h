@@ -12,7 +12,7 @@ namespace meshhier::cluster_simplify {
 
 /// See contract(). A `quadric` representative never leaves the sphere around the cell's mean that
 /// holds its vertices.
-Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
+Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeRules& rules,
                     Representative representative);
 
 }  // namespace meshhier::cluster_simplify

@@ -5,8 +5,6 @@
 #include "cluster_simplify/edge_collapse.h"
 #include "cluster_simplify/half_edge.h"
 #include "hierarchy/error.h"
-#include "hierarchy/value_channels.h"
-#include "hierarchy/value_mixer.h"
 #include "hierarchy/vec.h"
 
 #include <algorithm>
@@ -20,13 +18,13 @@ namespace meshhier::cluster_simplify {
 namespace {
 
 Contraction contract_places(const BuildTile& joined, std::uint32_t target,
-                            const AttributeLayout& layout, const ContractionOptions& options) {
-  const auto seams = [&] { return attribute_seams(joined, layout, options.wedges); };
+                            const AttributeRules& rules, const ContractionOptions& options) {
+  const auto seams = [&] { return attribute_seams(joined, rules, options.wedges); };
   switch (options.method) {
     case Method::cluster:
-      return cluster(joined, target, layout, options.representative);
+      return cluster(joined, target, rules, options.representative);
     case Method::edge_collapse:
-      return edge_collapse(joined, target, layout, seams());
+      return edge_collapse(joined, target, rules, seams());
     case Method::half_edge:
       return half_edge(joined, target, options.cost, seams());
   }
@@ -60,12 +58,12 @@ struct Vote {
 /// it stands for: a triangle counts a third at each corner. Among equal areas that of most places,
 /// then the least. Of places with copies the first wedge's counts. What is no number is no label.
 /// O(n log n) a label.
-void choose_majority_labels(const BuildTile& joined, const AttributeLayout& layout,
+void choose_majority_labels(const BuildTile& joined, const AttributeRules& rules,
                             Contraction& contraction) {
   const std::vector<double> areas = areas_around(joined.mesh);
   VertexArray& representatives = contraction.representatives;
   const auto channels = static_cast<std::size_t>(representatives.channels);
-  for (const PlacedValue& value : placed_values(layout)) {
+  for (const PlacedValue& value : rules.values().values()) {
     std::vector<Vote> votes;
     for (std::uint32_t place = 0; value.is_label && place < joined.mesh.own_count; ++place) {
       const double label = value_in(
@@ -100,11 +98,11 @@ void choose_majority_labels(const BuildTile& joined, const AttributeLayout& layo
 
 }  // namespace
 
-Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
+Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeRules& rules,
                      const ContractionOptions& options) {
-  Contraction contraction = contract_places(joined, target, layout, options);
-  if (options.method != Method::half_edge && ValueMixer(layout).has_labels())
-    choose_majority_labels(joined, layout, contraction);
+  Contraction contraction = contract_places(joined, target, rules, options);
+  if (options.method != Method::half_edge && rules.values().has_labels())
+    choose_majority_labels(joined, rules, contraction);
   return contraction;
 }
 

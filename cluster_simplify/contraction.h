@@ -6,7 +6,7 @@
 
 #include "cluster_simplify/seams.h"
 #include "cluster_simplify/wedge_options.h"
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 
 #include <cstdint>
 
@@ -45,7 +45,7 @@ struct ContractionOptions {
 /// representative stands for, `edge_collapse` interpolates along the edges (normals made unit
 /// length by both; labels by the surface they cover), `half_edge` keeps them; of places with
 /// copies those of the first wedge, see contract_wedges() for all. Pure, deterministic; O(n log n).
-Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
+Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeRules& rules,
                      const ContractionOptions& options);
 
 }  // namespace meshhier::cluster_simplify

@@ -6,7 +6,6 @@
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/representatives.h"
 #include "hierarchy/four_floats.h"
-#include "hierarchy/value_mixer.h"
 
 #include <algorithm>
 #include <array>
@@ -76,14 +75,11 @@ std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
 class OptimalPlacement {
  public:
   OptimalPlacement(const CollapseMesh& mesh, const TileMesh& tile, const LocalFrame& frame,
-                   std::span<const PlaceEdge> seams, const AttributeLayout& layout,
+                   std::span<const PlaceEdge> seams, const AttributeRules& rules,
                    VertexArray& vertices)
       : mesh_(mesh),
         positions_(frame.to_local(tile.vertices.positions)),
-        colours_(layout),
-        values_(layout),
-        first_value_(static_cast<std::size_t>(layout.value_offset())),
-        behind_values_(static_cast<std::size_t>(layout.texcoord_offset())),
+        rules_(rules),
         vertices_(vertices) {
     const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_, seams);
     prices_.emplace(tile, frame, total_area(quadrics));
@@ -166,13 +162,6 @@ class OptimalPlacement {
     return meeting_point(four_planes(four.a), four_planes(four.b), four.hx, four.hy, four.hz);
   }
 
-  float mixed_colour(float a, float b, float part) const {
-    if (a == b)
-      return a;
-    return static_cast<float>(
-        colours_.number(colours_.light(a) * (1 - part) + colours_.light(b) * part));
-  }
-
   /// Attributes at the point of the edge that is nearest to the new place.
   void interpolate_attributes(const Collapse& c) {
     if (vertices_.channels == 0)
@@ -183,36 +172,26 @@ class OptimalPlacement {
         squared > 0 ? std::clamp(dot(c.place - positions_[c.to], along) / squared, 0.0F, 1.0F)
                     : 0.5F;
     const auto channels = static_cast<std::size_t>(vertices_.channels);
-    float* to = vertices_.attributes.data() + c.to * channels;
-    const float* from = vertices_.attributes.data() + c.from * channels;
-    const auto interpolate = [&](std::size_t first, std::size_t end) {
-      for (std::size_t k = first; k < end; ++k)
-        to[k] = colours_.has(k) ? mixed_colour(to[k], from[k], part)
-                                : to[k] * (1 - part) + from[k] * part;
-    };
-    interpolate(0, first_value_);
-    values_.mix(std::array<WeightedVertex, 2>{{{to, 1 - part}, {from, part}}}, to);
-    interpolate(behind_values_, channels);
+    rules_.move(vertices_.attributes.data() + c.to * channels,
+                vertices_.attributes.data() + c.from * channels, part);
   }
 
   const CollapseMesh& mesh_;
   std::vector<Vec3f> positions_;
   std::vector<PlacedQuadric> placed_;
   std::optional<TopologyPrices> prices_;
-  ColourLight colours_;
-  ValueMixer values_;
-  std::size_t first_value_, behind_values_;  ///< channels
+  const AttributeRules& rules_;
   VertexArray& vertices_;
 };
 
 }  // namespace
 
 Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
-                          const AttributeLayout& layout, std::span<const PlaceEdge> seams) {
+                          const AttributeRules& rules, std::span<const PlaceEdge> seams) {
   CollapseMesh mesh(joined.mesh);
   VertexArray vertices = joined.mesh.vertices;
   const LocalFrame frame(surface_bounds(mesh, vertices.positions));
-  OptimalPlacement costs(mesh, joined.mesh, frame, seams, layout, vertices);
+  OptimalPlacement costs(mesh, joined.mesh, frame, seams, rules, vertices);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
@@ -225,8 +204,7 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
   result.fallbacks += fallbacks;
   const auto channels = static_cast<std::size_t>(vertices.channels);
   for (std::size_t i = 0; i < result.representatives.size(); ++i) {
-    normalize_average(layout,
-                      std::span(result.representatives.attributes).subspan(i * channels, channels));
+    rules.normalize(std::span(result.representatives.attributes).subspan(i * channels, channels));
   }
   return result;
 }

@@ -32,6 +32,6 @@ namespace meshhier::cluster_simplify {
 /// up step by step, and at last joins vertices across gaps; Contraction::fallbacks counts what each
 /// step took.
 Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
-                          const AttributeLayout& layout, std::span<const PlaceEdge> seams = {});
+                          const AttributeRules& rules, std::span<const PlaceEdge> seams = {});
 
 }  // namespace meshhier::cluster_simplify

@@ -14,10 +14,9 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-TextureCoordinates coordinates_of(const TileWedges& wedges, const AttributeLayout& layout,
+TextureCoordinates coordinates_of(const TileWedges& wedges, const AttributePart& texcoords,
                                   std::uint32_t wedge) {
-  const auto uv =
-      wedges.attributes_of(wedge).subspan(static_cast<std::size_t>(layout.texcoord_offset()), 2);
+  const auto uv = texcoords.of(wedges.attributes_of(wedge));
   return {uv[0], uv[1]};
 }
 
@@ -111,9 +110,9 @@ float weighted(const std::array<double, 3>& weights, const std::array<float, 3>&
 /// The triangles' points nearest to where charts come to lie, as far as they were offered.
 class NearestPlaces {
  public:
-  NearestPlaces(const TileWedges& wedges, const AttributeLayout& layout)
+  NearestPlaces(const TileWedges& wedges, const AttributePart& texcoords)
       : wedges_(wedges),
-        layout_(layout),
+        texcoords_(texcoords),
         distances_(wedges.count(), std::numeric_limits<double>::infinity()),
         found_(wedges.count()) {}
 
@@ -132,15 +131,15 @@ class NearestPlaces {
  private:
   TextureCoordinates coordinates_at(const std::array<double, 3>& weights,
                                     const WedgeTriangle& t) const {
-    const std::array<TextureCoordinates, 3> uv{coordinates_of(wedges_, layout_, t[0]),
-                                               coordinates_of(wedges_, layout_, t[1]),
-                                               coordinates_of(wedges_, layout_, t[2])};
+    const std::array<TextureCoordinates, 3> uv{coordinates_of(wedges_, texcoords_, t[0]),
+                                               coordinates_of(wedges_, texcoords_, t[1]),
+                                               coordinates_of(wedges_, texcoords_, t[2])};
     return {weighted(weights, {uv[0][0], uv[1][0], uv[2][0]}),
             weighted(weights, {uv[0][1], uv[1][1], uv[2][1]})};
   }
 
   const TileWedges& wedges_;
-  const AttributeLayout& layout_;
+  const AttributePart& texcoords_;
   std::vector<double> distances_;
   std::vector<TextureCoordinates> found_;
 };
@@ -148,7 +147,7 @@ class NearestPlaces {
 }  // namespace
 
 std::vector<std::uint32_t> texture_classes(const TileWedges& wedges,
-                                           const AttributeLayout& layout) {
+                                           const AttributePart& texcoords) {
   std::vector<std::uint32_t> class_of(wedges.count());
   std::vector<KeyedWedge> at_place;
   for (std::uint32_t place = 0; place < wedges.place_count(); ++place) {
@@ -156,7 +155,7 @@ std::vector<std::uint32_t> texture_classes(const TileWedges& wedges,
     for (std::uint32_t k = 0; k < wedges.count_at(place); ++k) {
       const std::uint32_t wedge = wedges.at(place, k);
       at_place.push_back(
-          {layout.texcoords ? key_of(coordinates_of(wedges, layout, wedge)) : 0, wedge});
+          {texcoords.count > 0 ? key_of(coordinates_of(wedges, texcoords, wedge)) : 0, wedge});
     }
     find_classes(at_place, class_of);
   }
@@ -164,9 +163,9 @@ std::vector<std::uint32_t> texture_classes(const TileWedges& wedges,
 }
 
 std::vector<std::uint32_t> texture_charts(const TileWedges& wedges, const WedgeClusters& clusters,
-                                          const AttributeLayout& layout) {
+                                          const AttributePart& texcoords) {
   UnionFind charts(wedges.count());
-  const std::vector<std::uint32_t> class_of = texture_classes(wedges, layout);
+  const std::vector<std::uint32_t> class_of = texture_classes(wedges, texcoords);
   for (std::uint32_t wedge = 0; wedge < wedges.count(); ++wedge)
     charts.join(class_of[wedge], wedge);
   join_charts(wedges, clusters, charts);
@@ -177,12 +176,15 @@ std::vector<std::uint32_t> texture_charts(const TileWedges& wedges, const WedgeC
   return names;
 }
 
-std::vector<TextureCoordinates> chart_coordinates(
-    const TileWedges& wedges, const WedgeClusters& clusters, std::span<const std::uint32_t> charts,
-    std::span<const Vec3f> positions, std::span<const char> wanted, const AttributeLayout& layout) {
-  if (!layout.texcoords)
+std::vector<TextureCoordinates> chart_coordinates(const TileWedges& wedges,
+                                                  const WedgeClusters& clusters,
+                                                  std::span<const std::uint32_t> charts,
+                                                  std::span<const Vec3f> positions,
+                                                  std::span<const char> wanted,
+                                                  const AttributePart& texcoords) {
+  if (texcoords.count == 0)
     return {};
-  NearestPlaces nearest(wedges, layout);
+  NearestPlaces nearest(wedges, texcoords);
   for (const WedgeTriangle& t : wedges.triangles()) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t chart = charts[t[k]];

@@ -19,13 +19,14 @@ namespace meshhier::cluster_simplify {
 
 /// Returns, for each wedge, the first one of its place that has the same texture coordinates, but
 /// for the sign of a zero: on one side of a seam they are equal. O(n log n).
-std::vector<std::uint32_t> texture_classes(const TileWedges& wedges, const AttributeLayout& layout);
+std::vector<std::uint32_t> texture_classes(const TileWedges& wedges,
+                                           const AttributePart& texcoords);
 
 /// Returns, for each wedge, its chart in its cluster: a set of wedges, named by one of them. Wedges
 /// of one texture class, and wedges at the ends of an edge of a triangle, are in one chart.
 /// Without texture coordinates charts are the pieces of surface that come together. O(n log n).
 std::vector<std::uint32_t> texture_charts(const TileWedges& wedges, const WedgeClusters& clusters,
-                                          const AttributeLayout& layout);
+                                          const AttributePart& texcoords);
 
 using TextureCoordinates = std::array<float, 2>;
 
@@ -37,6 +38,6 @@ using TextureCoordinates = std::array<float, 2>;
 /// once for a chart, so none needs to be left out where very many meet.
 std::vector<TextureCoordinates> chart_coordinates(
     const TileWedges& wedges, const WedgeClusters& clusters, std::span<const std::uint32_t> charts,
-    std::span<const Vec3f> positions, std::span<const char> wanted, const AttributeLayout& layout);
+    std::span<const Vec3f> positions, std::span<const char> wanted, const AttributePart& texcoords);
 
 }  // namespace meshhier::cluster_simplify

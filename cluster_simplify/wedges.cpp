@@ -1,11 +1,10 @@
 #include "cluster_simplify/wedges.h"
 
 #include "cluster_simplify/attribute_groups.h"
-#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/attribute_metric.h"
 #include "cluster_simplify/texture_charts.h"
 #include "cluster_simplify/tile_wedges.h"
 #include "cluster_simplify/wedge_clusters.h"
-#include "hierarchy/value_mixer.h"
 #include "hierarchy/vec.h"
 
 #include <algorithm>
@@ -75,7 +74,9 @@ std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters&
 
 /// A corner shows one of each.
 struct Combination {
-  std::uint32_t chart, normal, colour, labels;
+  std::uint32_t chart;
+  std::array<std::uint32_t, kMeasuredKinds> groups;  ///< of each metric
+  std::uint32_t labels;
   friend auto operator<=>(const Combination&, const Combination&) = default;
 };
 
@@ -153,19 +154,18 @@ struct NewWedges {
 class WedgeContraction {
  public:
   WedgeContraction(const BuildTile& joined, const Contraction& contraction,
-                   const AttributeLayout& layout, const WedgeOptions& options)
+                   const AttributeRules& rules, const WedgeOptions& options)
       : representatives_(contraction.representatives),
-        layout_(layout),
-        normals_(AttributeKind::normals(layout, options)),
-        colours_(AttributeKind::colours(layout, options)),
-        values_(layout),
+        rules_(rules),
+        texcoords_(rules.part(AttributeKind::texcoords)),
+        metrics_(metrics_of(rules, options)),
         wedges_(joined.mesh),
         clusters_(wedges_, contraction),
         use_(use_of(wedges_, clusters_)),
-        charts_(texture_charts(wedges_, clusters_, layout)),
+        charts_(texture_charts(wedges_, clusters_, texcoords_)),
         wanted_(wanted_clusters(wedges_, clusters_, use_, charts_)),
         coordinates_(chart_coordinates(wedges_, clusters_, charts_, representatives_.positions,
-                                       wanted_, layout)) {}
+                                       wanted_, texcoords_)) {}
 
   ContractedWedges run() const {
     ContractedWedges result;
@@ -224,13 +224,13 @@ class WedgeContraction {
     std::vector<std::uint32_t> firsts;
     for (const std::uint32_t i : order) {
       const auto known = std::ranges::find_if(firsts, [&](std::uint32_t first) {
-        return values_.have_equal_labels(channels_of_wedge(cluster[first]),
-                                         channels_of_wedge(cluster[i]));
+        return rules_.values().have_equal_labels(channels_of_wedge(cluster[first]),
+                                                 channels_of_wedge(cluster[i]));
       });
       group_of[i] = static_cast<std::uint32_t>(known - firsts.begin());
       if (known != firsts.end())
         continue;
-      if (firsts.size() < Leaders<AttributeKind>::kMost)
+      if (firsts.size() < Leaders<AttributeMetric>::kMost)
         firsts.push_back(i);
       else
         group_of[i] = 0;
@@ -242,13 +242,17 @@ class WedgeContraction {
     const std::vector<std::uint32_t> order = largest_first(cluster);
     if (order.empty())
       return {};
-    const AttributeGroups normals = group_attributes(normals_, wedges_, cluster, order);
-    const AttributeGroups colours = group_attributes(colours_, wedges_, cluster, order);
+    std::vector<AttributeGroups> groups;
+    for (const AttributeMetric& metric : metrics_)
+      groups.push_back(group_attributes(metric, wedges_, cluster, order));
     const std::vector<std::uint32_t> labels = label_groups(cluster, order);
     std::vector<Shown> shown;
-    for (const std::uint32_t i : order)
-      shown.push_back(
-          {{charts_[cluster[i].wedge], normals.group_of[i], colours.group_of[i], labels[i]}, i});
+    for (const std::uint32_t i : order) {
+      Combination what{charts_[cluster[i].wedge], {}, labels[i]};
+      for (std::size_t k = 0; k < groups.size(); ++k)
+        what.groups[k] = groups[k].group_of[i];
+      shown.push_back({what, i});
+    }
     std::sort(shown.begin(), shown.end());
     const std::vector<Shown> combinations = firsts_of(shown);
     VertexArray vertices{{}, {}, representatives_.channels};
@@ -257,24 +261,23 @@ class WedgeContraction {
       std::vector<WeightedVertex> members;
       for (; of != shown.end() && of->what == what; ++of)
         members.push_back({channels_of_wedge(cluster[of->member]), cluster[of->member].area});
-      vertices.append(
-          representatives_.positions[c],
-          combined(what.chart, normals.values[what.normal], colours.values[what.colour], members));
+      vertices.append(representatives_.positions[c], combined(what, groups, members));
     }
     return numbered(cluster, shown, combinations, vertices);
   }
 
-  /// The attributes of a combination, as many of the floats as the layout has.
-  std::vector<float> combined(std::uint32_t chart, const std::array<float, 4>& normal,
-                              const std::array<float, 4>& colour,
+  /// The attributes of a combination. `groups`: of each metric.
+  std::vector<float> combined(const Combination& what, std::span<const AttributeGroups> groups,
                               std::span<const WeightedVertex> members) const {
-    std::vector<float> attributes;
-    attributes.insert(attributes.end(), normal.begin(), normal.begin() + layout_.colour_offset());
-    attributes.insert(attributes.end(), colour.begin(), colour.begin() + layout_.colour_channels());
-    attributes.resize(static_cast<std::size_t>(layout_.texcoord_offset()));
-    values_.mix(members, attributes.data());
-    if (layout_.texcoords)
-      attributes.insert(attributes.end(), coordinates_[chart].begin(), coordinates_[chart].end());
+    std::vector<float> attributes(rules_.channels());
+    const auto put = [&](const AttributePart& part, const auto& numbers) {
+      std::copy_n(numbers.begin(), part.count, part.of(std::span(attributes)).begin());
+    };
+    for (std::size_t k = 0; k < groups.size(); ++k)
+      put(metrics_[k].channels(), groups[k].values[what.groups[k]]);
+    rules_.values().mix(members, attributes.data());
+    if (texcoords_.count > 0)
+      put(texcoords_, coordinates_[what.chart]);
     return attributes;
   }
 
@@ -308,7 +311,7 @@ class WedgeContraction {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = first; i < first + std::min(count, kMostCompared); ++i) {
       const double difference =
-          squared_difference(layout_, wedges_.attributes_of(wedge), vertices.attributes_of(i));
+          squared_difference(rules_, wedges_.attributes_of(wedge), vertices.attributes_of(i));
       if (difference < least) {
         least = difference;
         best = i;
@@ -343,9 +346,9 @@ class WedgeContraction {
   }
 
   const VertexArray& representatives_;
-  const AttributeLayout& layout_;
-  AttributeKind normals_, colours_;
-  ValueMixer values_;
+  const AttributeRules& rules_;
+  AttributePart texcoords_;
+  std::vector<AttributeMetric> metrics_;
   TileWedges wedges_;
   WedgeClusters clusters_;
   WedgeUse use_;
@@ -368,11 +371,11 @@ ContractedWedges one_wedge_a_place(const TileMesh& joined) {
 }  // namespace
 
 ContractedWedges contract_wedges(const BuildTile& joined, const Contraction& contraction,
-                                 const AttributeLayout& layout, const WedgeOptions& options) {
+                                 const AttributeRules& rules, const WedgeOptions& options) {
   assert(!joined.mesh.copies.empty());
   if (contraction.representatives.channels == 0)
     return one_wedge_a_place(joined.mesh);
-  return WedgeContraction(joined, contraction, layout, options).run();
+  return WedgeContraction(joined, contraction, rules, options).run();
 }
 
 }  // namespace meshhier::cluster_simplify

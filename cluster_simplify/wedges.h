@@ -29,7 +29,7 @@
 
 #include "cluster_simplify/seams.h"
 #include "cluster_simplify/wedge_options.h"
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 #include "hierarchy/build_tile.h"
 
 #include <vector>
@@ -50,6 +50,6 @@ struct ContractedWedges {
 /// Old wedges without a triangle that survives go to the nearest of their chart, or of their place.
 /// Pure, deterministic; O(n log n), however many wedges or triangles meet at a place.
 ContractedWedges contract_wedges(const BuildTile& joined, const Contraction& contraction,
-                                 const AttributeLayout& layout, const WedgeOptions& options);
+                                 const AttributeRules& rules, const WedgeOptions& options);
 
 }  // namespace meshhier::cluster_simplify

@@ -38,38 +38,31 @@ ClippedCorner CornerMixer::mixed(const ClippedCorner& from,
   made.normal = unit(mix_vector(&ClippedCorner::normal), from.normal);
   made.texcoord = {mix_float([](const ClippedCorner& c) { return c.texcoord.u; }),
                    mix_float([](const ClippedCorner& c) { return c.texcoord.v; })};
-  const auto first_value = static_cast<std::size_t>(layout_.value_offset());
-  const auto behind_values = static_cast<std::size_t>(layout_.texcoord_offset());
-  for (std::size_t channel = 0; channel < channels_; ++channel) {
-    if (channel >= first_value && channel < behind_values)
-      continue;
-    const auto number = [=](const ClippedCorner& c) { return c.attributes[channel]; };
-    made.attributes[channel] =
-        light_.has(channel) ? static_cast<float>(light_.number(mix(
-                                  [&](const ClippedCorner& c) { return light_.light(number(c)); })))
-                            : mix_float(number);
+  for (std::size_t k = 0; k < channels_; ++k) {
+    const auto summand = [&](const ClippedCorner& c) { return rules_.summand(k, c.attributes[k]); };
+    if (!rules_.is_quantity(k))
+      made.attributes[k] = static_cast<float>(rules_.number(k, mix(summand)));
   }
   mix_values(from, to, weights, made);
-  normalize_average(layout_, std::span(made.attributes).first(channels_));
-  if (layout_.colour == ColourType::none || layout_.colour == ColourType::f32)
-    return made;
-  const auto colour = std::span(made.attributes)
-                          .subspan(static_cast<std::size_t>(layout_.colour_offset()),
-                                   static_cast<std::size_t>(layout_.colour_channels()));
-  std::ranges::transform(colour, colour.begin(), [](float x) { return std::round(x); });
+  const std::span<float> all = std::span(made.attributes).first(channels_);
+  rules_.normalize(all);
+  if (rules_.are_colours_whole()) {
+    const std::span<float> colour = rules_.part(AttributeKind::colours).of(all);
+    std::ranges::transform(colour, colour.begin(), [](float x) { return std::round(x); });
+  }
   return made;
 }
 
 void CornerMixer::mix_values(const ClippedCorner& from, std::span<const ClippedCorner* const> to,
                              std::span<const double> weights, ClippedCorner& made) const {
-  if (!values_.has_values())
+  if (!rules_.values().has_values())
     return;
   std::vector<WeightedVertex> vertices{{from.attributes.data(), 1}};
   for (std::size_t i = 0; i < to.size(); ++i) {
     vertices.push_back({to[i]->attributes.data(), std::max(weights[i], 0.0)});
     vertices[0].weight = std::max(vertices[0].weight - weights[i], 0.0);
   }
-  values_.mix(vertices, made.attributes.data());
+  rules_.values().mix(vertices, made.attributes.data());
 }
 
 }  // namespace meshhier::exporting

@@ -1,9 +1,8 @@
 // Corners of triangles that are cut, with all that a vertex has.
 #pragma once
 
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/value_mixer.h"
 #include "hierarchy/vec.h"
 
 #include <algorithm>
@@ -47,8 +46,8 @@ inline auto key_of(const ClippedCorner& c) {
 class CornerMixer {
  public:
   /// `channels`: how many attributes corners have; those beyond `layout` are plain numbers.
-  CornerMixer(const AttributeLayout& layout, std::size_t channels)
-      : layout_(layout), light_(layout), values_(layout), channels_(channels) {}
+  CornerMixer(const AttributeRules& rules, std::size_t channels)
+      : rules_(rules), channels_(channels) {}
 
   /// Returns `from` plus the weights' parts of the ways to `to`; there are as many weights. It
   /// mixes positions, normals (made of unit length again), texture coordinates and attributes;
@@ -64,9 +63,7 @@ class CornerMixer {
   void mix_values(const ClippedCorner& from, std::span<const ClippedCorner* const> to,
                   std::span<const double> weights, ClippedCorner& made) const;
 
-  AttributeLayout layout_;
-  ColourLight light_;
-  ValueMixer values_;
+  AttributeRules rules_;
   std::size_t channels_;
 };
 

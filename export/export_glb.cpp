@@ -9,6 +9,7 @@
 #include "storage/format/glb_material.h"
 #include "storage/format/showable.h"
 #include "storage/format/tile_colours.h"
+#include "storage/format/tile_plan.h"
 #include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
@@ -57,9 +58,11 @@ struct GlbSection {
   std::uint64_t bytes() const { return count * stride; }
 };
 
-std::uint64_t component_bytes(unsigned component) {
-  return component == storage::kU8 ? 1 : component == storage::kU16 ? 2 : 4;
-}
+constexpr std::size_t kPositions = 0;
+constexpr std::size_t kFirstAttribute = 1;
+constexpr std::size_t kIndices = kFirstAttribute + storage::kAttributeSections.size();
+constexpr std::size_t kPicture = kIndices + 1;
+using GlbSections = std::array<GlbSection, kPicture + 1>;
 
 /// The sections of the parts.
 class GlbLayout {
@@ -68,24 +71,32 @@ class GlbLayout {
 
   /// Returns positions, normals, colours, texture coordinates, indices, picture; those that are not
   /// there have no bytes.
-  std::array<GlbSection, 6> sections(const PartFacts& part) const {
+  GlbSections sections(const PartFacts& part) const {
     const AttributeLayout& layout = format_.attributes;
     const std::uint64_t n = part.vertices;
-    const bool has_normals = layout.normals || format_.computed_normals;
-    const bool has_colours = layout.colour != ColourType::none;
-    const bool has_texcoords = layout.texcoords || part.image_bytes > 0;
-    const unsigned colour = storage::TileColours(layout, false).component();
-    const std::uint64_t colour_bytes =
-        static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
-    return {{{"POSITION", "VEC3", storage::kF32, n, 12},
-             {"NORMAL", "VEC3", storage::kF32, has_normals ? n : 0, 12},
-             {storage::colour_attribute(layout, format_.textures.has_value()),
-              layout.alpha ? "VEC4" : "VEC3", colour, has_colours ? n : 0,
-              storage::aligned4(colour_bytes), colour != storage::kF32},
-             {"TEXCOORD_0", "VEC2", storage::kF32, has_texcoords ? n : 0, 8},
-             {"", "SCALAR", index_component(n), 3 * std::uint64_t{part.triangles},
-              component_bytes(index_component(n))},
-             {"", "", 0, part.image_bytes, 1}}};
+    GlbSections sections;
+    sections[kPositions] = {"POSITION", "VEC3", storage::kF32, n, 12};
+    const storage::ChannelGroups groups = storage::groups_of(layout);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      const unsigned component =
+          storage::component_of(groups[i].kind, storage::TileColours(layout, false));
+      const std::size_t channels = is_made(groups[i].kind, part)
+                                       ? static_cast<std::size_t>(row_of(groups[i].kind).size)
+                                       : groups[i].channels;
+      sections[kFirstAttribute + i] = {
+          groups[i].kind == AttributeKind::colours
+              ? storage::colour_attribute(layout, format_.textures.has_value())
+              : row_of(groups[i].kind).gltf,
+          storage::vector_type(channels),
+          component,
+          channels > 0 ? n : 0,
+          storage::aligned4(channels * storage::component_bytes(component)),
+          component != storage::kF32};
+    }
+    sections[kIndices] = {"", "SCALAR", index_component(n), 3 * std::uint64_t{part.triangles},
+                          storage::component_bytes(index_component(n))};
+    sections[kPicture] = {"", "", 0, part.image_bytes, 1};
+    return sections;
   }
 
   std::uint64_t bytes(const PartFacts& part) const {
@@ -96,6 +107,11 @@ class GlbLayout {
   }
 
  private:
+  /// Whether tiles have it although the input had not.
+  bool is_made(AttributeKind kind, const PartFacts& part) const {
+    return (kind == AttributeKind::normals && format_.computed_normals) ||
+           (kind == AttributeKind::texcoords && part.image_bytes > 0);
+  }
   static unsigned index_component(std::uint64_t vertices) {
     return vertices <= storage::kMaxShortVertices ? storage::kU16 : storage::kU32;
   }
@@ -275,11 +291,11 @@ class PartBytes {
         sections_(GlbLayout(format).sections(facts_of(part))) {}
 
   void write(ByteStream& to) {
-    put(to, 0, [&](std::size_t v) { append(part_.vertices.positions[v]); });
-    put(to, 1, [&](std::size_t v) { append_normal(v); });
-    put(to, 2, [&](std::size_t v) { append_colour(v); });
-    put(to, 3, [&](std::size_t v) { append_texcoord(v); });
-    put(to, 4, [&](std::size_t i) { append_index(part_.triangles[i / 3][i % 3]); });
+    put(to, kPositions, [&](std::size_t v) { append(part_.vertices.positions[v]); });
+    const storage::ChannelGroups groups = storage::groups_of(layout_);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      put(to, kFirstAttribute + i, [&](std::size_t v) { append_attribute(groups[i], v); });
+    put(to, kIndices, [&](std::size_t i) { append_index(part_.triangles[i / 3][i % 3]); });
     bytes_ = part_.image.bytes;
     pad_and_put(to);
   }
@@ -303,24 +319,21 @@ class PartBytes {
       storage::append_little(bytes_, value);
   }
 
-  std::span<const float> channels(std::size_t vertex, int first, int count) const {
-    const auto all = static_cast<std::size_t>(layout_.channels());
-    return std::span(shown_).subspan(vertex * all + static_cast<std::size_t>(first),
-                                     static_cast<std::size_t>(count));
-  }
-
-  void append_normal(std::size_t vertex) {
-    if (!part_.normals.empty())
+  /// What the build made of normals and coordinates comes before what the input had.
+  void append_attribute(const storage::ChannelGroup& group, std::size_t vertex) {
+    if (group.kind == AttributeKind::normals && !part_.normals.empty())
       return append(part_.normals[vertex]);
-    const auto normal = channels(vertex, layout_.normal_offset(), 3);
-    append({normal[0], normal[1], normal[2]});
-  }
-
-  void append_colour(std::size_t vertex) {
-    for (const float value : channels(vertex, layout_.colour_offset(), layout_.colour_channels())) {
-      if (colours_.stored_type() == ColourType::u8)
+    if (group.kind == AttributeKind::texcoords && !part_.texcoords.empty()) {
+      storage::append_little(bytes_, part_.texcoords[vertex].u);
+      return storage::append_little(bytes_, part_.texcoords[vertex].v);
+    }
+    const auto all = static_cast<std::size_t>(layout_.channels());
+    const unsigned component = storage::component_of(group.kind, colours_);
+    for (const float value :
+         std::span(shown_).subspan(vertex * all + group.offset, group.channels)) {
+      if (component == storage::kU8)
         storage::append_little(bytes_, static_cast<std::uint8_t>(value));
-      else if (colours_.stored_type() == ColourType::u16)
+      else if (component == storage::kU16)
         storage::append_little(bytes_, static_cast<std::uint16_t>(value));
       else
         storage::append_little(bytes_, value);
@@ -328,17 +341,8 @@ class PartBytes {
     bytes_.resize(storage::aligned4(bytes_.size()));
   }
 
-  void append_texcoord(std::size_t vertex) {
-    if (!part_.texcoords.empty()) {
-      storage::append_little(bytes_, part_.texcoords[vertex].u);
-      return storage::append_little(bytes_, part_.texcoords[vertex].v);
-    }
-    for (const float value : channels(vertex, layout_.texcoord_offset(), 2))
-      storage::append_little(bytes_, value);
-  }
-
   void append_index(std::uint32_t vertex) {
-    if (sections_[4].component == storage::kU16)
+    if (sections_[kIndices].component == storage::kU16)
       storage::append_little(bytes_, static_cast<std::uint16_t>(vertex));
     else
       storage::append_little(bytes_, vertex);
@@ -347,8 +351,8 @@ class PartBytes {
   const AttributeLayout& layout_;
   const CutPart& part_;
   storage::TileColours colours_;
-  std::vector<float> shown_;  ///< in the form of the sections
-  std::array<GlbSection, 6> sections_;
+  std::vector<float> shown_;  ///< as the sections hold them
+  GlbSections sections_;
   std::vector<std::byte> bytes_;
 };
 

@@ -148,7 +148,7 @@ class ObjWriter {
   ObjWriter(const storage::HierarchyReader& reader, storage::File& file)
       : layout_(reader.tile_format().attributes),
         origin_(reader.manifest().origin),
-        shows_colours_(!reader.tile_format().textures && layout_.colour != ColourType::none),
+        shows_colours_(!reader.tile_format().textures && layout_.has_colours()),
         out_(file) {}
 
   void line(const std::string& text) { out_.put(text + '\n'); }
@@ -204,7 +204,7 @@ class ObjWriter {
 
   std::string colour_text(std::span<const float> channels) const {
     const float full = full_number(layout_.colour);
-    const auto rgb = channels.subspan(static_cast<std::size_t>(layout_.colour_offset()), 3);
+    const auto rgb = channels.subspan(layout_.part(AttributeKind::colours).first, 3);
     const auto value = [&](float number) {
       const float part = number / full;
       return layout_.space == ColourSpace::linear ? static_cast<float>(value_of(part)) : part;
@@ -218,7 +218,7 @@ class ObjWriter {
     if (!part.texcoords.empty())
       return {part.texcoords[vertex].u, 1 - part.texcoords[vertex].v};
     const auto own = channels(shown, vertex);
-    const auto offset = static_cast<std::size_t>(layout_.texcoord_offset());
+    const auto offset = layout_.part(AttributeKind::texcoords).first;
     return {own[offset], own[offset + 1]};
   }
 

@@ -16,21 +16,22 @@ double squared_difference(std::span<const float> a, std::span<const float> b) {
 }
 
 /// Returns how unlike two vertices are: by values, normal, colour, texture coordinate.
-std::array<double, 4> difference(const AttributeLayout& layout, std::span<const PlacedValue> values,
-                                 const VertexAt& a, const VertexAt& b) {
-  const auto between = [&](int begin, int end) {
-    const auto first = static_cast<std::size_t>(begin),
-               count = static_cast<std::size_t>(end) - first;
-    return squared_difference(a.attributes().subspan(first, count),
-                              b.attributes().subspan(first, count));
+using Difference = std::array<double, 1 + kAttributeKindCount>;
+
+Difference difference(const AttributeParts& parts, std::span<const PlacedValue> values,
+                      const VertexAt& a, const VertexAt& b) {
+  const auto between = [&](const AttributePart& part) {
+    return squared_difference(part.of(a.attributes()), part.of(b.attributes()));
   };
-  const auto differing = std::ranges::count_if(values, [&](const PlacedValue& value) {
-    const int begin = static_cast<int>(value.channel);
-    return between(begin, begin + channels_of(value.type)) != 0;
-  });
-  return {static_cast<double>(differing), between(layout.normal_offset(), layout.colour_offset()),
-          between(layout.colour_offset(), layout.value_offset()),
-          between(layout.texcoord_offset(), layout.channels())};
+  Difference difference{};
+  difference[0] = static_cast<double>(std::ranges::count_if(values, [&](const PlacedValue& value) {
+    return between({AttributeKind::values, value.channel, value.channels()}) != 0;
+  }));
+  for (const AttributePart& part : parts) {
+    if (part.kind != AttributeKind::values)
+      difference[1 + static_cast<std::size_t>(part.kind)] = between(part);
+  }
+  return difference;
 }
 
 }  // namespace
@@ -47,9 +48,10 @@ std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex
                            std::span<const VertexAt> all) {
   if (all.size() == 1)
     return 0;
+  const AttributeParts parts = layout.parts();
   const std::vector<PlacedValue> values = placed_values(layout);
   const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-    return difference(layout, values, vertex, a) < difference(layout, values, vertex, b);
+    return difference(parts, values, vertex, a) < difference(parts, values, vertex, b);
   });
   return static_cast<std::size_t>(nearest - all.begin());
 }

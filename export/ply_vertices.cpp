@@ -19,7 +19,7 @@ std::vector<float> screen_attributes(const AttributeLayout& layout, std::span<co
   std::vector<float> attributes(given.begin(), given.end());
   const double full = full_number(layout.colour);
   for (std::size_t v = 0; v < attributes.size(); v += channels) {
-    float* colour = &attributes[v + static_cast<std::size_t>(layout.colour_offset())];
+    float* colour = &attributes[v + layout.part(AttributeKind::colours).first];
     std::transform(colour, colour + 3, colour,
                    [&](float x) { return static_cast<float>(full * value_of(x / full)); });
   }

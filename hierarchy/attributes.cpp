@@ -1,24 +1,32 @@
 #include "hierarchy/attributes.h"
 
-#include "hierarchy/vec.h"
-
 namespace meshhier {
+namespace {
 
-ColourLight::ColourLight(const AttributeLayout& layout)
-    : full_(full_number(layout.colour)),
-      first_(static_cast<std::size_t>(layout.colour_offset())),
-      count_(layout.colour != ColourType::none && layout.space == ColourSpace::srgb ? 3 : 0) {}
+std::string name_of(const AttributeKindRow& row, const AttributeLayout& layout) {
+  const std::string name(row.for_people);
+  if (row.kind == AttributeKind::colours)
+    return std::string(row_of(layout.colour).for_people) + ' ' + name +
+           (layout.alpha ? " with alpha" : "");
+  return name;
+}
 
-void normalize_average(const AttributeLayout& layout, std::span<float> channels) {
-  if (!layout.normals)
-    return;
-  float* n = channels.data() + layout.normal_offset();
-  const Vec3d normal{n[0], n[1], n[2]};
-  const double size = length(normal);
-  if (!(size > 0))
-    return;
-  for (int axis = 0; axis < 3; ++axis)
-    n[axis] = static_cast<float>(normal[axis] / size);
+}  // namespace
+
+std::string attribute_names(const AttributeLayout& layout) {
+  std::string names;
+  const auto add = [&](const std::string& name) {
+    names.append(names.empty() ? "" : ", ").append(name);
+  };
+  for (const AttributeKindRow& row : kAttributeKinds) {
+    const bool is_told_by_material = row.kind == AttributeKind::texcoords && layout.material;
+    const bool comes_last = row.kind == AttributeKind::values;
+    if (row.channels(layout) > 0 && !is_told_by_material && !comes_last)
+      add(name_of(row, layout));
+  }
+  if (const std::size_t count = layout.values.size(); count > 0)
+    add(std::to_string(count) + (count == 1 ? " value" : " values"));
+  return names.empty() ? "none" : names;
 }
 
 }  // namespace meshhier

@@ -32,10 +32,8 @@ inline int vertex_values(const AttributeLayout& layout) {
 
 /// Bytes that value number `value` of a vertex is kept in.
 inline int value_bytes(const AttributeLayout& layout, int value) {
-  const int colour = value - 3 - layout.colour_offset();
-  if (colour < 0 || colour >= layout.colour_channels())
-    return 4;
-  return layout.colour == ColourType::u8 ? 1 : layout.colour == ColourType::u16 ? 2 : 4;
+  const auto channel = static_cast<std::size_t>(value - 3);  // huge of places
+  return layout.part(AttributeKind::colours).has(channel) ? row_of(layout.colour).bytes : 4;
 }
 
 struct VertexRun {

@@ -19,7 +19,7 @@ struct PlacedValue {
 /// In the order of layout.values.
 inline std::vector<PlacedValue> placed_values(const AttributeLayout& layout) {
   std::vector<PlacedValue> placed;
-  auto channel = static_cast<std::size_t>(layout.value_offset());
+  std::size_t channel = layout.part(AttributeKind::values).first;
   for (const ScalarAttribute& value : layout.values) {
     placed.push_back({value.type, value.is_label, channel});
     channel += placed.back().channels();

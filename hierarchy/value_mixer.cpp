@@ -77,10 +77,22 @@ double label_of(std::span<const WeightedVertex> vertices, const ValueOf& value) 
                                          : label_of_many(vertices, value);
 }
 
+/// The values, and each number of other kinds of quantities.
+std::vector<PlacedValue> quantities_of(const AttributeLayout& layout) {
+  std::vector<PlacedValue> quantities = placed_values(layout);
+  for (const AttributePart& part : layout.parts()) {
+    if (part.kind == AttributeKind::values || row_of(part.kind).rule != AttributeRule::quantities)
+      continue;
+    for (std::size_t k = part.first; k < part.end(); ++k)
+      quantities.push_back({ValueType::f32, false, k});
+  }
+  return quantities;
+}
+
 }  // namespace
 
 ValueMixer::ValueMixer(const AttributeLayout& layout)
-    : values_(placed_values(layout)),
+    : values_(quantities_of(layout)),
       has_labels_(std::ranges::any_of(values_, &PlacedValue::is_label)) {}
 
 void ValueMixer::mix(std::span<const WeightedVertex> vertices, float* to) const {

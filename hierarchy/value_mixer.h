@@ -1,4 +1,4 @@
-// Means of the values that vertices have beside normals, colours and texture coordinates.
+// Means of the quantities that vertices have beside normals, colours and texture coordinates.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -20,6 +20,7 @@ class ValueMixer {
  public:
   explicit ValueMixer(const AttributeLayout& layout);
 
+  std::span<const PlacedValue> values() const { return values_; }
   bool has_values() const { return !values_.empty(); }
   bool has_labels() const { return has_labels_; }
 
@@ -34,7 +35,7 @@ class ValueMixer {
   bool have_equal_labels(const float* a, const float* b) const;
 
  private:
-  std::vector<PlacedValue> values_;
+  std::vector<PlacedValue> values_;  ///< of all kinds of quantities
   bool has_labels_ = false;
 };
 

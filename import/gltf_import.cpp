@@ -49,10 +49,16 @@ ColourType colour_type(GltfComponent component) {
 class CommonLayout {
  public:
   void add(const GltfFile& file, const GltfPrimitive& primitive, const std::string& texcoords) {
-    layout_.normals = layout_.normals || primitive.attribute("NORMAL");
-    layout_.texcoords = layout_.texcoords || primitive.attribute(texcoords);
-    if (const auto colour = primitive.attribute("COLOR_0"))
-      add_colour(file.document().accessors[*colour]);
+    for (const AttributeKindRow& row : kAttributeKinds) {
+      const auto accessor = primitive.attribute(
+          row.kind == AttributeKind::texcoords ? texcoords : std::string(row.gltf));
+      if (!accessor)
+        continue;
+      if (row.kind == AttributeKind::colours)
+        add_colour(file.document().accessors[*accessor]);
+      else
+        layout_.*row.flag = true;
+    }
   }
   const AttributeLayout& layout() const { return layout_; }
 
@@ -60,8 +66,7 @@ class CommonLayout {
   /// One type for all: floats hold the others.
   void add_colour(const mesh_io::GltfAccessor& accessor) {
     const ColourType type = colour_type(accessor.component);
-    layout_.colour =
-        layout_.colour == ColourType::none || layout_.colour == type ? type : ColourType::f32;
+    layout_.colour = !layout_.has_colours() || layout_.colour == type ? type : ColourType::f32;
     layout_.alpha = layout_.alpha || accessor.components == 4;
   }
 
@@ -202,11 +207,11 @@ class GltfImporter {
       import_.layout.values.push_back(value.attribute);
     if (is_textured()) {
       import_.layout.texcoords = import_.layout.material = true;
-    } else if (import_.layout.colour == ColourType::none && materials_.colours().are_seen()) {
+    } else if (!import_.layout.has_colours() && materials_.colours().are_seen()) {
       import_.layout.colour = PlainColours::kType;
       import_.material_colours = materials_.colours().count();
       import_.is_painted = true;
-    } else if (import_.layout.colour != ColourType::none &&
+    } else if (import_.layout.has_colours() &&
                (materials_.colours().are_coloured() || materials_.emit())) {
       import_.material_colours = materials_.colours().count();
       // Products of light with 8 bits would be bands.
@@ -214,9 +219,9 @@ class GltfImporter {
       if (widens_colours_)
         import_.layout.colour = ColourType::u16;
     }
-    if (import_.layout.colour != ColourType::none && !import_.is_painted)
+    if (import_.layout.has_colours() && !import_.is_painted)
       import_.layout.space = ColourSpace::linear;
-    import_.layout.tints = import_.layout.material && import_.layout.colour != ColourType::none;
+    import_.layout.tints = import_.layout.material && import_.layout.has_colours();
   }
 
   void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
@@ -317,7 +322,7 @@ class GltfImporter {
       file_.fail(fmt::format("{} has {} elements for {}, POSITION has {}", source->name,
                              source->count, name, count));
     }
-    source->normalized = source->normalized || name == "COLOR_0";
+    source->normalized = source->normalized || name == row_of(AttributeKind::colours).gltf;
     return GltfElements(
         file_, *std::move(source),
         stored ? GltfElements::Integers::stored : GltfElements::Integers::fractions);
@@ -325,34 +330,45 @@ class GltfImporter {
 
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
-    std::optional<GltfElements> normals, colours, texcoords;
-    std::vector<std::optional<GltfElements>> values;  ///< one for each of values_
+    std::array<std::optional<GltfElements>, kAttributeKindCount> given;  ///< but for values
+    std::vector<std::optional<GltfElements>> values;                     ///< of values_
     // The material's, if vertices have its colour.
     std::array<double, 4> factor{1, 1, 1, 1};
     std::array<double, 3> light{};
     bool is_untinted = false;  ///< the material's picture is shown as it is
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
+
+    std::optional<GltfElements>& of(AttributeKind kind) {
+      return given[static_cast<std::size_t>(kind)];
+    }
   };
 
   Attributes attributes(const GltfPrimitive& primitive, const PrimitiveSources& sources,
                         std::uint64_t count) const {
     const AttributeLayout& layout = import_.layout;
     Attributes attributes;
-    if (layout.normals)
-      attributes.normals = elements(sources, "NORMAL", 3, 3, count);
+    for (const AttributePart& part : layout.parts()) {
+      const AttributeKindRow& row = row_of(part.kind);
+      const auto size = static_cast<std::uint32_t>(row.size);
+      if (part.kind == AttributeKind::values) {
+        for (const GltfValue& value : values_)
+          attributes.values.push_back(elements(sources, value.source, 1, 4, count, true));
+      } else if (part.count > 0 && part.kind == AttributeKind::colours) {
+        attributes.of(part.kind) =
+            elements(sources, std::string(row.gltf), 3, 4, count, layout.colour != ColourType::f32);
+      } else if (part.count > 0 && !row.gltf.empty()) {
+        attributes.of(part.kind) = elements(
+            sources,
+            part.kind == AttributeKind::texcoords ? texcoords_of(primitive) : std::string(row.gltf),
+            size, size, count);
+      }
+    }
     if (import_.material_colours > 0)
       attributes.factor = factor_of(primitive.material);
     if (import_.material_colours > 0 && !import_.is_painted && primitive.material)
       attributes.light = plain_light(file_.document().materials[*primitive.material]);
     attributes.is_untinted = layout.material && materials_.look(primitive.material).is_untinted;
-    if (layout.colour != ColourType::none)
-      attributes.colours =
-          elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
-    for (const GltfValue& value : values_)
-      attributes.values.push_back(elements(sources, value.source, 1, 4, count, true));
-    if (layout.texcoords)
-      attributes.texcoords = elements(sources, texcoords_of(primitive), 2, 2, count);
     if (layout.material) {
       attributes.material = static_cast<float>(materials_.number(primitive.material));
       if (const auto* shown = materials_.look(primitive.material).texture)
@@ -384,25 +400,26 @@ class GltfImporter {
     count_filled(all, used.size());
     GltfElements positions(file_, position);
     execution::SpoolCursor vertices(used, room_.cancel);
+    const AttributeParts parts = import_.layout.parts();
     std::vector<float> channels;
     for (std::uint64_t i = 0; i < used.size(); ++i) {
       const std::uint32_t vertex = vertices.at(i);
       const GltfTransform transform = place(vertex);
       append_position(positions, vertex, transform);
       channels.clear();
-      add_normal(all, vertex, transform, channels);
-      add_colour(all, vertex, channels);
-      add_values(all, vertex, channels);
-      add_texcoord(all, vertex, channels);
+      for (const AttributePart& part : parts) {
+        if (part.count > 0)
+          add_attribute(part, all, vertex, transform, channels);
+      }
       import_.zeroed += mesh_io::zero_what_is_not_finite(import_.layout, channels);
       mesh_.attributes.append(channels);
     }
   }
 
-  void count_filled(const Attributes& all, std::uint64_t vertices) {
-    const AttributeLayout& layout = import_.layout;
-    without_normal_ += layout.normals && !all.normals ? vertices : 0;
-    without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
+  void count_filled(Attributes& all, std::uint64_t vertices) {
+    for (const AttributePart& part : import_.layout.parts())
+      without_[static_cast<std::size_t>(part.kind)] +=
+          part.count > 0 && !all.of(part.kind) ? vertices : 0;
   }
 
   void append_position(GltfElements& positions, std::uint32_t vertex,
@@ -433,13 +450,27 @@ class GltfImporter {
     return number;
   }
 
-  void add_normal(Attributes& all, std::uint32_t vertex, const GltfTransform& transform,
-                  std::vector<float>& channels) const {
-    if (!import_.layout.normals)
-      return;
+  void add_attribute(const AttributePart& part, Attributes& all, std::uint32_t vertex,
+                     const GltfTransform& transform, std::vector<float>& channels) const {
+    switch (part.kind) {
+      case AttributeKind::normals:
+        return add_normal(all.of(part.kind), vertex, transform, channels);
+      case AttributeKind::colours:
+        return add_colour(part, all, vertex, channels);
+      case AttributeKind::values:
+        return add_values(all, vertex, channels);
+      case AttributeKind::texcoords:
+        return add_texcoord(all, vertex, channels);
+      case AttributeKind::material:
+        return channels.push_back(all.material);
+    }
+  }
+
+  static void add_normal(std::optional<GltfElements>& normals, std::uint32_t vertex,
+                         const GltfTransform& transform, std::vector<float>& channels) {
     Vec3d normal;
-    if (all.normals) {
-      const std::span<const double> n = all.normals->at(vertex);
+    if (normals) {
+      const std::span<const double> n = normals->at(vertex);
       const Vec3d given{n[0], n[1], n[2]};
       normal = std::ranges::all_of(n, [](double number) { return std::isfinite(number); })
                    ? turned_normal(given, transform)
@@ -458,20 +489,18 @@ class GltfImporter {
     return std::isfinite(size) && size > 0 ? n * (1 / size) : Vec3d{};
   }
 
-  void add_colour(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
-    const AttributeLayout& layout = import_.layout;
-    const auto size = static_cast<std::size_t>(layout.colour_channels());
-    const std::size_t end = channels.size() + size;
-    const std::size_t begin = channels.size();
-    if (size > 0 && all.colours && !all.is_untinted) {
-      for (const double value : all.colours->at(vertex)) {
-        if (channels.size() < end)
-          channels.push_back(checked(*all.colours, vertex, value) * (widens_colours_ ? 257 : 1));
+  void add_colour(const AttributePart& part, Attributes& all, std::uint32_t vertex,
+                  std::vector<float>& channels) const {
+    auto& colours = all.of(part.kind);
+    if (colours && !all.is_untinted) {
+      for (const double value : colours->at(vertex)) {
+        if (channels.size() < part.end())
+          channels.push_back(checked(*colours, vertex, value) * (widens_colours_ ? 257 : 1));
       }
     }
-    channels.resize(end, full_number(layout.colour));
+    channels.resize(part.end(), full_number(import_.layout.colour));
     if (all.factor != std::array<double, 4>{1, 1, 1, 1} || all.light != std::array<double, 3>{})
-      show_through(std::span(channels).subspan(begin), all);
+      show_through(part.of(std::span(channels)), all);
   }
 
   void add_values(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
@@ -495,18 +524,18 @@ class GltfImporter {
     }
   }
 
-  void add_texcoord(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
-    if (!import_.layout.texcoords)
-      return;
+  static void add_texcoord(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) {
     std::array<double, 2> uv{};
-    if (all.texcoords) {
-      std::ranges::copy(all.texcoords->at(vertex), uv.begin());
+    if (auto& texcoords = all.of(AttributeKind::texcoords)) {
+      std::ranges::copy(texcoords->at(vertex), uv.begin());
       if (all.texture != nullptr && *all.texture != mesh_io::GltfTextureTransform{})
         uv = transformed(*all.texture, uv[0], uv[1]);
     }
     channels.insert(channels.end(), {static_cast<float>(uv[0]), static_cast<float>(uv[1])});
-    if (import_.layout.material)
-      channels.push_back(all.material);
+  }
+
+  std::uint64_t without(AttributeKind kind) const {
+    return without_[static_cast<std::size_t>(kind)];
   }
 
   GltfImport finish() {
@@ -525,8 +554,8 @@ class GltfImporter {
                       {std::string(kIgnoredEmission), materials_.dropped_lights(is_textured())},
                       {"dropped_values", found_values_.dropped()},
                       {"vertices_left_out", left_out_},
-                      {"vertices_without_normal", without_normal_},
-                      {"vertices_without_texcoord", without_texcoord_}};
+                      {"vertices_without_normal", without(AttributeKind::normals)},
+                      {"vertices_without_texcoord", without(AttributeKind::texcoords)}};
     return std::move(import_);
   }
 
@@ -544,7 +573,7 @@ class GltfImporter {
   std::map<std::uint32_t, std::vector<GltfTransform>> skins_;
   std::uint64_t skinned_ = 0, ignored_skins_ = 0, invisible_ = 0;
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
-  std::uint64_t without_normal_ = 0, without_texcoord_ = 0;
+  std::array<std::uint64_t, kAttributeKindCount> without_{};  ///< vertices, of each kind
 };
 
 }  // namespace

@@ -41,7 +41,9 @@ void GltfValues::add(const mesh_io::GltfDocument& document,
   ++primitives_;
   for (const auto& [name, accessor] : primitive.attributes) {
     // _COLOR_0 is what tiles of textured hierarchies have.
-    if (!name.starts_with('_') || name == "_COLOR_0" || !is_attribute_name(name) ||
+    const bool is_kind =
+        std::ranges::find(kAttributeKinds, name, &AttributeKindRow::gltf) != kAttributeKinds.end();
+    if (!name.starts_with('_') || name == "_COLOR_0" || is_kind || !is_attribute_name(name) ||
         document.accessors[accessor].components > kMostComponents)
       continue;
     const mesh_io::GltfAccessor& from = document.accessors[accessor];

@@ -83,9 +83,9 @@ class Import {
   void join() {
     const JoinCounts counts = join_layouts(joined_, mesh_, room_);
     count("untextured_files", counts.untextured_files);
-    count("dropped_normals", counts.dropped_normals);
-    count("dropped_texcoords", counts.dropped_texcoords);
-    count("dropped_values", counts.dropped_values);
+    for (const AttributeKindRow& row : kAttributeKinds)
+      count(fmt::format("dropped_{}", row.name),
+            counts.dropped[static_cast<std::size_t>(row.kind)]);
     count(kMadeWhite, counts.white_vertices);
     count(kHiddenColours, counts.hidden_colours);
     count("converted_colours", counts.converted_colours);

@@ -62,7 +62,7 @@ void for_each_row(const JoinedFile& file, const storage::RecordSpool<float>& fro
 PlainColour paint_of(const JoinedFile& file, std::span<const float> row) {
   PlainColour colour;
   if (file.is_painted) {
-    const auto values = row.subspan(static_cast<std::size_t>(file.layout.colour_offset()));
+    const auto values = row.subspan(file.layout.part(AttributeKind::colours).first);
     for (std::size_t c = 0; c < colour.channels.size(); ++c)
       colour.channels[c] = static_cast<std::uint8_t>(values[c]);
   }
@@ -110,11 +110,12 @@ std::optional<PlacedValue> place_of(const ScalarAttribute& value, const Attribut
 }
 
 AttributeLayout joined_layout(std::span<const JoinedFile> files) {
-  AttributeLayout joined{.normals = true, .texcoords = true};
-  for (const JoinedFile& file : files) {
-    joined.normals = joined.normals && file.layout.normals;
-    joined.texcoords = joined.texcoords && file.layout.texcoords;
-    joined.material = joined.material || file.layout.material;
+  AttributeLayout joined;
+  for (const AttributeKindRow& row : kAttributeKinds) {
+    const auto has_it = [&](const JoinedFile& file) { return file.layout.*row.flag; };
+    if (row.flag != nullptr)
+      joined.*row.flag = row.kind == AttributeKind::material ? std::ranges::any_of(files, has_it)
+                                                             : std::ranges::all_of(files, has_it);
   }
   joined.texcoords = joined.texcoords || joined.material;
   const auto is_light = [](const JoinedFile& file) {
@@ -133,7 +134,7 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
     return !std::ranges::all_of(
         files, [&](const JoinedFile& file) { return place_of(value, file.layout).has_value(); });
   });
-  joined.tints = joined.material && joined.colour != ColourType::none && may_tint(files);
+  joined.tints = joined.material && joined.has_colours() && may_tint(files);
   return joined;
 }
 
@@ -141,7 +142,7 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
 class RowJoin {
  public:
   RowJoin(const JoinedFile& file, const AttributeLayout& to, PlainMaterials& plain)
-      : file_(file), to_(to), plain_(plain) {
+      : file_(file), to_(to), given_(file.layout.parts()), parts_(to.parts()), plain_(plain) {
     keeps_paint_ = file.is_painted && !to.material;
     colour_ = keeps_paint_ ? file.layout.colour : own_colour(file);
     for (const ScalarAttribute& value : to.values)
@@ -149,27 +150,37 @@ class RowJoin {
   }
 
   void append(std::span<const float> row, storage::RecordSpool<float>& joined) const {
-    if (to_.normals)
-      joined.append(row.first(3));
-    append_colour(row, joined);
-    for (const PlacedValue& value : values_)
-      joined.append(row.subspan(value.channel, value.channels()));
-    if (!to_.texcoords)
-      return;
-    if (shows_texcoords())
-      joined.append(row.subspan(static_cast<std::size_t>(file_.layout.texcoord_offset())));
-    else
-      joined.append(std::array{0.0F, 0.0F, plain_.number(paint_of(file_, row))});
+    for (const AttributePart& part : parts_) {
+      const AttributePart& from = given_[static_cast<std::size_t>(part.kind)];
+      const bool is_of_picture =
+          part.kind == AttributeKind::texcoords || part.kind == AttributeKind::material;
+      if (part.count == 0)
+        continue;
+      if (part.kind == AttributeKind::colours)
+        append_colour(part, from, row, joined);
+      else if (part.kind == AttributeKind::values)
+        append_values(row, joined);
+      else if (!is_of_picture || shows_texcoords())
+        joined.append(from.of(row));
+      else if (part.kind == AttributeKind::texcoords)
+        joined.append(std::array{0.0F, 0.0F});
+      else
+        joined.append(plain_.number(paint_of(file_, row)));
+    }
   }
 
   void count(JoinCounts& counts) const {
     const std::uint64_t n = file_.vertices;
     const AttributeLayout& from = file_.layout;
     counts.untextured_files += to_.material && !from.material ? 1 : 0;
-    counts.dropped_normals += from.normals && !to_.normals ? n : 0;
-    counts.dropped_texcoords += from.texcoords && !shows_texcoords() ? n : 0;
-    counts.dropped_values += n * (from.values.size() - to_.values.size());
-    if (to_.colour == ColourType::none)
+    for (const AttributeKindRow& row : kAttributeKinds) {
+      const bool is_shown =
+          row.kind == AttributeKind::texcoords ? shows_texcoords() : row.channels(to_) > 0;
+      if (row.flag != nullptr && from.*row.flag && !is_shown)
+        counts.dropped_of(row.kind) += n;
+    }
+    counts.dropped_of(AttributeKind::values) += n * (from.values.size() - to_.values.size());
+    if (!to_.has_colours())
       return;
     counts.white_vertices += colour_ == ColourType::none && !to_.material ? n : 0;
     const bool is_plain = !from.material || from.tints;
@@ -183,22 +194,23 @@ class RowJoin {
   bool shows_texcoords() const {
     return to_.texcoords && file_.layout.texcoords && file_.layout.material == to_.material;
   }
-  void append_colour(std::span<const float> row, storage::RecordSpool<float>& joined) const {
-    if (to_.colour == ColourType::none)
-      return;
-    const auto from = static_cast<std::size_t>(file_.layout.colour_offset());
-    const int given = colour_ == ColourType::none ? 0 : file_.layout.colour_channels();
+  void append_values(std::span<const float> row, storage::RecordSpool<float>& joined) const {
+    for (const PlacedValue& value : values_)
+      joined.append(row.subspan(value.channel, value.channels()));
+  }
+  void append_colour(const AttributePart& to, const AttributePart& from, std::span<const float> row,
+                     storage::RecordSpool<float>& joined) const {
+    const std::size_t given = colour_ == ColourType::none ? 0 : from.count;
     std::array<float, 4> colour;
     colour.fill(full_number(to_.colour));
-    for (int c = 0; c < std::min(given, to_.colour_channels()); ++c) {
-      const auto i = static_cast<std::size_t>(c);
-      colour[i] = converted(row[from + i], i, file_.layout, to_);
-    }
-    joined.append(std::span(colour).first(static_cast<std::size_t>(to_.colour_channels())));
+    for (std::size_t c = 0; c < std::min(given, to.count); ++c)
+      colour[c] = converted(row[from.first + c], c, file_.layout, to_);
+    joined.append(std::span(colour).first(to.count));
   }
 
   const JoinedFile& file_;
   const AttributeLayout& to_;
+  AttributeParts given_, parts_;  ///< of the file and of all
   PlainMaterials& plain_;
   bool keeps_paint_ = false;
   ColourType colour_{};

@@ -3,6 +3,7 @@
 
 #include "import/raw_mesh.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -18,20 +19,20 @@ struct JoinedFile {
 
 /// Counts of attributes that files got or lost to be like the others.
 struct JoinCounts {
-  std::uint64_t untextured_files = 0;   ///< files without pictures beside textured ones
-  std::uint64_t dropped_normals = 0;    ///< normals of vertices
-  std::uint64_t dropped_texcoords = 0;  ///< coordinates of vertices of files without pictures
+  std::uint64_t untextured_files = 0;  ///< beside textured ones
   /// Vertices of files without colours and pictures, beside files with colours.
-  std::uint64_t white_vertices = 0;
+  std::array<std::uint64_t, kAttributeKindCount> dropped{};
   /// Colours of vertices that show no picture or were to tint theirs.
-  std::uint64_t hidden_colours = 0;
-  std::uint64_t converted_colours = 0;  ///< colours of vertices, to the type of other files
-  std::uint64_t dropped_values = 0;     ///< values of vertices
+  std::uint64_t white_vertices = 0;
+  std::uint64_t hidden_colours = 0;     ///< of vertices that show no picture or were to tint theirs
+  std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
+
+  std::uint64_t& dropped_of(AttributeKind kind) { return dropped[static_cast<std::size_t>(kind)]; }
 };
 
 /// Gives all vertices of `mesh`, which have the channels of their own files, those of all files
 /// together:
-/// * normals, if all files have them: others are made by the build;
+/// * normals, if all files have them: others are made by the build; likewise other attributes;
 /// * colours, if a file has them, of the type that holds those of all; where there are none, white;
 /// they tint pictures unless a file has both and does not mean that;
 /// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a material

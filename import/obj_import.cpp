@@ -506,7 +506,7 @@ void append_vertices(ObjParts& parts, const SplitVertices& vertices, const ObjLo
     }
     if (layout.colour == PlainColours::kType) {
       mesh.attributes.append(ObjPaint::colour(materials.at(i)).values());
-    } else if (layout.colour != ColourType::none) {
+    } else if (layout.has_colours()) {
       const std::uint32_t paint = look.paint ? materials.at(i) : 0;
       const bool is_coloured = append_colour(colours.at(position), paint, mesh);
       import.filled_colours += is_coloured || layout.material ? 0 : 1;
@@ -602,7 +602,7 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
     look = find_look(parts, import, mesh, files, room);
   import.layout.material = look.surface != nullptr;
   if (look.paint) {
-    import.is_painted = import.layout.colour == ColourType::none;
+    import.is_painted = !import.layout.has_colours();
     if (import.is_painted)
       import.layout.colour = PlainColours::kType;
     import.material_colours = look.paint->count();

@@ -114,7 +114,7 @@ void append_coloured(const OffParts& parts, const AttributeLayout& given,
   execution::SpoolCursor positions(parts.positions, room.cancel);
   execution::SpoolCursor attributes(parts.attributes, room.cancel);
   const auto channels = static_cast<std::size_t>(given.channels());
-  const auto before = static_cast<std::size_t>(layout.colour_offset());
+  const auto before = layout.part(AttributeKind::colours).first;
   for (std::uint64_t i = 0; i < vertices.count(); ++i) {
     const std::uint32_t vertex = split.position(i);
     mesh.positions.append(positions.at(vertex));
@@ -124,8 +124,7 @@ void append_coloured(const OffParts& parts, const AttributeLayout& given,
     };
     append_given(0, before);
     const FaceColour colour = colour_of(split.parts(i), layout.colour);
-    mesh.attributes.append(
-        std::span(colour).first(static_cast<std::size_t>(layout.colour_channels())));
+    mesh.attributes.append(std::span(colour).first(layout.part(AttributeKind::colours).count));
     append_given(before, channels);
   }
 }
@@ -154,7 +153,7 @@ OffImport import_off(mesh_io::InputStream& stream, const std::filesystem::path& 
   const AttributeLayout& given = made.counts.attributes;
   made.layout = given;
   made.ignored_colours = made.counts.unknown_colours;
-  if (colours.coloured() == 0 || given.colour != ColourType::none) {
+  if (colours.coloured() == 0 || given.has_colours()) {
     made.ignored_colours += colours.coloured();
     append_plain(parts, mesh, room);
     return made;

@@ -217,13 +217,13 @@ class PlyImporter {
 
   /// Appends attributes part by part, as AttributeLayout has them.
   void append_attributes(std::span<const float> given, const CornerParts::Parts& parts) {
-    const auto colours = static_cast<std::size_t>(given_.colour_offset());
-    const auto texcoords = static_cast<std::size_t>(given_.texcoord_offset());
+    const auto colours = given_.part(AttributeKind::colours).first;
+    const auto texcoords = given_.part(AttributeKind::texcoords).first;
     mesh_.attributes.append(given.first(colours));
     if (face_colour() != ColourType::none) {
       const FaceColour colour = colour_of(parts, plan_.face_colour);
       mesh_.attributes.append(
-          std::span(colour).first(static_cast<std::size_t>(import_.layout.colour_channels())));
+          std::span(colour).first(import_.layout.part(AttributeKind::colours).count));
     }
     mesh_.attributes.append(given.subspan(colours, texcoords - colours));
     mesh_.attributes.append(values_.channels(parts[CornerParts::kValues]));
@@ -239,10 +239,10 @@ class PlyImporter {
     const std::uint32_t material = std::max(part, std::uint32_t{1}) - 1;
     std::array<float, 3> shown{0, 0, static_cast<float>(material)};
     const bool shows_picture = part > 0 && mesh_.materials.list().materials[material].image;
-    if (part > 0 && !shows_picture && given_.colour != ColourType::none)
+    if (part > 0 && !shows_picture && given_.has_colours())
       ++import_.hidden_colours;
     if (shows_picture) {
-      const auto texcoord = static_cast<std::size_t>(given_.texcoord_offset());
+      const auto texcoord = given_.part(AttributeKind::texcoords).first;
       const Texcoord at = has_own_texcoords() ? Texcoord{std::bit_cast<float>(parts[kU]),
                                                          std::bit_cast<float>(parts[kV])}
                                               : Texcoord{given[texcoord], given[texcoord + 1]};

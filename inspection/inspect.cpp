@@ -1,7 +1,7 @@
 #include "inspection/inspect.h"
 
 #include "execution/size_text.h"
-#include "hierarchy/attribute_names.h"
+#include "hierarchy/attributes.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"

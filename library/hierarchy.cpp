@@ -178,20 +178,22 @@ namespace {
 
 void take_attributes(const AttributeLayout& layout, const VertexArray& vertices, Part& part) {
   const float full = full_number(layout.colour);
+  const AttributePart normal = layout.part(AttributeKind::normals);
+  const AttributePart colour = layout.part(AttributeKind::colours);
+  const AttributePart texcoord = layout.part(AttributeKind::texcoords);
   const std::vector<PlacedValue> values = placed_values(layout);
   part.values.resize(values.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const std::span<const float> all = vertices.attributes_of(v);
-    const auto at = [&](int channel) { return all[static_cast<std::size_t>(channel)]; };
-    const int normal = layout.normal_offset(), colour = layout.colour_offset();
-    if (layout.normals)
-      part.normals.push_back({at(normal), at(normal + 1), at(normal + 2)});
-    if (layout.colour != ColourType::none) {
-      part.colours.push_back({at(colour) / full, at(colour + 1) / full, at(colour + 2) / full,
-                              layout.alpha ? at(colour + 3) / full : 1});
+    if (normal.count > 0)
+      part.normals.push_back({all[normal.first], all[normal.first + 1], all[normal.first + 2]});
+    if (colour.count > 0) {
+      const std::span<const float> c = colour.of(all);
+      part.colours.push_back(
+          {c[0] / full, c[1] / full, c[2] / full, layout.alpha ? c[3] / full : 1});
     }
-    if (layout.texcoords)
-      part.texcoords.push_back({at(layout.texcoord_offset()), at(layout.texcoord_offset() + 1)});
+    if (texcoord.count > 0)
+      part.texcoords.push_back({all[texcoord.first], all[texcoord.first + 1]});
     for (std::size_t i = 0; i < values.size(); ++i)
       part.values[i].push_back(value_in(values[i].type, all.data() + values[i].channel));
   }

@@ -47,10 +47,15 @@ bool is_byte(double value) {
   return value >= 0 && value <= 255 && value == std::floor(value);
 }
 
+bool is_quantity(const AttributePart& part) {
+  return part.count > 0 && row_of(part.kind).rule == AttributeRule::quantities;
+}
+
 }  // namespace
 
 VertexRows::VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemory& memory)
     : layout_(mesh.attributes),
+      parts_(layout_.parts()),
       channels_(static_cast<std::size_t>(mesh.attributes.channels())),
       wide_(mesh.wide_coordinates),
       memory_(memory) {
@@ -70,21 +75,22 @@ VertexRows::Column::Form VertexRows::form_of(int slot) const {
   return is_wide ? Column::Form::two_channels : Column::Form::one_float;
 }
 
-bool VertexRows::is_value(int slot) const {
-  const int channel = slot - kFirstAttributeSlot;
-  return channel >= layout_.value_offset() && channel < layout_.texcoord_offset();
+bool VertexRows::may_be_anything(int slot) const {
+  const auto channel = static_cast<std::size_t>(slot - kFirstAttributeSlot);  // huge of places
+  return std::ranges::any_of(
+      parts_, [&](const AttributePart& part) { return is_quantity(part) && part.has(channel); });
 }
 
 /// Returns whether the attributes that must be finite are.
 bool VertexRows::all_checked_finite(std::size_t first, std::size_t count) const {
   const float* rows = memory_.attributes.data() + first * channels_;
-  if (layout_.values.empty())
+  if (std::ranges::none_of(parts_, is_quantity))
     return all_finite(rows, count * channels_);
-  const auto before = static_cast<std::size_t>(layout_.value_offset());
-  const auto behind = static_cast<std::size_t>(layout_.texcoord_offset());
   for (std::size_t i = 0; i < count; ++i, rows += channels_) {
-    if (!all_finite(rows, before) || !all_finite(rows + behind, channels_ - behind))
-      return false;
+    for (const AttributePart& part : parts_) {
+      if (!is_quantity(part) && !all_finite(rows + part.first, part.count))
+        return false;
+    }
   }
   return true;
 }
@@ -147,17 +153,17 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
   if (sound && !checks.colours)
     return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
-  const int first_colour = kFirstAttributeSlot + layout_.colour_offset();
-  const int last_colour = first_colour + layout_.colour_channels();
+  const AttributePart& colours = parts_[static_cast<std::size_t>(AttributeKind::colours)];
   for (std::size_t row = 0; row < count; ++row) {
     if (!checks.places && !is_placed(first + row))
       continue;
     for (int slot = 0; slot < slots; ++slot) {
-      if (is_value(slot))
+      if (may_be_anything(slot))
         continue;
       const double value = value_of(first + row, slot);
-      const bool colour = checks.colours && slot >= first_colour && slot < last_colour;
       const bool coordinate = slot < kFirstAttributeSlot;
+      const bool colour = checks.colours && !coordinate &&
+                          colours.has(static_cast<std::size_t>(slot - kFirstAttributeSlot));
       if (!std::isfinite(value) || (colour && !is_byte(value)) ||
           (coordinate && !is_coordinate(value)))
         return Defect{row, slot, value};

@@ -53,11 +53,12 @@ class VertexRows {
  private:
   bool all_checked_finite(std::size_t first, std::size_t count) const;
   Column::Form form_of(int slot) const;
-  bool is_value(int slot) const;
+  bool may_be_anything(int slot) const;
   double value_of(std::size_t row, int slot) const;
   bool is_placed(std::size_t row) const;
 
   AttributeLayout layout_;
+  AttributeParts parts_;
   std::size_t channels_;
   bool wide_;
   BlockMemory& memory_;

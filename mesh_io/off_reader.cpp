@@ -123,7 +123,7 @@ class OffReader {
       read_blocks(visit_vertex, blocks, visit_face, runner);
     while (vertex_ < counts_.vertices)
       read_vertex(vertex_++, visit_vertex);
-    if (counts_.attributes.colour != ColourType::none)
+    if (counts_.attributes.has_colours())
       counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
     while (face_ < face_count_)
       read_face(face_++, blocks, visit_face);
@@ -207,8 +207,7 @@ class OffReader {
       return false;
     for (const OffNumber& number : position)
       counts_.fits_float = counts_.fits_float && number.fits_float;
-    const auto colour = numbers.subspan(3 + static_cast<std::size_t>(layout.colour_offset()),
-                                        static_cast<std::size_t>(layout.colour_channels()));
+    const auto colour = layout.part(AttributeKind::colours).of(numbers.subspan(3));
     byte_colours_ = byte_colours_ && std::ranges::all_of(colour, is_byte);
     visit({position[0].value, position[1].value, position[2].value},
           std::span(channels_).first(attributes));
@@ -354,7 +353,7 @@ class OffReader {
     // MeshLab and others write colours without saying so in the first line.
     if (is_first && is_plain_ && (channel_count_ == 3 || channel_count_ == 4))
       layout.colour = ColourType::f32;
-    if (is_first && layout.colour != ColourType::none)
+    if (is_first && layout.has_colours())
       layout.alpha = channel_count_ == expected() + 1;
     if (channel_count_ != expected() || words_.to_word()) {
       words_.fail(
@@ -363,8 +362,8 @@ class OffReader {
                       expected(), channel_count_));
     }
     counts_.zeroed += zero_what_is_not_finite(layout, std::span(channels_).first(channel_count_));
-    for (int i = 0; i < layout.colour_channels(); ++i) {
-      const auto channel = static_cast<std::size_t>(layout.colour_offset() + i);
+    const AttributePart colours = layout.part(AttributeKind::colours);
+    for (std::size_t channel = colours.first; channel < colours.end(); ++channel) {
       if (!std::isfinite(channels_[channel]))
         words_.fail(
             fmt::format("expected a finite number for a colour, found {}", channels_[channel]));

@@ -130,7 +130,7 @@ void plan_textures(PlyPlan& plan, const std::vector<std::string>& names,
 }
 
 void plan_face_colours(PlyPlan& plan, const std::filesystem::path& path) {
-  if (plan.attributes.colour != ColourType::none)
+  if (plan.attributes.has_colours())
     return;
   for (PlyElementPlan& one : plan.elements) {
     if (one.role != Role::polygons)

@@ -1,5 +1,6 @@
 #include "mesh_io/ply_plan.h"
 
+#include "hierarchy/value_channels.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_face_plan.h"
 #include "mesh_io/ply_properties.h"
@@ -8,8 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -40,22 +44,24 @@ class Planner {
   }
 
  private:
+  /// The properties that are the channels of one kind, in order.
+  struct FoundAttribute {
+    AttributeKind kind{};
+    std::vector<int> properties;
+  };
+
   [[noreturn]] void fail(const std::string& message) const { fail_file(path_, message); }
 
   PlyElementPlan measure(const PlyElement& element) const;
   void plan_vertices();
   void plan_attributes(PlyElementPlan& vertices);
-  void plan_colours(PlyElementPlan& vertices);
-  void take_colours(PlyElementPlan& vertices, const PlyColour& colour);
-  void plan_texcoords(PlyElementPlan& vertices);
-  std::vector<std::size_t> plan_values(const PlyElementPlan& vertices);
+  std::vector<FoundAttribute> find_attributes(const PlyElement& vertices);
+  std::optional<PlyColour> find_colours(const PlyElement& vertices);
+  void take_colours(const PlyColour& colour);
   void check_range_grid() const;
   void check_sizes() const;
   void list_unused();
 
-  int find_scalar(const PlyElement& element, std::string_view name) const {
-    return mesh_io::find_scalar(element, name, path_);
-  }
   bool find_all(const PlyElement& element, std::span<const std::string_view> names,
                 std::span<int> found) const {
     return mesh_io::find_all(element, names, found, path_);
@@ -120,101 +126,84 @@ void Planner::plan_vertices() {
   plan_attributes(*vertices);
 }
 
-void assign_slots(PlyElementPlan& vertices, std::span<const int> properties, int channel) {
-  for (const int property : properties) {
-    vertices.slots[static_cast<std::size_t>(property)] = kFirstAttributeSlot + channel++;
-  }
-}
-
+/// Values are the chosen properties that are nothing else; where channels lie is known once all
+/// attributes are.
 void Planner::plan_attributes(PlyElementPlan& vertices) {
   AttributeLayout& layout = plan_.attributes;
-  std::array<int, 3> found{};
-  for (const PlyNames3& names : kPlyNormals) {
-    if (!find_all(vertices.element, names, found))
-      continue;
-    layout.normals = true;
-    assign_slots(vertices, found, layout.normal_offset());
-    break;
-  }
-  plan_colours(vertices);
-  plan_texcoords(vertices);
-}
-
-constexpr std::array<std::array<std::string_view, 2>, 5> kTexcoordNames{
-    {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}, {"tu", "tv"}}};
-
-/// Texture coordinates lie behind the values, and values are what texture coordinates are not.
-void Planner::plan_texcoords(PlyElementPlan& vertices) {
-  AttributeLayout& layout = plan_.attributes;
-  std::array<int, 2> texcoords{};
-  layout.texcoords = std::ranges::any_of(kTexcoordNames, [&](const auto& names) {
-    return find_all(vertices.element, names, texcoords);
-  });
-  PlyElementPlan rest = vertices;
-  if (layout.texcoords)
-    assign_slots(rest, texcoords, 0);
-  const int material = layout.texcoords && writer_ == PlyWrittenBy::import
-                           ? find_scalar(vertices.element, "material")
-                           : -1;
-  if (material >= 0)
-    assign_slots(rest, std::span(&material, 1), 0);
-  int channel = layout.value_offset();
-  for (const std::size_t property : plan_values(rest)) {
-    const ValueType type = value_type(vertices.element.properties[property].type);
-    vertices.slots[property] = kFirstAttributeSlot + channel;
-    channel += channels_of(type);
-  }
-  if (layout.texcoords)
-    assign_slots(vertices, texcoords, layout.texcoord_offset());
-  layout.material = material >= 0;
-  if (layout.material)
-    assign_slots(vertices, std::span(&material, 1), layout.material_offset());
-}
-
-/// The properties without a slot that are values, which are added to the layout.
-std::vector<std::size_t> Planner::plan_values(const PlyElementPlan& vertices) {
-  AttributeLayout& layout = plan_.attributes;
-  std::vector<std::size_t> found;
+  std::vector<FoundAttribute> found = find_attributes(vertices.element);
+  std::vector<int> others;
+  for (const FoundAttribute& one : found)
+    others.insert(others.end(), one.properties.begin(), one.properties.end());
+  const auto is_other = [&](std::size_t property) {
+    return vertices.slots[property] != kSkipped ||
+           std::ranges::find(others, static_cast<int>(property)) != others.end();
+  };
+  std::vector<std::size_t> values;
   for (std::size_t i = 0; i < vertices.slots.size(); ++i) {
     const PlyProperty& property = vertices.element.properties[i];
-    if (vertices.slots[i] != kSkipped || property.is_list())
+    if (is_other(i) || property.is_list())
       continue;
     if (const auto value = value_of(property, choice_, writer_, layout)) {
       layout.values.push_back(*value);
-      found.push_back(i);
+      values.push_back(i);
     }
+  }
+  const std::vector<PlacedValue> placed = placed_values(layout);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    vertices.slots[values[i]] = kFirstAttributeSlot + static_cast<int>(placed[i].channel);
+  for (const auto& [kind, properties] : found) {
+    int slot = kFirstAttributeSlot + static_cast<int>(layout.part(kind).first);
+    for (const int property : properties)
+      vertices.slots[static_cast<std::size_t>(property)] = slot++;
+  }
+}
+
+/// All but values; puts them into the layout.
+std::vector<Planner::FoundAttribute> Planner::find_attributes(const PlyElement& vertices) {
+  AttributeLayout& layout = plan_.attributes;
+  std::vector<FoundAttribute> found;
+  if (std::optional<PlyColour> colour = find_colours(vertices))
+    found.push_back({AttributeKind::colours, std::move(colour->properties)});
+  for (const PlyAttribute& attribute : kPlyAttributes) {
+    const bool is_asked = !attribute.is_of_import || writer_ == PlyWrittenBy::import;
+    const bool needs_texcoords = attribute.kind == AttributeKind::material;
+    if (!is_asked || (needs_texcoords && !layout.texcoords))
+      continue;
+    std::vector<int> properties = find_attribute(vertices, attribute, path_);
+    layout.*row_of(attribute.kind).flag = !properties.empty();
+    found.push_back({attribute.kind, std::move(properties)});
   }
   return found;
 }
 
-void Planner::plan_colours(PlyElementPlan& vertices) {
+std::optional<PlyColour> Planner::find_colours(const PlyElement& vertices) {
   for (const PlyColourNames& names : kPlyColours) {
-    if (const auto found = find_colour(vertices.element, names, path_)) {
-      take_colours(vertices, *found);
-      return;
+    if (auto found = find_colour(vertices, names, path_)) {
+      take_colours(*found);
+      return found;
     }
   }
   if (writer_ != PlyWrittenBy::import)
-    return;
+    return std::nullopt;
   for (const ColourSpace space : {ColourSpace::srgb, ColourSpace::linear}) {
     for (const bool tints : {false, true}) {
       const auto [red, green, blue] = imported_colour_names(space, tints);
-      const auto found = find_colour(vertices.element, {red, green, blue, "alpha", "a"}, path_);
+      auto found = find_colour(vertices, {red, green, blue, "alpha", "a"}, path_);
       if (!found)
         continue;
-      take_colours(vertices, *found);
+      take_colours(*found);
       plan_.attributes.space = space;
       plan_.attributes.tints = tints;
-      return;
+      return found;
     }
   }
+  return std::nullopt;
 }
 
-void Planner::take_colours(PlyElementPlan& vertices, const PlyColour& colour) {
+void Planner::take_colours(const PlyColour& colour) {
   plan_.attributes.colour = colour.kind;
   plan_.attributes.alpha = colour.properties.size() == 4;
   plan_.checks.colours = colour.is_checked;
-  assign_slots(vertices, colour.properties, plan_.attributes.colour_offset());
 }
 
 /// A raw scan's grid is no list of faces, and to take such a file for a cloud of points would lose

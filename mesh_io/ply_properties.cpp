@@ -51,6 +51,16 @@ bool find_all(const PlyElement& element, std::span<const std::string_view> names
                      [](int property) { return property >= 0; });
 }
 
+std::vector<int> find_attribute(const PlyElement& element, const PlyAttribute& attribute,
+                                const std::filesystem::path& path) {
+  for (std::size_t i = 0; i < attribute.spellings(); ++i) {
+    std::vector<int> found(attribute.spelling(i).size());
+    if (find_all(element, attribute.spelling(i), found, path))
+      return found;
+  }
+  return {};
+}
+
 std::optional<std::size_t> find_list(const PlyElement& element,
                                      std::span<const std::string_view> names) {
   for (const std::string_view name : names) {

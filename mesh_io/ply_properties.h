@@ -28,9 +28,33 @@ bool find_all(const PlyElement& element, std::span<const std::string_view> names
 std::optional<std::size_t> find_list(const PlyElement& element,
                                      std::span<const std::string_view> names);
 
-using PlyNames3 = std::array<std::string_view, 3>;
-inline constexpr std::array<PlyNames3, 3> kPlyNormals{
-    {{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}, {"normal_x", "normal_y", "normal_z"}}};
+inline constexpr std::array<std::string_view, 9> kPlyNormals{
+    "nx", "ny", "nz", "normalx", "normaly", "normalz", "normal_x", "normal_y", "normal_z"};
+inline constexpr std::array<std::string_view, 10> kPlyTexcoords{
+    "s", "t", "u", "v", "texture_u", "texture_v", "texture_s", "texture_t", "tu", "tv"};
+inline constexpr std::array<std::string_view, 1> kPlyMaterial{"material"};
+
+/// Attributes of vertices that are floats: what they are called. Colours and values say more.
+struct PlyAttribute {
+  AttributeKind kind;
+  std::span<const std::string_view> names;  ///< spelling after spelling; the first is written
+  bool is_of_faces = false;                 ///< what faces have of it is known from their vertices
+  bool is_of_import = false;                ///< only files that the import writes have it
+
+  std::span<const std::string_view> spelling(std::size_t number) const {
+    const auto size = static_cast<std::size_t>(row_of(kind).size);
+    return names.subspan(number * size, size);
+  }
+  std::size_t spellings() const { return names.size() / spelling(0).size(); }
+};
+inline constexpr std::array kPlyAttributes{
+    PlyAttribute{AttributeKind::normals, kPlyNormals, true},
+    PlyAttribute{AttributeKind::texcoords, kPlyTexcoords},
+    PlyAttribute{AttributeKind::material, kPlyMaterial, false, true}};
+
+/// The properties of the first spelling that is there; empty if none is.
+std::vector<int> find_attribute(const PlyElement& element, const PlyAttribute& attribute,
+                                const std::filesystem::path& path);
 
 /// Names of the number of the texture that a face shows.
 inline constexpr std::array<std::string_view, 4> kPlyTextureNumbers{"texnumber", "texture_number",

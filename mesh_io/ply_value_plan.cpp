@@ -3,7 +3,6 @@
 #include "mesh_io/ply_properties.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string_view>
 #include <vector>
@@ -17,10 +16,11 @@ constexpr std::string_view kBookkeeping = "flags";
 /// The properties of a face that say what vertices say better, or which texture it has.
 std::vector<int> known_properties(const PlyElement& element, const std::filesystem::path& path) {
   std::vector<int> known;
-  std::array<int, 3> normal{};
-  for (const PlyNames3& names : kPlyNormals) {
-    if (find_all(element, names, normal, path))
-      known.insert(known.end(), normal.begin(), normal.end());
+  for (const PlyAttribute& attribute : kPlyAttributes) {
+    if (!attribute.is_of_faces)
+      continue;
+    const std::vector<int> found = find_attribute(element, attribute, path);
+    known.insert(known.end(), found.begin(), found.end());
   }
   for (const PlyColourNames& names : kPlyColours) {
     if (const auto colour = find_colour(element, names, path))

@@ -1,6 +1,7 @@
 #include "mesh_io/ply_writer.h"
 
 #include "mesh_io/ply_plan.h"
+#include "mesh_io/ply_properties.h"
 #include "mesh_io/ply_values.h"
 
 #include <algorithm>
@@ -9,11 +10,13 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
+#include <iterator>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -37,35 +40,31 @@ struct WrittenProperty {
 
 /// Properties of known attributes: normals and colours stand before values, texture coordinates
 /// behind them.
-struct KnownProperties {
-  std::vector<WrittenProperty> before, behind;
-
-  explicit KnownProperties(const AttributeLayout& layout) {
-    const auto add = [](std::vector<WrittenProperty>& to, std::string_view type,
-                        const auto& names) {
-      for (const std::string_view name : names)
-        to.push_back({type, std::string(name)});
-    };
-    using Names = std::initializer_list<std::string_view>;
-    const std::string_view colour = colour_type_name(layout.colour);
-    if (layout.normals)
-      add(before, "float", Names{"nx", "ny", "nz"});
-    if (layout.colour != ColourType::none)
-      add(before, colour, imported_colour_names(layout.space, layout.tints));
+std::vector<WrittenProperty> known_properties(const AttributePart& part,
+                                              const AttributeLayout& layout) {
+  std::vector<WrittenProperty> properties;
+  const auto add = [&](std::string_view type, const auto& names) {
+    for (const std::string_view name : names)
+      properties.push_back({type, std::string(name)});
+  };
+  if (part.kind == AttributeKind::colours && part.count > 0) {
+    const std::string_view type = colour_type_name(layout.colour);
+    add(type, imported_colour_names(layout.space, layout.tints));
     if (layout.alpha)
-      add(before, colour, Names{"alpha"});
-    if (layout.texcoords)
-      add(behind, "float", Names{"s", "t"});
-    if (layout.material)
-      add(behind, "float", Names{"material"});
+      add(type, std::array<std::string_view, 1>{"alpha"});
   }
-};
+  for (const PlyAttribute& attribute : kPlyAttributes) {
+    if (attribute.kind == part.kind && part.count > 0)
+      add("float", attribute.spelling(0));
+  }
+  return properties;
+}
 
-/// A value whose name another property has gets a number.
+/// A value whose name another property has gets a number. `others`: all that are no values.
 std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, bool is_import,
-                                              const KnownProperties& known) {
+                                              std::span<const WrittenProperty> others) {
   std::vector<WrittenProperty> values;
-  const auto has = [](const std::vector<WrittenProperty>& list, const std::string& name) {
+  const auto has = [](std::span<const WrittenProperty> list, const std::string& name) {
     return std::ranges::find(list, name, &WrittenProperty::name) != list.end();
   };
   for (const ScalarAttribute& value : layout.values) {
@@ -74,8 +73,7 @@ std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, boo
                                                      : kImportedQuantity;
     const std::string wanted = std::string(prefix) + value.name;
     std::string name = wanted;
-    for (int number = 2; has(known.before, name) || has(known.behind, name) || has(values, name);
-         ++number)
+    for (int number = 2; has(others, name) || has(values, name); ++number)
       name = fmt::format("{}_{}", wanted, number);
     values.push_back({name_of(ply_type(value.type)), name});
   }
@@ -83,11 +81,14 @@ std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, boo
 }
 
 std::string attribute_lines(const AttributeLayout& layout, bool is_import) {
-  const KnownProperties known(layout);
+  std::vector<WrittenProperty> others;
+  for (const AttributePart& part : layout.parts())
+    std::ranges::move(known_properties(part, layout), std::back_inserter(others));
   std::string lines;
-  for (const auto& properties :
-       {known.before, value_properties(layout, is_import, known), known.behind}) {
-    for (const auto& [type, name] : properties)
+  for (const AttributePart& part : layout.parts()) {
+    for (const auto& [type, name] : part.kind == AttributeKind::values
+                                        ? value_properties(layout, is_import, others)
+                                        : known_properties(part, layout))
       lines += fmt::format("property {} {}\n", type, name);
   }
   return lines;
@@ -131,6 +132,7 @@ T nearest(float value) {
 struct PlyWriter::State {
   std::shared_ptr<storage::File> file;
   PlyContent content;
+  AttributeParts parts;           ///< of content.attributes
   std::vector<std::byte> buffer;  ///< kBufferBytes
   std::size_t filled = 0;
   std::uint64_t offset = 0;
@@ -160,15 +162,14 @@ struct PlyWriter::State {
   }
 
   void put_attributes(std::span<const float> channels) {
-    const AttributeLayout& layout = content.attributes;
-    const auto part = [&](int begin, int end) {
-      return channels.subspan(static_cast<std::size_t>(begin),
-                              static_cast<std::size_t>(end - begin));
-    };
-    put_floats(part(0, layout.colour_offset()));
-    put_colour(part(layout.colour_offset(), layout.value_offset()));
-    put_values(channels.data() + layout.value_offset());
-    put_floats(part(layout.texcoord_offset(), layout.channels()));
+    for (const AttributePart& part : parts) {
+      if (part.kind == AttributeKind::colours)
+        put_colour(part.of(channels));
+      else if (part.kind == AttributeKind::values)
+        put_values(part.of(channels).data());
+      else
+        put_floats(part.of(channels));
+    }
   }
 
   void put_floats(std::span<const float> numbers) {
@@ -221,6 +222,7 @@ PlyWriter::PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& cont
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->content = content;
+  state_->parts = content.attributes.parts();
   state_->buffer.resize(kBufferBytes);
   constexpr std::uint64_t kMaxIntVertices = std::uint64_t{1} << 31;
   const std::string header =

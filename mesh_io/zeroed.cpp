@@ -20,14 +20,11 @@ std::uint64_t zero_if_not_finite(std::span<float> numbers) {
 ZeroedCounts zero_what_is_not_finite(const AttributeLayout& layout, std::span<float> rows) {
   ZeroedCounts counts;
   const auto channels = static_cast<std::size_t>(layout.channels());
+  const AttributePart normals = layout.part(AttributeKind::normals);
+  const AttributePart texcoords = layout.part(AttributeKind::texcoords);
   for (; channels > 0 && rows.size() >= channels; rows = rows.subspan(channels)) {
-    const auto part = [&](int offset, std::size_t count) {
-      return rows.subspan(static_cast<std::size_t>(offset), count);
-    };
-    if (layout.normals)
-      counts.normals += zero_if_not_finite(part(layout.normal_offset(), 3));
-    if (layout.texcoords)
-      counts.texcoords += zero_if_not_finite(part(layout.texcoord_offset(), 2));
+    counts.normals += zero_if_not_finite(normals.of(rows));
+    counts.texcoords += zero_if_not_finite(texcoords.of(rows));
   }
   return counts;
 }

@@ -16,8 +16,8 @@ class ColourRange {
   /// `attributes`: the channels of vertices, one vertex after another.
   void add(std::span<const float> attributes, const AttributeLayout& layout) {
     const auto vertex = static_cast<std::size_t>(layout.channels());
-    const auto first = static_cast<std::size_t>(layout.colour_offset());
-    const auto count = static_cast<std::size_t>(layout.colour_channels());
+    const auto first = layout.part(AttributeKind::colours).first;
+    const auto count = layout.part(AttributeKind::colours).count;
     if (count == 0 || layout.colour == ColourType::u8)
       return;
     for (std::size_t v = first; v < attributes.size(); v += vertex) {

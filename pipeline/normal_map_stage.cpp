@@ -67,7 +67,7 @@ class CornerShading {
     const std::span<const float> attributes =
         number < places ? mesh_.vertices.attributes_of(number)
                         : mesh_.copies.vertices.attributes_of(number - places);
-    const auto at = static_cast<std::size_t>(layout_.normal_offset());
+    const auto at = layout_.part(AttributeKind::normals).first;
     const Vec3f given{attributes[at], attributes[at + 1], attributes[at + 2]};
     const bool is_finite =
         std::isfinite(given.x) && std::isfinite(given.y) && std::isfinite(given.z);

@@ -72,7 +72,7 @@ WedgeMap part_of(const WedgeMap& map, std::size_t begin, std::size_t count) {
 class Simplifier {
  public:
   Simplifier(Forest& forest, const AttributeLayout& attributes, const StageContext& context)
-      : forest_(forest), attributes_(attributes), context_(context) {}
+      : forest_(forest), rules_(attributes), context_(context) {}
 
   /// Loads a tile of the level below, or the root. All of its level is known now, its neighbours'
   /// places too: so its step is measured, unless it is a partition, and its normals are made.
@@ -111,8 +111,8 @@ class Simplifier {
  private:
   /// Tiles above the partitions get coordinates of their own, if those are a texture's.
   void drop_texcoords(TileMesh& mesh) const {
-    mesh.vertices.keep_channels(attributes_.channels());
-    mesh.copies.vertices.keep_channels(attributes_.channels());
+    mesh.vertices.keep_channels(static_cast<int>(rules_.channels()));
+    mesh.copies.vertices.keep_channels(static_cast<int>(rules_.channels()));
   }
 
   BuildTile load_joined(const Tree::Children& children, std::vector<IndexedStep>& steps) {
@@ -130,15 +130,15 @@ class Simplifier {
     const std::uint32_t target =
         context_.plan.target_vertex_counts.target(node.level, joined.mesh.own_count);
     cluster_simplify::Contraction contraction = cluster_simplify::contract(
-        joined, target, attributes_, {how.method, how.representative, how.cost});
+        joined, target, rules_, {how.method, how.representative, how.cost});
     cluster_simplify::ContractedWedges wedges;
     if (!joined.mesh.copies.empty())
-      wedges = cluster_simplify::contract_wedges(joined, contraction, attributes_, {});
+      wedges = cluster_simplify::contract_wedges(joined, contraction, rules_, {});
     return cluster_simplify::apply(joined, std::move(contraction), std::move(wedges));
   }
 
   Forest& forest_;
-  const AttributeLayout& attributes_;
+  AttributeRules rules_;
   const StageContext& context_;
 };
 

@@ -48,8 +48,8 @@ struct LeafCorners {
 };
 
 void append_corners(const VertexArray& vertices, const AttributeLayout& layout, LeafCorners& to) {
-  const auto texcoord = static_cast<std::size_t>(layout.texcoord_offset());
-  const auto material = static_cast<std::size_t>(layout.material_offset());
+  const auto texcoord = layout.part(AttributeKind::texcoords).first;
+  const auto material = layout.part(AttributeKind::material).first;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const std::span<const float> a = vertices.attributes_of(i);
     to.texcoords.push_back({a[texcoord], a[texcoord + 1]});

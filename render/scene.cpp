@@ -49,7 +49,7 @@ void apply_look(const Look& look, const AttributeLayout& layout, SceneTile& tile
   if (!look.terrain)
     return;
   shade_steeper(*look.terrain, tile.facets);
-  if (!look.has_pictures && layout.colour == ColourType::none)
+  if (!look.has_pictures && !layout.has_colours())
     colour_by_height(*look.terrain, tile.facets);
 }
 

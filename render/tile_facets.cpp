@@ -29,7 +29,12 @@ double light(float number, double full, ColourSpace space) {
 class TileCorners {
  public:
   TileCorners(const PublishedTile& tile, const AttributeLayout& layout, NormalKind normals)
-      : tile_(tile), layout_(layout), normals_(normals) {}
+      : tile_(tile),
+        given_normals_(layout.part(AttributeKind::normals)),
+        colours_(layout.part(AttributeKind::colours)),
+        full_(full_number(layout.colour)),
+        space_(layout.space),
+        normals_(normals) {}
 
   Facet facet(const TileTriangle& t) const { return {corner(t[0]), corner(t[1]), corner(t[2])}; }
   Facet point(TileVertex number) const { return facet({number, number, number}); }
@@ -63,25 +68,26 @@ class TileCorners {
       return {};
     if (!tile_.shading.normals.empty())
       return normal_of(tile_.shading.normals[number]);
-    return layout_.normals ? channels(attributes, layout_.normal_offset()) : Vec3f{};
+    return given_normals_.count > 0 ? channels(attributes, given_normals_) : Vec3f{};
   }
 
   Vec3f colour(std::span<const float> attributes) const {
-    if (layout_.colour == ColourType::none)
+    if (colours_.count == 0)
       return kPlainColour;
-    const double full = full_number(layout_.colour);
-    const Vec3f rgb = channels(attributes, layout_.colour_offset());
-    const auto of = [&](float number) { return light(number, full, layout_.space); };
+    const Vec3f rgb = channels(attributes, colours_);
+    const auto of = [&](float number) { return light(number, full_, space_); };
     return to_float({of(rgb.x), of(rgb.y), of(rgb.z)});
   }
 
-  static Vec3f channels(std::span<const float> attributes, int offset) {
-    const auto three = attributes.subspan(static_cast<std::size_t>(offset), 3);
+  static Vec3f channels(std::span<const float> attributes, const AttributePart& part) {
+    const auto three = part.of(attributes);
     return {three[0], three[1], three[2]};
   }
 
   const PublishedTile& tile_;
-  const AttributeLayout& layout_;
+  AttributePart given_normals_, colours_;
+  double full_;
+  ColourSpace space_;
   NormalKind normals_;
 };
 
@@ -117,7 +123,7 @@ std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& l
 std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& layout,
                            const MipTexture& texture, std::span<const std::uint32_t> border) {
   const auto at = [&](TileVertex number) { return tile.shading.texcoords[raw(number)]; };
-  const bool is_tinted = layout.tints && layout.colour != ColourType::none;
+  const bool is_tinted = layout.tints && layout.has_colours();
   std::vector<Skin> skins;
   for (const TileTriangle& t : drawn_triangles(tile, border))
     skins.push_back({&texture, {at(t[0]), at(t[1]), at(t[2])}, is_tinted});

@@ -221,9 +221,10 @@ CornerFacts facts_of(std::uint64_t hash, Vec3f position, std::span<const float> 
                      const AttributeLayout& layout) {
   CornerFacts facts{hash, {position, {}, 0}};
   if (layout.material) {
-    const float* texcoord = attributes.data() + layout.texcoord_offset();
+    const auto texcoord = layout.part(AttributeKind::texcoords).of(attributes);
     facts.corner.texcoord = {texcoord[0], texcoord[1]};
-    facts.corner.material = static_cast<std::uint32_t>(attributes[layout.material_offset()]);
+    facts.corner.material =
+        static_cast<std::uint32_t>(attributes[layout.part(AttributeKind::material).first]);
   }
   return facts;
 }
@@ -402,7 +403,7 @@ void verify_input(const VerifyJob& job) {
   if (job.reader.manifest().screen_colours)
     kept.space = expected.attributes.space;  // older formats did not tell the two apart
   kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
-  if (kept.colour != ColourType::none && expected.count_of(importing::kColoursTakenForBytes) > 0)
+  if (kept.has_colours() && expected.count_of(importing::kColoursTakenForBytes) > 0)
     kept.colour = ColourType::u8;
   if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");

@@ -6,6 +6,7 @@
 #include "hierarchy/standpoint.h"
 #include "storage/io/little_endian.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,14 @@ inline constexpr unsigned kI16 = 5122;
 inline constexpr unsigned kU16 = 5123;
 inline constexpr unsigned kU32 = 5125;
 inline constexpr unsigned kF32 = 5126;
+constexpr std::uint64_t component_bytes(unsigned component) {
+  return component <= kU8 ? 1 : component <= kU16 ? 2 : 4;
+}
+/// The accessor type of so many components, 1 to 4.
+constexpr const char* vector_type(std::size_t components) {
+  constexpr std::array<const char*, 5> kTypes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+  return kTypes[components];
+}
 inline constexpr unsigned kVertexTarget = 34962;
 inline constexpr unsigned kIndexTarget = 34963;
 

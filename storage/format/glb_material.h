@@ -10,10 +10,12 @@
 
 namespace meshhier::storage {
 
-/// Returns the attribute's name for colours of vertices. Viewers multiply pictures by `COLOR_0`,
-/// and pass over the other one.
+/// The attribute's name for colours of vertices that viewers are to pass over; they multiply
+/// pictures by `COLOR_0`.
+inline constexpr const char* kHiddenColours = "_COLOR_0";
+/// Returns the attribute's name for colours of vertices.
 constexpr const char* colour_attribute(const AttributeLayout& layout, bool is_textured) {
-  return is_textured && !layout.tints ? "_COLOR_0" : "COLOR_0";
+  return is_textured && !layout.tints ? kHiddenColours : row_of(AttributeKind::colours).gltf.data();
 }
 
 inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";

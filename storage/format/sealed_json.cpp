@@ -1,6 +1,6 @@
 #include "storage/format/sealed_json.h"
 
-#include "hierarchy/attribute_names.h"
+#include "hierarchy/attributes.h"
 #include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/file.h"
@@ -68,6 +68,15 @@ void check_seal(const std::string& text, const JsonObject& object) {
     object.fail(fmt::format("checksum is {}, expected {}: the file was changed",
                             hex_digits(text_checksum(zeroed)), hex_digits(expected)));
   }
+}
+
+/// Whether manifests say of a kind if there is one: of other kinds than these only if there is.
+constexpr bool is_always_told(AttributeKind kind) {
+  return kind == AttributeKind::normals || kind == AttributeKind::texcoords;
+}
+/// Pictures are told of elsewhere.
+constexpr bool is_flag(const AttributeKindRow& row) {
+  return row.flag != nullptr && row.kind != AttributeKind::material;
 }
 
 }  // namespace
@@ -224,9 +233,11 @@ std::uint64_t JsonObject::hash(const char* key) const {
 AttributeLayout JsonObject::attributes(const char* key) const {
   const JsonObject from = object(key);
   AttributeLayout attributes;
-  attributes.normals = from.boolean("normals");
+  for (const AttributeKindRow& row : kAttributeKinds) {
+    if (is_flag(row) && (is_always_told(row.kind) || from.has(row.name.data())))
+      attributes.*row.flag = from.boolean(row.name.data());
+  }
   attributes.alpha = from.boolean("alpha");
-  attributes.texcoords = from.boolean("texcoords");
   if (from.has("linear_colours") && from.boolean("linear_colours"))
     attributes.space = ColourSpace::linear;
   attributes.tints = from.has("tints") && from.boolean("tints");
@@ -234,9 +245,9 @@ AttributeLayout JsonObject::attributes(const char* key) const {
   if (!colours)
     from.wrong("colours", "one of " + names_in(kColourTypes));
   attributes.colour = *colours;
-  if (attributes.alpha && attributes.colour == ColourType::none)
+  if (attributes.alpha && !attributes.has_colours())
     from.wrong("alpha", "false without colours");
-  if (attributes.tints && attributes.colour == ColourType::none)
+  if (attributes.tints && !attributes.has_colours())
     from.wrong("tints", "false without colours");
   return attributes;
 }
@@ -257,10 +268,15 @@ Json point_json(Vec3d point) {
 }
 
 Json attributes_json(const AttributeLayout& attributes) {
-  Json json{{"normals", attributes.normals},
-            {"colours", name_in(kColourTypes, attributes.colour)},
-            {"alpha", attributes.alpha},
-            {"texcoords", attributes.texcoords}};
+  Json json;
+  for (const AttributeKindRow& row : kAttributeKinds) {
+    if (row.kind == AttributeKind::colours) {
+      json["colours"] = row_of(attributes.colour).name;
+      json["alpha"] = attributes.alpha;
+    } else if (is_flag(row) && (is_always_told(row.kind) || attributes.*row.flag)) {
+      json[row.name] = attributes.*row.flag;
+    }
+  }
   if (attributes.space == ColourSpace::linear)
     json["linear_colours"] = true;
   if (attributes.tints)

@@ -1,5 +1,7 @@
 #include "storage/format/showable.h"
 
+#include "storage/format/tile_plan.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -27,21 +29,18 @@ float showable_colour(float value, ColourType type) {
 }
 
 /// Turns one vertex's attributes into what the standard glTF accessors hold.
-void make_showable(const AttributeLayout& layout, std::span<float> channels) {
-  if (layout.normals) {
-    float* n = channels.data() + layout.normal_offset();
-    const Vec3f normal = showable_normal({n[0], n[1], n[2]});
-    n[0] = normal.x;
-    n[1] = normal.y;
-    n[2] = normal.z;
+void make_showable(AttributeRule rule, ColourType colour, std::span<float> channels) {
+  if (rule == AttributeRule::direction) {
+    const Vec3f normal = showable_normal({channels[0], channels[1], channels[2]});
+    channels[0] = normal.x;
+    channels[1] = normal.y;
+    channels[2] = normal.z;
+    return;
   }
-  for (int i = 0; i < layout.colour_channels(); ++i) {
-    float& value = channels[static_cast<std::size_t>(layout.colour_offset() + i)];
-    value = showable_colour(value, layout.colour);
-  }
-  for (int i = 0; layout.texcoords && i < 2; ++i) {
-    float& value = channels[static_cast<std::size_t>(layout.texcoord_offset() + i)];
-    if (!std::isfinite(value))
+  for (float& value : channels) {
+    if (rule == AttributeRule::colour)
+      value = showable_colour(value, colour);
+    else if (!std::isfinite(value))
       value = 0;
   }
 }
@@ -56,8 +55,10 @@ bool is_unit_normal(Vec3f normal) {
 std::vector<float> showable_attributes(const AttributeLayout& layout, const VertexArray& vertices) {
   std::vector<float> shown = vertices.attributes;
   const auto channels = static_cast<std::size_t>(layout.channels());
-  for (std::size_t v = 0; channels > 0 && v < vertices.size(); ++v) {
-    make_showable(layout, std::span(shown).subspan(v * channels, channels));
+  for (const ChannelGroup& group : groups_of(layout)) {
+    for (std::size_t at = group.offset; group.channels > 0 && at < shown.size(); at += channels)
+      make_showable(row_of(group.kind).rule, layout.colour,
+                    std::span(shown).subspan(at, group.channels));
   }
   return shown;
 }

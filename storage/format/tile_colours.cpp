@@ -17,14 +17,15 @@ constexpr float kShortsAByte = 257;
 }  // namespace
 
 TileColours::TileColours(const AttributeLayout& layout, bool screen_colours)
-    : layout_(layout),
-      become_light_(!screen_colours && layout.space == ColourSpace::srgb &&
-                    layout.colour != ColourType::none) {}
+    : type_(layout.colour),
+      colours_(layout.part(AttributeKind::colours)),
+      channels_(static_cast<std::size_t>(layout.channels())),
+      become_light_(!screen_colours && layout.space == ColourSpace::srgb && layout.has_colours()) {}
 
 ColourType TileColours::stored_type() const {
   if (!become_light_)
-    return layout_.colour;
-  return layout_.colour == ColourType::u8 ? ColourType::u16 : ColourType::f32;
+    return type_;
+  return type_ == ColourType::u8 ? ColourType::u16 : ColourType::f32;
 }
 
 unsigned TileColours::component() const {
@@ -35,40 +36,36 @@ unsigned TileColours::component() const {
 float TileColours::stored(float number, std::size_t channel) const {
   if (!become_light_)
     return number;
-  if (layout_.colour == ColourType::u8) {
+  if (type_ == ColourType::u8) {
     return channel == kAlpha
                ? number * kShortsAByte
                : static_cast<float>(LightTable::get().light(static_cast<std::uint8_t>(number)));
   }
-  const float part = layout_.colour == ColourType::u16 ? number / kFullShort : number;
+  const float part = type_ == ColourType::u16 ? number / kFullShort : number;
   return channel == kAlpha ? part : static_cast<float>(light_of(part));
 }
 
 float TileColours::number(float stored, std::size_t channel) const {
   if (!become_light_)
     return stored;
-  if (layout_.colour == ColourType::u8) {
+  if (type_ == ColourType::u8) {
     return channel == kAlpha
                ? std::floor(stored / kShortsAByte)
                : static_cast<float>(LightTable::get().value(static_cast<std::uint32_t>(stored)));
   }
   const double part = channel == kAlpha ? double{stored} : value_of(stored);
-  return static_cast<float>(layout_.colour == ColourType::u16 ? std::round(part * kFullShort)
-                                                              : part);
+  return static_cast<float>(type_ == ColourType::u16 ? std::round(part * kFullShort) : part);
 }
 
 bool TileColours::is_sound(float stored_number, std::size_t channel) const {
-  return !become_light_ || layout_.colour != ColourType::u8 ||
+  return !become_light_ || type_ != ColourType::u8 ||
          stored(number(stored_number, channel), channel) == stored_number;
 }
 
 template <class Change>
 std::vector<float> TileColours::changed(std::vector<float> attributes, const Change& change) const {
-  const auto vertex = static_cast<std::size_t>(layout_.channels());
-  const auto first = static_cast<std::size_t>(layout_.colour_offset());
-  const auto count = static_cast<std::size_t>(layout_.colour_channels());
-  for (std::size_t v = first; become_light_ && v < attributes.size(); v += vertex) {
-    for (std::size_t c = 0; c < count; ++c)
+  for (std::size_t v = colours_.first; become_light_ && v < attributes.size(); v += channels_) {
+    for (std::size_t c = 0; c < colours_.count; ++c)
       attributes[v + c] = change(attributes[v + c], c);
   }
   return attributes;

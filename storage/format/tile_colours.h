@@ -44,7 +44,9 @@ class TileColours {
   template <class Change>
   std::vector<float> changed(std::vector<float> attributes, const Change& change) const;
 
-  AttributeLayout layout_;
+  ColourType type_;
+  AttributePart colours_;
+  std::size_t channels_;  ///< of a vertex
   bool become_light_;
 };
 

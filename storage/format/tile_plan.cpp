@@ -5,6 +5,10 @@
 #include "storage/format/glb_material.h"
 #include "storage/format/tile_values.h"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 namespace meshhier::storage {
@@ -16,6 +20,10 @@ using Json = nlohmann::ordered_json;
 constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
+constexpr const char* gltf_name(AttributeKind kind) {
+  return meshhier::row_of(kind).gltf.data();
+}
+
 /// The facts on a part that are the same in all tiles.
 struct PartRow {
   Part part;
@@ -25,11 +33,11 @@ struct PartRow {
 };
 constexpr std::array<PartRow, kPartCount> kParts{{
     {Part::position, "POSITION", ViewMode::attributes, kVertexTarget},
-    {Part::normal, "NORMAL", ViewMode::attributes, kVertexTarget},
+    {Part::normal, gltf_name(AttributeKind::normals), ViewMode::attributes, kVertexTarget},
     {Part::tangent, "TANGENT", ViewMode::attributes, kVertexTarget},
-    {Part::colour, "COLOR_0", ViewMode::attributes, kVertexTarget},
-    {Part::texcoord, "TEXCOORD_0", ViewMode::attributes, kVertexTarget},
-    {Part::map_texcoord, "TEXCOORD_0", ViewMode::attributes, kVertexTarget},
+    {Part::colour, gltf_name(AttributeKind::colours), ViewMode::attributes, kVertexTarget},
+    {Part::texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
+    {Part::map_texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
     {Part::interior, "interior", ViewMode::triangles, kIndexTarget},
     {Part::border, "border", ViewMode::triangles, kIndexTarget},
     {Part::values, "values", ViewMode::attributes, kVertexTarget},
@@ -52,8 +60,24 @@ constexpr const PartRow& row_of(Part part) {
   return kParts[static_cast<std::size_t>(part)];
 }
 
-std::uint64_t component_bytes(unsigned component) {
-  return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
+/// What vertices show beside their positions.
+constexpr std::span<const PartRow> shown_attributes() {
+  constexpr auto kFirst = static_cast<std::size_t>(Part::normal);
+  constexpr auto kEnd = static_cast<std::size_t>(Part::interior);
+  return std::span(kParts).subspan(kFirst, kEnd - kFirst);
+}
+
+/// The component type and the components of what the build computed; 0 of what the tile lacks.
+std::pair<unsigned, std::size_t> computed_elements(Part part, const TileShape& shape) {
+  if (part == Part::normal && shape.computed_normals)
+    return {kI8, 3};
+  if (part == Part::tangent && shape.has_normal_map())
+    return {kI8, 4};
+  if (part == Part::texcoord && shape.has_image())
+    return {kF32, 2};
+  if (part == Part::map_texcoord && shape.has_normal_map())
+    return {kU16, 2};
+  return {};
 }
 
 /// The names that EXT_meshopt_compression has for modes.
@@ -107,13 +131,12 @@ Json corner_json(const TilePlan& plan, Vec3f corner) {
 
 Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
   const Section& section = plan[part];
-  constexpr std::array<const char*, 5> kTypes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   Json accessor = {{"bufferView", section.view},
                    {"componentType", section.component},
                    {"count", section.count},
-                   {"type", kTypes[section.components]}};
+                   {"type", vector_type(section.components)}};
   const bool is_number = section.component != kF32;
-  if (is_number && part != Part::position && part <= Part::map_texcoord)
+  if (is_number && part > Part::position && part < Part::interior)
     accessor["normalized"] = true;
   if (part == Part::position) {
     accessor["min"] = corner_json(plan, bounds.min);
@@ -147,10 +170,10 @@ Json value_accessor_json(const TilePlan& plan, std::size_t value) {
 /// last.
 Json primitives_json(const TilePlan& plan) {
   Json attributes = Json::object();
-  for (const Part part : {Part::position, Part::normal, Part::tangent, Part::colour, Part::texcoord,
-                          Part::map_texcoord}) {
-    if (plan[part].view >= 0)
-      attributes[attribute_name(plan, part)] = plan[part].view;
+  attributes[key_of(Part::position)] = plan[Part::position].view;
+  for (const PartRow& row : shown_attributes()) {
+    if (plan[row.part].view >= 0)
+      attributes[attribute_name(plan, row.part)] = plan[row.part].view;
   }
   const std::vector<std::string> values = value_attributes(plan.layout());
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -299,14 +322,18 @@ const char* key_of(Part part) {
   return row_of(part).key;
 }
 
-std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout) {
-  const auto size = [](int channels) { return static_cast<std::size_t>(channels); };
-  return {{{Part::normal, Part::raw_normals, size(layout.normal_offset()),
-            size(layout.normals ? 3 : 0)},
-           {Part::colour, Part::raw_colours, size(layout.colour_offset()),
-            size(layout.colour_channels())},
-           {Part::texcoord, Part::raw_texcoords, size(layout.texcoord_offset()),
-            size(layout.texcoords ? 2 : 0)}}};
+unsigned component_of(AttributeKind kind, const TileColours& colours) {
+  return kind == AttributeKind::colours ? colours.component() : kF32;
+}
+
+ChannelGroups groups_of(const AttributeLayout& layout) {
+  const AttributeParts parts = layout.parts();
+  ChannelGroups groups;
+  std::ranges::transform(kAttributeSections, groups.begin(), [&](const AttributeSection& section) {
+    const AttributePart& part = parts[static_cast<std::size_t>(section.kind)];
+    return ChannelGroup{section.kind, section.part, section.raw, part.first, part.count};
+  });
+  return groups;
 }
 
 TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
@@ -318,20 +345,13 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   };
   const unsigned index = index_below(shape.with_splits());
   add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.with_splits());
-  if (shape.computed_normals)
-    add(Part::normal, kI8, 3, shape.with_splits());
-  const auto add_group = [&](const ChannelGroup& group) {
-    add(group.part, component_of(group), group.channels, shape.with_splits());
-  };
-  add_group(groups[0]);
-  if (shape.has_normal_map())
-    add(Part::tangent, kI8, 4, shape.with_splits());
-  add_group(groups[1]);
-  add_group(groups[2]);
-  if (shape.has_image())
-    add(Part::texcoord, kF32, 2, shape.with_splits());
-  if (shape.has_normal_map())
-    add(Part::map_texcoord, kU16, 2, shape.with_splits());
+  for (const PartRow& row : shown_attributes()) {
+    const auto [component, components] = computed_elements(row.part, shape);
+    add(row.part, component, components, shape.with_splits());
+    const auto given = std::ranges::find(groups, row.part, &ChannelGroup::part);
+    if (given != groups.end())
+      add(row.part, component_of(given->kind, colours()), given->channels, shape.with_splits());
+  }
   add(Part::interior, index, 1, 3 * shape.interior);
   add(Part::border, index, 1, 3 * shape.border);
   add(Part::values, kF32, layout.values.size(), shape.with_splits());
@@ -344,14 +364,10 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
-  add(Part::raw_values, kF32, static_cast<std::size_t>(layout.value_channels()),
+  add(Part::raw_values, kF32, layout.part(AttributeKind::values).count,
       shape.raw_values ? shape.vertices() : 0);
   add(Part::image, kU8, 1, shape.image.bytes);
   add(Part::normal_map, kU8, 1, shape.normal_map.bytes);
-}
-
-unsigned TilePlan::component_of(const ChannelGroup& group) const {
-  return group.part == Part::colour ? colours().component() : kF32;
 }
 
 void TilePlan::add(Part part, unsigned component, std::size_t components, std::uint64_t count) {
@@ -414,13 +430,14 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
 }
 
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
-  const std::uint64_t component = component_bytes(TileColours(layout, false).component());
-  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
+  const TileColours colours(layout, false);
+  std::uint64_t bytes = 0;
+  for (const ChannelGroup& group : groups_of(layout))
+    bytes += aligned4(group.channels * component_bytes(component_of(group.kind, colours)));
   // Wide types are stored twice: as viewers see them, and as they are.
-  std::uint64_t values = 0;
   for (const ScalarAttribute& value : layout.values)
-    values += takes_two_channels(value.type) && !is_integer(value.type) ? 12 : kValueStride;
-  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + values + (layout.texcoords ? 8 : 0);
+    bytes += takes_two_channels(value.type) && !is_integer(value.type) ? 12 : kValueStride;
+  return bytes;
 }
 
 double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes) {

@@ -99,13 +99,26 @@ inline constexpr float kMaxMapTexcoord = 65535;
 /// map_texcoord) where it is shown.
 const char* key_of(Part part);
 
+/// The kinds of attributes that have a section for each vertex: as glTF shows them, and in
+/// partitions, if it cannot hold them as they are, as they were. Values lie in one section
+/// together.
+struct AttributeSection {
+  AttributeKind kind;
+  Part part, raw;
+};
+inline constexpr std::array kAttributeSections{
+    AttributeSection{AttributeKind::normals, Part::normal, Part::raw_normals},
+    AttributeSection{AttributeKind::colours, Part::colour, Part::raw_colours},
+    AttributeSection{AttributeKind::texcoords, Part::texcoord, Part::raw_texcoords}};
+
 /// The channels of one attribute within a vertex, and where they are written.
 struct ChannelGroup {
-  Part part;
-  Part raw;
-  std::size_t offset;
-  std::size_t channels;
+  AttributeKind kind{};
+  Part part{}, raw{};
+  std::size_t offset = 0;
+  std::size_t channels = 0;
 };
+using ChannelGroups = std::array<ChannelGroup, kAttributeSections.size()>;
 
 /// A part of a tile of compressed sections is stored as it is, or in a mode of
 /// EXT_meshopt_compression. The raw ones have a few bytes, or are compressed already.
@@ -123,8 +136,11 @@ struct Packing {
   std::uint64_t total() const;
 };
 
-/// Returns normals, colours, texture coordinates; those the layout lacks have no channels.
-std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
+/// Returns the component type in which a kind is shown.
+unsigned component_of(AttributeKind kind, const TileColours& colours);
+
+/// Returns a group for each of kAttributeSections; those the layout lacks have no channels.
+ChannelGroups groups_of(const AttributeLayout& layout);
 
 /// The picture of a textured tile that has triangles, or a normal map.
 struct ImageShape {
@@ -139,7 +155,8 @@ struct TileShape {
   NodeId node;
   std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
   std::uint64_t interior = 0, border = 0, copies = 0, splits = 0;
-  std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
+  std::array<bool, kAttributeSections.size()>
+      raw{};  ///< per ChannelGroup: whether its raw part is there
   bool raw_values = false;
   bool computed_normals = false;
   std::optional<TextureFormat> textures{};  ///< the hierarchy's
@@ -192,7 +209,6 @@ class TilePlan {
                                   const Packing* packing = nullptr) const;
 
  private:
-  unsigned component_of(const ChannelGroup& group) const;
   void add(Part part, unsigned component, std::size_t components, std::uint64_t count);
 
   TileShape shape_;

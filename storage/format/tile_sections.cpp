@@ -309,11 +309,11 @@ class Reader {
 
   /// Returns the parts in which a split must be equal to its vertex.
   std::vector<Part> common_parts() const {
-    std::vector<Part> parts{Part::position, Part::colour};
-    if (!plan_.shape().computed_normals)
-      parts.push_back(Part::normal);
-    if (!plan_.shape().has_image())
-      parts.push_back(Part::texcoord);
+    std::vector<Part> parts{Part::position};
+    for (const ChannelGroup& group : groups_of(plan_.layout())) {
+      if (group.channels > 0)
+        parts.push_back(group.part);
+    }
     return parts;
   }
 

@@ -2,6 +2,7 @@
 
 #include "hierarchy/value_channels.h"
 #include "storage/format/glb.h"
+#include "storage/format/glb_material.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +104,10 @@ bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bo
 }
 
 std::vector<std::string> value_attributes(const AttributeLayout& layout) {
-  std::vector<std::string> names{"_COLOR_0"};
+  std::vector<std::string> names{kHiddenColours};
+  for (const AttributeKindRow& row : kAttributeKinds)
+    names.emplace_back(row.gltf);
+  const auto taken = static_cast<std::ptrdiff_t>(names.size());
   for (const ScalarAttribute& value : layout.values) {
     std::string word = as_word(value.name);
     word.erase(0, std::min(word.find_first_not_of('_'), word.size()));
@@ -112,7 +116,7 @@ std::vector<std::string> value_attributes(const AttributeLayout& layout) {
     });
     add_unique(names, '_' + word);
   }
-  names.erase(names.begin());
+  names.erase(names.begin(), names.begin() + taken);
   return names;
 }
 

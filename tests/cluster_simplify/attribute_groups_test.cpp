@@ -1,6 +1,6 @@
 #include "cluster_simplify/attribute_groups.h"
 
-#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/attribute_metric.h"
 #include "cluster_simplify/tile_wedges.h"
 #include "tests/cluster_simplify/wedge_tiles.h"
 
@@ -60,8 +60,8 @@ class NormalGroupsTest : public testing::Test {
     for (const auto& n : normals)
       mesh.add({0, 0, 0}, {n.begin(), n.end()});
     const BuildTile tile = tests::tile_of(mesh);
-    return group_attributes(AttributeKind::normals({.normals = true}, {}), TileWedges(tile.mesh),
-                            cluster, order);
+    return group_attributes(metrics_of({{.normals = true}}, {})[0], TileWedges(tile.mesh), cluster,
+                            order);
   }
 };
 

@@ -31,7 +31,7 @@ void check_materials(const mesh_io::VertexBlock& block, const AttributeLayout& l
                      std::size_t materials) {
   const auto channels = static_cast<std::size_t>(layout.channels());
   for (std::size_t i = 0; layout.material && i < block.attributes.size(); i += channels) {
-    const float number = block.attributes[i + static_cast<std::size_t>(layout.material_offset())];
+    const float number = block.attributes[i + layout.part(AttributeKind::material).first];
     require(number >= 0 && number < static_cast<float>(materials) &&
                 number == static_cast<float>(static_cast<std::size_t>(number)),
             "a vertex has a material of the list");

@@ -79,7 +79,8 @@ void check_vertices(const PlyPlan& plan) {
   std::set<int> slots;
   for (const int slot : vertices.slots)
     require(slot == mesh_io::kSkipped || slots.insert(slot).second, "a slot is filled once");
-  int value = mesh_io::kFirstAttributeSlot + plan.attributes.value_offset();
+  int value = mesh_io::kFirstAttributeSlot +
+              static_cast<int>(plan.attributes.part(AttributeKind::values).first);
   for (const ScalarAttribute& attribute : plan.attributes.values) {
     if (takes_two_channels(attribute.type))
       require(slots.insert(value + 1).second, "a value has its channels");

@@ -32,8 +32,8 @@ void append(const MeshDescription& mesh, const VertexBlock& block, PlyReading& r
   for (const Vec3d& p : block.exact)
     require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "finite doubles");
   const auto channels = static_cast<std::size_t>(mesh.attributes.channels());
-  const auto first_value = static_cast<std::size_t>(mesh.attributes.value_offset());
-  const auto behind_values = static_cast<std::size_t>(mesh.attributes.texcoord_offset());
+  const auto first_value = mesh.attributes.part(AttributeKind::values).first;
+  const auto behind_values = mesh.attributes.part(AttributeKind::texcoords).first;
   for (std::size_t i = 0; i < block.attributes.size(); ++i) {
     const std::size_t channel = i % channels;
     const bool is_value = channel >= first_value && channel < behind_values;

@@ -1,5 +1,6 @@
 #include "gltf/sample_hierarchy.h"
 
+#include "hierarchy/attribute_rules.h"
 #include "hierarchy/bounds.h"
 #include "support/sample_shading.h"
 #include "support/sample_texture.h"
@@ -179,7 +180,7 @@ class SampleBuilder {
         for (std::size_t c = 0; c < channels; ++c)
           sums[c] += one[c] / static_cast<float>(group.size());
       }
-      normalize_average(format_.attributes, sums);
+      AttributeRules(format_.attributes).normalize(sums);
       tile.mesh.vertices.append(to_float(position * (1.0 / static_cast<double>(group.size()))),
                                 sums);
     };

@@ -1,5 +1,4 @@
-#include "hierarchy/attributes.h"
-
+#include "hierarchy/attribute_rules.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -17,12 +16,15 @@ TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
       for (const bool alpha : {false, true}) {
         for (const bool texcoords : {false, true}) {
           const AttributeLayout layout{normals, colour, alpha, texcoords};
+          const auto first_of = [&](AttributeKind kind) {
+            return static_cast<int>(layout.part(kind).first);
+          };
           int channels = 0;
-          EXPECT_EQ(layout.normal_offset(), channels);
+          EXPECT_EQ(first_of(AttributeKind::normals), channels);
           channels += normals ? 3 : 0;
-          EXPECT_EQ(layout.colour_offset(), channels);
+          EXPECT_EQ(first_of(AttributeKind::colours), channels);
           channels += colour == ColourType::none ? 0 : alpha ? 4 : 3;
-          EXPECT_EQ(layout.texcoord_offset(), channels);
+          EXPECT_EQ(first_of(AttributeKind::texcoords), channels);
           channels += texcoords ? 2 : 0;
           EXPECT_EQ(layout.channels(), channels);
           EXPECT_LE(layout.channels(), kMaxChannels);
@@ -30,7 +32,8 @@ TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
       }
     }
   }
-  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true}.material_offset()), 9);
+  EXPECT_EQ(
+      AttributeLayout({true, ColourType::f32, true, true}).part(AttributeKind::material).first, 9U);
   EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true, true}.channels()),
             kMaxChannels - kMaxValueChannels);
 }
@@ -38,7 +41,8 @@ TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
 TEST(Attributes, NormalsAndColoursLieBeforeTexcoords) {
   const AttributeLayout layout{true, ColourType::u8, true, true, true};
   EXPECT_EQ(layout.without_texcoords(), (AttributeLayout{true, ColourType::u8, true}));
-  EXPECT_EQ(layout.without_texcoords().channels(), layout.texcoord_offset());
+  EXPECT_EQ(static_cast<std::size_t>(layout.without_texcoords().channels()),
+            layout.part(AttributeKind::texcoords).first);
 }
 
 TEST(Attributes, AlphaWithoutColoursHasNoChannel) {
@@ -48,7 +52,7 @@ TEST(Attributes, AlphaWithoutColoursHasNoChannel) {
 TEST(Attributes, AnAveragedNormalGetsUnitLengthAndTheRestStays) {
   const AttributeLayout layout{true, ColourType::u8, true, true};
   std::array<float, 9> channels{0.3F, 0, -0.4F, 10.5F, 20, 30, 40, 0.25F, 7};
-  normalize_average(layout, channels);
+  AttributeRules(layout).normalize(channels);
   EXPECT_FLOAT_EQ(channels[0], 0.6F);
   EXPECT_EQ(channels[1], 0.0F);
   EXPECT_FLOAT_EQ(channels[2], -0.8F);
@@ -59,7 +63,7 @@ TEST(Attributes, AnAveragedNormalGetsUnitLengthAndTheRestStays) {
 
 TEST(Attributes, AZeroNormalStaysZero) {
   std::array<float, 3> channels{};
-  normalize_average({true, ColourType::none, false, false}, channels);
+  AttributeRules({true, ColourType::none, false, false}).normalize(channels);
   EXPECT_EQ(channels, (std::array<float, 3>{}));
 }
 
@@ -67,7 +71,7 @@ TEST(Attributes, TinyAndHugeNormalsGetUnitLengthToo) {
   for (const float size : {std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F,
                            std::numeric_limits<float>::max()}) {
     std::array<float, 3> channels{size, -size, size};
-    normalize_average({true, ColourType::none, false, false}, channels);
+    AttributeRules({true, ColourType::none, false, false}).normalize(channels);
     EXPECT_NEAR(length(Vec3d{channels[0], channels[1], channels[2]}), 1.0, 1e-6) << size;
     EXPECT_LT(channels[1], 0.0F);
   }
@@ -75,9 +79,9 @@ TEST(Attributes, TinyAndHugeNormalsGetUnitLengthToo) {
 
 TEST(Attributes, WithoutNormalsNothingIsTouched) {
   std::array<float, 3> channels{3, 4, 12};  // colours
-  normalize_average({false, ColourType::f32, false, false}, channels);
+  AttributeRules({false, ColourType::f32, false, false}).normalize(channels);
   EXPECT_EQ(channels, (std::array<float, 3>{3, 4, 12}));
-  normalize_average({}, {});
+  AttributeRules().normalize({});
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ std::vector<std::string> Imported::companions() const {
 
 std::uint32_t Imported::material_of(std::size_t triangle) const {
   const auto channels = static_cast<std::size_t>(layout.channels());
-  const auto offset = static_cast<std::size_t>(layout.material_offset());
+  const auto offset = layout.part(AttributeKind::material).first;
   std::array<float, 3> all{};
   for (std::size_t k = 0; k < 3; ++k)
     all[k] = attributes.at(triangles.at(triangle)[k] * channels + offset);
@@ -73,7 +73,7 @@ std::vector<double> Imported::values(std::size_t attribute) const {
 Vec2f Imported::texcoord(std::size_t triangle, std::size_t corner) const {
   const std::size_t first =
       triangles.at(triangle)[corner] * static_cast<std::size_t>(layout.channels()) +
-      static_cast<std::size_t>(layout.texcoord_offset());
+      layout.part(AttributeKind::texcoords).first;
   return {attributes.at(first), attributes.at(first + 1)};
 }
 

@@ -53,7 +53,7 @@ TEST_F(JoinLayoutsTest, EqualLayoutsStay) {
   add(kNormals, {0, 1, 0});
   EXPECT_THAT(join(), ElementsAre(1, 0, 0, 0, 1, 0));
   EXPECT_EQ(mesh_.layout, kNormals);
-  EXPECT_EQ(counts_.dropped_normals, 0U);
+  EXPECT_EQ(counts_.dropped_of(AttributeKind::normals), 0U);
 }
 
 TEST_F(JoinLayoutsTest, NormalsOfSomeAreDropped) {
@@ -61,7 +61,7 @@ TEST_F(JoinLayoutsTest, NormalsOfSomeAreDropped) {
   add({}, {});
   EXPECT_THAT(join(), IsEmpty());
   EXPECT_EQ(mesh_.layout, AttributeLayout{});
-  EXPECT_EQ(counts_.dropped_normals, 1U);
+  EXPECT_EQ(counts_.dropped_of(AttributeKind::normals), 1U);
 }
 
 TEST_F(JoinLayoutsTest, NormalsOfAllStayBesideOtherDifferences) {
@@ -69,7 +69,7 @@ TEST_F(JoinLayoutsTest, NormalsOfAllStayBesideOtherDifferences) {
   add(kNormals, {0, 1, 0});
   EXPECT_THAT(join(), ElementsAre(1, 0, 0, 7, 8, 9, 0, 1, 0, 255, 255, 255));
   EXPECT_EQ(counts_.white_vertices, 1U);
-  EXPECT_EQ(counts_.dropped_normals, 0U);
+  EXPECT_EQ(counts_.dropped_of(AttributeKind::normals), 0U);
 }
 
 TEST_F(JoinLayoutsTest, ColoursBecomeThoseOfTheWidestType) {
@@ -93,7 +93,7 @@ TEST_F(JoinLayoutsTest, CoordinatesWithoutPicturesAreDroppedIfOnlySomeHaveThem) 
   add(kCoordinates, {0.5F, 0.25F});
   add({}, {});
   EXPECT_THAT(join(), IsEmpty());
-  EXPECT_EQ(counts_.dropped_texcoords, 1U);
+  EXPECT_EQ(counts_.dropped_of(AttributeKind::texcoords), 1U);
   EXPECT_EQ(counts_.untextured_files, 0U);
 }
 
@@ -106,7 +106,7 @@ TEST_F(JoinLayoutsTest, BesidePicturesMaterialsHaveTheColour) {
   EXPECT_THAT(join(), ElementsAre(0.5F, 0.25F, 0, 0, 0, 1, 0, 0, 2));
   EXPECT_EQ(mesh_.layout, kPictures);
   EXPECT_EQ(counts_.untextured_files, 2U);
-  EXPECT_EQ(counts_.dropped_texcoords, 1U);
+  EXPECT_EQ(counts_.dropped_of(AttributeKind::texcoords), 1U);
   EXPECT_EQ(counts_.white_vertices, 0U);
 }
 

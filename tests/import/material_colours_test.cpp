@@ -61,7 +61,7 @@ std::vector<std::string> corner_colours(const Imported& mesh, std::size_t triang
   for (const std::uint32_t vertex : mesh.triangles[triangle]) {
     const float* c = mesh.attributes.data() +
                      vertex * static_cast<std::size_t>(mesh.layout.channels()) +
-                     static_cast<std::size_t>(mesh.layout.colour_offset());
+                     mesh.layout.part(AttributeKind::colours).first;
     colours.push_back(fmt::format("{} {} {}", c[0], c[1], c[2]));
   }
   return colours;

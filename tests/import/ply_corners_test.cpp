@@ -168,8 +168,8 @@ std::string coloured(PlyEncoding encoding, const std::vector<std::string>& prope
 /// The colour of the corners of a triangle, which must be one.
 std::vector<float> colour_of(const Imported& mesh, std::size_t triangle) {
   const auto channels = static_cast<std::size_t>(mesh.layout.channels());
-  const auto first = static_cast<std::size_t>(mesh.layout.colour_offset());
-  const auto count = static_cast<std::size_t>(mesh.layout.colour_channels());
+  const auto first = mesh.layout.part(AttributeKind::colours).first;
+  const auto count = mesh.layout.part(AttributeKind::colours).count;
   std::vector<float> colour;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto at = mesh.attributes.begin() +

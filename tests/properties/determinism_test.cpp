@@ -142,8 +142,8 @@ class DeterminismTest : public testing::Test {
       for (std::size_t k = 0; k < channels; ++k) {
         const float value = mesh.attributes[v * channels + k];
         const bool is_colour = mesh.layout.colour_channels() > 0 &&
-                               k >= static_cast<std::size_t>(mesh.layout.colour_offset()) &&
-                               k < static_cast<std::size_t>(mesh.layout.texcoord_offset());
+                               k >= mesh.layout.part(AttributeKind::colours).first &&
+                               k < mesh.layout.part(AttributeKind::texcoords).first;
         is_colour ? void(out.put(static_cast<char>(value)))
                   : put(std::bit_cast<std::uint32_t>(value));
       }

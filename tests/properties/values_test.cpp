@@ -160,7 +160,7 @@ class ValuesTest : public testing::Test {
   std::vector<double> values_of(const storage::HierarchyReader& reader, std::size_t attribute,
                                 int level) const {
     const AttributeLayout& layout = reader.tile_format().attributes;
-    auto offset = static_cast<std::size_t>(layout.value_offset());
+    auto offset = layout.part(AttributeKind::values).first;
     for (std::size_t i = 0; i < attribute; ++i)
       offset += static_cast<std::size_t>(channels_of(layout.values[i].type));
     std::vector<double> values;

@@ -25,10 +25,9 @@ float colour_value(ColourType type, std::uint64_t vertex, std::uint64_t stream) 
 AttributedMesh attributed(TestMesh shape, const AttributeLayout& layout) {
   AttributedMesh mesh{std::move(shape), layout, {}, {}};
   for (std::uint64_t v = 0; v < mesh.shape.positions.size(); ++v) {
-    for (int channel = 0; channel < layout.channels(); ++channel) {
-      const int colour = channel - layout.colour_offset();
-      const bool is_colour = colour >= 0 && colour < layout.colour_channels();
-      const auto stream = static_cast<std::uint64_t>(channel);
+    const auto channels = static_cast<std::uint64_t>(layout.channels());
+    for (std::uint64_t stream = 0; stream < channels; ++stream) {
+      const bool is_colour = layout.part(AttributeKind::colours).has(stream);
       mesh.attributes.push_back(is_colour ? colour_value(layout.colour, v, stream)
                                           : hash_noise(v, stream));
     }

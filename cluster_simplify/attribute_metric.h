@@ -1,29 +1,39 @@
-// Normals and colours, as far as it takes to tell which of them are alike.
+// How far normals, or colours, of wedges are apart, and what stands for several that are alike.
 #pragma once
 
 #include "cluster_simplify/wedge_options.h"
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace meshhier::cluster_simplify {
 
-/// A normal of unit length, or a colour as a screen has it, in the range of its type.
+/// A direction of unit length, or a colour as a screen has it, in the range of its type.
 using AttributePoint = std::array<double, 4>;
 
-class AttributeKind {
- public:
-  /// Without normals, or colours, all are alike.
-  static AttributeKind normals(const AttributeLayout& layout, const WedgeOptions& options);
-  static AttributeKind colours(const AttributeLayout& layout, const WedgeOptions& options);
+constexpr bool is_measured(const AttributeKindRow& row) {
+  return row.rule == AttributeRule::direction || row.rule == AttributeRule::colour;
+}
+/// So many kinds have a metric.
+inline constexpr auto kMeasuredKinds =
+    static_cast<std::size_t>(std::ranges::count_if(kAttributeKinds, is_measured));
 
+class AttributeMetric {
+ public:
+  /// `part`: of a kind that is_measured().
+  AttributeMetric(const AttributePart& part, const AttributeRules& rules,
+                  const WedgeOptions& options);
+
+  /// The channels that it measures.
+  const AttributePart& channels() const { return channels_; }
   /// Its own of a wedge's attributes.
   std::span<const float> part(std::span<const float> attributes) const {
-    return attributes.subspan(offset_, channels_);
+    return channels_.of(attributes);
   }
   /// Nothing if these say nothing: a normal without a direction, a colour that is not finite.
   std::optional<AttributePoint> point(std::span<const float> part) const;
@@ -31,7 +41,7 @@ class AttributeKind {
   /// Larger for what is less alike; limit() is the largest for what may be one.
   double distance(const AttributePoint& a, const AttributePoint& b) const;
   double limit() const { return limit_; }
-  /// Whether two parts may not be one; one that says nothing is like any other.
+  /// Whether the parts of two wedges may not be one; one that says nothing is like any other.
   bool are_apart(std::span<const float> a, std::span<const float> b) const;
 
   /// The point in the units in which means are taken: a direction, or light.
@@ -41,29 +51,27 @@ class AttributeKind {
   std::optional<AttributePoint> mean(const AttributePoint& sum, double weight) const;
 
  private:
-  enum class Numbers { directions, values, light };
-
-  AttributeKind(std::size_t offset, std::size_t channels, Numbers numbers, double range,
-                double limit)
-      : offset_(offset), channels_(channels), numbers_(numbers), range_(range), limit_(limit) {}
-
   /// Changes red, green and blue, not opacity.
   template <class Change>
   AttributePoint changed(AttributePoint p, const Change& change) const {
-    for (std::size_t k = 0; k < std::min<std::size_t>(channels_, 3); ++k)
+    for (std::size_t k = 0; k < std::min<std::size_t>(channels_.count, 3); ++k)
       p[k] = range_ * change(p[k] / range_);
     return p;
   }
 
-  std::size_t offset_, channels_;
-  Numbers numbers_;
-  double range_;  ///< of colours
+  AttributePart channels_;
+  bool are_directions_;
+  bool are_light_;  ///< of colours
+  double range_;    ///< of colours
   double limit_;
 };
 
+/// One for each kind that the layout has and that is_measured(), in their order.
+std::vector<AttributeMetric> metrics_of(const AttributeRules& rules, const WedgeOptions& options);
+
 /// The sum over all channels of their squared differences, those of colours in parts of their
-/// range, but those of values. Not finite if a channel is not.
-double squared_difference(const AttributeLayout& layout, std::span<const float> a,
+/// range, but those of quantities. Not finite if a channel is not.
+double squared_difference(const AttributeRules& rules, std::span<const float> a,
                           std::span<const float> b);
 
 }  // namespace meshhier::cluster_simplify
