@@ -45,13 +45,17 @@ ColourType colour_type(GltfComponent component) {
                                            : ColourType::f32;
 }
 
+/// Returns the name of an attribute; empty: glTF has none. `texcoords`: the set that is shown.
+std::string name_of(const AttributeKindRow& row, const std::string& texcoords) {
+  return row.kind == AttributeKind::texcoords ? texcoords : std::string(row.gltf);
+}
+
 /// The attributes that the primitives of a file have together.
 class CommonLayout {
  public:
   void add(const GltfFile& file, const GltfPrimitive& primitive, const std::string& texcoords) {
     for (const AttributeKindRow& row : kAttributeKinds) {
-      const auto accessor = primitive.attribute(
-          row.kind == AttributeKind::texcoords ? texcoords : std::string(row.gltf));
+      const auto accessor = primitive.attribute(name_of(row, texcoords));
       if (!accessor)
         continue;
       if (row.kind == AttributeKind::colours)
@@ -349,21 +353,16 @@ class GltfImporter {
     const AttributeLayout& layout = import_.layout;
     Attributes attributes;
     for (const AttributePart& part : layout.parts()) {
-      const AttributeKindRow& row = row_of(part.kind);
-      const auto size = static_cast<std::uint32_t>(row.size);
-      if (part.kind == AttributeKind::values) {
-        for (const GltfValue& value : values_)
-          attributes.values.push_back(elements(sources, value.source, 1, 4, count, true));
-      } else if (part.count > 0 && part.kind == AttributeKind::colours) {
+      const std::string name = name_of(row_of(part.kind), texcoords_of(primitive));
+      const auto size = static_cast<std::uint32_t>(part.count);
+      if (part.kind == AttributeKind::colours && size > 0)
         attributes.of(part.kind) =
-            elements(sources, std::string(row.gltf), 3, 4, count, layout.colour != ColourType::f32);
-      } else if (part.count > 0 && !row.gltf.empty()) {
-        attributes.of(part.kind) = elements(
-            sources,
-            part.kind == AttributeKind::texcoords ? texcoords_of(primitive) : std::string(row.gltf),
-            size, size, count);
-      }
+            elements(sources, name, 3, 4, count, layout.colour != ColourType::f32);
+      else if (size > 0 && !name.empty())
+        attributes.of(part.kind) = elements(sources, name, size, size, count);
     }
+    for (const GltfValue& value : values_)
+      attributes.values.push_back(elements(sources, value.source, 1, 4, count, true));
     if (import_.material_colours > 0)
       attributes.factor = factor_of(primitive.material);
     if (import_.material_colours > 0 && !import_.is_painted && primitive.material)

@@ -69,7 +69,7 @@ void AttributePainter::paint(VertexArray& vertices) const {
   painted.reserve(vertices.size() * static_cast<std::size_t>(painted_.channels()));
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto channels = vertices.attributes_of(v);
-    const auto normal = channels.first(given_.normals ? 3 : 0);
+    const auto normal = given_.part(AttributeKind::normals).of(channels);
     painted.insert(painted.end(), normal.begin(), normal.end());
     const Vec3f rgb = colour(value_in(attribute_.type, channels.subspan(channel_).data()));
     painted.insert(painted.end(), {rgb.x, rgb.y, rgb.z});

@@ -56,6 +56,7 @@ bool is_quantity(const AttributePart& part) {
 VertexRows::VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemory& memory)
     : layout_(mesh.attributes),
       parts_(layout_.parts()),
+      has_quantities_(std::ranges::any_of(parts_, is_quantity)),
       channels_(static_cast<std::size_t>(mesh.attributes.channels())),
       wide_(mesh.wide_coordinates),
       memory_(memory) {
@@ -84,7 +85,7 @@ bool VertexRows::may_be_anything(int slot) const {
 /// Returns whether the attributes that must be finite are.
 bool VertexRows::all_checked_finite(std::size_t first, std::size_t count) const {
   const float* rows = memory_.attributes.data() + first * channels_;
-  if (std::ranges::none_of(parts_, is_quantity))
+  if (!has_quantities_)
     return all_finite(rows, count * channels_);
   for (std::size_t i = 0; i < count; ++i, rows += channels_) {
     for (const AttributePart& part : parts_) {

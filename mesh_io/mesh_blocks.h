@@ -59,6 +59,7 @@ class VertexRows {
 
   AttributeLayout layout_;
   AttributeParts parts_;
+  bool has_quantities_;
   std::size_t channels_;
   bool wide_;
   BlockMemory& memory_;
