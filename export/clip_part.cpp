@@ -17,12 +17,12 @@ namespace {
 
 class PartClipper {
  public:
-  PartClipper(const CutPart& part, const AttributeLayout& layout, const Region& region,
+  PartClipper(const CutPart& part, const AttributeRules& rules, const Region& region,
               Clipping clipping)
       : part_(part),
         clipping_(clipping),
         channels_(static_cast<std::size_t>(part.vertices.channels)),
-        mixer_(layout, channels_),
+        mixer_(rules, channels_),
         clipper_(region, mixer_),
         numbers_(part.vertices.size(), kNoPlace) {}
 
@@ -139,9 +139,9 @@ class PartClipper {
 
 }  // namespace
 
-CutPart clip_part(const CutPart& part, const AttributeLayout& layout, const Region& region,
+CutPart clip_part(const CutPart& part, const AttributeRules& rules, const Region& region,
                   Clipping clipping) {
-  return PartClipper(part, layout, region, clipping).run();
+  return PartClipper(part, rules, region, clipping).run();
 }
 
 }  // namespace meshhier::exporting

@@ -3,7 +3,7 @@
 
 #include "export/cut_part.h"
 #include "export/region.h"
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 
 #include <cstdint>
 #include <limits>
@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::ma
 /// TriangleClipper and CornerMixer make these, so no gap opens. Without a triangle there is no
 /// picture. O(t), and PlanRegion::cut() for each triangle that a polygon's border crosses. Throws
 /// as Region's check.
-CutPart clip_part(const CutPart& part, const AttributeLayout& layout, const Region& region,
+CutPart clip_part(const CutPart& part, const AttributeRules& rules, const Region& region,
                   Clipping clipping);
 
 }  // namespace meshhier::exporting

@@ -30,8 +30,8 @@ Vec3f unit_normal(const NormalCode& code) {
 
 class PartMaker {
  public:
-  PartMaker(const PublishedTile& tile, const AttributeLayout& layout, const FindPlace& find)
-      : tile_(tile), layout_(layout), find_(find), numbers_(vertex_numbers(tile.mesh)) {
+  PartMaker(const PublishedTile& tile, const AttributeRules& rules, const FindPlace& find)
+      : tile_(tile), rules_(rules), find_(find), numbers_(vertex_numbers(tile.mesh)) {
     part_.vertices.channels = tile.mesh.vertices.channels;
   }
 
@@ -89,25 +89,27 @@ class PartMaker {
   void add_moved(const VertexAt& vertex, const ShownPlace& shown) {
     const TileMesh& mesh = shown.other->mesh;
     const auto all = vertices_at(mesh.vertices, mesh.copies, shown.place);
-    const std::size_t wedge = nearest_vertex(layout_, vertex, all);
+    const std::size_t wedge = nearest_vertex(rules_, vertex, all);
     add_vertex(all[wedge]);
-    if (layout_.texcoords)
-      std::ranges::copy(vertex.attributes().last(2), part_.vertices.attributes.end() - 2);
+    const AttributePart& texcoords = rules_.part(AttributeKind::texcoords);
+    std::ranges::copy(texcoords.of(vertex.attributes()),
+                      part_.vertices.attributes.end() -
+                          static_cast<std::ptrdiff_t>(rules_.channels() - texcoords.first));
     add_normal(shown.other->shading,
                wedge == 0 ? shown.place
                           : mesh.vertices.size() + mesh.copies.first_of(shown.place) + wedge - 1);
   }
 
   const PublishedTile& tile_;
-  const AttributeLayout& layout_;
+  const AttributeRules& rules_;
   const FindPlace& find_;
   VertexNumbers numbers_;
   CutPart part_;
 };
 
-CutPart make_part(PublishedTile& tile, const AttributeLayout& layout,
+CutPart make_part(PublishedTile& tile, const AttributeRules& rules,
                   const std::vector<TileTriangle>& triangles, const FindPlace& find) {
-  CutPart part = PartMaker(tile, layout, find).make(triangles);
+  CutPart part = PartMaker(tile, rules, find).make(triangles);
   if (!triangles.empty())
     part.image = std::move(tile.image);
   return part;

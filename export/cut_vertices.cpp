@@ -153,10 +153,10 @@ class CutVertices::TileVertices {
   }
 
   Wedges nearest_wedges(const std::vector<VertexAt>& here, const std::vector<VertexAt>& all) const {
-    const AttributeLayout& layout = cut_.reader_.tile_format().attributes;
+    const AttributeRules rules(cut_.reader_.tile_format().attributes);
     Wedges wedges;
     for (const VertexAt& vertex : here)
-      wedges.push_back(static_cast<std::uint32_t>(nearest_vertex(layout, vertex, all)));
+      wedges.push_back(static_cast<std::uint32_t>(nearest_vertex(rules, vertex, all)));
     return wedges;
   }
 

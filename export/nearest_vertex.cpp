@@ -1,7 +1,5 @@
 #include "export/nearest_vertex.h"
 
-#include "hierarchy/value_channels.h"
-
 #include <algorithm>
 #include <array>
 
@@ -18,17 +16,17 @@ double squared_difference(std::span<const float> a, std::span<const float> b) {
 /// Returns how unlike two vertices are: by values, normal, colour, texture coordinate.
 using Difference = std::array<double, 1 + kAttributeKindCount>;
 
-Difference difference(const AttributeParts& parts, std::span<const PlacedValue> values,
-                      const VertexAt& a, const VertexAt& b) {
+Difference difference(const AttributeRules& rules, const VertexAt& a, const VertexAt& b) {
   const auto between = [&](const AttributePart& part) {
     return squared_difference(part.of(a.attributes()), part.of(b.attributes()));
   };
   Difference difference{};
-  difference[0] = static_cast<double>(std::ranges::count_if(values, [&](const PlacedValue& value) {
+  const auto differs = [&](const PlacedValue& value) {
     return between({AttributeKind::values, value.channel, value.channels()}) != 0;
-  }));
-  for (const AttributePart& part : parts) {
-    if (part.kind != AttributeKind::values)
+  };
+  difference[0] = static_cast<double>(std::ranges::count_if(rules.values().values(), differs));
+  for (const AttributePart& part : rules.parts()) {
+    if (!AttributeRules::are_quantities(part))
       difference[1 + static_cast<std::size_t>(part.kind)] = between(part);
   }
   return difference;
@@ -44,14 +42,12 @@ std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& cop
   return all;
 }
 
-std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
+std::size_t nearest_vertex(const AttributeRules& rules, const VertexAt& vertex,
                            std::span<const VertexAt> all) {
   if (all.size() == 1)
     return 0;
-  const AttributeParts parts = layout.parts();
-  const std::vector<PlacedValue> values = placed_values(layout);
   const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-    return difference(parts, values, vertex, a) < difference(parts, values, vertex, b);
+    return difference(rules, vertex, a) < difference(rules, vertex, b);
   });
   return static_cast<std::size_t>(nearest - all.begin());
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "export/tile_vertices.h"
-#include "hierarchy/attributes.h"
+#include "hierarchy/attribute_rules.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& cop
 /// Returns the index of the vertex of `all` that differs from `vertex` in the fewest values, so
 /// that labels stay on their side; among equals the nearest normal decides, then the colour, the
 /// texture coordinate, the order. Requires at least one.
-std::size_t nearest_vertex(const AttributeLayout& layout, const VertexAt& vertex,
+std::size_t nearest_vertex(const AttributeRules& rules, const VertexAt& vertex,
                            std::span<const VertexAt> all);
 
 }  // namespace meshhier::exporting
