@@ -1,7 +1,7 @@
 #include "app/compared_hierarchy.h"
 
+#include "base/error.h"
 #include "config/named_files.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 
 #include <system_error>

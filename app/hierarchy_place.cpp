@@ -1,10 +1,10 @@
 #include "app/hierarchy_place.h"
 
 #include "app/options.h"
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "base/text_mark.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/text_mark.h"
 #include "storage/io/process.h"
 
 #include <algorithm>

@@ -2,10 +2,10 @@
 #include "app/command.h"
 #include "app/parser_walk.h"
 #include "app/process.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "config/suggest.h"
 #include "execution/threads.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 

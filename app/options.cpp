@@ -2,8 +2,8 @@
 
 #include "app/number_text.h"
 #include "app/process.h"
+#include "base/error.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 

@@ -2,9 +2,9 @@
 #include "app/options.h"
 #include "app/program_id.h"
 #include "app/shell_word.h"
+#include "base/plain_text.h"
 #include "config/config.h"
 #include "config/named_files.h"
-#include "hierarchy/plain_text.h"
 #include "pipeline/tasks/task_plan.h"
 
 #include <algorithm>

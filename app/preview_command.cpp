@@ -2,7 +2,7 @@
 #include "app/hierarchy_place.h"
 #include "app/number_text.h"
 #include "app/options.h"
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "inspection/preview.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"

@@ -1,7 +1,7 @@
 #include "app/story_pictures.h"
 
+#include "base/error.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "server/url_path.h"
 #include "storage/io/folder.h"
 #include "storage/io/http_client.h"

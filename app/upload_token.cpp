@@ -1,7 +1,7 @@
 #include "app/upload_token.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/text_mark.h"
+#include "base/error.h"
+#include "base/text_mark.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "app/viewer_place.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/own_program.h"
 
 #include <array>

@@ -5,11 +5,11 @@
 // spacing: a new point lies between two old ones. A point's displacement depends on its two parents
 // and its own output number only, so a point on an edge comes out the same, bit for bit, in every
 // triangle at that edge and in the walk along the edge alone.
+#include "base/error.h"
 #include "bench/block_writer.h"
 #include "bench/generator.h"
 #include "bench/noise.h"
 #include "hierarchy/attribute_rules.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <cmath>

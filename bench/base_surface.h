@@ -1,7 +1,7 @@
 // Smooth closed base shapes made of square patches.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "bench/chart_atlas.h"
 
+#include "base/error.h"
 #include "bench/noise.h"
 #include "bench/require_range.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // mesh.
 #pragma once
 
+#include "base/vec.h"
 #include "bench/base_surface.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/io/file.h"

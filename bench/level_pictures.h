@@ -1,9 +1,9 @@
 // Pictures of levels, for the comparisons of shading and textures.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/tree.h"
-#include "hierarchy/vec.h"
 #include "storage/format/manifest.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Seeded fractal noise, equal bit for bit on every machine: integer hashes and polynomials only.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // main() of the programs of this folder.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <cstdio>
 #include <exception>

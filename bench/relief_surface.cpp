@@ -1,8 +1,8 @@
 #include "bench/relief_surface.h"
 
+#include "base/error.h"
 #include "bench/block_writer.h"
 #include "bench/require_range.h"
-#include "hierarchy/error.h"
 
 #include <cmath>
 

@@ -2,11 +2,11 @@
 // and by noise.
 #pragma once
 
+#include "base/vec.h"
 #include "bench/base_surface.h"
 #include "bench/generator.h"
 #include "bench/noise.h"
 #include "bench/patch_grid.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

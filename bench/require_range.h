@@ -1,7 +1,7 @@
 // The check of an option's value.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <type_traits>
 

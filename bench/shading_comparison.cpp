@@ -1,9 +1,9 @@
 #include "bench/shading_comparison.h"
 
+#include "base/angle.h"
 #include "compare/cut_surface.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
-#include "hierarchy/angle.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/frame.h"

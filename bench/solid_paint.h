@@ -2,7 +2,7 @@
 // show.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "bench/split.h"
 
+#include "base/error.h"
 #include "bench/noise.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

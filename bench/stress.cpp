@@ -1,8 +1,8 @@
 #include "bench/stress.h"
 
+#include "base/error.h"
 #include "bench/block_writer.h"
 #include "bench/noise.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

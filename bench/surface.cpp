@@ -1,9 +1,9 @@
 // make_surface(): a base shape, cut into a grid, displaced by fractal relief.
+#include "base/error.h"
 #include "bench/block_writer.h"
 #include "bench/generator.h"
 #include "bench/noise.h"
 #include "bench/relief_surface.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <cmath>

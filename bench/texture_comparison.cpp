@@ -1,10 +1,10 @@
 #include "bench/texture_comparison.h"
 
+#include "base/error.h"
 #include "compare/cut_surface.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "inspection/shown_tiles.h"
 #include "render/camera.h"

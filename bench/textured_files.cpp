@@ -1,10 +1,10 @@
 #include "bench/textured_files.h"
 
+#include "base/error.h"
 #include "bench/buffered_file.h"
 #include "bench/require_range.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
-#include "hierarchy/error.h"
 #include "images/row_writer.h"
 #include "storage/io/little_endian.h"
 

@@ -1,9 +1,9 @@
 #include "bench/textured_mesh.h"
 
+#include "base/error.h"
+#include "base/srgb.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
-#include "hierarchy/error.h"
-#include "hierarchy/srgb.h"
 #include "images/image_codec.h"
 #include "images/material_list.h"
 #include "import/mesh_input.h"

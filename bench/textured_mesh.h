@@ -1,9 +1,9 @@
 // A textured mesh in memory, pictures and all, to be drawn.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/input_paths.h"
 #include "render/mip_texture.h"
 #include "render/raster.h"

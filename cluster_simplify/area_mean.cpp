@@ -1,6 +1,6 @@
 #include "cluster_simplify/area_mean.h"
 
-#include "hierarchy/widest_corner.h"
+#include "base/widest_corner.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "cluster_simplify/attribute_metric.h"
 
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 
 #include <algorithm>
 #include <cmath>

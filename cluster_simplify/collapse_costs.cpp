@@ -1,7 +1,7 @@
 #include "cluster_simplify/collapse_costs.h"
 
+#include "base/four_floats.h"
 #include "cluster_simplify/vanishing.h"
-#include "hierarchy/four_floats.h"
 
 #include <algorithm>
 #include <cstddef>

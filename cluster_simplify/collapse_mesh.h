@@ -23,7 +23,7 @@
 // in use move together (make_room()).
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/triangle.h"
 

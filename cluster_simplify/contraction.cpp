@@ -1,11 +1,11 @@
 #include "cluster_simplify/contraction.h"
 
+#include "base/error.h"
+#include "base/vec.h"
 #include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/cluster.h"
 #include "cluster_simplify/edge_collapse.h"
 #include "cluster_simplify/half_edge.h"
-#include "hierarchy/error.h"
-#include "hierarchy/vec.h"
 
 #include <algorithm>
 #include <cmath>

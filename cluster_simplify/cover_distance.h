@@ -22,7 +22,7 @@
 // O(cuts * covers). Some 100,000 instructions around one edge.
 #pragma once
 
-#include "hierarchy/closest_point.h"
+#include "base/closest_point.h"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "cluster_simplify/disc_gap.h"
 
-#include "hierarchy/tangent_frame.h"
+#include "base/tangent_frame.h"
 
 #include <algorithm>
 #include <cmath>

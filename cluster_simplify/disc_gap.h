@@ -37,9 +37,9 @@
 // its back goes to fan_gap.h.
 #pragma once
 
+#include "base/four_floats.h"
+#include "base/vec.h"
 #include "cluster_simplify/edge_star.h"
-#include "hierarchy/four_floats.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

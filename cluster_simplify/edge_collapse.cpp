@@ -1,11 +1,11 @@
 #include "cluster_simplify/edge_collapse.h"
 
+#include "base/four_floats.h"
 #include "cluster_simplify/collapse_costs.h"
 #include "cluster_simplify/collapse_driver.h"
 #include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/representatives.h"
-#include "hierarchy/four_floats.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // All triangles around an edge; in order around it where they are a plain disc.
 #pragma once
 
+#include "base/vec.h"
 #include "cluster_simplify/collapse_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "cluster_simplify/fan_gap.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/closest_point.h"
+#include "base/angle.h"
+#include "base/closest_point.h"
 
 #include <algorithm>
 #include <cmath>

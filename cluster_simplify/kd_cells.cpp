@@ -1,6 +1,6 @@
 #include "cluster_simplify/kd_cells.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <algorithm>
 

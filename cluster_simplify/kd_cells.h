@@ -1,7 +1,7 @@
 // Cells of equal vertex count by kd median splits.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <span>

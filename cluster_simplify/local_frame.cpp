@@ -1,6 +1,6 @@
 #include "cluster_simplify/local_frame.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <algorithm>
 #include <cmath>

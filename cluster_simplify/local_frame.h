@@ -1,8 +1,8 @@
 // A tile's own coordinates: single precision, about its middle, of size one.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <span>
 #include <vector>

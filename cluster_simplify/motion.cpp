@@ -1,9 +1,9 @@
 #include "cluster_simplify/motion.h"
 
+#include "base/widest_corner.h"
 #include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/nearest.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/widest_corner.h"
 
 #include <algorithm>
 #include <array>

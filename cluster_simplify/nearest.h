@@ -1,8 +1,8 @@
 // Nearest neighbours among points.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <cstddef>
 #include <cstdint>

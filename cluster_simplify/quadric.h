@@ -1,7 +1,7 @@
 // Area-weighted plane quadrics (Garland & Heckbert 1997).
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 namespace meshhier::cluster_simplify {
 

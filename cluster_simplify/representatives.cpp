@@ -1,11 +1,11 @@
 #include "cluster_simplify/representatives.h"
 
+#include "base/closest_point.h"
+#include "base/widest_corner.h"
 #include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
-#include "hierarchy/closest_point.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/widest_corner.h"
 
 #include <algorithm>
 #include <array>

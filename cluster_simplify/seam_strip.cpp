@@ -1,8 +1,8 @@
 #include "cluster_simplify/seam_strip.h"
 
+#include "base/error.h"
 #include "cluster_simplify/cover_distance.h"
 #include "cluster_simplify/nearest.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "cluster_simplify/seam_wedges.h"
 
+#include "base/error.h"
 #include "cluster_simplify/seams.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "cluster_simplify/seams.h"
 
+#include "base/error.h"
 #include "cluster_simplify/seam_wedges.h"
 #include "cluster_simplify/wedges.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,8 +1,8 @@
 #include "cluster_simplify/texture_charts.h"
 
-#include "hierarchy/closest_point.h"
-#include "hierarchy/sort_few.h"
-#include "hierarchy/union_find.h"
+#include "base/closest_point.h"
+#include "base/sort_few.h"
+#include "base/union_find.h"
 
 #include <algorithm>
 #include <bit>

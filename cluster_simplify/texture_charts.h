@@ -5,10 +5,10 @@
 // that the ends of a collapsed edge have in one triangle become one.
 #pragma once
 
+#include "base/vec.h"
 #include "cluster_simplify/tile_wedges.h"
 #include "cluster_simplify/wedge_clusters.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -4,9 +4,9 @@
 // first, and the copies come after all places.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 
 #include <cstdint>
 #include <span>

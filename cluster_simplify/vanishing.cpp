@@ -1,7 +1,7 @@
 #include "cluster_simplify/vanishing.h"
 
+#include "base/union_find.h"
 #include "cluster_simplify/nearest.h"
-#include "hierarchy/union_find.h"
 
 #include <algorithm>
 #include <cstdint>

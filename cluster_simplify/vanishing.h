@@ -1,8 +1,8 @@
 // Measures how far the surface is off if it loses a small piece of itself.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <span>
 #include <vector>

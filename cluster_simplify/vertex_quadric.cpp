@@ -1,6 +1,6 @@
 #include "cluster_simplify/vertex_quadric.h"
 
-#include "hierarchy/four_floats.h"
+#include "base/four_floats.h"
 
 #include <algorithm>
 #include <array>

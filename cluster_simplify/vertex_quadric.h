@@ -2,9 +2,9 @@
 // itself.
 #pragma once
 
+#include "base/vec.h"
 #include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/collapse_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <span>
 #include <vector>

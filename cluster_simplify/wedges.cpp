@@ -1,11 +1,11 @@
 #include "cluster_simplify/wedges.h"
 
+#include "base/vec.h"
 #include "cluster_simplify/attribute_groups.h"
 #include "cluster_simplify/attribute_metric.h"
 #include "cluster_simplify/texture_charts.h"
 #include "cluster_simplify/tile_wedges.h"
 #include "cluster_simplify/wedge_clusters.h"
-#include "hierarchy/vec.h"
 
 #include <algorithm>
 #include <array>

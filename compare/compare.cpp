@@ -1,5 +1,6 @@
 #include "compare/compare.h"
 
+#include "base/error.h"
 #include "compare/cut_surface.h"
 #include "compare/difference_ply.h"
 #include "compare/farthest_bound.h"
@@ -7,7 +8,6 @@
 #include "compare/surface_samples.h"
 #include "compare/surface_sides.h"
 #include "execution/parallel.h"
-#include "hierarchy/error.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/output_name.h"
 #include "storage/format/archive.h"

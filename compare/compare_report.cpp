@@ -1,6 +1,6 @@
 // Tells a comparison in words.
+#include "base/plain_text.h"
 #include "compare/compare.h"
-#include "hierarchy/plain_text.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // The surface that a cut shows, as triangles in space, tile by tile.
 #pragma once
 
+#include "base/bounds.h"
 #include "compare/triangle_search.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "export/cut_mesh.h"
 #include "export/node_cache.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/triangle.h"
 #include "storage/format/hierarchy_reader.h"
 

@@ -1,9 +1,9 @@
 // The PLY that a comparison writes.
 #pragma once
 
+#include "base/vec.h"
 #include "compare/cut_surface.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "storage/io/output_file.h"
 #include "storage/io/spool.h"
 

@@ -24,7 +24,7 @@
 // Cost. At most kMostPoints distances and kMostCandidates triangles, whatever the surface.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstddef>

@@ -1,9 +1,9 @@
 #include "compare/place_transform.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/flat_axes.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/text_mark.h"
+#include "base/error.h"
+#include "base/flat_axes.h"
+#include "base/plain_text.h"
+#include "base/text_mark.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,8 +1,8 @@
 // The map that moves the first of two surfaces before they are compared.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <array>
 #include <optional>

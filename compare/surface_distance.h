@@ -24,12 +24,12 @@
 // Cost. O(log n) a point and tile; most points are looked up in one tile.
 #pragma once
 
+#include "base/bounds.h"
+#include "base/vec.h"
 #include "compare/cut_surface.h"
 #include "compare/triangle_search.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Points that are spread evenly over the surface of a cut.
 #pragma once
 
+#include "base/vec.h"
 #include "compare/cut_surface.h"
-#include "hierarchy/vec.h"
 
 #include <cstdint>
 #include <vector>

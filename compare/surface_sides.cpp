@@ -1,8 +1,8 @@
 #include "compare/surface_sides.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/closest_point.h"
-#include "hierarchy/widest_corner.h"
+#include "base/angle.h"
+#include "base/closest_point.h"
+#include "base/widest_corner.h"
 
 #include <algorithm>
 #include <array>

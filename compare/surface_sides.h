@@ -2,10 +2,10 @@
 // Distance Computation Using the Angle Weighted Pseudonormal, 2005).
 #pragma once
 
+#include "base/vec.h"
 #include "compare/cut_surface.h"
 #include "compare/surface_distance.h"
 #include "execution/cancel.h"
-#include "hierarchy/vec.h"
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 #include "compare/triangle_search.h"
 
-#include "hierarchy/closest_point.h"
+#include "base/closest_point.h"
 
 #include <algorithm>
 #include <cmath>

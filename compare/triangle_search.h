@@ -1,9 +1,9 @@
 // The distance of points to a set of triangles.
 #pragma once
 
-#include "hierarchy/triangle_tree.h"
-#include "hierarchy/vec.h"
-#include "hierarchy/widest_corner.h"
+#include "base/triangle_tree.h"
+#include "base/vec.h"
+#include "base/widest_corner.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,11 +1,11 @@
 #include "config/config.h"
 
+#include "base/error.h"
+#include "base/flat_axes.h"
 #include "config/config_draft.h"
 #include "config/config_schema.h"
 #include "config/input_frame.h"
 #include "config/suggest.h"
-#include "hierarchy/error.h"
-#include "hierarchy/flat_axes.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/output_name.h"
 #include "storage/io/json_text.h"

@@ -3,10 +3,10 @@
 // The keys, their ranges and their meanings are listed once, in config_schema.cpp.
 #pragma once
 
+#include "base/bounds.h"
+#include "base/named_value.h"
 #include "cluster_simplify/contraction.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
-#include "hierarchy/named_value.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/texture.h"

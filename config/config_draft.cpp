@@ -1,9 +1,9 @@
 #include "config/config_draft.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "config/config_schema.h"
 #include "config/suggest.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

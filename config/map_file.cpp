@@ -1,7 +1,7 @@
 #include "config/map_file.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/text_mark.h"
+#include "base/error.h"
+#include "base/text_mark.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
 

@@ -1,10 +1,10 @@
 // Places of a map in the coordinates of a hierarchy's input.
 #pragma once
 
+#include "base/bounds.h"
 #include "config/config.h"
 #include "geodesy/map_change.h"
 #include "geodesy/map_transform.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 
 #include <optional>

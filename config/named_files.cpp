@@ -1,8 +1,8 @@
 #include "config/named_files.h"
 
+#include "base/error.h"
+#include "base/text_mark.h"
 #include "config/input_frame.h"
-#include "hierarchy/error.h"
-#include "hierarchy/text_mark.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/other_formats.h"

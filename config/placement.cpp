@@ -1,7 +1,7 @@
 #include "config/placement.h"
 
+#include "base/error.h"
 #include "config/map_file.h"
-#include "hierarchy/error.h"
 #include "storage/format/tileset.h"
 
 #include <algorithm>

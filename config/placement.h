@@ -1,10 +1,10 @@
 // Turns `placement` into the transform of the tileset's root.
 #pragma once
 
+#include "base/bounds.h"
 #include "config/config.h"
 #include "geodesy/map_projection.h"
 #include "geodesy/map_transform.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "storage/io/file.h"
 

@@ -1,7 +1,7 @@
 // A running job is asked to stop by a token: Ctrl-C sets it, long loops look at it.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <atomic>
 

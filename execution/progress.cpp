@@ -1,7 +1,7 @@
 #include "execution/progress.h"
 
+#include "base/plain_text.h"
 #include "execution/size_text.h"
-#include "hierarchy/plain_text.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

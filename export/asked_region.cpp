@@ -1,10 +1,10 @@
 #include "export/asked_region.h"
 
+#include "base/error.h"
 #include "config/config.h"
 #include "config/map_places.h"
 #include "export/geojson.h"
 #include "export/manifest_config.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

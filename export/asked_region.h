@@ -1,9 +1,9 @@
 // The region that options of commands ask for.
 #pragma once
 
+#include "base/bounds.h"
 #include "execution/cancel.h"
 #include "export/region.h"
-#include "hierarchy/bounds.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/file.h"
 

@@ -1,9 +1,9 @@
 // Corners of triangles that are cut, with all that a vertex has.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attribute_rules.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/vec.h"
 
 #include <algorithm>
 #include <array>

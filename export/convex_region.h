@@ -1,9 +1,9 @@
 // A convex part of space, by which a piece of a mesh is cut out.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/half_space.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/half_space.h"
+#include "base/vec.h"
 
 #include <vector>
 

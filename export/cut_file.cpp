@@ -1,8 +1,8 @@
 #include "export/cut_file.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/text_mark.h"
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "base/text_mark.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

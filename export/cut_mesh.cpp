@@ -1,7 +1,7 @@
 #include "export/cut_mesh.h"
 
+#include "base/error.h"
 #include "hierarchy/drawing_rule.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,8 +1,8 @@
 #include "export/cut_vertices.h"
 
+#include "base/error.h"
 #include "export/nearest_vertex.h"
 #include "export/tile_vertices.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,7 @@
 #include "export/export.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/cut_file.h"
 #include "export/cut_mesh.h"
 #include "export/cut_vertices.h"
@@ -8,8 +10,6 @@
 #include "export/ply_vertices.h"
 #include "export/tile_vertices.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/output_name.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"

@@ -1,10 +1,10 @@
 // A cut as one GLB. Its JSON comes first and names the size of everything, so parts are read twice:
 // for their sizes, then for their bytes. The JSON is made twice too, and never held as a whole.
+#include "base/bounds.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/byte_stream.h"
 #include "export/export_parts.h"
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/showable.h"

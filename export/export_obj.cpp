@@ -1,8 +1,8 @@
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "base/srgb.h"
 #include "export/byte_stream.h"
 #include "export/export_parts.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/srgb.h"
 #include "images/image_codec.h"
 #include "storage/format/showable.h"
 

@@ -1,6 +1,6 @@
 #include "export/geojson.h"
 
-#include "hierarchy/text_mark.h"
+#include "base/text_mark.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "storage/io/json_text.h"

@@ -1,9 +1,9 @@
 #include "export/page_file.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/byte_stream.h"
 #include "export/page_tiles.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/output_name.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"

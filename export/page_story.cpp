@@ -1,9 +1,9 @@
 #include "export/page_story.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/base64.h"
-#include "hierarchy/error.h"
 #include "hierarchy/image_format.h"
-#include "hierarchy/plain_text.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

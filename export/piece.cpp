@@ -1,7 +1,7 @@
 #include "export/piece.h"
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
+#include "base/bounds.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
 #include "export/piece_mesh.h"
 
+#include "base/error.h"
 #include "export/manifest_config.h"
-#include "hierarchy/error.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"

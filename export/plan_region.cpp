@@ -1,6 +1,6 @@
 #include "export/plan_region.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <functional>

@@ -30,9 +30,9 @@
 // Cost. O(log n) for a triangle away from borders; O(n + k log k) for k borders over it.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 #include "hierarchy/frame.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "export/ply_vertices.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <span>

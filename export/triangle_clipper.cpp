@@ -1,6 +1,6 @@
 #include "export/triangle_clipper.h"
 
-#include "hierarchy/clip_polygon.h"
+#include "base/clip_polygon.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "export/work_folder.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 

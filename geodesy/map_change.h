@@ -1,7 +1,7 @@
 // Places of one map in the coordinates of another, by PROJ.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <memory>
 #include <string>

@@ -1,7 +1,7 @@
 #include "geodesy/map_projection.h"
 
+#include "base/plain_text.h"
 #include "geodesy/proj_objects.h"
-#include "hierarchy/plain_text.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 // installed.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <memory>
 #include <string>

@@ -1,8 +1,8 @@
 // The one affine map that stands for a projection where a model lies.
 #pragma once
 
+#include "base/bounds.h"
 #include "geodesy/map_projection.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 
 namespace meshhier::geodesy {

@@ -1,7 +1,7 @@
 #include "geodesy/proj_objects.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 
 #include <algorithm>
 

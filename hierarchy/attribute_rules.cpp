@@ -1,6 +1,6 @@
 #include "hierarchy/attribute_rules.h"
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 

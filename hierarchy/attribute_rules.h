@@ -3,8 +3,8 @@
 // layout's kinds (attributes.h).
 #pragma once
 
+#include "base/srgb.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/srgb.h"
 #include "hierarchy/value_mixer.h"
 
 #include <algorithm>

@@ -17,7 +17,7 @@
 // storage/format/tile_plan.h, kPlyAttributes in mesh_io/ply_properties.h.
 #pragma once
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "hierarchy/scalar_value.h"
 
 #include <array>

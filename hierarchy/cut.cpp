@@ -1,6 +1,6 @@
 #include "hierarchy/cut.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,7 @@
 // How stored positions lie in space.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <string_view>

@@ -2,7 +2,7 @@
 // begin. What reads and writes them: images/formats.h.
 #pragma once
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 
 #include <array>
 #include <cstddef>

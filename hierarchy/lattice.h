@@ -2,8 +2,8 @@
 // that a vertex has the same place in every tile that shows it.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // Normals in four bytes, as glTF has them with KHR_mesh_quantization.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // The shape-outline: a thumbnail of the model made of lines.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/standpoint.h"
-#include "hierarchy/vec.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // A finished hierarchy's words about itself and each tile, as values.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "hierarchy/ghost_chains.h"
 #include "hierarchy/shading.h"
 #include "hierarchy/standpoint.h"

@@ -1,6 +1,6 @@
 #include "hierarchy/scalar_value.h"
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // Tangents in four bytes, as glTF has them with KHR_mesh_quantization.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/normal_code.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Textures: coordinates, and the picture that a tile shows on its triangles.
 #pragma once
 
+#include "base/named_value.h"
 #include "hierarchy/image_format.h"
-#include "hierarchy/named_value.h"
 
 #include <array>
 #include <cstddef>

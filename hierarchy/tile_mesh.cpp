@@ -1,6 +1,6 @@
 #include "hierarchy/tile_mesh.h"
 
-#include "hierarchy/sort_few.h"
+#include "base/sort_few.h"
 
 #include <algorithm>
 #include <numeric>

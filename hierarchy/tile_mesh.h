@@ -10,10 +10,10 @@
 // border triangles that a neighbour's contraction made degenerate.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Units of length.
 #pragma once
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "images/formats.h"
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "images/coders.h"
 #include "images/ktx2_coder.h"
 

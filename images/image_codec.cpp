@@ -1,6 +1,6 @@
 #include "images/image_codec.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/formats.h"
 #include "images/source_buffer.h"
 

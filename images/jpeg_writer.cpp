@@ -1,4 +1,4 @@
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/coders.h"
 #include "images/encode_rows.h"
 #include "images/library_call.h"

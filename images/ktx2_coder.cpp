@@ -1,6 +1,6 @@
 #include "images/ktx2_coder.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/child_process.h"
 #include "storage/io/own_program.h"
 #include "storage/io/worker_pool.h"

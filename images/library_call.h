@@ -4,7 +4,7 @@
 // its frames; there it becomes an exception.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <array>

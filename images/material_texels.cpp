@@ -1,6 +1,6 @@
 #include "images/material_texels.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "images/pyramid.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "import/crop_mesh.h"
 
+#include "base/half_space.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/half_space.h"
 #include "import/renumber_triangles.h"
 #include "import/used_vertices.h"
 

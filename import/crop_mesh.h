@@ -1,7 +1,7 @@
 // A piece of a mesh: the triangles that touch a box, whole, with the vertices that they use.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "import/raw_mesh.h"
 #include "mesh_io/mesh_source.h"
 

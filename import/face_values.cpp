@@ -1,6 +1,6 @@
 #include "import/face_values.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/append_value.h"
 #include "partition/external_sort.h"
 

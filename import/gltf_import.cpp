@@ -1,7 +1,7 @@
 #include "import/gltf_import.h"
 
+#include "base/angle.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/angle.h"
 #include "import/append_value.h"
 #include "import/gltf_copies.h"
 #include "import/gltf_materials.h"

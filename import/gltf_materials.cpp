@@ -1,6 +1,6 @@
 #include "import/gltf_materials.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <span>

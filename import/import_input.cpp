@@ -1,7 +1,7 @@
 #include "import/import_input.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "import/crop_mesh.h"
 #include "import/file_reader.h"
 #include "import/join_layouts.h"

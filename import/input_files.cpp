@@ -1,8 +1,8 @@
 #include "import/input_files.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "hierarchy/image_format.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"

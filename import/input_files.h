@@ -2,8 +2,8 @@
 // lie.
 #pragma once
 
+#include "base/bounds.h"
 #include "execution/cancel.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/published.h"
 #include "import/input_record.h"
 #include "mesh_io/formats.h"

@@ -1,6 +1,6 @@
 #include "import/input_record.h"
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "import/join_layouts.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "hierarchy/value_channels.h"
 #include "import/material_colours.h"
 

@@ -1,6 +1,6 @@
 #include "import/label_names.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

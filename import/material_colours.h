@@ -1,8 +1,8 @@
 // Materials without pictures: their colours become colours of the vertices.
 #pragma once
 
+#include "base/srgb.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/srgb.h"
 #include "images/material_list.h"
 
 #include <array>

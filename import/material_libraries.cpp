@@ -1,6 +1,6 @@
 #include "import/material_libraries.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "import/obj_import.h"
 
+#include "base/small_letters.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/small_letters.h"
 #include "import/material_colours.h"
 #include "import/obj_labels.h"
 #include "import/obj_textures.h"

@@ -1,6 +1,6 @@
 #include "import/obj_labels.h"
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 
 namespace meshhier::importing {
 namespace {

@@ -1,7 +1,7 @@
 #include "import/place_vertices.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 #include "import/renumber_triangles.h"
 #include "mesh_io/input_error.h"
 

@@ -1,10 +1,10 @@
 // A mesh in spools, on its way from the format of its file to a PLY.
 #pragma once
 
+#include "base/vec.h"
 #include "execution/cancel.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "import/label_names.h"
 #include "import/material_table.h"
 #include "storage/io/spool.h"

@@ -1,7 +1,7 @@
 #include "import/split_corners.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 
 #include <span>
 

@@ -1,7 +1,7 @@
 #include "import/stl_import.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 #include "import/text_blocks.h"
 #include "import/weld.h"
 #include "mesh_io/stl_block.h"

@@ -1,7 +1,7 @@
 #include "import/used_vertices.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #include "import/weld.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 #include "import/renumber_triangles.h"
 #include "partition/external_sort.h"
 

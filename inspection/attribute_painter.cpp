@@ -1,7 +1,7 @@
 #include "inspection/attribute_painter.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "hierarchy/value_channels.h"
 
 #include <algorithm>

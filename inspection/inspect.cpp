@@ -1,10 +1,10 @@
 #include "inspection/inspect.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/size_text.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "images/formats.h"
 #include "import/import_input.h"
 #include "storage/format/archive_files.h"

@@ -1,7 +1,7 @@
 // Failures of the project as failures of the library.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "library/include/meshhier/meshhier.h"
 
 #include <exception>

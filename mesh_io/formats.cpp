@@ -1,6 +1,6 @@
 #include "mesh_io/formats.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 #include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"

@@ -1,6 +1,6 @@
 #include "mesh_io/globe_frame.h"
 
-#include "hierarchy/wgs84.h"
+#include "base/wgs84.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Local frames on the globe (WGS 84).
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/frame.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/gltf_transform.h"
 
 #include <optional>

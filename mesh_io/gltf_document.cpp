@@ -1,7 +1,7 @@
 #include "mesh_io/gltf_document.h"
 
-#include "hierarchy/named_value.h"
-#include "hierarchy/plain_text.h"
+#include "base/named_value.h"
+#include "base/plain_text.h"
 #include "mesh_io/gltf_extensions.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/gltf_techniques.h"

@@ -2,8 +2,8 @@
 // colours go. Each value is checked by itself. gltf_elements.h checks that ranges fit into buffers.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/gltf_transform.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "mesh_io/gltf_draco.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>

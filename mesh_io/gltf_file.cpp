@@ -1,7 +1,7 @@
 #include "mesh_io/gltf_file.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "mesh_io/gltf_meshopt.h"
 #include "mesh_io/gltf_uri.h"
 #include "mesh_io/input_error.h"

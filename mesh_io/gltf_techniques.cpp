@@ -1,6 +1,6 @@
 #include "mesh_io/gltf_techniques.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <cctype>

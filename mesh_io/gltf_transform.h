@@ -1,7 +1,7 @@
 // Affine transforms, by which nodes of a glTF document place their meshes.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 

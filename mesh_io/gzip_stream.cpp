@@ -1,6 +1,6 @@
 #include "mesh_io/gzip_stream.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>

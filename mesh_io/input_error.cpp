@@ -1,7 +1,7 @@
 #include "mesh_io/input_error.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 
 #include <cstddef>
 

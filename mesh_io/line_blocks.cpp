@@ -1,6 +1,6 @@
 #include "mesh_io/line_blocks.h"
 
-#include "hierarchy/text_mark.h"
+#include "base/text_mark.h"
 #include "mesh_io/text_chars.h"
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // A mesh file as two restartable streams, vertices and triangles, in bounded memory.
 #pragma once
 
+#include "base/error.h"
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/error.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/attribute_choice.h"
 #include "mesh_io/block_runner.h"
 #include "mesh_io/odd_syntax.h"

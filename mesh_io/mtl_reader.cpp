@@ -1,6 +1,6 @@
 #include "mesh_io/mtl_reader.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/utf16_stream.h"

@@ -1,6 +1,6 @@
 #include "mesh_io/named_files.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 
 #include <algorithm>
 

@@ -17,7 +17,7 @@
 // words: there is one place that says what is wrong.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstdint>

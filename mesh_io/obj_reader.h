@@ -1,7 +1,7 @@
 // OBJ files (Wavefront, "Advanced Visualizer", appendix B1) as streams of what a mesh is made of.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/obj_block.h"
 #include "mesh_io/odd_syntax.h"

@@ -1,8 +1,8 @@
 // OFF files (Geomview's object file format) in text.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/block_runner.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/mesh_blocks.h"

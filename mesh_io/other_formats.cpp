@@ -1,7 +1,7 @@
 #include "mesh_io/other_formats.h"
 
+#include "base/text_mark.h"
 #include "hierarchy/image_format.h"
-#include "hierarchy/text_mark.h"
 #include "mesh_io/formats.h"
 
 #include <algorithm>

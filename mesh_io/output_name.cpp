@@ -1,7 +1,7 @@
 #include "mesh_io/output_name.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/small_letters.h"
+#include "base/error.h"
+#include "base/small_letters.h"
 #include "mesh_io/other_formats.h"
 
 #include <algorithm>

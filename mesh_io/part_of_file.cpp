@@ -1,6 +1,6 @@
 #include "mesh_io/part_of_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/input_stream.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The data behind a PLY header, element by element, in binary or in text.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/byte_window.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/odd_syntax.h"

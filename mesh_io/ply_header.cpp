@@ -1,8 +1,8 @@
 #include "mesh_io/ply_header.h"
 
-#include "hierarchy/named_value.h"
-#include "hierarchy/small_letters.h"
-#include "hierarchy/text_mark.h"
+#include "base/named_value.h"
+#include "base/small_letters.h"
+#include "base/text_mark.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_names.h"
 #include "mesh_io/text_chars.h"

@@ -1,7 +1,7 @@
 // The text header of a PLY file (Turk, "The PLY Polygon File Format", 1994), as a value.
 #pragma once
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "hierarchy/scalar_value.h"
 
 #include <algorithm>

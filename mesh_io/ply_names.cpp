@@ -1,6 +1,6 @@
 #include "mesh_io/ply_names.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 #include "mesh_io/text_chars.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "mesh_io/ply_properties.h"
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>

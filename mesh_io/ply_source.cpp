@@ -1,6 +1,6 @@
 #include "mesh_io/ply_source.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/ply_body.h"
 #include "mesh_io/ply_fixed_rows.h"
 #include "mesh_io/ply_header.h"

@@ -1,9 +1,9 @@
 // Writes a binary little endian PLY as a stream.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "storage/io/file.h"
 
 #include <array>

@@ -22,9 +22,9 @@
 // Cost. O(n) for fans, about O(n^2) for ears, O(n log n) for covers.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
+#include "base/vec.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 #include "mesh_io/polygon_counts.h"
 #include "mesh_io/polygon_turns.h"
 

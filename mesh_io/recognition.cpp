@@ -1,7 +1,7 @@
 #include "mesh_io/recognition.h"
 
-#include "hierarchy/small_letters.h"
-#include "hierarchy/text_mark.h"
+#include "base/small_letters.h"
+#include "base/text_mark.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/json_characters.h"

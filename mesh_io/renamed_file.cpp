@@ -1,6 +1,6 @@
 #include "mesh_io/renamed_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <utility>
 

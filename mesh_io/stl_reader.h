@@ -1,7 +1,7 @@
 // STL files (3D Systems, 1988) as soups of triangles.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/odd_syntax.h"
 #include "mesh_io/stl_colours.h"

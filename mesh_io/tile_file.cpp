@@ -1,6 +1,6 @@
 #include "mesh_io/tile_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"

@@ -2,7 +2,7 @@
 // several tiles within a cmpt.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "mesh_io/formats.h"
 #include "storage/io/file.h"
 

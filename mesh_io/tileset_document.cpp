@@ -1,8 +1,8 @@
 #include "mesh_io/tileset_document.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/error.h"
-#include "hierarchy/wgs84.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "base/wgs84.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_stream.h"
 

@@ -1,7 +1,7 @@
 // The JSON of one tileset (OGC, 3D Tiles 1.0 and 1.1) as a list of its tiles.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "mesh_io/gltf_transform.h"
 #include "storage/io/file.h"
 

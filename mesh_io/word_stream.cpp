@@ -1,6 +1,6 @@
 #include "mesh_io/word_stream.h"
 
-#include "hierarchy/text_mark.h"
+#include "base/text_mark.h"
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/text_chars.h"

@@ -1,7 +1,7 @@
 // A stream of text as lines of words, with line numbers.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/number_text.h"
 #include "mesh_io/unplaced.h"

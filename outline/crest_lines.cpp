@@ -1,6 +1,6 @@
 #include "outline/crest_lines.h"
 
-#include "hierarchy/tangent_frame.h"
+#include "base/tangent_frame.h"
 #include "outline/polyline.h"
 #include "outline/surface_normals.h"
 #include "outline/tile_lines.h"

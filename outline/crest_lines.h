@@ -6,8 +6,8 @@
 // by vertex.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <vector>
 

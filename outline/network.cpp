@@ -1,6 +1,6 @@
 #include "outline/network.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <string>

@@ -1,8 +1,8 @@
 // Triangles with corners in several sectors, over all tiles.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Polylines: traced from loose segments, and simplified.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstddef>

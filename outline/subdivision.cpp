@@ -1,6 +1,6 @@
 #include "outline/subdivision.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "outline/surface_normals.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Normals of a tile's own vertices, and which of them are neighbours.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <cstddef>
 #include <cstdint>

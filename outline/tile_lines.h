@@ -1,8 +1,8 @@
 // Finds the parts of the mesh's own borders and creases that one tile knows.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "partition/direction.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "partition/eigenvectors.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // In which direction a node is split.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <span>
 #include <vector>

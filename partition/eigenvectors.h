@@ -1,7 +1,7 @@
 // Eigenvectors of symmetric matrices, by arithmetic whose result IEEE 754 fixes.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 

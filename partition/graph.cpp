@@ -1,6 +1,6 @@
 #include "partition/graph.h"
 
-#include "hierarchy/union_find.h"
+#include "base/union_find.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // A surface as a weighted graph whose cuts measure what compactness measures.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "partition/surface.h"
 
 #include <cstdint>

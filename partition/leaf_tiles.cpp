@@ -1,7 +1,7 @@
 #include "partition/leaf_tiles.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/sort_few.h"
+#include "base/error.h"
+#include "base/sort_few.h"
 #include "partition/spatial_order.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The definitions of renumber.h, which includes this.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "partition/parallel_parts.h"
 
 #include <algorithm>

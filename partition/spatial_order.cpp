@@ -1,6 +1,6 @@
 #include "partition/spatial_order.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <algorithm>
 #include <array>

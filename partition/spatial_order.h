@@ -1,7 +1,7 @@
 // Points along a space-filling curve: near each other in number, near each other in space.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <span>

@@ -5,8 +5,8 @@
 // split crosses the cell: one or two levels above its end instead of all.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <array>
 #include <atomic>

@@ -1,7 +1,7 @@
 // An exact, total order of vertices along a direction, and a place in it.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <bit>
 #include <compare>

@@ -1,6 +1,6 @@
 #include "partition/surface.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <algorithm>
 

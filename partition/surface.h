@@ -1,8 +1,8 @@
 // The triangles within one chunk, and what they lie on, as the splits see them.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 
 #include <cstdint>
 #include <span>

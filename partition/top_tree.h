@@ -36,7 +36,7 @@
 // of 10 million and a fifth of 30 million; they wait in spools. The sample takes 8 MiB.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "hierarchy/tree.h"
 #include "partition/bucketed.h"
 #include "partition/direction.h"

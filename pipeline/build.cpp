@@ -1,7 +1,7 @@
 #include "pipeline/build.h"
 
+#include "base/error.h"
 #include "execution/allocator.h"
-#include "hierarchy/error.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/pack_stage.h"

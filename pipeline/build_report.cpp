@@ -1,10 +1,10 @@
 #include "pipeline/build_report.h"
 
+#include "base/plain_text.h"
+#include "base/widest_corner.h"
 #include "config/config_schema.h"
 #include "config/placement.h"
 #include "execution/size_text.h"
-#include "hierarchy/plain_text.h"
-#include "hierarchy/widest_corner.h"
 #include "import/import_input.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"

@@ -1,8 +1,8 @@
 #include "pipeline/estimate.h"
 
+#include "base/plain_text.h"
 #include "config/placement.h"
 #include "execution/size_text.h"
-#include "hierarchy/plain_text.h"
 #include "import/import_input.h"
 #include "import/mesh_input.h"
 #include "pipeline/import_stage.h"

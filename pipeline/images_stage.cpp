@@ -1,8 +1,8 @@
 #include "pipeline/images_stage.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/parallel.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "import/open_picture.h"
 #include "pipeline/tiles/texture_store.h"
 

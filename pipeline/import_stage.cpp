@@ -1,7 +1,7 @@
 #include "pipeline/import_stage.h"
 
+#include "base/error.h"
 #include "execution/allocator.h"
-#include "hierarchy/error.h"
 #include "import/find_copies.h"
 #include "import/import_input.h"
 #include "pipeline/journal/workshop.h"

@@ -1,6 +1,6 @@
 #include "pipeline/ingest_stage.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/value_channels.h"
 #include "import/input_record.h"
 #include "import/text_blocks.h"

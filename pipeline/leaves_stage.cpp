@@ -1,10 +1,10 @@
 #include "pipeline/leaves_stage.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/allocator.h"
 #include "execution/parallel.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "partition/chunk.h"
 #include "partition/leaf_tiles.h"
 #include "partition/top_tree.h"

@@ -1,6 +1,6 @@
 #include "pipeline/origin.h"
 
-#include "hierarchy/power_of_two.h"
+#include "base/power_of_two.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // (docs/decisions/023-one-origin.md).
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <span>

@@ -1,8 +1,8 @@
 #include "pipeline/publish_stage.h"
 
+#include "base/bounds.h"
 #include "config/placement.h"
 #include "execution/parallel.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/rounded_tile.h"

@@ -1,7 +1,7 @@
 #include "pipeline/slice_stage.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
 #include "partition/rank_table.h"
 #include "partition/renumber.h"
 #include "pipeline/distribution.h"

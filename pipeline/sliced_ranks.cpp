@@ -1,6 +1,6 @@
 #include "pipeline/sliced_ranks.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/tiles/blob_json.h"
 
 #include <algorithm>

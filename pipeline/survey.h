@@ -2,8 +2,8 @@
 // are.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <span>

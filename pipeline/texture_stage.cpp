@@ -1,7 +1,7 @@
 #include "pipeline/texture_stage.h"
 
+#include "base/plain_text.h"
 #include "execution/memory_gate.h"
-#include "hierarchy/plain_text.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/formats.h"
 #include "images/image_codec.h"

@@ -1,6 +1,6 @@
 #include "progressive/detail_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/gzip.h"
 #include "storage/io/little_endian.h"
 

@@ -1,8 +1,8 @@
 #include "progressive/level_lists.h"
 
+#include "base/error.h"
 #include "execution/parallel.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "progressive/stream_plan.h"
 
 #include <algorithm>

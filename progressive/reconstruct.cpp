@@ -1,9 +1,9 @@
 #include "progressive/reconstruct.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/size_text.h"
 #include "hierarchy/detail.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/output_name.h"
 #include "mesh_io/ply_writer.h"
 #include "progressive/detail_file.h"

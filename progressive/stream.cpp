@@ -1,11 +1,11 @@
 #include "progressive/stream.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/allocator.h"
 #include "execution/size_text.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/detail.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/output_name.h"
 #include "progressive/detail_writer.h"
 #include "progressive/foreign_corners.h"

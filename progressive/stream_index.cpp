@@ -1,6 +1,6 @@
 #include "progressive/stream_index.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
 #include "storage/format/sealed_json.h"

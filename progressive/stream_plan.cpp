@@ -1,9 +1,9 @@
 #include "progressive/stream_plan.h"
 
+#include "base/error.h"
 #include "execution/size_text.h"
 #include "execution/spool_cursor.h"
 #include "hierarchy/detail.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <optional>

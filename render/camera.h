@@ -1,8 +1,8 @@
 // Where a picture is taken from: parallel lines stay parallel (an orthographic view).
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <cstdint>
 

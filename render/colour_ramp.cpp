@@ -1,7 +1,7 @@
 #include "render/colour_ramp.h"
 
-#include "hierarchy/named_value.h"
-#include "hierarchy/srgb.h"
+#include "base/named_value.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Colours for numbers, and for names.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cstdint>
 #include <optional>

@@ -5,7 +5,7 @@
 // right or below: of two triangles that share an edge exactly one covers it.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "render/directions.h"
 
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 
 #include <cmath>
 

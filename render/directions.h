@@ -1,7 +1,7 @@
 // Where to look from, if nobody says it.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "render/camera.h"
 
 #include <cstdint>

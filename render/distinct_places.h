@@ -2,7 +2,7 @@
 // less often then.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "render/facet.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 // Facets: triangles in space, which are drawn.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "render/light_rig.h"
 
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 #include "render/colour_ramp.h"
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // The lamps of a picture, those that the viewer's page has (viewer/src/scene/lighting.ts).
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/frame.h"
-#include "hierarchy/vec.h"
 #include "render/camera.h"
 
 #include <array>

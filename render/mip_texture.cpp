@@ -1,6 +1,6 @@
 #include "render/mip_texture.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "images/pyramid.h"
 
 #include <algorithm>

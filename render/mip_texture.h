@@ -1,8 +1,8 @@
 // A picture as a texture: looked up with filtering (Williams, Pyramidal parametrics, 1983).
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/vec.h"
 #include "images/image.h"
 
 #include <array>

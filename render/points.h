@@ -1,7 +1,7 @@
 // Points, as they are drawn where a model has no triangles.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "render/camera.h"
 #include "render/facet.h"
 

@@ -1,7 +1,7 @@
 #include "render/portrait.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/bounds.h"
+#include "base/angle.h"
+#include "base/bounds.h"
 #include "render/distinct_places.h"
 #include "render/raster.h"
 #include "render/space.h"

@@ -1,7 +1,7 @@
 // Draws triangles into a grid of samples, each of which keeps what is nearest (a z-buffer).
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "render/camera.h"
 #include "render/coverage.h"
 #include "render/facet.h"

@@ -2,7 +2,7 @@
 // dielectric material (Lambert below a GGX coat), and the tone curve of Khronos.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "render/light_rig.h"
 
 namespace meshhier::render {

@@ -1,8 +1,8 @@
 // A scene: all that a picture shows, tile by tile, as it is more than memory holds.
 #pragma once
 
+#include "base/bounds.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/published.h"
 #include "render/facet.h"

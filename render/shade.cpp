@@ -1,6 +1,6 @@
 #include "render/shade.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Vectors of space.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "render/tile_facets.h"
 
+#include "base/srgb.h"
 #include "hierarchy/shown_corners.h"
-#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "server/connection_queue.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <new>
 #include <optional>

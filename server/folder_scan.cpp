@@ -1,6 +1,6 @@
 #include "server/folder_scan.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
 #include "storage/io/paths.h"

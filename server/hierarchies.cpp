@@ -1,6 +1,6 @@
 #include "server/hierarchies.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "progressive/stream_index.h"
 #include "server/folder_scan.h"
 #include "storage/format/archive_files.h"

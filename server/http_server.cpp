@@ -1,6 +1,6 @@
 #include "server/http_server.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "server/conditions.h"
 #include "server/connection.h"
 #include "server/connection_body.h"

@@ -1,6 +1,6 @@
 #include "server/inbox.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/formats.h"
 
 #include <algorithm>

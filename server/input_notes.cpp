@@ -1,6 +1,6 @@
 #include "server/input_notes.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/output_file.h"
 

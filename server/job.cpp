@@ -1,7 +1,7 @@
 #include "server/job.h"
 
-#include "hierarchy/named_value.h"
-#include "hierarchy/plain_text.h"
+#include "base/named_value.h"
+#include "base/plain_text.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

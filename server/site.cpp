@@ -1,6 +1,6 @@
 #include "server/site.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/image_format.h"
 #include "server/conditions.h"
 #include "server/file_reply.h"

@@ -1,6 +1,6 @@
 #include "server/staged_upload.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 
 #include <optional>

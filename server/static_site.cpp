@@ -1,7 +1,7 @@
 #include "server/static_site.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "mesh_io/output_name.h"
 #include "server/folder_scan.h"
 #include "server/gallery.h"

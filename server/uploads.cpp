@@ -1,8 +1,8 @@
 #include "server/uploads.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "mesh_io/formats.h"
 #include "server/build_target.h"
 #include "server/multipart.h"

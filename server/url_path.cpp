@@ -1,6 +1,6 @@
 #include "server/url_path.h"
 
-#include "hierarchy/percent_code.h"
+#include "base/percent_code.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "server/watch.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
 #include "storage/io/file_checksum.h"

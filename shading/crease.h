@@ -1,7 +1,7 @@
 // Where a surface is smooth, and where it has an edge.
 #pragma once
 
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 
 #include <numbers>
 

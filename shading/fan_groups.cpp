@@ -1,6 +1,6 @@
 #include "shading/fan_groups.h"
 
-#include "hierarchy/sort_few.h"
+#include "base/sort_few.h"
 #include "shading/crease.h"
 
 #include <algorithm>

@@ -12,9 +12,9 @@
 // Anywhere else triangles are joined over edges found by sorting, O(n log n).
 #pragma once
 
+#include "base/union_find.h"
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/union_find.h"
-#include "hierarchy/vec.h"
 
 #include <cstddef>
 #include <cstdint>

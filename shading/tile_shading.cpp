@@ -1,6 +1,6 @@
 #include "shading/tile_shading.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/vertex_numbers.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "texture/bake.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "texture/distinct_triangles.h"
 #include "texture/fill.h"
 #include "texture/nearest_triangle.h"

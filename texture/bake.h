@@ -7,9 +7,9 @@
 // the finer surface once they are filtered.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "images/image.h"
 #include "texture/corners.h"
 

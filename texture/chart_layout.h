@@ -1,8 +1,8 @@
 // Charts of a surface laid out in a picture: projected, turned, and packed at one density.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "texture/bake.h"
 #include "texture/chart_growing.h"
 #include "texture/faces.h"

@@ -1,8 +1,8 @@
 // Charts that fill their rectangles, and do not cover themselves.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "texture/chart_growing.h"
 #include "texture/chart_layout.h"
 #include "texture/faces.h"

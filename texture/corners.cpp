@@ -1,7 +1,7 @@
 #include "texture/corners.h"
 
+#include "base/sort_few.h"
 #include "hierarchy/normal_code.h"
-#include "hierarchy/sort_few.h"
 #include "hierarchy/vertex_numbers.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "texture/faces.h"
 
-#include "hierarchy/sort_few.h"
+#include "base/sort_few.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // Triangles with their normals and neighbours.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>

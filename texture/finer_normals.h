@@ -1,7 +1,7 @@
 // The directions of the surfaces that a tile was made of.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "texture/faces.h"
 #include "texture/nearest_triangle.h"
 #include "texture/normal_bake.h"

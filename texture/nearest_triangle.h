@@ -3,7 +3,7 @@
 // Problem. Each texel of each simplified tile asks for its point on the finer surface: a third of
 // the time that textures take (decision 034).
 //
-// Idea. A tree of boxes (hierarchy/triangle_tree.h) whose leaves hold four triangles, measured at
+// Idea. A tree of boxes (base/triangle_tree.h) whose leaves hold four triangles, measured at
 // the same time. Two short cuts begin with something near, so that few boxes are nearer: the leaf
 // of the last answer (points are asked for side by side), and look_around(), which collects the
 // leaves around a small box of points once for all of them.
@@ -15,10 +15,10 @@
 // leaves a texel.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/four_floats.h"
-#include "hierarchy/triangle_tree.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/four_floats.h"
+#include "base/triangle_tree.h"
+#include "base/vec.h"
 
 #include <array>
 #include <cstddef>

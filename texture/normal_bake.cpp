@@ -1,8 +1,8 @@
 #include "texture/normal_bake.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/bounds.h"
-#include "hierarchy/four_floats.h"
+#include "base/angle.h"
+#include "base/bounds.h"
+#include "base/four_floats.h"
 #include "texture/distinct_triangles.h"
 #include "texture/finer_normals.h"
 #include "texture/nearest_triangle.h"

@@ -7,8 +7,8 @@
 // frame, a little sharper than it is, as viewers filter texels once more.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "images/image.h"
 #include "texture/bake.h"
 #include "texture/corners.h"

@@ -1,7 +1,7 @@
 // Directions of a surface on the texels of a picture, as exact as the next coarser one needs them.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "texture/corners.h"
 #include "texture/texel_raster.h"
 

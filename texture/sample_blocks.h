@@ -2,10 +2,10 @@
 // found quickly.
 #pragma once
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
+#include "base/triangle_tree.h"
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/triangle_tree.h"
-#include "hierarchy/vec.h"
 #include "texture/chart_layout.h"
 #include "texture/nearest_triangle.h"
 #include "texture/texel_samples.h"

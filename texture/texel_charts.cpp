@@ -1,6 +1,6 @@
 #include "texture/texel_charts.h"
 
-#include "hierarchy/union_find.h"
+#include "base/union_find.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "texture/texel_light.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Texels as light, in single precision, to make means of them.
 #pragma once
 
-#include "hierarchy/four_floats.h"
+#include "base/four_floats.h"
 #include "texture/texel_raster.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The charts of a tile in a picture, and the points of the surface that its texels show.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 #include "texture/bake.h"
 #include "texture/chart_growing.h"
 #include "texture/chart_layout.h"

@@ -5,8 +5,8 @@
 // written for that frame, with the vertices' numbers as they are rounded in the file.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tangent_code.h"
-#include "hierarchy/vec.h"
 #include "texture/chart_layout.h"
 
 #include <array>

@@ -1,5 +1,5 @@
 // Tells measurements in words.
-#include "hierarchy/plain_text.h"
+#include "base/plain_text.h"
 #include "verify/verify_error.h"
 
 #include <fmt/format.h>

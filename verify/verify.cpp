@@ -1,8 +1,8 @@
 #include "verify/verify.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "storage/format/archive_check.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"

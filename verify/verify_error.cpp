@@ -1,12 +1,12 @@
 #include "verify/verify_error.h"
 
+#include "base/error.h"
 #include "compare/cut_surface.h"
 #include "compare/surface_distance.h"
 #include "compare/surface_samples.h"
 #include "execution/parallel.h"
 #include "export/cut_file.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"

@@ -1,6 +1,6 @@
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "storage/format/layout.h"
 #include "storage/format/system_files.h"
 #include "storage/format/tileset.h"

@@ -10,13 +10,13 @@
 // Where vertices of equal coordinates are one place, the input's distinct coordinates are counted,
 // by sorting them. Copies lie where their places do (decode_tile), so if there are as many places
 // no two of them lie together.
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/manifest_config.h"
 #include "export/tile_vertices.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/drawing_rule.h"
-#include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
-#include "hierarchy/plain_text.h"
 #include "import/input_record.h"
 #include "import/mesh_input.h"
 #include "mesh_io/mesh_source.h"

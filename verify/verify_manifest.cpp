@@ -1,10 +1,10 @@
 // Compares the manifest with facts that follow from tiles, index and itself.
+#include "base/bounds.h"
+#include "base/error.h"
 #include "config/config.h"
 #include "config/partition_size.h"
 #include "config/placement.h"
 #include "export/manifest_config.h"
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/sealed_json.h"

@@ -1,4 +1,4 @@
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "verify/verify_parts.h"
 
 #include <set>

@@ -1,5 +1,5 @@
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "images/image_codec.h"
 #include "storage/format/layout.h"
 #include "verify/verify_parts.h"

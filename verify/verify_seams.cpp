@@ -9,11 +9,11 @@
 // no cut has more border edges than the input has unbalanced ones, and where there is none (closed,
 // oriented input), no cut has a border. Triangles with a place twice are balanced along every edge,
 // and have no image.
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "export/cut_mesh.h"
 #include "export/random_cut.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "verify/edge_census.h"
 #include "verify/verify_parts.h"
 

@@ -3,11 +3,11 @@
 // where the tile has it.
 #include "verify/verify_texels.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "base/srgb.h"
 #include "hierarchy/drawing_rule.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "hierarchy/shown_corners.h"
-#include "hierarchy/srgb.h"
 #include "images/image_store.h"
 #include "images/material_texels.h"
 #include "import/mesh_input.h"

@@ -1,6 +1,6 @@
 // Checks the parts that only tiles with a picture or a normal map have: splits by texture
 // coordinates, and the pictures.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/formats.h"
 #include "images/image_codec.h"
 #include "storage/format/layout.h"

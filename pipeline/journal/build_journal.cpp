@@ -1,7 +1,7 @@
 #include "pipeline/journal/build_journal.h"
 
+#include "base/error.h"
 #include "execution/parallel.h"
-#include "hierarchy/error.h"
 #include "pipeline/journal/input_json.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"

@@ -1,6 +1,6 @@
 #include "pipeline/journal/workshop.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"

@@ -1,10 +1,10 @@
 #include "pipeline/plan/build_plan.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "config/partition_size.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "hierarchy/normal_code.h"
-#include "hierarchy/plain_text.h"
 #include "images/formats.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"

@@ -1,7 +1,7 @@
 #include "pipeline/plan/memory_plan.h"
 
+#include "base/error.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "pipeline/plan/texture_plan.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/image_store.h"
 #include "import/open_picture.h"
 

@@ -1,8 +1,8 @@
 // The plan of a build for the pictures of its input, made from their heads.
 #pragma once
 
+#include "base/error.h"
 #include "config/config.h"
-#include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "images/material_list.h"
 #include "storage/io/file.h"

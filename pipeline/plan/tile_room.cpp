@@ -1,8 +1,8 @@
 #include "pipeline/plan/tile_room.h"
 
+#include "base/error.h"
 #include "execution/allocator.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <string>

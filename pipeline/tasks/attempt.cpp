@@ -1,6 +1,6 @@
 #include "pipeline/tasks/attempt.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/process.h"
 

@@ -1,7 +1,7 @@
 #include "pipeline/tasks/finish_task.h"
 
+#include "base/error.h"
 #include "execution/parallel.h"
-#include "hierarchy/error.h"
 #include "pipeline/build_report.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/plan/share.h"

@@ -1,6 +1,6 @@
 #include "pipeline/tasks/input_slices.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/partition_stage.h"
 #include "pipeline/tiles/blob_json.h"

@@ -1,7 +1,7 @@
 #include "pipeline/tasks/run_task.h"
 
+#include "base/error.h"
 #include "execution/allocator.h"
-#include "hierarchy/error.h"
 #include "import/mesh_input.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"

@@ -1,8 +1,8 @@
 #include "pipeline/tasks/task_plan.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "config/partition_size.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "import/mesh_input.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/stage_costs.h"

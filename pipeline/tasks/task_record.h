@@ -1,7 +1,7 @@
 // Entries and errors in which tasks tell of themselves and of each other.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/plan/build_stats.h"
 #include "storage/format/segment.h"
 

@@ -1,8 +1,8 @@
 #include "pipeline/tasks/task_status.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/stage_costs.h"
 #include "pipeline/stages.h"

@@ -1,6 +1,6 @@
 #include "pipeline/tiles/chunks.h"
 
-#include "hierarchy/power_of_two.h"
+#include "base/power_of_two.h"
 #include "partition/top_tree.h"
 #include "pipeline/tiles/spool_json.h"
 

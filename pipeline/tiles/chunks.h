@@ -1,7 +1,7 @@
 // The chunks of a mesh while it is distributed to them, and until they are taken.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/tree.h"
 #include "partition/bucketed.h"
 #include "partition/chunk.h"

@@ -1,6 +1,6 @@
 #include "pipeline/tiles/finer_surfaces.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Several spools in a row, read as one.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/spool.h"
 
 #include <algorithm>

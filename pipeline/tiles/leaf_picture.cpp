@@ -1,6 +1,6 @@
 #include "pipeline/tiles/leaf_picture.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "texture/fill.h"
 #include "texture/shown_texels.h"
 #include "texture/texel_raster.h"

@@ -1,7 +1,7 @@
 // Rows of numbers that come in any order, each known by its number.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/tiles/joined_spool.h"
 #include "pipeline/tiles/spool_json.h"
 #include "storage/io/spool.h"

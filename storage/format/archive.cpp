@@ -1,7 +1,7 @@
 #include "storage/format/archive.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "storage/format/glb.h"
 #include "storage/format/layout.h"
 

@@ -1,6 +1,6 @@
 #include "storage/format/archive_files.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "storage/format/archive_writer.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/gzip.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // manifest's checksum, which covers that of the index, which covers those of all tiles.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/manifest.h"
 #include "storage/io/file.h"
 

@@ -1,8 +1,8 @@
 #include "storage/format/hierarchy_reader.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
+#include "base/error.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "storage/format/build_name.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"

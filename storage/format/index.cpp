@@ -1,6 +1,6 @@
 #include "storage/format/index.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/glb.h"
 #include "storage/format/tile_glb.h"
 #include "storage/io/hash.h"

@@ -1,6 +1,6 @@
 #include "storage/format/input_note.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/sealed_json.h"
 
 #include <cstddef>

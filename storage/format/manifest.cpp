@@ -1,7 +1,7 @@
 #include "storage/format/manifest.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/named_value.h"
+#include "base/error.h"
+#include "base/named_value.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/source_values.h"

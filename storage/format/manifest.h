@@ -1,11 +1,11 @@
 // hierarchy.json: what the hierarchy was made from, how, and what is in it (docs/file_format.md).
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
-#include "hierarchy/vec.h"
 #include "storage/format/tile_glb.h"
 
 #include <cstdint>

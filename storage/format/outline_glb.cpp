@@ -1,7 +1,7 @@
 #include "storage/format/outline_glb.h"
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
+#include "base/bounds.h"
+#include "base/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/json_text.h"
 

@@ -1,7 +1,7 @@
 #include "storage/format/sealed_json.h"
 
+#include "base/error.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/file.h"
 #include "storage/io/hash.h"

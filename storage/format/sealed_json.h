@@ -4,9 +4,9 @@
 // whole text with zeros in the digits' place, which is known without parsing.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/frame.h"
-#include "hierarchy/vec.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Attributes as the standard accessors of glTF may hold them (docs/file_format.md, section 4.7).
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 #include "storage/format/story_pictures.h"
 
+#include "base/percent_code.h"
+#include "base/small_letters.h"
 #include "hierarchy/image_format.h"
-#include "hierarchy/percent_code.h"
-#include "hierarchy/small_letters.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>

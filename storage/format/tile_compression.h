@@ -1,7 +1,7 @@
 // The ways to pack tiles, a row each. None loses anything.
 #pragma once
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "storage/format/gzip.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 // A tile as a glTF 2.0 binary with the extension MESHHIER_tile (docs/file_format.md).
 #pragma once
 
+#include "base/bounds.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/published.h"

@@ -1,6 +1,6 @@
 #include "storage/format/tile_pack.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/glb.h"
 #include "storage/format/meshopt_codec.h"
 

@@ -1,6 +1,6 @@
 #include "storage/format/tile_plan.h"
 
-#include "hierarchy/named_value.h"
+#include "base/named_value.h"
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/tile_values.h"

@@ -2,8 +2,8 @@
 // reader.
 #pragma once
 
+#include "base/bounds.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/lattice.h"

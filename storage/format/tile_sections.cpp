@@ -1,6 +1,6 @@
 #include "storage/format/tile_sections.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/value_channels.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"

@@ -1,9 +1,9 @@
 // Reads a tile from the bytes of its sections.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
-#include "hierarchy/vec.h"
 #include "storage/format/tile_plan.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "storage/format/tileset.h"
 
-#include "hierarchy/angle.h"
-#include "hierarchy/wgs84.h"
+#include "base/angle.h"
+#include "base/wgs84.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"

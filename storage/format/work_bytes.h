@@ -1,7 +1,7 @@
 // Arrays one after another as bytes, for scratch space only: in this machine's byte order.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <cstddef>
 #include <cstring>

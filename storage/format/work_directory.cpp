@@ -1,7 +1,7 @@
 #include "storage/format/work_directory.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/plain_text.h"
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "storage/format/archive.h"
 #include "storage/format/layout.h"
 #include "storage/format/system_files.h"

@@ -1,6 +1,6 @@
 #include "storage/format/work_tile.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/work_bytes.h"
 

@@ -1,6 +1,6 @@
 #include "storage/io/child_process.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <array>
 #include <cerrno>

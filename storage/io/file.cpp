@@ -1,6 +1,6 @@
 #include "storage/io/file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/link_free_paths.h"
 #include "storage/io/posix_file.h"
 #include "storage/io/stream.h"

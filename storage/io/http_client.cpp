@@ -1,7 +1,7 @@
 #include "storage/io/http_client.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/small_letters.h"
+#include "base/error.h"
+#include "base/small_letters.h"
 
 #include <algorithm>
 #include <charconv>

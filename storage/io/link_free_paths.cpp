@@ -1,6 +1,6 @@
 #include "storage/io/link_free_paths.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/paths.h"
 #include "storage/io/system_failure.h"
 

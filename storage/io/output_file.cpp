@@ -1,6 +1,6 @@
 #include "storage/io/output_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/paths.h"
 #include "storage/io/process.h"
 

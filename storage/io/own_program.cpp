@@ -1,6 +1,6 @@
 #include "storage/io/own_program.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Arithmetic of paths: no function here looks at a file.
 #pragma once
 
-#include "hierarchy/small_letters.h"
+#include "base/small_letters.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "storage/io/process.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/open_files.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "storage/io/remote_content.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <cassert>

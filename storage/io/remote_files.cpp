@@ -1,6 +1,6 @@
 #include "storage/io/remote_files.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "storage/io/sealed_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "storage/io/spool.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 // are read never depend on it.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/file.h"
 #include "storage/io/scratch_use.h"
 

@@ -1,6 +1,6 @@
 #include "storage/io/stream.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/system_failure.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // A system call that failed, as an exception.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <filesystem>
 #include <string>

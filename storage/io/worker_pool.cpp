@@ -1,6 +1,6 @@
 #include "storage/io/worker_pool.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/child_process.h"
 
 #include <array>

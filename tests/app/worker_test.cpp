@@ -1,6 +1,6 @@
 #include "app/worker.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <map>
 #include <optional>

@@ -33,53 +33,61 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
     rooms.insert(storage.begin(), storage.end());
     return rooms;
   };
-  static const std::map<std::string, std::set<std::string>> rules = {
-      {"hierarchy", {}},
-      {"storage/io", {"hierarchy"}},
-      {"storage/format", {"hierarchy", "storage/io"}},
-      {"execution", {"hierarchy", "storage/io"}},
-      {"mesh_io", {"hierarchy", "images", "storage/io"}},
-      {"partition", {"hierarchy", "storage/io"}},
-      {"cluster_simplify", {"hierarchy"}},
-      {"outline", {"hierarchy"}},
-      {"images", {"hierarchy", "storage/io"}},
-      {"texture", {"hierarchy", "images"}},
-      {"render", {"hierarchy", "images"}},
-      {"shading", {"hierarchy"}},
-      {"geodesy", {"hierarchy", "storage/io"}},
-      {"config", with_storage({"cluster_simplify", "execution", "geodesy", "hierarchy", "mesh_io",
-                               "partition"})},
-      {"import", {"execution", "hierarchy", "images", "mesh_io", "partition", "storage/io"}},
-      {"pipeline/tiles", with_storage({"cluster_simplify", "hierarchy", "images", "partition",
-                                       "shading", "texture"})},
-      {"pipeline/plan",
-       with_storage({"cluster_simplify", "config", "execution", "hierarchy", "images", "import",
-                     "mesh_io", "outline", "partition", "pipeline/tiles", "shading", "texture"})},
-      {"pipeline/journal", with_storage({"config", "execution", "hierarchy", "images", "import",
-                                         "mesh_io", "pipeline/plan", "pipeline/tiles"})},
-      {"pipeline",
-       with_storage({"cluster_simplify", "config", "execution", "hierarchy", "images", "import",
-                     "mesh_io", "outline", "partition", "pipeline/journal", "pipeline/plan",
-                     "pipeline/tiles", "render", "shading", "texture"})},
-      {"export", with_storage({"config", "execution", "hierarchy", "images", "import", "mesh_io",
-                               "partition"})},
-      {"compare", with_storage({"execution", "export", "hierarchy", "mesh_io"})},
-      {"verify", with_storage({"compare", "config", "execution", "export", "hierarchy", "images",
-                               "import", "mesh_io", "partition"})},
-      {"inspection",
-       with_storage({"execution", "export", "hierarchy", "images", "import", "render"})},
-      {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
-      {"server", with_storage({"execution", "hierarchy", "mesh_io", "progressive"})},
-      {"app",
-       {"compare", "config", "execution", "export", "hierarchy", "inspection", "mesh_io",
-        "pipeline", "pipeline/journal", "pipeline/plan", "progressive", "server", "storage/io",
-        "verify"}},
-      {"library", with_storage({"config", "execution", "export", "hierarchy", "inspection",
-                                "pipeline", "verify"})},
-      {"bench",
-       {"cluster_simplify", "compare", "execution", "export", "hierarchy", "images", "import",
-        "inspection", "mesh_io", "partition", "render", "storage/format", "storage/io"}},
-      {"packaging", {}}};
+  const auto with_base = [](std::map<std::string, std::set<std::string>> all) {
+    for (auto& [room, others] : all) {
+      if (room != "base" && room != "packaging")
+        others.insert("base");
+    }
+    return all;
+  };
+  static const std::map<std::string, std::set<std::string>> rules = with_base(
+      {{"base", {}},
+       {"hierarchy", {}},
+       {"storage/io", {"hierarchy"}},
+       {"storage/format", {"hierarchy", "storage/io"}},
+       {"execution", {"hierarchy", "storage/io"}},
+       {"mesh_io", {"hierarchy", "images", "storage/io"}},
+       {"partition", {"hierarchy", "storage/io"}},
+       {"cluster_simplify", {"hierarchy"}},
+       {"outline", {"hierarchy"}},
+       {"images", {"hierarchy", "storage/io"}},
+       {"texture", {"hierarchy", "images"}},
+       {"render", {"hierarchy", "images"}},
+       {"shading", {"hierarchy"}},
+       {"geodesy", {"hierarchy", "storage/io"}},
+       {"config", with_storage({"cluster_simplify", "execution", "geodesy", "hierarchy", "mesh_io",
+                                "partition"})},
+       {"import", {"execution", "hierarchy", "images", "mesh_io", "partition", "storage/io"}},
+       {"pipeline/tiles", with_storage({"cluster_simplify", "hierarchy", "images", "partition",
+                                        "shading", "texture"})},
+       {"pipeline/plan",
+        with_storage({"cluster_simplify", "config", "execution", "hierarchy", "images", "import",
+                      "mesh_io", "outline", "partition", "pipeline/tiles", "shading", "texture"})},
+       {"pipeline/journal", with_storage({"config", "execution", "hierarchy", "images", "import",
+                                          "mesh_io", "pipeline/plan", "pipeline/tiles"})},
+       {"pipeline",
+        with_storage({"cluster_simplify", "config", "execution", "hierarchy", "images", "import",
+                      "mesh_io", "outline", "partition", "pipeline/journal", "pipeline/plan",
+                      "pipeline/tiles", "render", "shading", "texture"})},
+       {"export", with_storage({"config", "execution", "hierarchy", "images", "import", "mesh_io",
+                                "partition"})},
+       {"compare", with_storage({"execution", "export", "hierarchy", "mesh_io"})},
+       {"verify", with_storage({"compare", "config", "execution", "export", "hierarchy", "images",
+                                "import", "mesh_io", "partition"})},
+       {"inspection",
+        with_storage({"execution", "export", "hierarchy", "images", "import", "render"})},
+       {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
+       {"server", with_storage({"execution", "hierarchy", "mesh_io", "progressive"})},
+       {"app",
+        {"compare", "config", "execution", "export", "hierarchy", "inspection", "mesh_io",
+         "pipeline", "pipeline/journal", "pipeline/plan", "progressive", "server", "storage/io",
+         "verify"}},
+       {"library", with_storage({"config", "execution", "export", "hierarchy", "inspection",
+                                 "pipeline", "verify"})},
+       {"bench",
+        {"cluster_simplify", "compare", "execution", "export", "hierarchy", "images", "import",
+         "inspection", "mesh_io", "partition", "render", "storage/format", "storage/io"}},
+       {"packaging", {}}});
   return rules;
 }
 
@@ -220,8 +228,8 @@ const std::vector<ThirdParty>& third_parties() {
     return [paths](const Source& source) { return paths.contains(source.path); };
   };
   static const std::set<std::string> without_text = {
-      "cluster_simplify", "hierarchy", "outline", "partition",
-      "pipeline/tiles",   "render",    "shading", "texture"};
+      "base",           "cluster_simplify", "hierarchy", "outline", "partition",
+      "pipeline/tiles", "render",           "shading",   "texture"};
   static const std::vector<ThirdParty> rules = {
       {"tbb/",
        [](const Source& s) {
@@ -304,10 +312,10 @@ std::string check_system(const Source& source, const Include& include) {
 
 /// The names of the standard library have no dot and no slash.
 std::string check_only_standard(const Source& source, const Include& include) {
-  if (source.room() != "hierarchy" || include.quoted ||
+  if (!source.is_in({"base", "hierarchy"}) || include.quoted ||
       include.name.find_first_of("./") == std::string::npos)
     return "";
-  return "hierarchy/ may not include <" + include.name + ">";
+  return source.room() + "/ may not include <" + include.name + ">";
 }
 
 /// Kernels have no threads and touch no files.
@@ -315,7 +323,8 @@ std::string check_kernel(const Source& source, const Include& include) {
   static const std::set<std::string> effects = {"thread",     "mutex",   "atomic",
                                                 "future",     "fstream", "iostream",
                                                 "filesystem", "random",  "chrono"};
-  if (!source.is_in({"cluster_simplify", "hierarchy", "outline", "render", "shading", "texture"}) ||
+  if (!source.is_in(
+          {"base", "cluster_simplify", "hierarchy", "outline", "render", "shading", "texture"}) ||
       include.quoted || !effects.contains(include.name))
     return "";
   return "<" + include.name + "> has no place in a kernel";

@@ -1,6 +1,6 @@
 // Amplified meshes: every midpoint shared, nothing lost, nothing closed or torn.
+#include "base/error.h"
 #include "bench/generator.h"
-#include "hierarchy/error.h"
 #include "tests/bench/collected.h"
 
 #include <algorithm>

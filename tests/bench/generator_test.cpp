@@ -1,7 +1,7 @@
 // Shuffled meshes, and meshes on their way to and from files.
 #include "bench/generator.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/bench/collected.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "bench/shading_comparison.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/bench/built_surface.h"
 
 #include <cstddef>

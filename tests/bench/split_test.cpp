@@ -1,6 +1,6 @@
 #include "bench/split.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
 

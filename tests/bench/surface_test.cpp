@@ -1,8 +1,8 @@
 // Surfaces from nothing: closed, counted right, the same every time.
+#include "base/error.h"
 #include "bench/generator.h"
 #include "bench/noise.h"
 #include "bench/patch_grid.h"
-#include "hierarchy/error.h"
 #include "tests/bench/collected.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Pictures of textured levels against those of their input.
 #include "bench/texture_comparison.h"
 
+#include "base/error.h"
 #include "bench/textured_files.h"
-#include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "render/camera.h"
 #include "render/directions.h"

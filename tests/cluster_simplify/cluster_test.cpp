@@ -1,8 +1,8 @@
 #include "cluster_simplify/cluster.h"
 
+#include "base/srgb.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/quadric.h"
-#include "hierarchy/srgb.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 

@@ -1,9 +1,9 @@
 #include "cluster_simplify/contraction.h"
 
+#include "base/error.h"
 #include "cluster_simplify/cluster.h"
 #include "cluster_simplify/edge_collapse.h"
 #include "cluster_simplify/half_edge.h"
-#include "hierarchy/error.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 

@@ -1,6 +1,6 @@
 #include "cluster_simplify/edge_collapse.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 

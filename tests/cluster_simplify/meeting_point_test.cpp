@@ -1,6 +1,6 @@
 #include "cluster_simplify/meeting_point.h"
 
-#include "hierarchy/four_floats.h"
+#include "base/four_floats.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>

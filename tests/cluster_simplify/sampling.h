@@ -2,8 +2,8 @@
 // the library's own distances.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "tests/support/meshes.h"
 
 #include <array>

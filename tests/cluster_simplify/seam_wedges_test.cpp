@@ -1,9 +1,9 @@
 // Wedges across seams: whatever a tile calls a vertex, it stays the same one.
 #include "cluster_simplify/seam_wedges.h"
 
+#include "base/error.h"
 #include "cluster_simplify/seams.h"
 #include "cluster_simplify/wedges.h"
-#include "hierarchy/error.h"
 #include "tests/cluster_simplify/wedge_tiles.h"
 #include "tests/support/meshes.h"
 

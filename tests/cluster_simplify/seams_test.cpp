@@ -1,6 +1,6 @@
 #include "cluster_simplify/seams.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>

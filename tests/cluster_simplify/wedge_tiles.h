@@ -1,8 +1,8 @@
 // Tiles whose places have several wedges, made of vertices as files list them.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/build_tile.h"
-#include "hierarchy/vec.h"
 #include "tests/support/meshes.h"
 
 #include <cstdint>

@@ -1,12 +1,12 @@
 // Distances of one surface to another: each against all triangles, sides against winding numbers.
 #include "compare/compare.h"
 
+#include "base/error.h"
 #include "compare/cut_surface.h"
 #include "compare/farthest_bound.h"
 #include "compare/surface_distance.h"
 #include "compare/surface_samples.h"
 #include "compare/surface_sides.h"
-#include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"

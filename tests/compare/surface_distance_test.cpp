@@ -1,11 +1,11 @@
 // Triangles, surfaces of cuts, samples on them and distances to them, each against the plain way.
 #include "compare/surface_distance.h"
 
+#include "base/error.h"
 #include "compare/cut_surface.h"
 #include "compare/surface_samples.h"
 #include "compare/triangle_search.h"
 #include "export/random_cut.h"
-#include "hierarchy/error.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 

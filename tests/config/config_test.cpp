@@ -1,10 +1,10 @@
 #include "config/config.h"
 
+#include "base/error.h"
 #include "config/config_reference.h"
 #include "config/config_schema.h"
 #include "config/suggest.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 
 #include <algorithm>
 #include <cstdlib>

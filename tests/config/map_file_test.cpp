@@ -1,6 +1,6 @@
 #include "config/map_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <array>
 #include <optional>

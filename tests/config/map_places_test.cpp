@@ -1,7 +1,7 @@
 #include "config/map_places.h"
 
+#include "base/error.h"
 #include "config/placement.h"
-#include "hierarchy/error.h"
 
 #include <string>
 

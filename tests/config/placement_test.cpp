@@ -1,6 +1,6 @@
 #include "config/placement.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "support/memory_files.h"
 
 #include <array>

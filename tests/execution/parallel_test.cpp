@@ -1,6 +1,6 @@
 #include "execution/parallel.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,10 +1,10 @@
 #include "export/cut_mesh.h"
 
+#include "base/error.h"
 #include "export/cut_file.h"
 #include "export/node_cache.h"
 #include "export/random_cut.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/usage_error.h"

@@ -1,6 +1,6 @@
 // Exports with pictures: GLB and OBJ, against the PLY of the same selection.
+#include "base/error.h"
 #include "export/export.h"
-#include "hierarchy/error.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"

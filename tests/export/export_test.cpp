@@ -1,10 +1,10 @@
 #include "export/export.h"
 
+#include "base/error.h"
 #include "export/clip_part.h"
 #include "export/cut_mesh.h"
 #include "export/geojson.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"

@@ -1,7 +1,7 @@
+#include "base/error.h"
 #include "export/base64.h"
 #include "export/page_file.h"
 #include "export/page_story.h"
-#include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"

@@ -1,8 +1,8 @@
 // Polygons seen from above, and what triangles have in them.
 #include "export/plan_region.h"
 
+#include "base/error.h"
 #include "export/geojson.h"
-#include "hierarchy/error.h"
 #include "support/memory_files.h"
 #include "support/taken_memory.h"
 

@@ -1,7 +1,7 @@
 // Counts that lie: files of a kilobyte that declare 10^18 of something are refused before memory is
 // taken for it.
+#include "base/error.h"
 #include "fuzz/sealed.h"
-#include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_samples.h"
 #include "progressive/detail_file.h"

@@ -1,7 +1,7 @@
 // The common parts of the fuzz targets' bodies: promises, refusals, and bytes as numbers.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/tree.h"
 #include "storage/format/glb.h"
 

@@ -1,6 +1,6 @@
 #include "geodesy/map_projection.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <cstdlib>
 #include <string>

@@ -1,7 +1,7 @@
 #include "gltf/sample_hierarchy.h"
 
+#include "base/bounds.h"
 #include "hierarchy/attribute_rules.h"
-#include "hierarchy/bounds.h"
 #include "support/sample_shading.h"
 #include "support/sample_texture.h"
 

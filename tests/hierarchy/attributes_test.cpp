@@ -1,5 +1,5 @@
+#include "base/vec.h"
 #include "hierarchy/attribute_rules.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <limits>

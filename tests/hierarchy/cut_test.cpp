@@ -1,6 +1,6 @@
 #include "hierarchy/cut.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/usage_error.h"

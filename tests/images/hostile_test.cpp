@@ -1,5 +1,5 @@
 // Pictures that are broken, end early or lie, and sources that fail.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/image_codec.h"
 #include "tests/images/samples.h"
 

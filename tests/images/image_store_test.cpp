@@ -1,7 +1,7 @@
 #include "images/image_store.h"
 
-#include "hierarchy/error.h"
-#include "hierarchy/srgb.h"
+#include "base/error.h"
+#include "base/srgb.h"
 #include "images/material_texels.h"
 #include "images/pyramid.h"
 #include "storage/io/file.h"

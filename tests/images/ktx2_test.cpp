@@ -1,4 +1,4 @@
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"
 #include "images/row_writer.h"

@@ -1,6 +1,6 @@
 #include "tests/images/samples.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Pieces of meshes: what "crop" leaves of them.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/meshes.h"

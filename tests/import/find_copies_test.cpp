@@ -1,7 +1,7 @@
 // Which vertices lie where an earlier one does, against a map that holds all positions.
 #include "import/find_copies.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_writer.h"
 #include "tests/support/memory_files.h"

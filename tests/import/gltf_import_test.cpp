@@ -1,5 +1,5 @@
 // glTF and GLB files: what they become.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 #include "mesh_io/gltf_extensions.h"
 #include "storage/format/tile_glb.h"

@@ -1,7 +1,7 @@
 // Input of every format: what it becomes, and that the whole way through a build holds for it.
 #include "import/import_input.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"

@@ -2,7 +2,7 @@
 // meshes.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 #include "tests/support/memory_files.h"
 

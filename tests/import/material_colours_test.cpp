@@ -1,5 +1,5 @@
 // Materials without pictures: their colours are those of the vertices.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/memory_files.h"

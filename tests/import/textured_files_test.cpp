@@ -1,6 +1,6 @@
 // Files that other programs have made, where they are: each is imported or refused with a reason,
 // and what becomes of it is told for people to look at.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // OBJ files with material libraries and pictures.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/import_test.h"
 #include "tests/support/memory_files.h"
 

@@ -1,6 +1,6 @@
 // Tilesets of 3D Tiles: what their finest tiles become.
+#include "base/error.h"
 #include "config/input_frame.h"
-#include "hierarchy/error.h"
 #include "import/imported.h"
 #include "import/open_picture.h"
 #include "mesh_io/tileset.h"

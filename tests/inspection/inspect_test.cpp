@@ -1,6 +1,6 @@
 #include "inspection/inspect.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "tests/support/meshes.h"

@@ -1,6 +1,6 @@
 #include "inspection/preview.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/image_codec.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"

@@ -1,6 +1,6 @@
 #include "mesh_io/byte_window.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "ply_samples.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 //
 // The expected outcome of each is written down here: what is in it, or why it is refused. Where a
 // choice was made, the last column gives the reason.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "ply_samples.h"
 
 #include <algorithm>

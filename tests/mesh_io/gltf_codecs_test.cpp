@@ -1,6 +1,6 @@
 // Buffer views and primitives that codecs made: EXT_meshopt_compression,
 // KHR_draco_mesh_compression.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "import/imported.h"
 #include "storage/format/meshopt_codec.h"
 #include "support/gltf_builder.h"

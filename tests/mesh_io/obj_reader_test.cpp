@@ -1,7 +1,7 @@
 // OBJ files: what is read, and what is refused.
 #include "mesh_io/obj_reader.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/polygon_cut.h"
 #include "streams.h"
 #include "support/gzip.h"

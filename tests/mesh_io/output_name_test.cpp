@@ -1,6 +1,6 @@
 #include "mesh_io/output_name.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Every way a PLY file can be broken, and the one message it gets.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/ply_source.h"
 #include "ply_samples.h"
 

@@ -1,6 +1,6 @@
 // Damaged files of every encoding: each is read, or refused with one Error(input). Nothing else may
 // happen, and no damage makes the reader hand out more than the file can hold.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "ply_samples.h"
 #include "tests/support/share.h"
 

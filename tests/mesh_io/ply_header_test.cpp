@@ -1,6 +1,6 @@
 #include "mesh_io/ply_header.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <string>
 

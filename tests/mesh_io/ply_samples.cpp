@@ -1,6 +1,6 @@
 #include "ply_samples.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <array>

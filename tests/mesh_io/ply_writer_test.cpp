@@ -1,6 +1,6 @@
 #include "mesh_io/ply_writer.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/ply_source.h"
 #include "ply_samples.h"
 

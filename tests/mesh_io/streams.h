@@ -1,7 +1,7 @@
 // Contents of files as streams, and what readers say of them.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/input_stream.h"
 #include "support/memory_files.h"
 

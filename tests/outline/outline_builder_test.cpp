@@ -1,7 +1,7 @@
 #include "outline/outline_builder.h"
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
+#include "base/bounds.h"
+#include "base/error.h"
 #include "outline/polyline.h"
 #include "tests/support/meshes.h"
 

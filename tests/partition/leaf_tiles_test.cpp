@@ -1,6 +1,6 @@
 #include "partition/leaf_tiles.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "partition/spatial_order.h"
 #include "tests/support/meshes.h"
 

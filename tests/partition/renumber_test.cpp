@@ -1,6 +1,6 @@
 #include "partition/renumber.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/file.h"
 #include "tests/support/meshes.h"
 

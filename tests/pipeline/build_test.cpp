@@ -1,11 +1,11 @@
 // Whole builds: inputs at the edge of what there is, and what is refused.
 #include "pipeline/build.h"
 
+#include "base/error.h"
 #include "bench/generator.h"
 #include "bench/stress.h"
 #include "execution/size_text.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "pipeline/estimate.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"

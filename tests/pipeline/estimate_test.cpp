@@ -1,6 +1,6 @@
 #include "pipeline/estimate.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/build.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"

@@ -1,6 +1,6 @@
 #include "pipeline/ingest_stage.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
 #include "storage/io/file.h"

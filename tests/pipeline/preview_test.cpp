@@ -1,5 +1,5 @@
 // The picture that a build makes of its hierarchy.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "images/image_codec.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"

@@ -1,6 +1,6 @@
 #include "pipeline/sliced_ranks.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/tree.h"
 #include "tests/support/sample_hierarchy.h"
 

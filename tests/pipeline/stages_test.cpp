@@ -1,7 +1,7 @@
 // The table of stages is whole, and true to what builds do.
 #include "pipeline/stages.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
 #include "storage/format/layout.h"

@@ -1,6 +1,6 @@
 #include "progressive/reconstruction.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "progressive/residual.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // Promise 7 for progressive streams: whatever happens to the files, or while they are made, what is
 // told is an error that names the file, and no output is there but a complete one.
+#include "base/error.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "progressive/reconstruct.h"
 #include "progressive/stream.h"
 #include "progressive/stream_index.h"

@@ -1,6 +1,6 @@
 #include "progressive/stream_index.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
 #include "tests/support/memory_files.h"

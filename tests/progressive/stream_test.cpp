@@ -2,9 +2,9 @@
 // the last one the original mesh, bit for bit.
 #include "progressive/stream.h"
 
+#include "base/error.h"
 #include "export/export.h"
 #include "hierarchy/detail.h"
-#include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "progressive/reconstruct.h"
 #include "progressive/stream_index.h"

@@ -1,6 +1,6 @@
 #include "progressive/traced_tile.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/half_edge_hierarchy.h"
 #include "tests/support/memory_files.h"

@@ -1,7 +1,7 @@
 // A hierarchy in one file: the same files, to the byte, and the same promises.
+#include "base/error.h"
 #include "bench/generator.h"
 #include "export/export.h"
-#include "hierarchy/error.h"
 #include "inspection/inspect.h"
 #include "pipeline/build.h"
 #include "storage/format/archive_files.h"

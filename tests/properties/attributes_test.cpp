@@ -1,7 +1,7 @@
 // Tests of vertices' attributes: kept in partitions, averaged in representatives.
 #include "hierarchy/attributes.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"

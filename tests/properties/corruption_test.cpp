@@ -1,10 +1,10 @@
 // Promise 7: whatever happens to the files of a finished hierarchy, verify finds it and names the
 // file; inspect and export tell an error or, where they do not read what is damaged, what they
 // always tell.
+#include "base/error.h"
 #include "bench/generator.h"
 #include "config/config.h"
 #include "export/export.h"
-#include "hierarchy/error.h"
 #include "inspection/inspect.h"
 #include "pipeline/build.h"
 #include "storage/format/layout.h"

@@ -1,8 +1,8 @@
 // Promise 6: the output is byte-identical for any thread count, any memory budget, and any form of
 // the same input.
+#include "base/error.h"
 #include "bench/split.h"
 #include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
 #include "pipeline/build.h"

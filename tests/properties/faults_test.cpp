@@ -1,9 +1,9 @@
 // Promise 7: whatever fails, and whenever, an output is there complete or not at all, one that is
 // to be replaced stays until then, and the next build goes on and makes the same bytes.
+#include "base/error.h"
 #include "bench/generator.h"
 #include "bench/split.h"
 #include "bench/stress.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
 #include "storage/io/file.h"

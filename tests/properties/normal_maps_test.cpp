@@ -1,9 +1,9 @@
 // Hierarchies with normal maps: tiles above the partitions are lit as the original is.
+#include "base/error.h"
 #include "bench/generator.h"
 #include "bench/shading_comparison.h"
 #include "bench/stress.h"
 #include "config/config.h"
-#include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"
 #include "pipeline/build.h"

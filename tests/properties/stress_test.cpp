@@ -2,8 +2,8 @@
 // is refused with a reason.
 #include "bench/stress.h"
 
+#include "base/error.h"
 #include "config/config.h"
-#include "hierarchy/error.h"
 #include "inspection/inspect.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"

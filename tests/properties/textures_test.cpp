@@ -1,6 +1,6 @@
 // Textured hierarchies: partitions show the input's texels, coarser tiles their means.
+#include "base/error.h"
 #include "config/config.h"
-#include "hierarchy/error.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
 #include "images/ktx2_coder.h"

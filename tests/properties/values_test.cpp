@@ -1,8 +1,8 @@
 // Values of vertices through whole builds: bit for bit in partitions, of the input's values where
 // they are labels.
+#include "base/error.h"
 #include "config/config.h"
 #include "export/cut_part.h"
-#include "hierarchy/error.h"
 #include "hierarchy/value_channels.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/build.h"

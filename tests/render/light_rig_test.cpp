@@ -1,6 +1,6 @@
 #include "render/light_rig.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "render/reflection.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Textures, looked up and drawn.
 #include "render/mip_texture.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "render/shade.h"
 #include "tests/render/drawn.h"
 

@@ -1,6 +1,6 @@
 #include "render/painting.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "tests/render/drawn.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "render/terrain.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "tests/render/drawn.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "render/tile_facets.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 #include "render/mip_texture.h"
 
 #include <array>

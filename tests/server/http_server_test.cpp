@@ -1,7 +1,7 @@
 // The real server, through real sockets.
 #include "server/http_server.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "server/conditions.h"
 #include "server/site.h"
 #include "storage/io/process.h"

@@ -1,7 +1,7 @@
 // A folder in which permissions are missing; tests run as root, who has them all.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
 #include "storage/io/system_failure.h"

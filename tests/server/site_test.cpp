@@ -1,6 +1,6 @@
 #include "server/site.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "server/conditions.h"
 #include "server/static_site.h"
 #include "storage/format/gzip.h"

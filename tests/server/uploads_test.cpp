@@ -1,6 +1,6 @@
 #include "server/uploads.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "server/build_target.h"
 #include "server/staged_upload.h"
 #include "storage/io/output_file.h"

@@ -1,5 +1,5 @@
 // The normals of a tile: of its own vertices, and of all of them.
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "hierarchy/vertex_numbers.h"
 #include "shading/own_normals.h"
 #include "shading/tile_shading.h"

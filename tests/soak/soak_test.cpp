@@ -4,8 +4,8 @@
 //   MESHHIER_SOAK_ROUNDS   of each kind; 6 if it is not set
 //   MESHHIER_SOAK_SEED     of the first round, 1 if it is not set; each round has the next one and
 //                          tells it when it fails
+#include "base/error.h"
 #include "bench/stress.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "pipeline/tasks/task_plan.h"
 #include "pipeline/tasks/task_status.h"

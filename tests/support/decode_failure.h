@@ -1,8 +1,8 @@
 // The error by which a tile is refused.
 #pragma once
 
+#include "base/error.h"
 #include "gltf/sample_hierarchy.h"
-#include "hierarchy/error.h"
 #include "storage/format/tile_glb.h"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "tests/support/faulty_file_system.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <string>

@@ -1,6 +1,6 @@
 #include "tests/support/memory_files.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <string>

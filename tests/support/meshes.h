@@ -3,9 +3,9 @@
 // Independent of the library's readers and writers. Everything is deterministic.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/triangle.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstddef>

@@ -2,8 +2,8 @@
 // comes from the table of keys, so a new key is drawn from its first day, or a test fails.
 #pragma once
 
+#include "base/bounds.h"
 #include "config/config.h"
-#include "hierarchy/bounds.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // That two tiles are the same, bit for bit.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/published.h"
-#include "hierarchy/vec.h"
 
 #include <bit>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "tests/support/sample_copies.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "hierarchy/drawing_rule.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/compactness.h"

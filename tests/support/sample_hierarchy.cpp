@@ -1,6 +1,6 @@
 #include "tests/support/sample_hierarchy.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "hierarchy/cut.h"
 #include "partition/compactness.h"
 #include "storage/format/index.h"

@@ -1,8 +1,8 @@
 // A textured mesh of which every colour is known: an OBJ with its materials and pictures.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/texture.h"
-#include "hierarchy/vec.h"
 #include "images/image.h"
 #include "storage/io/file.h"
 

@@ -1,8 +1,8 @@
 // The least memory budget of a build.
 #pragma once
 
+#include "base/error.h"
 #include "config/config.h"
-#include "hierarchy/error.h"
 #include "storage/io/file.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/try_build.h"

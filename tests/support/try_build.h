@@ -1,7 +1,7 @@
 // A build that may fail.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "pipeline/build.h"
 
 #include <optional>

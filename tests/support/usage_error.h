@@ -1,7 +1,7 @@
 // The error by which a call is refused.
 #pragma once
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "texture/nearest_triangle.h"
 
-#include "hierarchy/closest_point.h"
+#include "base/closest_point.h"
 #include "tests/texture/random_numbers.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Surfaces whose pictures show a colour that is known at each point of space.
 #pragma once
 
+#include "base/vec.h"
 #include "hierarchy/tile_mesh.h"
-#include "hierarchy/vec.h"
 #include "images/image.h"
 #include "texture/bake.h"
 #include "texture/corners.h"

@@ -1,9 +1,9 @@
 #include "verify/verify_error.h"
 
+#include "base/error.h"
 #include "config/config.h"
 #include "export/random_cut.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
 #include "tests/support/meshes.h"

@@ -1,7 +1,7 @@
 // Every value of manifest and index, changed in every way, with the checksums made right again:
 // verify finds it, or the value is one that nothing else tells.
+#include "base/error.h"
 #include "hierarchy/cut.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/index.h"

@@ -1,7 +1,7 @@
 #include "verify/verify.h"
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
+#include "base/bounds.h"
+#include "base/error.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "tests/support/meshes.h"

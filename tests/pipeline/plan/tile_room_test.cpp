@@ -1,6 +1,6 @@
 #include "pipeline/plan/tile_room.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // A build in tasks makes the bytes of one on one machine: whatever it is cut into, in whatever
 // order tasks run, however often, and whatever happens to them.
+#include "base/error.h"
 #include "bench/generator.h"
-#include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "pipeline/tasks/run_task.h"
 #include "pipeline/tasks/task_plan.h"

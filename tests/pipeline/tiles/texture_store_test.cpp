@@ -1,6 +1,6 @@
 #include "pipeline/tiles/texture_store.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <memory>

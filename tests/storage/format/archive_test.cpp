@@ -1,6 +1,6 @@
 #include "storage/format/archive.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/archive_check.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/archive_writer.h"

@@ -1,6 +1,6 @@
 // Compressed and quantized tiles: the same meshes as the plain ones, and nothing that crashes.
+#include "base/error.h"
 #include "gltf/sample_hierarchy.h"
-#include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
 #include "storage/format/meshopt_codec.h"

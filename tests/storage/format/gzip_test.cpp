@@ -1,6 +1,6 @@
 #include "storage/format/gzip.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/glb.h"
 
 #include <random>

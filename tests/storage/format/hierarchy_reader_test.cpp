@@ -1,8 +1,8 @@
 #include "storage/format/hierarchy_reader.h"
 
+#include "base/bounds.h"
+#include "base/error.h"
 #include "gltf/sample_hierarchy.h"
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/outline_glb.h"

@@ -1,6 +1,6 @@
 #include "storage/format/tile_colours.h"
 
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <cmath>
 #include <cstddef>

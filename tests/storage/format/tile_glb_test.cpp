@@ -1,7 +1,7 @@
 #include "storage/format/tile_glb.h"
 
+#include "base/error.h"
 #include "gltf/sample_hierarchy.h"
-#include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/format/showable.h"
 #include "storage/io/hash.h"

@@ -1,6 +1,6 @@
 // Pictures and texture coordinates in tiles: what is written is read, and nothing else is.
+#include "base/error.h"
 #include "gltf/sample_hierarchy.h"
-#include "hierarchy/error.h"
 #include "storage/format/tile_glb.h"
 #include "support/decode_failure.h"
 #include "support/open_glb.h"

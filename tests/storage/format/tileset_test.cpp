@@ -1,6 +1,6 @@
 #include "storage/format/tileset.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 

@@ -1,6 +1,6 @@
 #include "storage/io/file_checksum.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/io/hash.h"
 #include "tests/support/faulty_file_system.h"
 

@@ -1,6 +1,6 @@
 #include "storage/io/file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/pattern.h"
 

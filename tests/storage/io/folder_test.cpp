@@ -1,6 +1,6 @@
 #include "storage/io/folder.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>

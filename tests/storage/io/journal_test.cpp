@@ -1,6 +1,6 @@
 #include "storage/io/journal.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/sample_hierarchy.h"
 

@@ -1,6 +1,6 @@
 #include "storage/io/output_file.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 

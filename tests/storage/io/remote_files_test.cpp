@@ -1,6 +1,6 @@
 #include "storage/io/remote_files.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 #include "tests/support/http_host.h"
 
 #include <algorithm>

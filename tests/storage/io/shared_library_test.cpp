@@ -1,6 +1,6 @@
 #include "storage/io/shared_library.h"
 
-#include "hierarchy/error.h"
+#include "base/error.h"
 
 #include <string>
 

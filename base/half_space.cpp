@@ -1,6 +1,6 @@
-#include "hierarchy/half_space.h"
+#include "base/half_space.h"
 
-#include "hierarchy/clip_polygon.h"
+#include "base/clip_polygon.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hierarchy/union_find.h"
+#include "base/union_find.h"
 
 #include <cstdint>
 

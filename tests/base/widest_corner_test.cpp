@@ -1,4 +1,4 @@
-#include "hierarchy/widest_corner.h"
+#include "base/widest_corner.h"
 
 #include <array>
 

@@ -21,8 +21,8 @@
 // Cost. O(n log n) to build, O(log n) a query near the triangles; 28 bytes for a child of a node.
 #pragma once
 
-#include "hierarchy/four_floats.h"
-#include "hierarchy/vec.h"
+#include "base/four_floats.h"
+#include "base/vec.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Two axes at right angles to a direction.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "hierarchy/half_space.h"
+#include "base/half_space.h"
 
 #include <array>
 #include <vector>

@@ -1,8 +1,8 @@
 // The ellipsoid of WGS 84, by arithmetic whose result IEEE 754 fixes.
 #pragma once
 
-#include "hierarchy/angle.h"
-#include "hierarchy/vec.h"
+#include "base/angle.h"
+#include "base/vec.h"
 
 #include <cmath>
 

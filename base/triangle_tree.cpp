@@ -1,4 +1,4 @@
-#include "hierarchy/triangle_tree.h"
+#include "base/triangle_tree.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // Where to begin with a triangle that may be a needle.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <array>
 

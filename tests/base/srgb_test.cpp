@@ -1,4 +1,4 @@
-#include "hierarchy/srgb.h"
+#include "base/srgb.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Half-spaces, and triangles that touch what several of them have in common.
 #pragma once
 
-#include "hierarchy/bounds.h"
-#include "hierarchy/vec.h"
+#include "base/bounds.h"
+#include "base/vec.h"
 
 #include <array>
 #include <span>

@@ -1,4 +1,4 @@
-#include "hierarchy/closest_point.h"
+#include "base/closest_point.h"
 
 #include "tests/support/meshes.h"
 

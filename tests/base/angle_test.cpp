@@ -1,6 +1,6 @@
-#include "hierarchy/angle.h"
+#include "base/angle.h"
 
-#include "hierarchy/power_of_two.h"
+#include "base/power_of_two.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 

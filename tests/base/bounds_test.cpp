@@ -1,4 +1,4 @@
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 
 #include <array>
 #include <vector>

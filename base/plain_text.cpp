@@ -1,4 +1,4 @@
-#include "hierarchy/plain_text.h"
+#include "base/plain_text.h"
 
 namespace meshhier {
 

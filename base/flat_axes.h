@@ -1,7 +1,7 @@
 // Whether three axes span no space.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <cmath>
 

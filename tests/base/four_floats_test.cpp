@@ -1,4 +1,4 @@
-#include "hierarchy/four_floats.h"
+#include "base/four_floats.h"
 
 #include <algorithm>
 #include <array>

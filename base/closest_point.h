@@ -6,7 +6,7 @@
 // products of six float coordinates over the whole range of float: nothing overflows or vanishes.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 namespace meshhier {
 

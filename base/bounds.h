@@ -1,7 +1,7 @@
 // Axis-aligned bounding boxes.
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "base/vec.h"
 
 #include <limits>
 #include <span>

@@ -1,6 +1,6 @@
-#include "hierarchy/triangle_tree.h"
+#include "base/triangle_tree.h"
 
-#include "hierarchy/bounds.h"
+#include "base/bounds.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>

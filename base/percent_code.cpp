@@ -1,4 +1,4 @@
-#include "hierarchy/percent_code.h"
+#include "base/percent_code.h"
 
 #include <cctype>
 #include <cstddef>
