@@ -132,8 +132,8 @@ T nearest(float value) {
 struct PlyWriter::State {
   std::shared_ptr<storage::File> file;
   PlyContent content;
-  AttributeParts parts;           ///< of content.attributes
-  std::vector<std::byte> buffer;  ///< kBufferBytes
+  std::vector<AttributePart> parts;  ///< of content.attributes, those that are there
+  std::vector<std::byte> buffer;     ///< kBufferBytes
   std::size_t filled = 0;
   std::uint64_t offset = 0;
   std::uint64_t vertices = 0;
@@ -222,7 +222,8 @@ PlyWriter::PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& cont
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->content = content;
-  state_->parts = content.attributes.parts();
+  std::ranges::copy_if(content.attributes.parts(), std::back_inserter(state_->parts),
+                       [](const AttributePart& part) { return part.count > 0; });
   state_->buffer.resize(kBufferBytes);
   constexpr std::uint64_t kMaxIntVertices = std::uint64_t{1} << 31;
   const std::string header =
