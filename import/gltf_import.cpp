@@ -410,7 +410,7 @@ class GltfImporter {
         if (part.count > 0)
           add_attribute(part, all, vertex, transform, channels);
       }
-      import_.zeroed += mesh_io::zero_what_is_not_finite(import_.layout, channels);
+      import_.zeroed += mesh_io::zero_what_is_not_finite(parts, channels);
       mesh_.attributes.append(channels);
     }
   }

@@ -142,7 +142,7 @@ ZeroedCounts VertexRows::zero_what_is_not_finite(std::size_t first, std::size_t 
   const std::span<float> rows =
       std::span(memory_.attributes).subspan(first * channels_, count * channels_);
   return all_checked_finite(first, count) ? ZeroedCounts{}
-                                          : mesh_io::zero_what_is_not_finite(layout_, rows);
+                                          : mesh_io::zero_what_is_not_finite(parts_, rows);
 }
 
 std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,

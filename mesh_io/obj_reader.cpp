@@ -299,7 +299,7 @@ class ObjReader::Impl {
     for (std::size_t i = 1; i < texcoord.size() && words_.to_word(); ++i)
       texcoord[i] = words_.take_any_float("a texture coordinate");
     words_.expect_line_end();
-    counts_.zeroed += zero_what_is_not_finite({.texcoords = true}, std::span(texcoord).first<2>());
+    counts_.zeroed.texcoords += zero_if_not_finite(std::span(texcoord).first<2>());
     count_one(texcoords_);
     visitor_.add_texcoord({texcoord[0], texcoord[1]});
   }
@@ -309,7 +309,7 @@ class ObjReader::Impl {
     for (float& part : normal)
       part = words_.take_any_float("a normal");
     words_.expect_line_end();
-    counts_.zeroed += zero_what_is_not_finite({.normals = true}, normal);
+    counts_.zeroed.normals += zero_if_not_finite(normal);
     count_one(normals_);
     visitor_.add_normal({normal[0], normal[1], normal[2]});
   }

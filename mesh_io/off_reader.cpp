@@ -361,8 +361,9 @@ class OffReader {
                       "the first vertex say, found {}",
                       expected(), channel_count_));
     }
-    counts_.zeroed += zero_what_is_not_finite(layout, std::span(channels_).first(channel_count_));
-    const AttributePart colours = layout.part(AttributeKind::colours);
+    const AttributeParts parts = layout.parts();
+    counts_.zeroed += zero_what_is_not_finite(parts, std::span(channels_).first(channel_count_));
+    const AttributePart& colours = parts[static_cast<std::size_t>(AttributeKind::colours)];
     for (std::size_t channel = colours.first; channel < colours.end(); ++channel) {
       if (!std::isfinite(channels_[channel]))
         words_.fail(

@@ -24,9 +24,12 @@ struct ZeroedCounts {
   friend bool operator==(const ZeroedCounts&, const ZeroedCounts&) = default;
 };
 
-/// Makes the whole normal 0 if one of its numbers is not finite, and likewise the texture
-/// coordinates. Many programs write "nan" as the normal of what has no area. `rows`:
-/// layout.channels() floats a vertex. Returns how many became 0.
-ZeroedCounts zero_what_is_not_finite(const AttributeLayout& layout, std::span<float> rows);
+/// Makes all numbers of an attribute 0 if one of them is not finite. Many programs write "nan" as
+/// the normal of what has no area. Returns how many attributes became 0: 1, or none.
+std::uint64_t zero_if_not_finite(std::span<float> attribute);
+
+/// Does so to normals and texture coordinates of many vertices. `rows`: all the channels of a
+/// vertex, `parts` of which say where the attributes are, behind those of the one before.
+ZeroedCounts zero_what_is_not_finite(const AttributeParts& parts, std::span<float> rows);
 
 }  // namespace meshhier::mesh_io
