@@ -140,7 +140,7 @@ double SizeSummary::raw_ratio() const {
 }
 
 SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format) {
-  using storage::Part;
+  using storage::TilePart;
   SizeSummary sizes;
   sizes.tile_bytes = range_of(records, file_bytes);
   for (const TileRecord& record : records) {
@@ -157,9 +157,10 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.interior = record.interior_count;
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, format.attributes);
-    for (const Part part : {Part::position, Part::normal, Part::tangent, Part::colour,
-                            Part::texcoord, Part::map_texcoord, Part::interior, Part::border,
-                            Part::values, Part::image, Part::normal_map})
+    for (const TilePart part :
+         {TilePart::position, TilePart::normal, TilePart::tangent, TilePart::colour,
+          TilePart::texcoord, TilePart::map_texcoord, TilePart::interior, TilePart::border,
+          TilePart::values, TilePart::image, TilePart::normal_map})
       sizes.raw_bytes += plan[part].bytes();
     sizes.bytes += record.file_bytes;
     sizes.vertices += record.own_count;

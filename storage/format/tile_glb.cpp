@@ -49,7 +49,7 @@ class Writer {
 
   void put_positions(std::span<const Vec3f> positions) {
     static_assert(sizeof(Vec3f) == 3 * sizeof(float));
-    const Section& section = plan_[Part::position];
+    const Section& section = plan_[TilePart::position];
     if (plan_.has_short_positions())
       return put_numbers(section, positions);
     if constexpr (std::endian::native == std::endian::little) {
@@ -63,7 +63,7 @@ class Writer {
   }
 
   /// Writes the group's channels into `part`, in that section's component type.
-  void put_group(Part part, const ChannelGroup& group, std::span<const float> attributes) {
+  void put_group(TilePart part, const ChannelGroup& group, std::span<const float> attributes) {
     const Section& section = plan_[part];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
     for (std::size_t v = 0; v < section.count; ++v) {
@@ -80,8 +80,8 @@ class Writer {
   }
 
   void put_values(std::span<const float> attributes) {
-    const Section& section = plan_[Part::values];
-    const Section& raw = plan_[Part::raw_values];
+    const Section& section = plan_[TilePart::values];
+    const Section& raw = plan_[TilePart::raw_values];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
     std::size_t to = 0, raw_to = 0;
     for (const PlacedValue& value : placed_values(plan_.layout())) {
@@ -103,41 +103,41 @@ class Writer {
   }
 
   void put_normals(std::span<const NormalCode> normals) {
-    std::ranges::copy(std::as_bytes(normals), at(plan_[Part::normal]));
+    std::ranges::copy(std::as_bytes(normals), at(plan_[TilePart::normal]));
   }
 
   void put_tangents(std::span<const TangentCode> tangents) {
-    std::ranges::copy(std::as_bytes(tangents), at(plan_[Part::tangent]));
+    std::ranges::copy(std::as_bytes(tangents), at(plan_[TilePart::tangent]));
   }
 
   /// Writes coordinates in the tile's picture, or in its normal map.
   void put_texcoords(std::span<const Vec2f> texcoords) {
     if (plan_.shape().has_normal_map())
       return put_map_texcoords(texcoords);
-    const Section& section = plan_[Part::texcoord];
+    const Section& section = plan_[TilePart::texcoord];
     for (std::size_t v = 0; v < texcoords.size(); ++v) {
       put(section, v, 0, texcoords[v].u);
       put(section, v, 1, texcoords[v].v);
     }
   }
 
-  void put_image(Part part, std::span<const std::byte> bytes) {
+  void put_image(TilePart part, std::span<const std::byte> bytes) {
     std::ranges::copy(bytes, at(plan_[part]));
   }
 
-  void put_triangles(Part part, std::span<const TileTriangle> triangles) {
+  void put_triangles(TilePart part, std::span<const TileTriangle> triangles) {
     const Section& section = plan_[part];
     section.component == kU16 ? put_corners<std::uint16_t>(section, triangles)
                               : put_corners<std::uint32_t>(section, triangles);
   }
 
   template <Scalar T>
-  void put_list(Part part, std::span<const T> values) {
+  void put_list(TilePart part, std::span<const T> values) {
     store_all_little(values, at(plan_[part]));
   }
 
   /// Writes numbers of vertices, in as many bytes as the section's type has.
-  void put_vertices(Part part, std::span<const std::uint32_t> vertices) {
+  void put_vertices(TilePart part, std::span<const std::uint32_t> vertices) {
     if (plan_[part].component == kU32)
       return put_list(part, vertices);
     const std::vector<std::uint16_t> narrowed(vertices.begin(), vertices.end());
@@ -153,7 +153,7 @@ class Writer {
   }
 
   void put_map_texcoords(std::span<const Vec2f> texcoords) {
-    const Section& section = plan_[Part::map_texcoord];
+    const Section& section = plan_[TilePart::map_texcoord];
     for (std::size_t v = 0; v < texcoords.size(); ++v) {
       put(section, v, 0, map_texcoord_number(texcoords[v].u));
       put(section, v, 1, map_texcoord_number(texcoords[v].v));
@@ -210,13 +210,13 @@ VertexArray with_copies(const TileMesh& mesh, const Shading& shading) {
 void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer) {
   const bool split = !shading.split_of.empty();
   if (split || mesh.copies.empty()) {
-    writer.put_triangles(Part::interior, split ? shading.interior : mesh.interior);
-    writer.put_triangles(Part::border, split ? shading.border : mesh.border);
+    writer.put_triangles(TilePart::interior, split ? shading.interior : mesh.interior);
+    writer.put_triangles(TilePart::border, split ? shading.border : mesh.border);
     return;
   }
   const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
-  writer.put_triangles(Part::interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
-  writer.put_triangles(Part::border, numbers.numbered(mesh.border, mesh.border_wedges));
+  writer.put_triangles(TilePart::interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
+  writer.put_triangles(TilePart::border, numbers.numbered(mesh.border, mesh.border_wedges));
 }
 
 bool has_map(const TileImage* normal_map) {
@@ -345,7 +345,7 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
   if (shape.textures && shape.interior + shape.border > 0)
     shape.image =
         read_image_shape(document, extension, {"image", "imageWidth", "imageHeight"}, name);
-  const char* map = key_of(Part::normal_map);
+  const char* map = key_of(TilePart::normal_map);
   if (shape.normal_maps && extension.contains(map) && extension[map] != -1) {
     shape.normal_map =
         read_image_shape(document, extension, {map, "normalMapWidth", "normalMapHeight"}, name);
@@ -366,7 +366,7 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
     const char* key = key_of(groups[i].raw);
     shape.raw[i] = groups[i].channels > 0 && extension.contains(key) && extension[key] != -1;
   }
-  const char* key = key_of(Part::raw_values);
+  const char* key = key_of(TilePart::raw_values);
   shape.raw_values =
       !format.attributes.values.empty() && extension.contains(key) && extension[key] != -1;
   return shape;
@@ -469,15 +469,15 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   }
   writer.put_values(vertices.attributes);
   put_triangles(mesh, shading, writer);
-  writer.put_list<std::uint16_t>(Part::parent_map, tile.parent_map);
-  writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);
-  writer.put_list<std::uint32_t>(Part::ghost_starts, neighbours.starts);
-  writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
-  writer.put_vertices(Part::copy_of, mesh.copies.places);
-  writer.put_vertices(Part::split_of, shading.split_of);
-  writer.put_image(Part::image, tile.image.bytes);
+  writer.put_list<std::uint16_t>(TilePart::parent_map, tile.parent_map);
+  writer.put_list<std::uint32_t>(TilePart::neighbours, neighbours.tiles);
+  writer.put_list<std::uint32_t>(TilePart::ghost_starts, neighbours.starts);
+  writer.put_list<std::uint16_t>(TilePart::ghost_chains, tile.chains);
+  writer.put_vertices(TilePart::copy_of, mesh.copies.places);
+  writer.put_vertices(TilePart::split_of, shading.split_of);
+  writer.put_image(TilePart::image, tile.image.bytes);
   if (has_map(tile.normal_map))
-    writer.put_image(Part::normal_map, tile.normal_map->bytes);
+    writer.put_image(TilePart::normal_map, tile.normal_map->bytes);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(json_text(plan.document(tile.bounds, format.frame, &bin.packing)), bin.bin);

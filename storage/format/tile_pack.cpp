@@ -52,10 +52,10 @@ std::vector<std::byte> pack_positions(const Section& section, std::span<const st
   return encode_attributes(words, section.stride);
 }
 
-std::vector<std::byte> pack_section(const TilePlan& plan, Part part,
+std::vector<std::byte> pack_section(const TilePlan& plan, TilePart part,
                                     std::span<const std::byte> plain, bool& exponential) {
   const Section& section = plan[part];
-  if (part == Part::position)
+  if (part == TilePart::position)
     return pack_positions(section, plain, exponential);
   switch (mode_of(part)) {
     case ViewMode::attributes:
@@ -72,7 +72,7 @@ std::vector<std::byte> pack_section(const TilePlan& plan, Part part,
 }
 
 /// Returns the most bytes that a section can have which was decoded from so many.
-std::uint64_t most_bytes(const Section& section, Part part, std::uint64_t packed_bytes) {
+std::uint64_t most_bytes(const Section& section, TilePart part, std::uint64_t packed_bytes) {
   switch (mode_of(part)) {
     case ViewMode::attributes:
       return kMostAttributeBytes * packed_bytes;
@@ -86,7 +86,7 @@ std::uint64_t most_bytes(const Section& section, Part part, std::uint64_t packed
   return packed_bytes;
 }
 
-bool unpack_section(const Section& section, Part part, std::span<const std::byte> packed,
+bool unpack_section(const Section& section, TilePart part, std::span<const std::byte> packed,
                     std::span<std::byte> plain) {
   std::vector<std::uint32_t> numbers;
   switch (mode_of(part)) {
@@ -118,7 +118,7 @@ Json extension_of(const Json& document, int view) {
 PackedBin pack_bin(const TilePlan& plan, std::span<const std::byte> plain) {
   PackedBin packed;
   for (std::size_t i = 0; i < kPartCount; ++i) {
-    const auto part = static_cast<Part>(i);
+    const auto part = static_cast<TilePart>(i);
     const Section& section = plan[part];
     if (section.view < 0)
       continue;
@@ -135,7 +135,7 @@ Packing read_packing(const Json& document, const TilePlan& plan, std::span<const
                      const std::string& name) {
   Packing packing;
   for (std::size_t i = 0; i < kPartCount; ++i) {
-    const auto part = static_cast<Part>(i);
+    const auto part = static_cast<TilePart>(i);
     const Section& section = plan[part];
     if (section.view < 0)
       continue;
@@ -143,7 +143,7 @@ Packing read_packing(const Json& document, const TilePlan& plan, std::span<const
     if (mode_of(part) != ViewMode::raw) {
       const Json extension = extension_of(document, section.view);
       packing.bytes[i] = require_count(extension, "byteLength", bin.size(), name);
-      packing.exponential |= part == Part::position && extension.contains("filter");
+      packing.exponential |= part == TilePart::position && extension.contains("filter");
     }
     if (section.bytes() > most_bytes(section, part, packing.bytes[i])) {
       refuse_pack(name, fmt::format("{} of {} bytes cannot come from {} compressed ones",
@@ -161,14 +161,14 @@ std::vector<std::byte> unpack_bin(const TilePlan& plan, const Packing& packing,
                                   std::span<const std::byte> bin, const std::string& name) {
   std::vector<std::byte> plain(plan.bytes());
   for (std::size_t i = 0; i < kPartCount; ++i) {
-    const auto part = static_cast<Part>(i);
+    const auto part = static_cast<TilePart>(i);
     const Section& section = plan[part];
     if (section.view < 0)
       continue;
     const auto target = std::span(plain).subspan(section.offset, section.bytes());
     if (!unpack_section(section, part, bin.subspan(packing.offset(part), packing.bytes[i]), target))
       refuse_pack(name, fmt::format("the compressed {} cannot be decoded", key_of(part)));
-    if (part == Part::position && packing.exponential &&
+    if (part == TilePart::position && packing.exponential &&
         (section.component != kF32 || !unfilter_positions(target)))
       refuse_pack(name, "the filtered positions cannot be decoded");
   }

@@ -26,56 +26,57 @@ constexpr const char* gltf_name(AttributeKind kind) {
 
 /// The facts on a part that are the same in all tiles.
 struct PartRow {
-  Part part;
+  TilePart part;
   const char* key;
   ViewMode mode;
   unsigned target = 0;  ///< the buffer view's; 0: none
 };
 constexpr std::array<PartRow, kPartCount> kParts{{
-    {Part::position, "POSITION", ViewMode::attributes, kVertexTarget},
-    {Part::normal, gltf_name(AttributeKind::normals), ViewMode::attributes, kVertexTarget},
-    {Part::tangent, "TANGENT", ViewMode::attributes, kVertexTarget},
-    {Part::colour, gltf_name(AttributeKind::colours), ViewMode::attributes, kVertexTarget},
-    {Part::texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
-    {Part::map_texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
-    {Part::interior, "interior", ViewMode::triangles, kIndexTarget},
-    {Part::border, "border", ViewMode::triangles, kIndexTarget},
-    {Part::values, "values", ViewMode::attributes, kVertexTarget},
-    {Part::parent_map, "parentMap", ViewMode::indices},
-    {Part::neighbours, "neighbours", ViewMode::raw},
-    {Part::ghost_starts, "ghostStarts", ViewMode::raw},
-    {Part::ghost_chains, "ghostChains", ViewMode::indices},
-    {Part::copy_of, "copyOf", ViewMode::indices},
-    {Part::split_of, "splitOf", ViewMode::indices},
-    {Part::raw_normals, "rawNormals", ViewMode::attributes},
-    {Part::raw_colours, "rawColours", ViewMode::attributes},
-    {Part::raw_texcoords, "rawTexcoords", ViewMode::attributes},
-    {Part::raw_values, "rawValues", ViewMode::attributes},
-    {Part::image, "image", ViewMode::raw},
-    {Part::normal_map, "normalMap", ViewMode::raw},
+    {TilePart::position, "POSITION", ViewMode::attributes, kVertexTarget},
+    {TilePart::normal, gltf_name(AttributeKind::normals), ViewMode::attributes, kVertexTarget},
+    {TilePart::tangent, "TANGENT", ViewMode::attributes, kVertexTarget},
+    {TilePart::colour, gltf_name(AttributeKind::colours), ViewMode::attributes, kVertexTarget},
+    {TilePart::texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
+    {TilePart::map_texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes,
+     kVertexTarget},
+    {TilePart::interior, "interior", ViewMode::triangles, kIndexTarget},
+    {TilePart::border, "border", ViewMode::triangles, kIndexTarget},
+    {TilePart::values, "values", ViewMode::attributes, kVertexTarget},
+    {TilePart::parent_map, "parentMap", ViewMode::indices},
+    {TilePart::neighbours, "neighbours", ViewMode::raw},
+    {TilePart::ghost_starts, "ghostStarts", ViewMode::raw},
+    {TilePart::ghost_chains, "ghostChains", ViewMode::indices},
+    {TilePart::copy_of, "copyOf", ViewMode::indices},
+    {TilePart::split_of, "splitOf", ViewMode::indices},
+    {TilePart::raw_normals, "rawNormals", ViewMode::attributes},
+    {TilePart::raw_colours, "rawColours", ViewMode::attributes},
+    {TilePart::raw_texcoords, "rawTexcoords", ViewMode::attributes},
+    {TilePart::raw_values, "rawValues", ViewMode::attributes},
+    {TilePart::image, "image", ViewMode::raw},
+    {TilePart::normal_map, "normalMap", ViewMode::raw},
 }};
 static_assert(are_in_order(kParts, &PartRow::part));
 
-constexpr const PartRow& row_of(Part part) {
+constexpr const PartRow& row_of(TilePart part) {
   return kParts[static_cast<std::size_t>(part)];
 }
 
 /// What vertices show beside their positions.
 constexpr std::span<const PartRow> shown_attributes() {
-  constexpr auto kFirst = static_cast<std::size_t>(Part::normal);
-  constexpr auto kEnd = static_cast<std::size_t>(Part::interior);
+  constexpr auto kFirst = static_cast<std::size_t>(TilePart::normal);
+  constexpr auto kEnd = static_cast<std::size_t>(TilePart::interior);
   return std::span(kParts).subspan(kFirst, kEnd - kFirst);
 }
 
 /// The component type and the components of what the build computed; 0 of what the tile lacks.
-std::pair<unsigned, std::size_t> computed_elements(Part part, const TileShape& shape) {
-  if (part == Part::normal && shape.computed_normals)
+std::pair<unsigned, std::size_t> computed_elements(TilePart part, const TileShape& shape) {
+  if (part == TilePart::normal && shape.computed_normals)
     return {kI8, 3};
-  if (part == Part::tangent && shape.has_normal_map())
+  if (part == TilePart::tangent && shape.has_normal_map())
     return {kI8, 4};
-  if (part == Part::texcoord && shape.has_image())
+  if (part == TilePart::texcoord && shape.has_image())
     return {kF32, 2};
-  if (part == Part::map_texcoord && shape.has_normal_map())
+  if (part == TilePart::map_texcoord && shape.has_normal_map())
     return {kU16, 2};
   return {};
 }
@@ -89,25 +90,25 @@ constexpr std::array kModes{NamedValue{"ATTRIBUTES", ViewMode::attributes},
 constexpr int kBin = 0;
 constexpr int kDecoded = 1;
 
-Json packed_json(const Section& section, Part part, const Packing& packing) {
+Json packed_json(const Section& section, TilePart part, const Packing& packing) {
   Json packed = {{"buffer", kBin},
                  {"byteOffset", packing.offset(part)},
                  {"byteLength", packing.bytes[static_cast<std::size_t>(part)]},
                  {"byteStride", section.stride},
                  {"mode", name_in(kModes, mode_of(part))},
                  {"count", section.count}};
-  if (part == Part::position && packing.exponential)
+  if (part == TilePart::position && packing.exponential)
     packed["filter"] = "EXPONENTIAL";
   return packed;
 }
 
-Json view_json(const Section& section, Part part, const Packing* packing) {
+Json view_json(const Section& section, TilePart part, const Packing* packing) {
   const bool packed = packing != nullptr && mode_of(part) != ViewMode::raw;
   const bool moved = packing != nullptr && !packed;
   Json view = {{"buffer", packed ? kDecoded : kBin},
                {"byteOffset", moved ? packing->offset(part) : section.offset},
                {"byteLength", section.bytes()}};
-  const bool padded = part == Part::values ||
+  const bool padded = part == TilePart::values ||
                       section.stride != component_bytes(section.component) * section.components;
   if (padded)
     view["byteStride"] = section.stride;
@@ -129,16 +130,16 @@ Json corner_json(const TilePlan& plan, Vec3f corner) {
   return Json::array({wide.x, wide.y, wide.z});
 }
 
-Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
+Json accessor_json(const TilePlan& plan, TilePart part, const Bounds& bounds) {
   const Section& section = plan[part];
   Json accessor = {{"bufferView", section.view},
                    {"componentType", section.component},
                    {"count", section.count},
                    {"type", vector_type(section.components)}};
   const bool is_number = section.component != kF32;
-  if (is_number && part > Part::position && part < Part::interior)
+  if (is_number && part > TilePart::position && part < TilePart::interior)
     accessor["normalized"] = true;
-  if (part == Part::position) {
+  if (part == TilePart::position) {
     accessor["min"] = corner_json(plan, bounds.min);
     accessor["max"] = corner_json(plan, bounds.max);
   }
@@ -150,15 +151,16 @@ unsigned map_texcoord_set(const TilePlan& plan) {
   return plan.layout().texcoords ? 1 : 0;
 }
 
-const char* attribute_name(const TilePlan& plan, Part part) {
-  if (part == Part::colour)
+const char* attribute_name(const TilePlan& plan, TilePart part) {
+  if (part == TilePart::colour)
     return colour_attribute(plan.layout(), plan.shape().textures.has_value());
-  return part == Part::map_texcoord && map_texcoord_set(plan) == 1 ? "TEXCOORD_1" : key_of(part);
+  return part == TilePart::map_texcoord && map_texcoord_set(plan) == 1 ? "TEXCOORD_1"
+                                                                       : key_of(part);
 }
 
 /// Returns the accessor of one value. All values lie in one view.
 Json value_accessor_json(const TilePlan& plan, std::size_t value) {
-  const Section& section = plan[Part::values];
+  const Section& section = plan[TilePart::values];
   return {{"bufferView", section.view},
           {"byteOffset", value * kValueStride},
           {"componentType", component_of(plan.layout().values[value].type)},
@@ -170,16 +172,16 @@ Json value_accessor_json(const TilePlan& plan, std::size_t value) {
 /// last.
 Json primitives_json(const TilePlan& plan) {
   Json attributes = Json::object();
-  attributes[key_of(Part::position)] = plan[Part::position].view;
+  attributes[key_of(TilePart::position)] = plan[TilePart::position].view;
   for (const PartRow& row : shown_attributes()) {
     if (plan[row.part].view >= 0)
       attributes[attribute_name(plan, row.part)] = plan[row.part].view;
   }
   const std::vector<std::string> values = value_attributes(plan.layout());
   for (std::size_t i = 0; i < values.size(); ++i)
-    attributes[values[i]] = static_cast<std::size_t>(plan[Part::values].view) + i;
+    attributes[values[i]] = static_cast<std::size_t>(plan[TilePart::values].view) + i;
   Json primitives = Json::array();
-  for (const Part part : {Part::interior, Part::border}) {
+  for (const TilePart part : {TilePart::interior, TilePart::border}) {
     if (plan[part].view < 0)
       continue;
     primitives.push_back(Json::object({{"attributes", attributes},
@@ -216,22 +218,22 @@ Json material_of(const TilePlan& plan) {
 void add_image(const TilePlan& plan, Json& document) {
   const bool is_map = plan.shape().has_normal_map();
   const ImageFormat format = is_map ? plan.shape().normal_maps->format : image_format(plan.shape());
-  const Part part = is_map ? Part::normal_map : Part::image;
+  const TilePart part = is_map ? TilePart::normal_map : TilePart::image;
   document["textures"] = Json::array({texture_json(0, format)});
   document["samplers"] = Json::array({sampler_json()});
   document["images"] = Json::array({image_json(plan[part].view, format)});
 }
 
 /// Whether the extension has the key of a part.
-bool is_told(Part part, const TilePlan& plan) {
+bool is_told(TilePart part, const TilePlan& plan) {
   const TileShape& shape = plan.shape();
-  if (part == Part::values || part == Part::raw_values)
+  if (part == TilePart::values || part == TilePart::raw_values)
     return !plan.layout().values.empty();
-  if (part == Part::split_of)
+  if (part == TilePart::split_of)
     return shape.is_shaded();
-  if (part == Part::normal_map)
+  if (part == TilePart::normal_map)
     return shape.normal_maps.has_value();
-  return part != Part::image || shape.textures;
+  return part != TilePart::image || shape.textures;
 }
 
 Json extension_json(const TilePlan& plan) {
@@ -263,7 +265,7 @@ Json extension_json(const TilePlan& plan) {
     extension["normalMapHeight"] = shape.normal_map.height;
   }
   for (const PartRow& row : kParts) {
-    if (row.part >= Part::values && is_told(row.part, plan))
+    if (row.part >= TilePart::values && is_told(row.part, plan))
       extension[row.key] = plan[row.part].view;
   }
   return extension;
@@ -303,11 +305,11 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
 
 }  // namespace
 
-ViewMode mode_of(Part part) {
+ViewMode mode_of(TilePart part) {
   return row_of(part).mode;
 }
 
-std::uint64_t Packing::offset(Part part) const {
+std::uint64_t Packing::offset(TilePart part) const {
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(part); ++i)
     offset += aligned4(bytes[i]);
@@ -315,10 +317,10 @@ std::uint64_t Packing::offset(Part part) const {
 }
 
 std::uint64_t Packing::total() const {
-  return offset(static_cast<Part>(kPartCount));
+  return offset(static_cast<TilePart>(kPartCount));
 }
 
-const char* key_of(Part part) {
+const char* key_of(TilePart part) {
   return row_of(part).key;
 }
 
@@ -344,7 +346,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
     return count <= kMaxShortVertices ? kU16 : kU32;
   };
   const unsigned index = index_below(shape.with_splits());
-  add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.with_splits());
+  add(TilePart::position, has_short_positions() ? kU16 : kF32, 3, shape.with_splits());
   for (const PartRow& row : shown_attributes()) {
     const auto [component, components] = computed_elements(row.part, shape);
     add(row.part, component, components, shape.with_splits());
@@ -352,25 +354,25 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
     if (given != groups.end())
       add(row.part, component_of(given->kind, colours()), given->channels, shape.with_splits());
   }
-  add(Part::interior, index, 1, 3 * shape.interior);
-  add(Part::border, index, 1, 3 * shape.border);
-  add(Part::values, kF32, layout.values.size(), shape.with_splits());
-  add(Part::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
-  add(Part::neighbours, kU32, 1, shape.neighbours);
-  add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
-  add(Part::ghost_chains, kU16, 1, shape.chain_entries);
-  add(Part::copy_of, index_below(shape.places()), 1, shape.copies);
-  add(Part::split_of, index_below(shape.vertices()), 1, shape.splits);
+  add(TilePart::interior, index, 1, 3 * shape.interior);
+  add(TilePart::border, index, 1, 3 * shape.border);
+  add(TilePart::values, kF32, layout.values.size(), shape.with_splits());
+  add(TilePart::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
+  add(TilePart::neighbours, kU32, 1, shape.neighbours);
+  add(TilePart::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
+  add(TilePart::ghost_chains, kU16, 1, shape.chain_entries);
+  add(TilePart::copy_of, index_below(shape.places()), 1, shape.copies);
+  add(TilePart::split_of, index_below(shape.vertices()), 1, shape.splits);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
-  add(Part::raw_values, kF32, layout.part(AttributeKind::values).count,
+  add(TilePart::raw_values, kF32, layout.part(AttributeKind::values).count,
       shape.raw_values ? shape.vertices() : 0);
-  add(Part::image, kU8, 1, shape.image.bytes);
-  add(Part::normal_map, kU8, 1, shape.normal_map.bytes);
+  add(TilePart::image, kU8, 1, shape.image.bytes);
+  add(TilePart::normal_map, kU8, 1, shape.normal_map.bytes);
 }
 
-void TilePlan::add(Part part, unsigned component, std::size_t components, std::uint64_t count) {
+void TilePlan::add(TilePart part, unsigned component, std::size_t components, std::uint64_t count) {
   if (components == 0 || count == 0)
     return;
   const std::uint64_t size = component_bytes(component) * components;
@@ -387,11 +389,11 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   Json views = Json::array();
   Json accessors = Json::array();
   for (std::size_t i = 0; i < kPartCount; ++i) {
-    const auto part = static_cast<Part>(i);
+    const auto part = static_cast<TilePart>(i);
     if (sections_[i].view < 0)
       continue;
     views.push_back(view_json(sections_[i], part, packing));
-    if (part <= Part::border)
+    if (part <= TilePart::border)
       accessors.push_back(accessor_json(*this, part, bounds));
   }
   for (std::size_t i = 0; i < layout_.values.size(); ++i)

@@ -67,7 +67,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   raw_values     n or none         f32 or f64 for each value
 //   image          its bytes         u8, a picture as it is
 //   normal_map     its bytes         u8, the same
-enum class Part : std::size_t {
+enum class TilePart : std::size_t {
   position,
   normal,
   tangent,
@@ -97,24 +97,24 @@ inline constexpr float kMaxMapTexcoord = 65535;
 
 /// The key of a part in the extension (from values on), or the name of its attribute (up to
 /// map_texcoord) where it is shown.
-const char* key_of(Part part);
+const char* key_of(TilePart part);
 
 /// The kinds of attributes that have a section for each vertex: as glTF shows them, and in
 /// partitions, if it cannot hold them as they are, as they were. Values lie in one section
 /// together.
 struct AttributeSection {
   AttributeKind kind;
-  Part part, raw;
+  TilePart part, raw;
 };
 inline constexpr std::array kAttributeSections{
-    AttributeSection{AttributeKind::normals, Part::normal, Part::raw_normals},
-    AttributeSection{AttributeKind::colours, Part::colour, Part::raw_colours},
-    AttributeSection{AttributeKind::texcoords, Part::texcoord, Part::raw_texcoords}};
+    AttributeSection{AttributeKind::normals, TilePart::normal, TilePart::raw_normals},
+    AttributeSection{AttributeKind::colours, TilePart::colour, TilePart::raw_colours},
+    AttributeSection{AttributeKind::texcoords, TilePart::texcoord, TilePart::raw_texcoords}};
 
 /// The channels of one attribute within a vertex, and where they are written.
 struct ChannelGroup {
   AttributeKind kind{};
-  Part part{}, raw{};
+  TilePart part{}, raw{};
   std::size_t offset = 0;
   std::size_t channels = 0;
 };
@@ -123,7 +123,7 @@ using ChannelGroups = std::array<ChannelGroup, kAttributeSections.size()>;
 /// A part of a tile of compressed sections is stored as it is, or in a mode of
 /// EXT_meshopt_compression. The raw ones have a few bytes, or are compressed already.
 enum class ViewMode { raw, attributes, triangles, indices };
-ViewMode mode_of(Part part);
+ViewMode mode_of(TilePart part);
 
 /// The BIN chunk of a tile of compressed sections: these, each at the next multiple of 4, in the
 /// order of the parts.
@@ -131,7 +131,7 @@ struct Packing {
   std::array<std::uint64_t, kPartCount> bytes{};  ///< size of each section in the file
   bool exponential = false;                       ///< positions went through the filter EXPONENTIAL
 
-  std::uint64_t offset(Part part) const;
+  std::uint64_t offset(TilePart part) const;
   /// Returns the bytes of the BIN chunk.
   std::uint64_t total() const;
 };
@@ -199,7 +199,9 @@ class TilePlan {
   const std::optional<Lattice>& lattice() const { return lattice_; }
   /// Whether positions are the lattice's numbers in 16 bits.
   bool has_short_positions() const { return lattice_ && lattice_->is_short(); }
-  const Section& operator[](Part part) const { return sections_[static_cast<std::size_t>(part)]; }
+  const Section& operator[](TilePart part) const {
+    return sections_[static_cast<std::size_t>(part)];
+  }
   /// Bytes of the BIN chunk if nothing is compressed.
   std::uint64_t bytes() const { return bytes_; }
 
@@ -209,7 +211,7 @@ class TilePlan {
                                   const Packing* packing = nullptr) const;
 
  private:
-  void add(Part part, unsigned component, std::size_t components, std::uint64_t count);
+  void add(TilePart part, unsigned component, std::size_t components, std::uint64_t count);
 
   TileShape shape_;
   AttributeLayout layout_;

@@ -92,7 +92,7 @@ class Reader {
         name_(name) {}
 
   std::vector<Vec3f> positions() const {
-    const Section& section = plan_[Part::position];
+    const Section& section = plan_[TilePart::position];
     std::vector<Vec3f> positions(plan_.shape().vertices());
     for (std::size_t v = 0; v < positions.size(); ++v) {
       positions[v] = position(section, v);
@@ -121,9 +121,9 @@ class Reader {
     shading.texcoords = plan_.shape().has_normal_map() ? map_texcoords() : texcoords();
     shading.split_of = splits();
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
-    read_triangles(Part::interior, numbers, shading.split_of,
+    read_triangles(TilePart::interior, numbers, shading.split_of,
                    {mesh.interior, mesh.interior_wedges, shading.interior});
-    read_triangles(Part::border, numbers, shading.split_of,
+    read_triangles(TilePart::border, numbers, shading.split_of,
                    {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
     tile.image = image();
@@ -160,8 +160,8 @@ class Reader {
 
   void read_values(std::span<float> attributes) const {
     const AttributeLayout& layout = plan_.layout();
-    const Section& section = plan_[Part::values];
-    const Section& raw_section = plan_[Part::raw_values];
+    const Section& section = plan_[TilePart::values];
+    const Section& raw_section = plan_[TilePart::raw_values];
     const auto channels = static_cast<std::size_t>(layout.channels());
     std::size_t from = section.offset, raw_from = raw_section.offset;
     const std::vector<PlacedValue> placed = placed_values(layout);
@@ -208,7 +208,7 @@ class Reader {
 
   /// Returns the vertices that the elements of a section repeat; checks that they are below `limit`
   /// and ascend.
-  std::vector<std::uint32_t> repeated_vertices(Part part, std::uint64_t limit,
+  std::vector<std::uint32_t> repeated_vertices(TilePart part, std::uint64_t limit,
                                                const char* what) const {
     const Section& section = plan_[part];
     std::vector<std::uint32_t> vertices(section.count);
@@ -225,7 +225,7 @@ class Reader {
   /// Returns the places of the copies. `positions`: those of all vertices.
   std::vector<std::uint32_t> copy_places(std::span<const Vec3f> positions) const {
     const std::uint64_t place_count = plan_.shape().places();
-    std::vector<std::uint32_t> places = repeated_vertices(Part::copy_of, place_count, "copy");
+    std::vector<std::uint32_t> places = repeated_vertices(TilePart::copy_of, place_count, "copy");
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (positions[place_count + i] != positions[places[i]])
         fail(fmt::format("copy {} does not lie where its vertex {} does", i, places[i]));
@@ -235,7 +235,7 @@ class Reader {
 
   /// Returns the computed normals of vertices and splits.
   std::vector<NormalCode> normals() const {
-    const Section& section = plan_[Part::normal];
+    const Section& section = plan_[TilePart::normal];
     std::vector<NormalCode> normals(plan_.shape().computed_normals ? section.count : 0);
     for (std::size_t v = 0; v < normals.size(); ++v) {
       for (std::size_t i = 0; i < 4; ++i)
@@ -250,7 +250,7 @@ class Reader {
 
   /// Returns the coordinates in the tile's picture, of vertices and splits.
   std::vector<Vec2f> texcoords() const {
-    const Section& section = plan_[Part::texcoord];
+    const Section& section = plan_[TilePart::texcoord];
     std::vector<Vec2f> texcoords(plan_.shape().has_image() ? section.count : 0);
     const auto is_inside = [](float value) { return value >= 0 && value <= 1; };
     for (std::size_t v = 0; v < texcoords.size(); ++v) {
@@ -265,7 +265,7 @@ class Reader {
 
   /// Returns the tangents for the normal map, of vertices and splits.
   std::vector<TangentCode> tangents() const {
-    const Section& section = plan_[Part::tangent];
+    const Section& section = plan_[TilePart::tangent];
     std::vector<TangentCode> tangents(section.count);
     for (std::size_t v = 0; v < tangents.size(); ++v) {
       for (std::size_t i = 0; i < 4; ++i)
@@ -281,7 +281,7 @@ class Reader {
 
   /// Returns the coordinates in the tile's normal map, of vertices and splits.
   std::vector<Vec2f> map_texcoords() const {
-    const Section& section = plan_[Part::map_texcoord];
+    const Section& section = plan_[TilePart::map_texcoord];
     std::vector<Vec2f> texcoords(section.count);
     for (std::size_t v = 0; v < texcoords.size(); ++v)
       texcoords[v] = {map_texcoord(get<std::uint16_t>(section, v, 0)),
@@ -291,25 +291,25 @@ class Reader {
 
   TileImage image() const {
     const TileShape& shape = plan_.shape();
-    return shape.has_image()
-               ? image(Part::image, shape.image, stored_format(*shape.textures, shape.image.alpha))
-               : TileImage{};
+    return shape.has_image() ? image(TilePart::image, shape.image,
+                                     stored_format(*shape.textures, shape.image.alpha))
+                             : TileImage{};
   }
   TileImage normal_map() const {
     const TileShape& shape = plan_.shape();
     return shape.has_normal_map()
-               ? image(Part::normal_map, shape.normal_map, shape.normal_maps->format)
+               ? image(TilePart::normal_map, shape.normal_map, shape.normal_maps->format)
                : TileImage{};
   }
-  TileImage image(Part part, const ImageShape& shape, ImageFormat format) const {
+  TileImage image(TilePart part, const ImageShape& shape, ImageFormat format) const {
     const Section& section = plan_[part];
     const auto bytes = bin_.subspan(section.offset, section.bytes());
     return {format, shape.alpha, shape.width, shape.height, {bytes.begin(), bytes.end()}};
   }
 
   /// Returns the parts in which a split must be equal to its vertex.
-  std::vector<Part> common_parts() const {
-    std::vector<Part> parts{Part::position};
+  std::vector<TilePart> common_parts() const {
+    std::vector<TilePart> parts{TilePart::position};
     for (const ChannelGroup& group : groups_of(plan_.layout())) {
       if (group.channels > 0)
         parts.push_back(group.part);
@@ -320,8 +320,8 @@ class Reader {
   /// Returns the vertex of each split; checks that all but what was computed is the same there.
   std::vector<std::uint32_t> splits() const {
     const std::uint64_t vertex_count = plan_.shape().vertices();
-    const auto vertices = repeated_vertices(Part::split_of, vertex_count, "split");
-    for (const Part part : common_parts()) {
+    const auto vertices = repeated_vertices(TilePart::split_of, vertex_count, "split");
+    for (const TilePart part : common_parts()) {
       for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (!std::ranges::equal(element(part, vertices[i]), element(part, vertex_count + i)))
           fail(fmt::format("split {} has not the {} of its vertex {}", i, key_of(part),
@@ -332,7 +332,7 @@ class Reader {
   }
 
   /// Returns the bytes of an element; none if the section is not there.
-  std::span<const std::byte> element(Part part, std::uint64_t number) const {
+  std::span<const std::byte> element(TilePart part, std::uint64_t number) const {
     const Section& section = plan_[part];
     return section.count == 0
                ? std::span<const std::byte>()
@@ -341,7 +341,7 @@ class Reader {
 
   /// Reads triangles into `lists`, where they begin with their smallest corner and ascend, by place
   /// and wedge. They must be so in the file, unless it is packed.
-  void read_triangles(Part part, const VertexNumbers& numbers,
+  void read_triangles(TilePart part, const VertexNumbers& numbers,
                       std::span<const std::uint32_t> split_of, const TriangleLists& lists) const {
     lists.shaded = numbered_triangles(part);
     lists.places = without_splits(part, lists.shaded, split_of);
@@ -358,13 +358,13 @@ class Reader {
   }
 
   std::vector<std::uint16_t> parent_map() const {
-    return short_list(Part::parent_map, "parent map");
+    return short_list(TilePart::parent_map, "parent map");
   }
 
   void read_ghosts(PublishedTile& tile) const {
-    const Section& neighbours = plan_[Part::neighbours];
-    const Section& starts = plan_[Part::ghost_starts];
-    const std::vector<std::uint16_t> chains = short_list(Part::ghost_chains, "ghost chain");
+    const Section& neighbours = plan_[TilePart::neighbours];
+    const Section& starts = plan_[TilePart::ghost_starts];
+    const std::vector<std::uint16_t> chains = short_list(TilePart::ghost_chains, "ghost chain");
     tile.mesh.ghosts.reserve(plan_.shape().ghosts);
     tile.chains.reserve(plan_.shape().ghosts, chains.size());
     std::span<const std::uint16_t> left = chains;
@@ -426,7 +426,7 @@ class Reader {
 
   /// Reads one attribute of all vertices. `require_finite`: for what viewers read; raw values may
   /// be anything.
-  void read_group(const ChannelGroup& group, Part part, bool require_finite,
+  void read_group(const ChannelGroup& group, TilePart part, bool require_finite,
                   std::span<float> attributes) const {
     const Section& section = plan_[part];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
@@ -440,7 +440,7 @@ class Reader {
         if (require_finite && !std::isfinite(value)) {
           fail(fmt::format("{} of vertex {} is not finite", key_of(part), v));
         }
-        if (part == Part::colour)
+        if (part == TilePart::colour)
           value = colour(value, v, c);
       }
     }
@@ -460,7 +460,7 @@ class Reader {
   }
 
   /// Returns triangles whose corners are numbers of vertices and splits.
-  std::vector<TileTriangle> numbered_triangles(Part part) const {
+  std::vector<TileTriangle> numbered_triangles(TilePart part) const {
     const Section& section = plan_[part];
     std::vector<TileTriangle> triangles(section.count / 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -477,7 +477,7 @@ class Reader {
   }
 
   /// Returns the triangles with the vertices of splits; checks that each has three different ones.
-  std::vector<TileTriangle> without_splits(Part part, std::vector<TileTriangle> triangles,
+  std::vector<TileTriangle> without_splits(TilePart part, std::vector<TileTriangle> triangles,
                                            std::span<const std::uint32_t> split_of) const {
     const std::uint64_t vertex_count = plan_.shape().vertices();
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -491,7 +491,7 @@ class Reader {
     return triangles;
   }
 
-  void check_order(Part part, std::size_t t, const TriangleLists& lists) const {
+  void check_order(TilePart part, std::size_t t, const TriangleLists& lists) const {
     if (lists.corner(t, 1) < lists.corner(t, 0) || lists.corner(t, 2) < lists.corner(t, 0) ||
         (t > 0 && lists.key(t) < lists.key(t - 1)))
       fail_triangle(part, t, lists.places[t], "is turned or out of order");
@@ -500,7 +500,7 @@ class Reader {
       fail_triangle(part, t, lists.places[t], "has other splits than the equal one before it");
   }
 
-  void check_corners(Part part, std::size_t t, const TileTriangle& triangle) const {
+  void check_corners(TilePart part, std::size_t t, const TileTriangle& triangle) const {
     if (is_degenerate(triangle) && !tree_.is_partition(plan_.shape().node))
       fail_triangle(part, t, triangle, "has a place twice, above the partitions");
     std::uint64_t own = 0, boundary = 0;
@@ -508,20 +508,21 @@ class Reader {
       own += raw(corner) < plan_.shape().own ? 1 : 0;
       boundary += raw(corner) < plan_.shape().boundary ? 1 : 0;
     }
-    const bool fits = part == Part::interior ? own == 3 : own == boundary && (own == 1 || own == 2);
+    const bool fits =
+        part == TilePart::interior ? own == 3 : own == boundary && (own == 1 || own == 2);
     if (!fits) {
       fail(fmt::format("{} triangle {} has {} own corners, {} of them on the boundary",
                        key_of(part), t, own, boundary));
     }
   }
 
-  [[noreturn]] void fail_triangle(Part part, std::size_t t, const TileTriangle& triangle,
+  [[noreturn]] void fail_triangle(TilePart part, std::size_t t, const TileTriangle& triangle,
                                   const char* what) const {
     fail(fmt::format("{} triangle {} ({}, {}, {}) {}", key_of(part), t, raw(triangle[0]),
                      raw(triangle[1]), raw(triangle[2]), what));
   }
 
-  std::vector<std::uint16_t> short_list(Part part, const char* what) const {
+  std::vector<std::uint16_t> short_list(TilePart part, const char* what) const {
     const Section& section = plan_[part];
     std::vector<std::uint16_t> list(section.count);
     for (std::size_t i = 0; i < list.size(); ++i) {
