@@ -24,9 +24,9 @@
 //
 //                                               x: an old edge crosses a new one
 //
-//  1. Unfold the fan: distances to m stay, the angles at m are scaled to a full turn together
-//  (those
-//     of an open fan only if they are more than nine tenths of one).
+//  1. Unfold the fan, which is here all new triangles around m: distances to m stay, the angles at
+//     m are scaled to a full turn together (those of an open fan only if they are more than nine
+//     tenths of one).
 //  2. Lay a and b in the plane where the points of the fan that are nearest to them lie; ends on an
 //     open border go onto the new border.
 //  3. Draw the old triangles between a, b and the ring as straight ones. If none turns over, they
@@ -38,9 +38,10 @@
 //
 // Invariant. Each corner that is visited tells the new triangles around it the deviation of the old
 // triangles that meet there, and its own distance (overlap()). Each piece between two triangles has
-// a corner that is no ring vertex. So in the end a new triangle knows the largest deviation of all
-// old triangles that it lies over, and the largest distance on it; their sum is its deviation. This
-// holds whatever the unfolding did to lengths: a poor map only makes the numbers larger.
+// a corner that is no ring vertex: a new triangle has only two of these. So in the end a new
+// triangle knows the largest deviation of all old triangles that it lies over, and the largest
+// distance on it; their sum is its deviation. This holds whatever the unfolding did to lengths: a
+// poor map only makes the numbers larger.
 //
 // Where an open border runs through the disc, the ring is open, and only the map at the border
 // differs (Shape):
@@ -58,7 +59,8 @@
 //
 // Cost. Each old edge may cross each ray: O(ring^2), with at most 32 triangles around the edge;
 // some 10,000 instructions. No memory is allocated. On scans 1 to 5 % of all collapses come here
-// (decision 006). DeviationMeter decides who measures.
+// (decision 006). DeviationMeter decides who measures: it takes no result above half of the
+// largest deviation so far.
 //
 // Successive mappings are by Cohen, Manocha & Olano (1997); theirs look from one side.
 #pragma once

@@ -108,7 +108,7 @@ bool bounds_in(Bytes bin, const storage::TilePlan& plan, Bounds& bounds) {
 
 /// Returns whether all corners of triangles are vertices or splits, as the encoder requires.
 bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
-  for (const storage::Part part : {storage::Part::interior, storage::Part::border}) {
+  for (const storage::TilePart part : {storage::TilePart::interior, storage::TilePart::border}) {
     const storage::Section& section = plan[part];
     Take take(bin.subspan(section.offset, section.bytes()));
     for (std::uint64_t i = 0; i < section.count; ++i) {
