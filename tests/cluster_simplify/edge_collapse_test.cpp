@@ -292,7 +292,7 @@ TEST(EdgeCollapseTest, NormalsPointWhereTheirVerticesDo) {
   ball.mesh.vertices.channels = 3;
   for (const Vec3f p : ball.mesh.vertices.positions)
     ball.mesh.vertices.attributes.insert(ball.mesh.vertices.attributes.end(), {p.x, p.y, p.z});
-  const Contraction found = edge_collapse(ball, 150, {.normals = true});
+  const Contraction found = edge_collapse(ball, 150, AttributeRules({.normals = true}));
   for (std::uint32_t i = 0; i < 150; ++i) {
     const auto n = found.representatives.attributes_of(i);
     const Vec3d normal{n[0], n[1], n[2]};
