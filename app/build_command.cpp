@@ -313,8 +313,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->check(CLI::IsMember(key_references()));
   command
       ->add_flag("--help-formats{text}", arguments->help_formats,
-                 "List the formats of meshes and what is kept of each; =json: their endings, for "
-                 "programs; =markdown: as a table")
+                 "List the formats of meshes and what is kept of each; =json: these and those of "
+                 "pictures, for programs; =markdown: as a table")
       ->check(CLI::IsMember(format_references()));
   add_progress_option(*command, invocation.progress);
   command->footer(footer());

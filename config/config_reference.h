@@ -25,8 +25,8 @@ std::string formats_text();
 /// Returns the table of docs/input_formats.md, in Markdown.
 std::string formats_markdown();
 
-/// Returns the endings of meshes and of the files that belong to them, as in
-/// viewer/page/upload/formats.json.
+/// Returns the formats of meshes, of the files that belong to them, and of pictures, as JSON:
+/// scripts/references makes viewer/src/hierarchy/formats.ts of it.
 std::string formats_json();
 
 }  // namespace meshhier::config

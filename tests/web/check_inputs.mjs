@@ -25,7 +25,7 @@ const subtract = (a, b) => a.map((x, i) => x - b[i]);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-/// Measures triangles, each of `soups` has: an array of 3 n numbers, and perhaps as many of colours.
+/// Measures triangles. Each of `soups` is an array of 3 n numbers, and perhaps as many of colours.
 function measure(soups) {
   const found = { triangles: 0, area: 0, volume: 0, edges: 0, min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity], colour: null };
   const sum = [0, 0, 0];

@@ -252,6 +252,28 @@ describe('a plug-in that throws', () => {
     expect([plugins.named('bad'), dispose.mock.calls.length]).toEqual([undefined, 3]);
   });
 
+  it('is asked again when it comes anew, also where it left as it threw', () => {
+    const drawn = vi.fn(() => {
+      plugins.unregister(bad);
+      refuse();
+    });
+    const bad = { name: 'bad', drawn };
+    for (let i = 0; i < 2; ++i) {
+      plugins.register(bad);
+      plugins.drawn(frame);
+    }
+    expect([drawn.mock.calls.length, told.mock.calls.length]).toEqual([2, 2]);
+  });
+
+  it('is asked nothing once another one has taken it away', () => {
+    const drawn = vi.fn();
+    const other = { name: 'other', drawn };
+    plugins.register({ name: 'first', drawn: () => { plugins.unregister(other); } });
+    plugins.register(other);
+    plugins.drawn(frame);
+    expect([drawn.mock.calls.length, told.mock.calls.length]).toEqual([0, 0]);
+  });
+
   it('is told once, and no longer asked to draw', () => {
     const shade = vi.fn();
     const drawn = vi.fn();

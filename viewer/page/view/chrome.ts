@@ -44,7 +44,7 @@ export class Chrome {
     const { root, surface, signal } = context;
     this.sharing = new ShareSheet(parts);
     this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [new SettingsForm(parts).root]);
-    this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [new Panel(parts).root]);
+    this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [new Panel(parts, () => this.panel.isOpen).root]);
     this.share = new Sheet('share', words.share.title, ICONS.share, [this.sharing.root]);
     this.info = new Sheet('info', words.info.title, ICONS.help, [new InfoSheet(context).root]);
     this.story = iconButton(words.story.title, ICONS.story, () => { story.toggle(); });

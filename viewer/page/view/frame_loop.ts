@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PageFrames while there is something new to draw, and none otherwise.
+// Draws frames while there is something new, and none otherwise.
 
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
 

@@ -66,11 +66,12 @@ export class Panel {
   private readonly terrain = element('p', { class: 'source' });
   private readonly values = ROWS.map(() => element('dd', {}));
 
-  constructor({ context, choices: { presentation } }: ViewParts) {
+  /// `isOpen`: whether somebody sees the figures.
+  constructor({ context, choices: { presentation } }: ViewParts, isOpen: () => boolean) {
     const { view } = context;
     context.addEventListener('known', ({ manifest }) => { this.tellSource(manifest); });
     context.addEventListener('chosen', () => { this.tellTerrain(view.terrain === null ? null : presentation.shown); });
-    context.addEventListener('report', ({ stats }) => { if (this.root.closest('[hidden]') === null) this.show(stats, view.settings.framesPerSecond); });
+    context.addEventListener('report', ({ stats }) => { if (isOpen()) this.show(stats, view.settings.framesPerSecond); });
     const rows = ROWS.map(({ name, tip }, i) => element('div', { title: tip }, element('dt', {}, name), this.values[i]));
     this.root = element('div', {}, this.source, this.terrain, element('dl', { class: 'figures' }, ...rows));
   }

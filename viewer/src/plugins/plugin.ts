@@ -152,12 +152,12 @@ export class Plugins<View> {
     return this.all.get(plugin.name) === plugin;
   }
 
-  /// `otherwise`: of a plug-in that has thrown at this question, now or before.
+  /// `otherwise`: of a plug-in that has thrown at this question, now or before, or that another one took away meanwhile.
   private ask<Answer>(plugin: PluginOf<View>, question: Question, call: () => Answer, otherwise: Answer): Answer {
     const failed = this.failed.get(plugin) ?? new Set();
-    if (failed.has(question)) return otherwise;
+    if (!this.has(plugin) || failed.has(question)) return otherwise;
     return attempt(call, () => {
-      this.failed.set(plugin, failed.add(question));
+      if (this.has(plugin)) this.failed.set(plugin, failed.add(question));
       return otherwise;
     });
   }
