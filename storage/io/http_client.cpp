@@ -279,6 +279,8 @@ class HttpClient::Connection {
            HttpAnswer& answer) {
     bool is_there = true;
     persist(address, [&] {
+      if (answer.is_whole)
+        answer = {};  // a whole answer that broke off: it may come as a whole again, or in parts
       const std::uint64_t got = answer.bytes.size();
       set(CURLOPT_HTTPGET, 1L);
       set(CURLOPT_RANGE, fmt::format("{}-{}", first + got, first + count - 1).c_str());

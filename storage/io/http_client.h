@@ -41,10 +41,10 @@ struct HttpCounters {
 };
 
 /// A request that fails by the line or by a busy host is tried again, up to five times in all with
-/// growing waits (at most 60 s); bytes that have come by then are not asked for again. Credentials
-/// come from ~/.netrc, too. Thread-safe: each thread that asks has a connection for the time, which
-/// stays open for the next; with a limit of bytes per second they take turns. Failures throw
-/// Error(io) naming the address as it is shown.
+/// growing waits (at most 60 s); bytes of a part that have come by then are not asked for again.
+/// Credentials come from ~/.netrc, too. Thread-safe: each thread that asks has a connection for the
+/// time, which stays open for the next; with a limit of bytes per second they take turns. Failures
+/// throw Error(io) naming the address as it is shown.
 class HttpClient {
  public:
   /// If a host sends no parts, a file is taken whole up to so many bytes.

@@ -233,6 +233,36 @@ TEST_F(RemoteFilesTest, AHostWithoutRangesSendsSmallFilesWhole) {
   EXPECT_EQ(host_->requests(), 1U);
 }
 
+TEST_F(RemoteFilesTest, AWholeFileThatBreaksOffBeginsAgain) {
+  std::atomic<int> tries = 0;
+  RemoteFiles& remote = open([&](const HostRequest& request) -> HostReply {
+    HostReply reply = answer_whole(request, content_);
+    if (++tries > 1)
+      return reply;
+    reply.bytes.resize(reply.bytes.size() - 1000);
+    return {reply.bytes, false};
+  });
+  const auto file = remote.open(remote.root());
+  EXPECT_EQ(file->size(), content_.size());
+  EXPECT_EQ(read(*file, 0, content_.size() + 10), content_);
+  EXPECT_EQ(tries, 2);
+  EXPECT_THAT(host_->heads().back(), HasSubstr("Range: bytes=0-65535"));
+}
+
+TEST_F(RemoteFilesTest, APartComesBehindAWholeFileThatBrokeOff) {
+  std::atomic<int> tries = 0;
+  RemoteFiles& remote = open([&](const HostRequest& request) -> HostReply {
+    if (++tries > 1)
+      return answer_with(request, content_);
+    HostReply reply = answer_whole(request, content_);
+    reply.bytes.resize(reply.bytes.size() - 1000);
+    return {reply.bytes, false};
+  });
+  const auto file = remote.open(remote.root());
+  EXPECT_EQ(file->size(), content_.size());
+  EXPECT_EQ(read(*file, 0, content_.size() + 10), content_);
+}
+
 TEST_F(RemoteFilesTest, AHostWithoutRangesIsToldOfALargeFile) {
   RemoteFiles& remote = open([&](const HostRequest&) -> HostReply {
     std::string reply = "HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n";
