@@ -2,8 +2,9 @@
 //
 // Every result is the distance to a point that was built inside the triangle, so however badly
 // conditioned the search for the closest point was, it is never below the true distance by more
-// than the rounding of a few sums (kRounding, cover_distance.cpp). Double precision holds the
-// products of six float coordinates over the whole range of float: nothing overflows or vanishes.
+// than the rounding of a few sums (kDistanceRounding, cluster_simplify/cover_distance.cpp). Double
+// precision holds the products of six float coordinates over the whole range of float: nothing
+// overflows or vanishes.
 #pragma once
 
 #include "base/vec.h"

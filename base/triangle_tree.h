@@ -126,7 +126,7 @@ class TriangleTree {
   }
 
   /// Calls take(node, child) for each leaf whose box is no farther than `reach`, a squared
-  /// distance, until it returns false. Returns whether it never did.
+  /// distance, until it returns false. Returns false if `take` did.
   template <class Take>
   bool take_within(const Query& query, float reach, const Take& take) const {
     std::array<std::uint32_t, kMostOpen> open;

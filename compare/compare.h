@@ -43,8 +43,9 @@ struct CompareOptions {
   bool replace = false;
 };
 
-/// Returns whether there is a hierarchy, of whatever state, rather than a mesh: a directory, an
-/// archive. Throws Error(io).
+/// Returns whether there is a hierarchy rather than a mesh: false only for a regular file that is
+/// no archive; true also for nothing at all, of which reading will say what is wrong. Throws
+/// Error(io).
 bool is_hierarchy_there(storage::FileSystem& files, const std::filesystem::path& path);
 
 /// The place where a hierarchy is read.

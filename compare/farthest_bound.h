@@ -21,7 +21,8 @@
 // candidates): a triangle that is given up, for want of room or points, leaves its bound in
 // `settled`.
 //
-// Cost. At most kMostPoints distances and kMostCandidates triangles, whatever the surface.
+// Cost. At most kMostPoints distances beside those of vertices; at most five times kMostCandidates
+// triangles are held, whatever the surface.
 #pragma once
 
 #include "base/vec.h"
@@ -53,8 +54,8 @@ class FarthestBound {
   /// Returns distances of points, in their order.
   using Measure = std::function<std::vector<double>(const std::vector<Vec3d>&)>;
   /// Returns a distance that no point of the triangles exceeds. It is at most a hundredth above the
-  /// distance of some point, unless that takes more than kMostPoints more distances. Deterministic.
-  /// Throws as `measure`.
+  /// distance of some point, unless that takes more than kMostPoints more distances, or more than
+  /// kMostCandidates triangles wait at a time. Deterministic. Throws as `measure`.
   double refine(const Measure& measure);
 
  private:

@@ -30,7 +30,8 @@ class TriangleSearch {
 
   /// The smaller of `limit` and the square of the distance of `point` to the nearest triangle.
   /// `hint`: a triangle probably near, < size(), or anything if there are none; becomes the nearest
-  /// one if it is within the limit. The hint decides the time alone: O(log n) with a good one.
+  /// one if it is nearer than the limit. The distance does not depend on the hint, but the time
+  /// does (O(log n) with a good one), and which of equally near triangles is named.
   double nearest(Vec3d point, double limit, std::uint32_t& hint) const;
 
   const SurfaceTriangle& operator[](std::uint32_t triangle) const { return triangles_[triangle]; }

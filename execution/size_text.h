@@ -18,7 +18,8 @@ std::optional<std::uint64_t> parse_size(std::string_view text);
 inline constexpr std::string_view kSizeSyntax =
     R"(a size such as "512MiB" or "2GiB", or a number of bytes)";
 
-/// Returns the shortest text that parse_size() reads back exactly: "1GiB", "1536MiB", "1000".
+/// Returns a text that parse_size() reads back exactly, in MB or the largest binary unit that
+/// divides it: "1GiB", "1536MiB", "5MB", "1000". Requires less than 2^53 bytes.
 std::string exact_size_text(std::uint64_t bytes);
 
 /// Returns a size for people, in three digits: "1.46 GiB", "980 B".

@@ -1,4 +1,4 @@
-// Cuts by the distance of their tiles from the original.
+// Cuts by the estimated distance of their tiles from the original.
 #pragma once
 
 #include "hierarchy/cut.h"
@@ -11,8 +11,8 @@ struct LargestError {
   double error = 0;
 };
 
-/// Returns the coarsest tiles that are no farther from the original than that, with partitions
-/// where no other tile is. O(tiles of the cut).
+/// Returns the coarsest tiles whose TileRecord::error, an estimate, is at most that, with
+/// partitions where no other tile is. O(tiles of the cut).
 Cut cut_by_error(const storage::HierarchyReader& reader, LargestError largest);
 
 }  // namespace meshhier::exporting

@@ -54,9 +54,11 @@ std::vector<std::filesystem::path> files_named(const ExportOptions& options);
 /// as a whole, and its places are in the order of ranks.
 ///
 /// The output appears complete or not at all, and depends on hierarchy and options alone. Throws
-/// Error(usage) if the selection is not in the tree, the cut file is no cut, or nothing lies in the
-/// region; Error(budget) if the borders of tiles in it exceed the memory; Error(input) for a
-/// polygon that is none; Error(io | corrupt | exists | interrupted).
+/// Error(usage) if the output has another format's ending, lies in a hierarchy or would replace
+/// what is read, a region is asked for with a node or the outline, the outline is to go into a GLB
+/// or OBJ, the selection is not in the tree, the cut file is no cut, or nothing lies in the region;
+/// Error(budget) if the borders of tiles in it exceed the memory; Error(input) for a polygon that
+/// is none; Error(io | corrupt | exists | interrupted).
 std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel);

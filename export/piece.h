@@ -53,8 +53,8 @@ class Piece {
 /// edge was cut, with the same attributes are one vertex. For one thread.
 class PieceNumbers {
  public:
-  /// add() throws Error(budget) if the vertices at borders of tiles and where edges were cut would
-  /// take more than `most_bytes`.
+  /// add() throws Error(usage) if there are 2^32 vertices or more, and Error(budget) if those at
+  /// borders of tiles and where edges were cut would take more than `most_bytes`.
   explicit PieceNumbers(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
 
   struct Numbered {

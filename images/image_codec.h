@@ -59,9 +59,9 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name,
 
 /// Encodes a picture; deterministic for one version of the library. `quality`: 1 ... kBestQuality;
 /// for jpeg (4:4:4 from 90 on, below it 4:2:0), webp (the best one loses nothing) and ktx2 (ETC1S,
-/// the best one UASTC); without effect on png. Requires sides up to FormatRow::most_side, for ktx2
-/// multiples of 4, and no alpha if the format has none. Besides the picture it holds the encoded
-/// bytes, and FormatRow::encoder_bytes(). Thread-safe.
+/// the best one UASTC); without effect on png. Requires sides up to FormatCoders::most_side, for
+/// ktx2 multiples of 4, and no alpha if the format has none. Besides the picture it holds the
+/// encoded bytes, and FormatCoders::encoder_bytes(). Thread-safe.
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
 
 /// Encodes directions instead of colours: a jpeg keeps red and green, which say nearly all, as

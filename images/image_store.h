@@ -50,8 +50,9 @@ class ImageStore {
   void add(ImageReader& reader, const Step& step) { add(write(reader, step)); }
 
   /// Takes pictures that an earlier process added, all or none; returns false if the scratch file
-  /// does not hold them any more, for which it reads them all. Requires an empty store, and a
-  /// scratch file to which nothing was appended yet.
+  /// does not hold them any more, for which it reads them all, but for strips of mounted files:
+  /// these are checked when they are used. Requires an empty store, and a scratch file to which
+  /// nothing was appended yet.
   bool restore(std::span<const StoredImage> images);
   /// Returns the facts that restore() takes, once the scratch file is synced.
   const StoredImage& stored(std::uint32_t image) const;

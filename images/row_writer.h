@@ -18,7 +18,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 struct WrittenImage {
   ImageFormat format = ImageFormat::jpeg;  ///< for open_row_writer(): jpeg or png
   int quality = 90;
-  std::uint32_t width = 0, height = 0;  ///< 1 ... FormatRow::most_side each
+  std::uint32_t width = 0, height = 0;  ///< 1 ... FormatCoders::most_side each
   std::uint32_t channels = 3;           ///< 3; formats other than jpeg: or 4
 };
 
@@ -32,9 +32,9 @@ class RowWriter {
   virtual void finish() = 0;
 };
 
-/// Opens a writer that holds O(width) memory. Requires a format with FormatRow::open_rows. A JPEG
-/// decodes to the same picture as that of encode_image(), and is larger by some percent: its codes
-/// are the standard's.
+/// Opens a writer that holds O(width) memory. Requires a format with FormatCoders::open_rows. A
+/// JPEG decodes to the same picture as that of encode_image(), and is larger by some percent: its
+/// codes are the standard's.
 std::unique_ptr<RowWriter> open_row_writer(const WrittenImage& image, ByteSink sink);
 
 /// Opens a writer for any format. Pictures of formats without rows, and small ones in jpeg, are

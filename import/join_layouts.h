@@ -20,9 +20,9 @@ struct JoinedFile {
 /// Counts of attributes that files got or lost to be like the others.
 struct JoinCounts {
   std::uint64_t untextured_files = 0;  ///< beside textured ones
-  /// Vertices of files without colours and pictures, beside files with colours.
+  /// Vertices that lost attributes of a kind; of values, each one counts.
   std::array<std::uint64_t, kAttributeKindCount> dropped{};
-  /// Colours of vertices that show no picture or were to tint theirs.
+  /// Vertices of files without colours, beside files with colours; none if the mesh is textured.
   std::uint64_t white_vertices = 0;
   std::uint64_t hidden_colours = 0;     ///< of vertices that show no picture or were to tint theirs
   std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
@@ -34,10 +34,9 @@ struct JoinCounts {
 /// together:
 /// * normals, if all files have them: others are made by the build; likewise other attributes;
 /// * colours, if a file has them, of the type that holds those of all; where there are none, white;
-/// they tint pictures unless a file has both and does not mean that;
-/// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a material
-/// of
-///   the colour that the file's material has, else a white one;
+///   they tint pictures unless a file has both and does not mean that;
+/// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a
+///   material of the colour that the file's material has, else a white one;
 /// * values that all files have, of one type;
 /// * other texture coordinates, if all files have them.
 /// A list of equal layouts stays as it is.

@@ -86,10 +86,6 @@ class SplitCursor {
 };
 
 /// Takes the corners of triangles, three after three, then numbers their vertices. For one thread.
-///
-/// Most positions are used in one combination alone. If a table of the first one of each position
-/// fits into memory, only corners that show another one are sorted; else all are. The result is the
-/// same.
 class CornerSplitter {
  public:
   /// `positions`: how many the file has; a corner's is below.

@@ -31,7 +31,8 @@ class LineBlocks {
   /// have no end. Returns false at the end of the file, or if the next lines do not fit: then
   /// rest() has them and all behind them.
   bool next(std::vector<char>& block);
-  /// Returns the bytes that next() has not handed out as a stream, valid as long as this object.
+  /// Returns, as a stream, the bytes that next() has not handed out; it hands out none any more.
+  /// Valid as long as this object.
   InputStream& rest();
 
  private:

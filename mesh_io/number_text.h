@@ -15,9 +15,9 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 std::optional<std::int64_t> parse_whole(std::string_view word);
 
 /// Parses a decimal number with optional sign, fraction and exponent, or "inf" or "nan" in any
-/// case. Nothing if `word` is anything else. "-nan(ind)", "1.#QNAN" and the like of Windows are no
-/// numbers, too. Correctly rounded to `Scalar` (float or double); too large becomes infinite, too
-/// small zero.
+/// case; "-nan(ind)", "1.#QNAN" and the like of Windows give NaN. Nothing if `word` is anything
+/// else. Correctly rounded to `Scalar` (float or double); too large becomes infinite, too small
+/// zero.
 template <class Scalar>
 std::optional<Scalar> parse_real(std::string_view word);
 

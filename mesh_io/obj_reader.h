@@ -108,12 +108,10 @@ bool is_obj_statement(std::string_view word);
 ///   vt u [v [w]]                      v is 0 if it is not there, w is ignored
 ///   vn x y z
 ///   f corner corner corner ...        corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
-///   back;
-///                                     polygons are cut as their shape asks for
+///                                     back; polygons are cut as their shape asks for
 ///   usemtl NAME | mtllib NAME [NAME ...] | g NAME [NAME ...] | o NAME
 ///   #MRGB mmrrggbb...                 colours of ZBrush, 8 hexadecimal digits a vertex; the mask
-///   mm is
-///                                     ignored
+///                                     mm is ignored
 ///
 /// and counts all other statements. Indices may refer to what comes later; all are checked. Numbers
 /// are finite. Less than 2^32 - 1 of each. Throws Error(input) naming the line, Error(io).

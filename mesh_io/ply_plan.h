@@ -106,8 +106,7 @@ enum class Unplaced : std::uint8_t { refused, visited };
 ///                                                        scalar type, as given
 ///                        red green blue [alpha]          or r g b [a], or diffuse_red ... [alpha]
 ///                        s t | u v | texture_u texture_v | texture_s texture_t | tu tv
-///                        material                        behind the coordinates, if it is asked
-///                        for
+///                        material                        behind the coordinates, if asked for
 ///                        all other scalars               that are chosen: values of their type
 ///   element face         list vertex_indices | vertex_index
 ///                        red green blue [alpha]          if vertices have no colour

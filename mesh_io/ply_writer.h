@@ -27,7 +27,7 @@ struct PlyContent {
 
 /// Takes vertices, then triangles, then edges, in the declared numbers, each in as many calls as
 /// one likes, and writes the file from its first byte to its last. Colours are written in their
-/// stored type (attributes.h), those that are light as kLinearColours, materials as `float
+/// stored type (attributes.h) by their imported_colour_names() (ply_plan.h), materials as `float
 /// material`, indices as `int` (`uint` from 2^31 vertices on). Buffered: at most 1 MiB. Throws
 /// Error(io). finish() is required and asserts that all declared content came; without it the file
 /// is incomplete. For one thread.

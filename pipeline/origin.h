@@ -20,8 +20,8 @@ bool is_far_from_zero(const BoundsD& box);
 Vec3d origin_of(const BoundsD& box);
 
 /// Returns the box that nearly all points of a sample are in: along each axis it leaves out as many
-/// of them at both ends, a thirty-second part, but one of eight points at least. O(n). Empty if
-/// there are no points.
+/// of them at both ends: a thirty-second part, rounded up, or none of fewer than eight points.
+/// O(n). Empty if there are no points.
 BoundsD core_of(std::span<const Vec3d> sample);
 
 /// The point that is subtracted from coordinates.

@@ -21,7 +21,7 @@ class InputNotes {
   std::filesystem::path path(const std::string& hierarchy) const;
   /// Returns nothing if there is no note, or it is damaged.
   std::optional<storage::InputNote> find(const std::string& hierarchy) const;
-  /// Writes a note, which is there complete or not at all. Throws Error(io).
+  /// Writes a note, which is there complete or not at all. Throws as storage::OutputFile.
   void write(const std::string& hierarchy, const storage::InputNote& note) const;
 
  private:

@@ -12,7 +12,7 @@
 //      node 3 says of (3, 7):   12 triangles' sum, its vertices' sum, 7's vertices' sum
 //      node 7 says of (3, 7):   the same three sums                     equal: they agree
 //
-// Invariant. The sums are of 64-bit hashes (vertex_hash.h), so their order does not matter.
+// Invariant. The sums are of 64-bit hashes (export/vertex_hash.h), so their order does not matter.
 //
 // Cost. Every tile is read once, whatever the mesh; one sort of two records a pair.
 #pragma once

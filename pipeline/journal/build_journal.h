@@ -158,7 +158,7 @@ class BuildJournal {
 
   // Each notes what is done now, and requires that its data is in scratch files or in the tile's
   // file; one call at a time. Nothing is forced to the disk: an entry whose data was lost is not
-  // believed later. Throws Error(io).
+  // believed later. Throws Error(io); note_source() and note_chunks() also Error(interrupted).
   void note_source(const DistributedSource& source);
   /// Notes the chunks alone, of a slice of the input.
   void note_chunks();

@@ -32,7 +32,8 @@ std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
 /// instead. Throws Error(io).
 void remove_leftovers(storage::FileSystem& files, const std::vector<FoundLeftover>& found);
 
-/// Returns a line each, and a last one; `removed`: remove_leftovers() was called.
+/// Returns a line each and, unless they were `removed` (by remove_leftovers()), one with their sum;
+/// of none, a line that says so.
 std::string leftovers_text(const std::vector<FoundLeftover>& found, bool removed);
 nlohmann::ordered_json leftovers_json(const std::vector<FoundLeftover>& found);
 

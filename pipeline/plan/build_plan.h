@@ -51,8 +51,8 @@ std::uint64_t memory_budget(const config::Config& config);
 /// removed, and the input must not go with it.
 void check_apart(const config::Config& config, storage::FileSystem& files);
 
-/// Throws so for the files that meshes name, which are known when the meshes are read. `others`:
-/// files that are written besides the output.
+/// Does the same for the files that meshes name, which are known when the meshes are read.
+/// `others`: files that are written besides the output.
 void check_apart(const importing::CompanionFiles& companions, const config::Config& config,
                  const std::vector<std::filesystem::path>& others, storage::FileSystem& files);
 
@@ -60,7 +60,8 @@ void check_apart(const importing::CompanionFiles& companions, const config::Conf
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files);
 
-/// Throws Error(usage) if pictures are to be stored as this machine cannot, with what to install.
+/// Throws Error(usage) if pictures are to be stored as this machine cannot, with what to install,
+/// or larger than the format allows.
 void check_coders(const JobSize& job);
 
 /// Throws Error(budget) if the disk that will hold `output` has too little room.

@@ -9,14 +9,15 @@
 //   read              1       splits of the mesh; all chunks of an input that has no slices
 //   distribute        N       vertices of the chunks, of slices of the input
 //   faces             N       triangles of the chunks, likewise
-//   join              1       triangles that no slice could take, and the facts that all learnt of
-//   the input leaves            N       partitions, of runs of chunks level-1 ...       N
-//   simplified tiles of one level of the tree, the finest first top               1       those of
-//   all levels that have fewer nodes than N images            1       decoded pictures textured
-//   meshes texture-0 ...     N       pictures of partitions, and of the levels above  textured
-//   meshes texture-top       1       those of the levels of `top`                     textured
-//   meshes publish           N       the tiles' files finish            1       all other files,
-//   and the hierarchy's name
+//   join              1       triangles that no slice could take, and what all learnt of the input
+//   leaves            N       partitions, of runs of chunks
+//   level-1 ...       N       simplified tiles of one level of the tree, the finest first
+//   top               1       those of all levels that have fewer nodes than N
+//   images            1       decoded pictures                                 textured meshes
+//   texture-0 ...     N       pictures of partitions, and of the levels above  textured meshes
+//   texture-top       1       those of the levels of `top`                     textured meshes
+//   publish           N       the tiles' files
+//   finish            1       all other files, and the hierarchy's name
 //
 // The depth of the tree can be unknown until the input is read: the stages are those of the deepest
 // that can be, and tasks that turn out to have nothing to do end at once.

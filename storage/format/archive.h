@@ -20,7 +20,7 @@ bool is_archive(const File& file);
 class Archive {
  public:
   /// Reads the directory, and checks that it is what ArchiveWriter makes: stored files, one behind
-  /// the other, each name once, the index last. Contents are not read. Holds 32 bytes a file.
+  /// the other, each name once, the index last. Contents are not read. Keeps 28 bytes a file.
   /// Throws Error(corrupt) naming the archive, Error(io) if it cannot be read or is no archive at
   /// all.
   explicit Archive(std::unique_ptr<File> file);

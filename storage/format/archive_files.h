@@ -21,8 +21,8 @@ std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<
                                     Archive::Place place);
 
 /// A file system in which an archive is a directory as well: its files can be opened, looked at and
-/// listed. The other one does all else, and refuses to change what is below a file. Thread-safe as
-/// far as the other one is.
+/// listed. The other one does all else, and refuses to change what is below a file; so kind() and
+/// children() know nothing of what is in the archive. Thread-safe as far as the other one is.
 class ArchiveFiles final : public ForwardingFiles {
  public:
   /// Opens the archive; throws as Archive does. `others` must outlive this.

@@ -4,7 +4,7 @@
 // clang-format off
 //   for each file       local header 30 + n, content     n: bytes of its name; no gap, no overlap
 //   @3dtilesIndex1@     local header 45, for each other file its name's MD5 and u64 offset of its local header
-//   for each file       central header 46 + n            12 more where the offset is 4 GiB or more
+//   for each file       central header 46 + n            12 more from an offset of 4 GiB - 1 on
 //   end                 22, or 98 with zip64's records   where a count or offset does not fit
 //
 //   local header        u32 0x04034b50, u16 version needed, u16 flags 0, u16 method 0, u16 time 0, u16 date 0x21,
@@ -53,8 +53,8 @@ inline constexpr std::size_t kLongestArchiveEnd = 98;
 /// Sizes in local headers have 32 bits, of which all ones say something else.
 inline constexpr std::uint64_t kMostFileBytes = 0xfffffffe;
 
-/// Whether it is a relative path of printable ASCII that leads nowhere but below: "a/b.c", not
-/// "/a", "../a", "a//b" or "a\b".
+/// Whether it is a relative path of printable ASCII without spaces, of at most kLongestArchiveName
+/// bytes, that leads nowhere but below: "a/b.c", not "/a", "../a", "a//b" or "a\b".
 bool is_archive_name(std::string_view name);
 
 void append_local_header(std::vector<std::byte>& bytes, const ArchiveEntry& entry);
@@ -94,8 +94,8 @@ bool looks_like_archive(std::span<const std::byte> first, std::span<const std::b
 /// A place in the index is the MD5 of a name, then the u64 offset of its local header.
 using IndexPlace = std::array<std::byte, 24>;
 IndexPlace index_place(std::string_view name, std::uint64_t offset);
-/// Whether `a` stands before `b` in the index, which ascends by the MD5s as two u64 each. Requires
-/// different names.
+/// Whether `a` stands before `b` in the index, which ascends by the MD5s as two u64 each; of two
+/// places of one name neither does, whatever their offsets.
 bool comes_before(const IndexPlace& a, const IndexPlace& b);
 
 }  // namespace meshhier::storage

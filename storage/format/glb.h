@@ -1,5 +1,6 @@
-// The parts that published files have in common: little endian numbers, bounded JSON, the GLB
-// container (Khronos, glTF 2.0 specification, section 4.4; docs/file_format.md).
+// The parts that published files have in common: the GLB container (Khronos, glTF 2.0
+// specification, section 4.4; docs/file_format.md), JSON that nobody vouches for, the node with the
+// frame of coordinates, the first view.
 #pragma once
 
 #include "hierarchy/frame.h"

@@ -71,7 +71,8 @@ struct Manifest {
   std::uint32_t partition_count = 0;
   Compression compression = Compression::none;
   std::optional<Quantization> quantization;  ///< none: positions are exact
-  bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
+  /// Tiles have normals that the build computed, as the source has none.
+  bool computed_normals = false;
   std::optional<TextureFormat> textures;  ///< tiles' pictures; if and only if the source has any
   bool screen_colours = false;            ///< as TileFormat's; only in format versions up to 7
   std::optional<NormalMapFormat> normal_maps{};  ///< some tiles have one

@@ -44,8 +44,9 @@ void check_place(FileSystem& files, const std::filesystem::path& output);
 /// it is replaced. `output` must not be standard output.
 void require_outside(FileSystem& files, const std::filesystem::path& output);
 
-/// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
-/// not of the same content and container; `state` says how it comes to be there.
+/// Whether there is an output. Throws as require_outside(); Error(exists) if there is one and
+/// `replace` is false, or if it is not of the same content and container; `state` says how it comes
+/// to be there.
 bool check_output(FileSystem& files, const Output& output, bool replace,
                   const char* state = "is already there");
 
@@ -54,8 +55,8 @@ bool check_output(FileSystem& files, const Output& output, bool replace,
 class WorkDirectory {
  public:
   /// Takes the directory as an earlier build left it, or makes it; waits up to 3 s for a process
-  /// that is just ending. Throws Error(exists) if `output` is there and `replace` is false, or if
-  /// another build is at work here; Error(io) if its parent cannot be written.
+  /// that is just ending. Throws as check_output(); Error(exists) if another build is at work here;
+  /// Error(io) if its parent cannot be written, or the directory is a link.
   WorkDirectory(FileSystem& files, Output output, bool replace);
   /// Takes the directory `shared`, on the output's file system, in which several processes have
   /// built: it stays when it is published, but for the hierarchy. Throws Error(io) if another

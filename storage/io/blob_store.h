@@ -59,8 +59,8 @@ class BlobStore {
 
   /// Copies bytes.size() bytes from `offset`, without a check; requires them to be there.
   void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
-  /// Copies as many bytes as there is room for, from the first on. A blob of a mounted file is
-  /// checked as a whole the first time: throws as view().
+  /// Copies the first bytes.size() bytes, which must be there. A blob of a mounted file is checked
+  /// as a whole the first time: throws as view(), then also if it has fewer.
   void copy(std::size_t index, std::span<std::byte> bytes) const;
   /// Returns a whole blob, without a copy if it is in memory. Throws ScratchFile::changed() if the
   /// disk has changed it.

@@ -52,12 +52,13 @@ class File {
   /// Does the same in steps of at most some tenths of a second and calls `check` before each; it
   /// may throw. For large files.
   void sync(const std::function<void()>& check);
-  /// A hint: these ranges will be read soon, in that order, each by one read_exact() or read_at().
+  /// Bytes of the file.
   struct Range {
     std::uint64_t offset = 0;
     std::uint64_t bytes = 0;
     friend bool operator==(const Range&, const Range&) = default;
   };
+  /// A hint: these ranges will be read soon, in that order, each by one read_exact() or read_at().
   virtual void will_read(std::span<const Range> /*ranges*/) const {}
   /// Lets the disk begin with what was written, so that a later sync() has less to wait for.
   void start_sync() { write_out(0, 0, Wait::no); }

@@ -42,7 +42,9 @@ class FetchedParts {
 /// A file on the web. Thread-safe. Failures throw Error(io).
 class RemoteContent {
  public:
-  /// `start`: the first `asked` bytes, or fewer if there are fewer. All must outlive this.
+  /// `start`: the first `asked` bytes, fewer if there are fewer, or the whole file. `client` and
+  /// `parts` must outlive this. Throws Error(io) if `start` contradicts itself or does not tell how
+  /// long the file is.
   RemoteContent(HttpClient& client, HttpAddress address, FetchedParts& parts,
                 const HttpAnswer& start, std::uint64_t asked);
 
@@ -51,7 +53,7 @@ class RemoteContent {
   /// Reads up to bytes.size() bytes and returns how many, fewer only at the end. Fetches what is
   /// not there yet; a small read fetches whole blocks of 64 KiB.
   std::size_t read(std::uint64_t offset, std::span<std::byte> bytes);
-  /// Fetches ranges that will be read so ahead, several at a time.
+  /// Begins to fetch those of the ranges that have 64 KiB or more, several at a time.
   void will_read(std::span<const File::Range> ranges);
 
  private:

@@ -41,6 +41,8 @@ class RemoteFiles final : public ForwardingFiles {
   /// the file throw Error(io) if the host has another version of it by then.
   std::unique_ptr<File> open(const std::filesystem::path& path) override;
   FileIdentity identity(const std::filesystem::path& path) override;
+  /// Where a name is a file's, both ask the host; so even kind() throws Error(io) if it does not
+  /// answer.
   bool exists(const std::filesystem::path& path) override;
   FileKind kind(const std::filesystem::path& path) override;
   bool is_link(const std::filesystem::path& path) override;

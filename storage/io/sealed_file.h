@@ -16,9 +16,8 @@ struct Seal {
   std::uint64_t checksum = 0;  ///< XXH3-64
 };
 
-/// Returns the whole file. `limit_bytes`: more than any such file has; guards what is allocated
-/// where the seal is wrong as well. Throws Error(io), or Error(corrupt) if it is not the file that
-/// was sealed.
+/// Returns the whole file. `limit_bytes`: more than any such file has, so that a wrong seal
+/// allocates no more. Throws Error(io), or Error(corrupt) if it is not the file that was sealed.
 std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
                                    const Seal& seal, std::uint64_t limit_bytes);
 

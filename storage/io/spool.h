@@ -60,7 +60,10 @@ class ScratchFile {
   };
 
   /// The number of files that it may be.
-  enum class Files { one, one_a_thread };
+  enum class Files {
+    one,
+    one_a_thread  ///< up to 16; more threads share them
+  };
 
   ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
               Stays stays = Stays::no, Files files_at_once = Files::one);

@@ -136,8 +136,8 @@ class MESHHIER_API Hierarchy {
 
   /// Returns the tiles of a level, which make a cut. Throws Error(usage) if there is no such level.
   std::vector<Node> level(std::uint32_t level) const;
-  /// Returns the coarsest tiles that are no farther than this from the original surface; they make
-  /// a cut.
+  /// Returns the coarsest tiles whose estimated `error` is at most this, the finest ones where no
+  /// other is; they make a cut. `bound` tells how far they are at most.
   std::vector<Node> within(double error) const;
   /// Makes the cut of these tiles, which shows the model without a crack. Each finest tile must be
   /// one of them, or below exactly one; else throws Error(usage). Reads no tile. `cache_bytes`:
