@@ -114,6 +114,7 @@ class TriangleTree::Builder {
 TriangleTree::TriangleTree(std::span<const SurfaceTriangle> triangles, std::size_t leaf_size)
     : leaf_size_(leaf_size) {
   Builder(*this, triangles)();
+  nodes_.shrink_to_fit();  // else up to twice as many are held
 }
 
 }  // namespace meshhier

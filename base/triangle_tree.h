@@ -73,6 +73,17 @@ class TriangleTree {
       const Four z = apart(low_z, high_z, to.low_z, to.high_z);
       return x * x + y * y + z * z;
     }
+    /// Likewise, of a point in double precision.
+    std::array<double, 4> distances(const Vec3d& to) const {
+      std::array<double, 4> squared{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double x = std::max({low_x[k] - to.x, 0.0, to.x - high_x[k]});
+        const double y = std::max({low_y[k] - to.y, 0.0, to.y - high_y[k]});
+        const double z = std::max({low_z[k] - to.z, 0.0, to.z - high_z[k]});
+        squared[k] = x * x + y * y + z * z;
+      }
+      return squared;
+    }
     bool is_leaf(std::size_t child) const { return (children[child] & kIsLeaf) != 0; }
     /// Requires is_leaf().
     std::uint32_t leaf(std::size_t child) const { return children[child] & ~kIsLeaf; }
@@ -93,11 +104,12 @@ class TriangleTree {
   }
 
   /// Calls look(leaf) for each leaf whose box is no farther than `reach`, a squared distance that
-  /// `look` may lower; of a node's children the nearest first.
-  template <class Look>
-  void look_nearest(const Query& query, const float& reach, const Look& look) const {
+  /// `look` may lower; of a node's children the nearest first. `to`: a Query with a float, or a
+  /// Vec3d with a double: slower, but it tells boxes apart however far, tiny or huge they are.
+  template <class To, class Real, class Look>
+  void look_nearest(const To& to, const Real& reach, const Look& look) const {
     struct Open {
-      float distance;
+      Real distance;
       std::uint32_t name;
     };
     std::array<Open, kMostOpen> open;
@@ -105,17 +117,17 @@ class TriangleTree {
     open[0] = {0, kRoot};
     while (count > 0) {
       const Open next = open[--count];
-      if (next.distance > reach * kRounding)
+      if (next.distance > reach * kRounding<Real>)
         continue;
       if ((next.name & kIsLeaf) != 0) {
         look(next.name & ~kIsLeaf);
         continue;
       }
       const Node& node = nodes_[next.name];
-      const Four distance = node.distances(query);
+      const auto distance = node.distances(to);
       const std::size_t first = count;
       for (std::size_t k = 0; k < 4; ++k) {
-        if (node.children[k] == kNone || distance[k] > reach * kRounding)
+        if (node.children[k] == kNone || distance[k] > reach * kRounding<Real>)
           continue;
         std::size_t place = count++;
         for (; place > first && open[place - 1].distance < distance[k]; --place)
@@ -136,7 +148,7 @@ class TriangleTree {
       const Node& node = nodes_[open[--count]];
       const Four distance = node.distances(query);
       for (std::size_t k = 0; k < 4; ++k) {
-        if (node.children[k] == kNone || distance[k] > reach * kRounding)
+        if (node.children[k] == kNone || distance[k] > reach * kRounding<float>)
           continue;
         if (!node.is_leaf(k))
           open[count++] = node.children[k];
@@ -148,7 +160,9 @@ class TriangleTree {
   }
 
   /// Distances are rounded: boxes that are hardly too far are looked into.
-  static constexpr float kRounding = 1.00001f;
+  template <class Real>
+  static constexpr Real kRounding = sizeof(Real) == sizeof(float) ? Real(1.00001f)
+                                                                  : Real(1 + 1e-12);
 
  private:
   static constexpr std::uint32_t kRoot = 0;

@@ -10,6 +10,10 @@
 # The preset `asan` has them.
 function(meshhier_sanitized_copies)
   foreach(library IN LISTS ARGN)
+    get_target_property(joined ${library} MESHHIER_JOINED_INTO)
+    if(joined)
+      message(FATAL_ERROR "${library} is compiled in ${joined} (cmake/joined_units.cmake): a copy of it would be empty")
+    endif()
     get_target_property(directory ${library} SOURCE_DIR)
     get_target_property(sources ${library} SOURCES)
     list(TRANSFORM sources PREPEND ${directory}/ REGEX "^[^/]")

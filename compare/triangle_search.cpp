@@ -1,11 +1,13 @@
 #include "compare/triangle_search.h"
 
+#include "base/bounds.h"
 #include "base/closest_point.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace meshhier::comparing {
@@ -30,6 +32,23 @@ float reach_of(double squared) {
   return squared > 0 ? static_cast<float>(squared) + Float::min() : -1;
 }
 
+double squared_size(std::span<const SurfaceTriangle> triangles) {
+  Bounds box;
+  for (const SurfaceTriangle& triangle : triangles) {
+    for (const Vec3f corner : triangle)
+      box.add(corner);
+  }
+  const Vec3d size = box.empty() ? Vec3d{} : to_double(box.max) - to_double(box.min);
+  return dot(size, size);
+}
+
+/// Boxes so large, squared, are told apart by floats, with room for farther points.
+bool suits_floats(double squared) {
+  return squared > 0x1p-80 && squared < 0x1p100;
+}
+/// At a distance of so many sizes, squared, floats still tell parts of the triangles apart.
+constexpr double kFarInSizes = 0x1p16;
+
 }  // namespace
 
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
@@ -38,7 +57,9 @@ double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
 }
 
 TriangleSearch::TriangleSearch(std::vector<SurfaceTriangle> triangles)
-    : triangles_(std::move(triangles)), tree_(triangles_, kLeafSize) {}
+    : triangles_(std::move(triangles)),
+      tree_(triangles_, kLeafSize),
+      squared_size_(squared_size(triangles_)) {}
 
 std::uint64_t TriangleSearch::memory_bytes() const {
   return sizeof *this + size() * sizeof(SurfaceTriangle) + tree_.memory_bytes();
@@ -57,8 +78,11 @@ double TriangleSearch::nearest(Vec3d point, double limit, std::uint32_t& hint) c
     }
   };
   offer(hint);
-  tree_.look_nearest(comparing::around(point), reach,
-                     [&](std::uint32_t leaf) { offer(tree_.triangles(leaf).front()); });
+  const auto look = [&](std::uint32_t leaf) { offer(tree_.triangles(leaf).front()); };
+  if (suits_floats(squared_size_) && limit < kFarInSizes * squared_size_)
+    tree_.look_nearest(comparing::around(point), reach, look);
+  else if (limit > 0)
+    tree_.look_nearest(point, limit, look);
   return limit;
 }
 

@@ -41,6 +41,7 @@ class TriangleSearch {
  private:
   std::vector<SurfaceTriangle> triangles_;
   TriangleTree tree_;
+  double squared_size_;  ///< of the diagonal of the triangles' box
 };
 
 }  // namespace meshhier::comparing

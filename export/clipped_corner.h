@@ -45,7 +45,7 @@ inline auto key_of(const ClippedCorner& c) {
 /// Makes corners between others. Thread-safe.
 class CornerMixer {
  public:
-  /// `channels`: how many attributes corners have; those beyond `layout` are plain numbers.
+  /// `channels`: how many attributes corners have; those beyond the rules are plain numbers.
   CornerMixer(const AttributeRules& rules, std::size_t channels)
       : rules_(rules), channels_(channels) {}
 

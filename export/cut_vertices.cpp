@@ -18,6 +18,7 @@ namespace meshhier::exporting {
 CutVertices::CutVertices(const storage::HierarchyReader& reader, const NumberedCut& numbered,
                          std::uint64_t cache_bytes, const execution::CancelToken& cancel)
     : reader_(reader),
+      rules_(reader.tile_format().attributes),
       numbered_(numbered),
       bases_{0},
       neighbours_(
@@ -153,10 +154,9 @@ class CutVertices::TileVertices {
   }
 
   Wedges nearest_wedges(const std::vector<VertexAt>& here, const std::vector<VertexAt>& all) const {
-    const AttributeRules rules(cut_.reader_.tile_format().attributes);
     Wedges wedges;
     for (const VertexAt& vertex : here)
-      wedges.push_back(static_cast<std::uint32_t>(nearest_vertex(rules, vertex, all)));
+      wedges.push_back(static_cast<std::uint32_t>(nearest_vertex(cut_.rules_, vertex, all)));
     return wedges;
   }
 

@@ -12,6 +12,7 @@
 #include "execution/cancel.h"
 #include "export/cut_mesh.h"
 #include "export/node_cache.h"
+#include "hierarchy/attribute_rules.h"
 #include "storage/format/hierarchy_reader.h"
 
 #include <cstdint>
@@ -55,6 +56,7 @@ class CutVertices {
   static std::vector<BorderUse> border_uses(const TileMesh& mesh);
 
   const storage::HierarchyReader& reader_;
+  AttributeRules rules_;
   const NumberedCut& numbered_;
   std::vector<std::uint64_t> bases_;  ///< number of each tile's first vertex; then their count
   bool has_copies_ = false;

@@ -55,7 +55,8 @@ class CommonLayout {
  public:
   void add(const GltfFile& file, const GltfPrimitive& primitive, const std::string& texcoords) {
     for (const AttributeKindRow& row : kAttributeKinds) {
-      const auto accessor = primitive.attribute(name_of(row, texcoords));
+      const std::string name = name_of(row, texcoords);
+      const auto accessor = name.empty() ? std::nullopt : primitive.attribute(name);
       if (!accessor)
         continue;
       if (row.kind == AttributeKind::colours)

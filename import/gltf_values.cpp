@@ -40,7 +40,7 @@ void GltfValues::add(const mesh_io::GltfDocument& document,
                      const mesh_io::GltfPrimitive& primitive) {
   ++primitives_;
   for (const auto& [name, accessor] : primitive.attributes) {
-    // _COLOR_0 is what tiles of textured hierarchies have.
+    // Tiles of textured hierarchies have _COLOR_0, and a kind's own name may begin with _, too.
     const bool is_kind =
         std::ranges::find(kAttributeKinds, name, &AttributeKindRow::gltf) != kAttributeKinds.end();
     if (!name.starts_with('_') || name == "_COLOR_0" || is_kind || !is_attribute_name(name) ||

@@ -13,14 +13,18 @@ namespace {
 /// A name that MeshLab gives to its own notes, as that vertices and faces are selected.
 constexpr std::string_view kBookkeeping = "flags";
 
-/// The properties of a face that say what vertices say better, or which texture it has.
+/// The properties of a face, in every spelling, that say what vertices say better, or which texture
+/// it has.
 std::vector<int> known_properties(const PlyElement& element, const std::filesystem::path& path) {
   std::vector<int> known;
   for (const PlyAttribute& attribute : kPlyAttributes) {
     if (!attribute.is_of_faces)
       continue;
-    const std::vector<int> found = find_attribute(element, attribute, path);
-    known.insert(known.end(), found.begin(), found.end());
+    for (std::size_t i = 0; i < attribute.spellings(); ++i) {
+      std::vector<int> found(attribute.spelling(i).size());
+      if (find_all(element, attribute.spelling(i), found, path))
+        known.insert(known.end(), found.begin(), found.end());
+    }
   }
   for (const PlyColourNames& names : kPlyColours) {
     if (const auto colour = find_colour(element, names, path))

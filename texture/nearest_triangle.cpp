@@ -149,7 +149,7 @@ void NearestTriangle::measure_around(Asked& q) const {
   for (const TriangleTree::Node& four : around_.leaves) {
     const Four distance = four.distances(q.at);
     for (std::size_t k = 0; k < 4; ++k) {
-      if (distance[k] <= q.nearest * TriangleTree::kRounding && four.leaf(k) != measured)
+      if (distance[k] <= q.nearest * TriangleTree::kRounding<float> && four.leaf(k) != measured)
         measure(four.leaf(k), q);
     }
   }

@@ -12,10 +12,11 @@ namespace meshhier::storage {
 
 /// The attribute's name for colours of vertices that viewers are to pass over; they multiply
 /// pictures by `COLOR_0`.
-inline constexpr const char* kHiddenColours = "_COLOR_0";
+inline constexpr const char* kUnshownColours = "_COLOR_0";
 /// Returns the attribute's name for colours of vertices.
 constexpr const char* colour_attribute(const AttributeLayout& layout, bool is_textured) {
-  return is_textured && !layout.tints ? kHiddenColours : row_of(AttributeKind::colours).gltf.data();
+  return is_textured && !layout.tints ? kUnshownColours
+                                      : row_of(AttributeKind::colours).gltf.data();
 }
 
 inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";

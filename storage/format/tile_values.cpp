@@ -104,7 +104,8 @@ bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bo
 }
 
 std::vector<std::string> value_attributes(const AttributeLayout& layout) {
-  std::vector<std::string> names{kHiddenColours};
+  std::vector<std::string> names{kUnshownColours};
+  // A kind's own name may begin as those of values do.
   for (const AttributeKindRow& row : kAttributeKinds)
     names.emplace_back(row.gltf);
   const auto taken = static_cast<std::ptrdiff_t>(names.size());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -80,6 +81,28 @@ TEST(TriangleTreeTest, LooksAtAllThatIsWithinReach) {
         EXPECT_TRUE(taken.contains(t) || squared_distance(point, triangles[t]) > kReach) << t;
       }
       EXPECT_LT(taken.size(), triangles.size() / 4);
+    }
+  }
+}
+
+TEST(TriangleTreeTest, APointInDoublePrecisionLooksAtFewHoweverFarTinyOrHuge) {
+  for (const double size : {1e-20, 1.0, 1e25}) {
+    std::vector<SurfaceTriangle> triangles = scattered(700);
+    for (SurfaceTriangle& triangle : triangles) {
+      for (Vec3f& corner : triangle)
+        corner = to_float(to_double(corner) * size);
+    }
+    const TriangleTree tree(triangles, 1);
+    for (const double away : {0.0, 3.0, 1e7}) {
+      const Vec3d point = (to_double(noise_point(1, 1)) + Vec3d{away, away, away}) * size;
+      double reach = std::numeric_limits<double>::infinity();
+      int count = 0;
+      tree.look_nearest(point, reach, [&](std::uint32_t leaf) {
+        const Vec3d way = to_double(triangles[tree.triangles(leaf).front()][0]) - point;
+        reach = std::min(reach, dot(way, way));
+        ++count;
+      });
+      EXPECT_LT(count, 700 / 4) << size << ", " << away;
     }
   }
 }

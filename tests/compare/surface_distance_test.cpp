@@ -148,6 +148,24 @@ TEST(TriangleSearchTest, FarFromTheOriginFindsWhatTryingAllFinds) {
   }
 }
 
+TEST(TriangleSearchTest, OfAnySizeAndHoweverFarItFindsWhatTryingAllFinds) {
+  for (const double size : {1e-19, 1.0, 1e21}) {
+    std::vector<SurfaceTriangle> triangles = scattered(300, 0.2);
+    for (SurfaceTriangle& triangle : triangles) {
+      for (Vec3f& corner : triangle)
+        corner = to_float(to_double(corner) * size);
+    }
+    const TriangleSearch search(triangles);
+    std::uint32_t chained = 0;
+    for (const double away : {0.0, 200.0, 5e6}) {
+      for (std::uint64_t i = 0; i < 50; ++i) {
+        const Vec3d point = (noise_point(i, 21) * 1.5 + Vec3d{away, away, -away}) * size;
+        EXPECT_EQ(search.nearest(point, kInfinity, chained), brute_force(point, triangles));
+      }
+    }
+  }
+}
+
 TEST(TriangleSearchTest, NeverExceedsTheLimit) {
   const TriangleSearch search(scattered(50, 0.1));
   std::uint32_t hint = 7;

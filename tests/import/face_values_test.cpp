@@ -146,6 +146,14 @@ TEST_F(FaceValuesTest, TheyAreChosenByName) {
   EXPECT_THAT(none.summary.unused, ElementsAre("face.label", "face.flags", "face.quality"));
 }
 
+TEST_F(FaceValuesTest, ANormalInTwoSpellingsIsNoValue) {
+  std::vector<Property> properties{{"heat", PlyType::f32, {0.5, 0.25}}};
+  for (const char* name : {"nx", "ny", "nz", "normal_x", "normal_y", "normal_z"})
+    properties.push_back({name, PlyType::f32, {0, 1}});
+  put("a.ply", fan(PlyEncoding::ascii, properties));
+  EXPECT_THAT(import().layout.values, ElementsAre(ScalarAttribute{"heat", ValueType::f32, false}));
+}
+
 TEST_F(FaceValuesTest, VerticesComeFirst) {
   put("a.ply",
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
