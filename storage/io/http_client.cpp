@@ -335,7 +335,9 @@ class HttpClient::Connection {
     }
     if (transfer.is_too_much)
       fail(address, "the host sent more than the part that was asked for");
-    if (code != CURLE_OK && code != CURLE_PARTIAL_FILE)
+    // What has come stays, however it broke off: the next try must know of which file it is.
+    const bool has_begun = transfer.head.is_complete && (status == kWhole || status == kPart);
+    if (code != CURLE_OK && code != CURLE_PARTIAL_FILE && !has_begun)
       return failed(address, code);
     if (status == kNotSatisfiable && transfer.before == 0) {  // the file ends before
       answer.total = transfer.head.total;
@@ -347,9 +349,7 @@ class HttpClient::Connection {
     if (status == kPart && transfer.head.first.value_or(transfer.first) != transfer.first)
       fail(address, "the host sent another part than was asked for");
     note(address, transfer, status);
-    if (code == CURLE_PARTIAL_FILE)
-      return failed(address, code);
-    return {};
+    return code == CURLE_OK ? std::string() : failed(address, code);
   }
 
   void note(const HttpAddress& address, const Transfer& transfer, long status) {

@@ -233,6 +233,22 @@ TEST_F(RemoteFilesTest, AHostWithoutRangesSendsSmallFilesWhole) {
   EXPECT_EQ(host_->requests(), 1U);
 }
 
+TEST_F(RemoteFilesTest, APartThatFallsSilentGoesOnWhereItWas) {
+  std::atomic<int> tries = 0;
+  HttpOptions options;
+  options.silence = std::chrono::seconds(1);
+  const auto answer = [&](const HostRequest& request) {
+    HostReply reply = answer_with(request, content_);
+    if (++tries == 1)
+      reply.bytes.resize(reply.bytes.size() - 1000);
+    return reply;
+  };
+  RemoteFiles& remote = open(answer, "a.3tz", options);
+  EXPECT_EQ(read(*remote.open(remote.root()), 0, 60'000), content_.substr(0, 60'000));
+  EXPECT_EQ(tries, 2);
+  EXPECT_THAT(host_->heads().back(), HasSubstr("Range: bytes=64536-65535"));
+}
+
 TEST_F(RemoteFilesTest, AWholeFileThatBreaksOffBeginsAgain) {
   std::atomic<int> tries = 0;
   RemoteFiles& remote = open([&](const HostRequest& request) -> HostReply {
