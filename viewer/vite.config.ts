@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { readFileSync, writeFileSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 import type { Plugin } from 'vite';
@@ -33,5 +34,5 @@ export default defineConfig({
   plugins: [packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
-  test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', isolate: false, testTimeout: 120_000 }, // time decides no test
+  test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', poolOptions: { threads: { minThreads: availableParallelism(), maxThreads: availableParallelism() } }, isolate: false, testTimeout: 120_000 }, // time decides no test
 });
