@@ -319,7 +319,7 @@ class PartBytes {
       storage::append_little(bytes_, value);
   }
 
-  /// What the build made of normals and coordinates comes before what the input had.
+  /// Normals and coordinates that the build made come before those of the input.
   void append_attribute(const storage::ChannelGroup& group, std::size_t vertex) {
     if (group.kind == AttributeKind::normals && !part_.normals.empty())
       return append(part_.normals[vertex]);

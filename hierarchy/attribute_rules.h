@@ -1,6 +1,6 @@
-// What kernels know of attributes: which channels there are, how those of several vertices become
-// those of one, and which of two vertices are different. Everything follows from the rules of the
-// layout's kinds (attributes.h).
+// All that kernels know of attributes: which channels there are, how those of several vertices
+// become those of one, and which of two vertices are different. Everything follows from the rules
+// of the layout's kinds (attributes.h).
 #pragma once
 
 #include "base/srgb.h"
@@ -29,8 +29,7 @@ class AttributeRules {
   /// Colours are whole numbers.
   bool are_colours_whole() const { return are_colours_whole_; }
 
-  /// The channels whose means summand() and number() make are all but those of quantities, which
-  /// values() mixes.
+  /// Mixes quantities; summand() and number() are for all other channels.
   const ValueMixer& values() const { return values_; }
   static bool are_quantities(const AttributePart& part) {
     return row_of(part.kind).rule == AttributeRule::quantities;

@@ -62,8 +62,8 @@ enum class ColourSpace : std::uint8_t {
 /// In the order of a vertex's channels.
 enum class AttributeKind : std::uint8_t { normals, colours, values, texcoords, material };
 
-/// What the numbers of a kind are, and so how those of several vertices become those of one, when
-/// two are different, and what may stand in a file.
+/// Says what the numbers of a kind are, and so how those of several vertices become those of one,
+/// when two are different, and what may stand in a file.
 enum class AttributeRule : std::uint8_t {
   direction,   ///< the mean is made unit length; apart by the angle; finite
   colour,      ///< the mean is that of light; apart by the largest difference; finite
@@ -108,7 +108,7 @@ struct AttributeLayout {
     return sum;
   }
   int channels() const;
-  /// Of every kind; those that the layout lacks have no channels.
+  /// Returns a part for every kind; those that the layout lacks have no channels.
   AttributeParts parts() const;
   AttributePart part(AttributeKind kind) const;
   /// Normals, colours and values, which lie first.

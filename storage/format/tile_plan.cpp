@@ -61,7 +61,7 @@ constexpr const PartRow& row_of(TilePart part) {
   return kParts[static_cast<std::size_t>(part)];
 }
 
-/// What vertices show beside their positions.
+/// All that vertices show beside their positions.
 constexpr std::span<const PartRow> shown_attributes() {
   constexpr auto kFirst = static_cast<std::size_t>(TilePart::normal);
   constexpr auto kEnd = static_cast<std::size_t>(TilePart::interior);
