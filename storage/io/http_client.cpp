@@ -335,7 +335,8 @@ class HttpClient::Connection {
     }
     if (transfer.is_too_much)
       fail(address, "the host sent more than the part that was asked for");
-    // The bytes that have come stay, however it broke off: the next try must know of which file it is.
+    // The bytes that have come stay, however it broke off: the next try must know of which file it
+    // is.
     const bool has_begun = transfer.head.is_complete && (status == kWhole || status == kPart);
     if (code != CURLE_OK && code != CURLE_PARTIAL_FILE && !has_begun)
       return failed(address, code);
