@@ -18,9 +18,7 @@ class AttributeRules {
   AttributeRules(const AttributeLayout& layout = {});  // NOLINT(google-explicit-constructor)
 
   const AttributeParts& parts() const { return parts_; }
-  const AttributePart& part(AttributeKind kind) const {
-    return parts_[static_cast<std::size_t>(kind)];
-  }
+  const AttributePart& part(AttributeKind kind) const { return part_of(parts_, kind); }
   std::size_t channels() const { return parts_.back().end(); }
   /// Colours are numbers from 0 to this.
   double full() const { return full_; }

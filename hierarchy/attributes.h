@@ -87,6 +87,10 @@ struct AttributePart {
 inline constexpr std::size_t kAttributeKindCount = 5;
 using AttributeParts = std::array<AttributePart, kAttributeKindCount>;
 
+constexpr const AttributePart& part_of(const AttributeParts& parts, AttributeKind kind) {
+  return parts[static_cast<std::size_t>(kind)];
+}
+
 struct AttributeLayout {
   bool normals = false;
   ColourType colour = ColourType::none;

@@ -151,7 +151,7 @@ class RowJoin {
 
   void append(std::span<const float> row, storage::RecordSpool<float>& joined) const {
     for (const AttributePart& part : parts_) {
-      const AttributePart& from = given_[static_cast<std::size_t>(part.kind)];
+      const AttributePart& from = part_of(given_, part.kind);
       const bool is_of_picture =
           part.kind == AttributeKind::texcoords || part.kind == AttributeKind::material;
       if (part.count == 0)

@@ -1,5 +1,6 @@
 #include "mesh_io/gltf_uri.h"
 
+#include "base/percent_code.h"
 #include "mesh_io/named_files.h"
 
 #include <algorithm>
@@ -21,31 +22,6 @@ unsigned base64_digit(char c) {
   if (c >= '0' && c <= '9')
     return static_cast<unsigned>(c - '0') + 52;
   return c == '+' ? 62 : c == '/' ? 63 : 64;
-}
-
-/// Returns 16 if it is none.
-unsigned hex_digit(char c) {
-  if (c >= '0' && c <= '9')
-    return static_cast<unsigned>(c - '0');
-  const char small = static_cast<char>(c | 0x20);
-  return small >= 'a' && small <= 'f' ? static_cast<unsigned>(small - 'a') + 10 : 16;
-}
-
-std::optional<std::string> percent_decoded(std::string_view uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%') {
-      text += uri[i];
-      continue;
-    }
-    const unsigned high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : 16;
-    const unsigned low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : 16;
-    if (high > 15 || low > 15)
-      return std::nullopt;
-    text += static_cast<char>(high * 16 + low);
-    i += 2;
-  }
-  return text;
 }
 
 bool has_scheme(std::string_view uri) {

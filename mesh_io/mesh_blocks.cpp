@@ -154,7 +154,7 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
   if (sound && !checks.colours)
     return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
-  const AttributePart& colours = parts_[static_cast<std::size_t>(AttributeKind::colours)];
+  const AttributePart& colours = part_of(parts_, AttributeKind::colours);
   for (std::size_t row = 0; row < count; ++row) {
     if (!checks.places && !is_placed(first + row))
       continue;

@@ -363,7 +363,7 @@ class OffReader {
     }
     const AttributeParts parts = layout.parts();
     counts_.zeroed += zero_what_is_not_finite(parts, std::span(channels_).first(channel_count_));
-    const AttributePart& colours = parts[static_cast<std::size_t>(AttributeKind::colours)];
+    const AttributePart& colours = part_of(parts, AttributeKind::colours);
     for (std::size_t channel = colours.first; channel < colours.end(); ++channel) {
       if (!std::isfinite(channels_[channel]))
         words_.fail(

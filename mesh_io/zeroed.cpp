@@ -15,8 +15,8 @@ std::uint64_t zero_if_not_finite(std::span<float> attribute) {
 ZeroedCounts zero_what_is_not_finite(const AttributeParts& parts, std::span<float> rows) {
   ZeroedCounts counts;
   const std::size_t channels = parts.back().end();
-  const auto& normals = parts[static_cast<std::size_t>(AttributeKind::normals)];
-  const auto& texcoords = parts[static_cast<std::size_t>(AttributeKind::texcoords)];
+  const AttributePart& normals = part_of(parts, AttributeKind::normals);
+  const AttributePart& texcoords = part_of(parts, AttributeKind::texcoords);
   for (; channels > 0 && rows.size() >= channels; rows = rows.subspan(channels)) {
     counts.normals += zero_if_not_finite(normals.of(rows));
     counts.texcoords += zero_if_not_finite(texcoords.of(rows));

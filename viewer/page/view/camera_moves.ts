@@ -2,14 +2,12 @@
 // Moves a camera that looks at a target, upright. Nothing here keeps what it is given.
 import { Vector3, type Box3 } from 'three';
 import { CameraPose } from '../../src/scene/camera_pose.js';
-import { axesOf, frameShape } from '../../src/scene/framing.js';
+import { axesOf, frameWhole } from '../../src/scene/framing.js';
 
 /// Radians, from the lower to the upper edge of the picture.
 export const VIEW_ANGLE = Math.PI / 4;
 
 const STEEPEST = 0.01; // radians from straight up or down
-const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
-const MARGIN = 1.08;
 
 /// Around the target; radians to the right and up.
 export function turn(pose: CameraPose, right: number, up: number): CameraPose {
@@ -48,9 +46,7 @@ export function depthOf(pose: CameraPose, point: Vector3): number {
 /// All of a shape within the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
 /// `points`: of the shape; none: the box's corners.
 export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = []): CameraPose {
-  const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
-  const slope = Math.tan(VIEW_ANGLE / 2) / MARGIN;
-  const { position, target } = frameShape(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
+  const { position, target } = frameWhole(points, box, direction, VIEW_ANGLE, aspect);
   return new CameraPose(position, target);
 }
 

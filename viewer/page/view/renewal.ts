@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Opens a model, and begins anew in a view that stays: when the host has another one by now, or may be back.
 import { HierarchyProblem, type Manifest } from '../../src/index.js';
+import { AGAIN } from '../../src/hierarchy/problem.js';
 import { Whereabouts } from '../../src/plugins/whereabouts.js';
 import { words } from '../words/words.js';
 import type { PageContext } from './page_context.js';
-
-const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
 
 export class Renewal {
   private timer = 0;

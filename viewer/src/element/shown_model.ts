@@ -2,9 +2,9 @@
 // A hierarchy in a canvas: light, camera, controls, and frames while there is something new to draw.
 import { Box3, NeutralToneMapping, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { axesOf, frameShape } from '../scene/framing.js';
+import { frameWhole } from '../scene/framing.js';
 import { areNear } from '../farthest.js';
-import { HierarchyProblem } from '../hierarchy/problem.js';
+import { AGAIN, HierarchyProblem } from '../hierarchy/problem.js';
 import { CameraPose, type Pose } from '../scene/camera_pose.js';
 import { HierarchyView, type Plugin, type Stage } from '../scene/hierarchy_view.js';
 import { keyOf, Lighting } from '../scene/lighting.js';
@@ -17,9 +17,6 @@ import { moveByKey } from './keyboard.js';
 const ANGLE = 45; // degrees
 const MOST_RATIO = 2;
 const POLL = 250; // milliseconds, while something is awaited that draws nothing yet
-const AGAIN = 20_000; // milliseconds until a host that did not answer is asked again
-const MARGIN = 1.08;
-const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 
 export interface Happenings {
   opened(): void;
@@ -252,10 +249,7 @@ export class ShownModel implements Stage {
       this.camera.position.set(...this.place.position);
       this.controls.target.set(...this.place.target);
     } else if (!this.whole.isEmpty()) {
-      const { firstDirection } = this.view;
-      const back = firstDirection === null ? FIRST_DIRECTION : new Vector3(...firstDirection);
-      const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
-      const { position, target } = frameShape(this.view.shape(), this.whole, axesOf(back.clone().negate()), { across: slope * this.camera.aspect, upwards: slope });
+      const { position, target } = frameWhole(this.view.shape(), this.whole, this.view.firstDirection, (ANGLE * Math.PI) / 180, this.camera.aspect);
       this.controls.target.copy(target);
       this.camera.position.copy(position);
     }

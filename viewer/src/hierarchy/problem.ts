@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+
+/// Milliseconds until a host whose problem may pass is asked again.
+export const AGAIN = 20_000;
+
 /// Problems say what is wrong with a file, and which one it is. Everything in this library throws them for bad
 /// input; anything else is a defect.
 export class HierarchyProblem extends Error {

@@ -22,6 +22,8 @@ export interface Framed {
 }
 
 const LEAST_DISTANCE = 0.01; // of the box's diagonal
+const MARGIN = 1.08;
+const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 const WORLD_UP = new Vector3(0, 1, 0);
 
 export function axesOf(forward: Vector3): Axes {
@@ -76,4 +78,12 @@ export function frameShape(points: Iterable<Vector3>, box: Box3, { right, up, fo
   const away = Math.max(-Math.min(sides.depth, ends.depth), LEAST_DISTANCE * box.getSize(new Vector3()).length()) || 1;
   const target = centre.addScaledVector(right, sides.middle).addScaledVector(up, ends.middle);
   return { position: target.clone().addScaledVector(forward, -away), target };
+}
+
+/// Frames all of a shape, with a margin, in a picture of that aspect whose height is seen at `angle`, in radians. `direction`: to the viewer, of
+/// length 1; null: none is better than others. `points`, `box`: as for frameShape().
+export function frameWhole(points: Iterable<Vector3>, box: Box3, direction: readonly [number, number, number] | null, angle: number, aspect: number): Framed {
+  const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
+  const slope = Math.tan(angle / 2) / MARGIN;
+  return frameShape(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
 }
