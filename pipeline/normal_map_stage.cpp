@@ -115,7 +115,7 @@ class MapStage {
 
   void make(NodeId node) {
     const TileMesh mesh = forest_.load(node).mesh;
-    BakeSource source = bare_source(mesh);
+    BakeSource source = bare_source(mesh, forest_.published_parent_map(node));
     if (source.triangles.empty()) {
       textures_.put(node, {}, source, {});
       return;
@@ -145,7 +145,7 @@ class MapStage {
       return textures_.source(tile);
     return textures_.source(tile, [&] {
       const TileMesh mesh = forest_.load(tile).mesh;
-      BakeSource source = bare_source(mesh);
+      BakeSource source = bare_source(mesh, forest_.published_parent_map(tile));
       source.normals = CornerShading(forest_, tile, mesh).take();
       return source;
     });

@@ -196,13 +196,13 @@ class TextureMaker {
   /// Makes the picture of a partition.
   void cut(NodeId node) {
     TileMesh mesh = forest_.load(node).mesh;
-    std::vector<std::uint16_t> parent_map;
-    order_inner_vertices(mesh, parent_map);
+    std::vector<std::uint16_t> parents = forest_.published_parent_map(node);
+    order_inner_vertices(mesh, parents);
     const LeafCorners leaf = corners_of(mesh, forest_.layout(node.level));
     texture::LeafAtlas atlas = texture::plan_leaf_atlas(
         {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, leaf_side(format_.format));
     note_reduced(atlas);
-    BakeSource source = bare_source(mesh);
+    BakeSource source = bare_source(mesh, std::move(parents));
     source.corners = std::move(atlas.corners);
     if (atlas.pieces.empty()) {
       textures_.put(node, {}, source, {});
@@ -251,7 +251,7 @@ class TextureMaker {
 
   void bake(NodeId node) {
     const TileMesh mesh = forest_.load(node).mesh;
-    BakeSource source = bare_source(mesh);
+    BakeSource source = bare_source(mesh, forest_.published_parent_map(node));
     TexelSizes texels = texels_below(node);
     const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(format_.format, side_));
     if (!source.triangles.empty()) {

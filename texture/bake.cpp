@@ -1,10 +1,8 @@
 #include "texture/bake.h"
 
-#include "base/bounds.h"
 #include "texture/distinct_triangles.h"
 #include "texture/fill.h"
-#include "texture/nearest_triangle.h"
-#include "texture/sample_blocks.h"
+#include "texture/finer_points.h"
 #include "texture/texel_fit.h"
 #include "texture/texel_light.h"
 #include "texture/texel_sampler.h"
@@ -14,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 namespace meshhier::texture {
@@ -31,11 +30,11 @@ std::uint32_t channels_of(std::span<const TexturedSurface> surfaces) {
 /// Takes the colours of samples from finer surfaces.
 class Painter {
  public:
-  Painter(const TexelSamples& samples, std::span<const TexturedSurface> finer,
-          std::span<const Vec3f> tile)
+  Painter(const TexelSamples& samples, std::span<const TexturedSurface> finer)
       : samples_(samples),
         texel_(1 / samples.layout().density),
-        nearest_(nearest_among(finer, tile)),
+        finer_(shapes_of(finer), samples),
+        points_(finer_.points(samples)),
         sampler_(finer, texel_),
         channels_(channels_of(finer)) {}
 
@@ -45,7 +44,7 @@ class Painter {
     for (const ChartPlane& plane : layout.planes) {
       measure(plane, means);
       if (!plane.is_point)
-        fit_texels(means, range_of(plane));
+        fit_texels(means, TexelSamples::range_of(plane));
     }
     return stored(means, layout.height);
   }
@@ -80,27 +79,21 @@ class Painter {
     double mean() const { return count > 0 ? std::sqrt(squares / count) : 0; }
   };
 
-  static TexelRange range_of(const ChartPlane& plane) {
-    return {plane.left, plane.top, plane.right, plane.bottom};
-  }
-
   void measure(const ChartPlane& plane, TexelMeans& means) {
-    for_each_sample(samples_, plane, nearest_,
-                    [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
-                      const std::size_t number = std::size_t{y} * means.width + x;
-                      if (means.is_known[number] != 0)
-                        return;
-                      if (const NearestTriangle::Found found = find(plane, sample, sample.point);
-                          found.triangle != NearestTriangle::kNone) {
-                        means.lights[number] = sampler_.around(found);
-                        means.is_known[number] = 1;
-                      }
-                    });
+    for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
+      for (std::uint32_t x = plane.left; x < plane.right; ++x) {
+        const std::size_t number = std::size_t{y} * means.width + x;
+        const FinerPoint& point = points_[number];
+        if (samples_.at(x, y).triangle == kNoFace || point.triangle == FinerPoint::kNone)
+          continue;
+        means.lights[number] = sampler_.around(found(point));
+        means.is_known[number] = 1;
+      }
+    }
   }
 
-  NearestTriangle::Found find(const ChartPlane& plane, const TexelSample& sample,
-                              const Vec3d& point) {
-    return nearest_(point, samples_.facing(plane, sample), kFacingReach * texel_);
+  static NearestTriangle::Found found(const FinerPoint& point) {
+    return {point.triangle, point.on_b, point.on_c};
   }
 
   images::Image stored(const TexelMeans& means, std::uint32_t height) const {
@@ -116,26 +109,22 @@ class Painter {
   /// A pixel amid four texels shows the mean of them.
   void compare(const ChartPlane& plane, std::uint32_t x, std::uint32_t y,
                const images::Image& image, Difference& difference) {
-    Vec3d point;
-    TexelLight shown{};
-    for (const auto& [i, j] : {std::pair(x, y), {x + 1, y}, {x, y + 1}, {x + 1, y + 1}}) {
-      if (!samples_.at(i, j).is_inside())
-        return;
-      point = point + samples_.at(i, j).point * 0.25;
-      add_texel(shown, image.at(i, j), channels_, 0.25f);
-    }
-    const NearestTriangle::Found found = find(plane, samples_.at(x, y), point);
-    if (found.triangle == NearestTriangle::kNone)
+    const auto amid = finer_.amid_texels(samples_, TexelSamples::range_of(plane), points_, x, y);
+    if (!amid || amid->finer.triangle == FinerPoint::kNone)
       return;
+    TexelLight shown{};
+    for (const auto& [i, j] : four_texels(x, y))
+      add_texel(shown, image.at(i, j), channels_, 0.25f);
     std::array<std::uint8_t, 4> own{}, finer{};
     store_texel(shown, own.data(), channels_);
-    store_texel(sampler_.pixel(found), finer.data(), channels_);
+    store_texel(sampler_.pixel(found(amid->finer)), finer.data(), channels_);
     difference.add(own.data(), finer.data());
   }
 
   const TexelSamples& samples_;
   double texel_;
-  NearestTriangle nearest_;
+  FinerSurfaces finer_;
+  const std::vector<FinerPoint> points_;
   TexelSampler sampler_;
   std::uint32_t channels_;
 };
@@ -150,7 +139,7 @@ BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> 
   TexturedSurface surface = tile;
   surface.triangles = distinct.triangles();
   const TexelSamples samples(surface, size);
-  Painter painter(samples, finer, tile.positions);
+  Painter painter(samples, finer);
   BakedTexture baked;
   baked.image = painter.paint();
   baked.corners = distinct.expanded(samples.texcoords());

@@ -26,6 +26,9 @@ struct TexturedSurface {
   std::span<const TileTriangle> triangles;  ///< numbers of positions
   std::span<const CornerTexcoords> corners;
   const images::Image* image = nullptr;  ///< null: the surface has no triangles
+  /// Of a finer surface: for each vertex one of the tile that lies near it, or kNoVertex
+  /// (vertex_feet.h). Without them each texel is searched for.
+  std::span<const std::uint32_t> beside{};
 };
 
 struct BakeSize {

@@ -1,73 +1,63 @@
 // The directions of the surfaces that a tile was made of.
 #pragma once
 
-#include "base/vec.h"
-#include "texture/faces.h"
-#include "texture/nearest_triangle.h"
+#include "base/lane_vector.h"
+#include "texture/finer_points.h"
 #include "texture/normal_bake.h"
 #include "texture/normal_texels.h"
-#include "texture/sample_blocks.h"
+#include "texture/texel_samples.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace meshhier::texture {
 
-/// A point of a triangle as shares of its corners.
-using CornerWeights = std::array<double, 3>;
-
-/// The triangles of several surfaces, numbered through.
 class FinerNormals {
  public:
-  FinerNormals(std::span<const NormalSurface> surfaces, std::span<const Vec3f> tile)
-      : surfaces_(surfaces), nearest_(nearest_among(surfaces, tile)) {
-    std::uint32_t begin = 0;
-    for (const NormalSurface& surface : surfaces) {
-      begins_.push_back(begin);
-      begin += static_cast<std::uint32_t>(surface.triangles.size());
-    }
-  }
+  /// Both must outlive it, and be of the same surfaces.
+  FinerNormals(std::span<const NormalSurface> surfaces, const FinerSurfaces& numbers)
+      : surfaces_(surfaces), numbers_(numbers) {}
 
-  NearestTriangle& nearest() { return nearest_; }
-
-  /// At the nearest point, of length 1; `facing` if there is nothing.
-  Vec3d direction(const Vec3d& point, const Vec3d& facing, double reach) {
-    const NearestTriangle::Found found = nearest_(point, facing, reach);
-    if (found.triangle == NearestTriangle::kNone)
-      return facing;
-    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), found.triangle);
-    const auto number = static_cast<std::size_t>(behind - begins_.begin()) - 1;
-    const CornerWeights weights{1 - found.on_b - found.on_c, found.on_b, found.on_c};
-    const Vec3d there =
-        direction_of(shown_at(surfaces_[number], found.triangle - begins_[number], weights));
-    return there == Vec3d{} ? facing : there;
+  /// At a point, of length 1; 0 if there is none. For one thread.
+  FourFloats direction(const FinerPoint& at) {
+    if (at.triangle == FinerPoint::kNone)
+      return FourFloats{};
+    if (at.triangle < begin_ || at.triangle >= end_)
+      turn_to(numbers_.surface_of(at.triangle));
+    const CornerWeights weights{1 - at.on_b - at.on_c, at.on_b, at.on_c};
+    return unit_of(shown_at(surfaces_[surface_], at.triangle - begin_, weights));
   }
 
  private:
-  static Vec3d shown_at(const NormalSurface& surface, std::uint32_t t,
-                        const CornerWeights& weights) {
+  void turn_to(std::size_t surface) {
+    surface_ = surface;
+    begin_ = numbers_.first_of(surface);
+    end_ = numbers_.first_of(surface + 1);
+  }
+
+  static FourFloats shown_at(const NormalSurface& surface, std::uint32_t t,
+                             const CornerWeights& weights) {
     if (!surface.normals.empty()) {
-      Vec3d sum;
-      for (std::size_t k = 0; k < 3; ++k)
-        sum = sum + to_double(surface.normals[t][k]) * weights[k];
-      return sum;
+      const CornerNormals& normals = surface.normals[t];
+      return lanes_of(normals[0]) * weights[0] + lanes_of(normals[1]) * weights[1] +
+             lanes_of(normals[2]) * weights[2];
     }
+    const CornerTexcoords& corners = surface.corners[t];
     TexelPoint at;
     for (std::size_t k = 0; k < 3; ++k) {
-      at.x += double{surface.corners[t][k].u} * weights[k];
-      at.y += double{surface.corners[t][k].v} * weights[k];
+      at.x += double{corners[k].u} * double{weights[k]};
+      at.y += double{corners[k].v} * double{weights[k]};
     }
     return surface.texels->direction_at(
         {at.x * surface.texels->width(), at.y * surface.texels->height()});
   }
 
   std::span<const NormalSurface> surfaces_;
-  std::vector<std::uint32_t> begins_;  ///< of each surface its first triangle
-  NearestTriangle nearest_;
+  const FinerSurfaces& numbers_;
+  std::size_t surface_ = 0;            ///< of the last point
+  std::uint32_t begin_ = 0, end_ = 0;  ///< its triangles
 };
 
 }  // namespace meshhier::texture

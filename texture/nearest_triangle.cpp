@@ -10,9 +10,6 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr std::size_t kLeafSize = 4;
 
-/// Around a box with more leaves than these nothing is collected: the tree is as quick.
-constexpr std::size_t kMostAround = 256;
-
 }  // namespace
 
 NearestTriangle::NearestTriangle(std::span<const SurfaceTriangle> triangles, const Vec3d& centre,
@@ -108,53 +105,6 @@ void NearestTriangle::search(Asked& q) const {
   });
 }
 
-void NearestTriangle::look_around(const BoundsD& box) {
-  around_.low = moved(box.min), around_.high = moved(box.max);
-  around_.clear();
-  // Half as far again as the last answers, and some of the box, whose points are no nearer to them.
-  const Vec3f size = around_.high - around_.low;
-  around_.reach = 2.25f * farthest_ + dot(size, size) / 64;
-  farthest_ = 0;
-  const bool are_few = tree_.take_within({around_.low, around_.high}, around_.reach,
-                                         [&](const TriangleTree::Node& node, std::size_t child) {
-                                           add_around(node, child);
-                                           return around_.count <= kMostAround;
-                                         });
-  if (!are_few)
-    around_.clear();
-}
-
-/// The child is a leaf.
-void NearestTriangle::add_around(const TriangleTree::Node& node, std::size_t child) {
-  const std::size_t k = around_.count++ % 4;
-  if (k == 0) {
-    const Four nowhere = Four{} + kNever;
-    around_.leaves.push_back({nowhere, nowhere, nowhere, nowhere, nowhere, nowhere, {}});
-  }
-  TriangleTree::Node& four = around_.leaves.back();
-  four.low_x[k] = node.low_x[child], four.high_x[k] = node.high_x[child];
-  four.low_y[k] = node.low_y[child], four.high_y[k] = node.high_y[child];
-  four.low_z[k] = node.low_z[child], four.high_z[k] = node.high_z[child];
-  four.children[k] = node.children[child];
-}
-
-bool NearestTriangle::is_around(const Vec3f& point) const {
-  const Vec3f &low = around_.low, &high = around_.high;
-  return around_.count > 0 && point.x >= low.x && point.y >= low.y && point.z >= low.z &&
-         point.x <= high.x && point.y <= high.y && point.z <= high.z;
-}
-
-void NearestTriangle::measure_around(Asked& q) const {
-  const std::uint32_t measured = q.leaf;
-  for (const TriangleTree::Node& four : around_.leaves) {
-    const Four distance = four.distances(q.at);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (distance[k] <= q.nearest * TriangleTree::kRounding<float> && four.leaf(k) != measured)
-        measure(four.leaf(k), q);
-    }
-  }
-}
-
 NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec3d& facing,
                                                    double reach) {
   if (triangles_.empty())
@@ -163,7 +113,6 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
   const Four zero{};
   Asked query{TriangleTree::Query(at), zero + to.x, zero + to.y, zero + to.z};
   query.nearest = static_cast<float>(reach * scale_ * (reach * scale_));
-  const bool has_around = is_around(at);
   // First those that face alike, within reach; only if there is none, any at any distance.
   for (const bool any : {false, true}) {
     query.any = any;
@@ -173,17 +122,13 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
       measure(last_leaf_, query);
       query.leaf = last_leaf_;
     }
-    if (has_around)
-      measure_around(query);
-    if (!has_around || query.nearest > around_.reach)  // a nearer one may not have been collected
-      search(query);
+    search(query);
     if (query.triangle != kNone)
       break;
   }
   if (query.triangle == kNone)
     return {0, 0, 0};  // farther than single precision has numbers for
   last_leaf_ = query.leaf;
-  farthest_ = std::max(farthest_, query.nearest);
   const auto& [a, b, c] = triangles_[query.triangle];
   const ClosestPoint closest =
       closest_point(to_double(at), {to_double(a), to_double(b), to_double(c)});

@@ -1,21 +1,16 @@
 // Finds the nearest of many triangles to a point.
 //
-// Problem. Each texel of each simplified tile asks for its point on the finer surface: a third of
-// the time that textures take (decision 034).
-//
 // Idea. A tree of boxes (base/triangle_tree.h) whose leaves hold four triangles, measured at
-// the same time. Two short cuts begin with something near, so that few boxes are nearer: the leaf
-// of the last answer (points are asked for side by side), and look_around(), which collects the
-// leaves around a small box of points once for all of them.
+// the same time. A search begins with the leaf of the last answer, so that few boxes are nearer:
+// points are asked for side by side.
 //
-// Invariant. Neither short cut changes an answer: it only makes the first bound smaller. Of equally
-// near triangles the lowest number wins, whatever the order of boxes.
+// Invariant. That changes no answer: it only makes the first bound smaller. Of equally near
+// triangles the lowest number wins, whatever the order of boxes.
 //
 // Cost. O(n log n) to build, O(log n) a query for points near the triangles; 42 ns a leaf, 2.3
 // leaves a texel.
 #pragma once
 
-#include "base/bounds.h"
 #include "base/four_floats.h"
 #include "base/triangle_tree.h"
 #include "base/vec.h"
@@ -46,10 +41,6 @@ class NearestTriangle {
   /// of the lowest number of equally near ones. O(log n) for points near the triangles.
   Found operator()(const Vec3d& point, const Vec3d& facing, double reach);
 
-  /// Points within the box will be asked for, until the next one: collects what is near it, as near
-  /// as the last answers were. What is farther, and other points, are searched for in the tree.
-  void look_around(const BoundsD& box);
-
  private:
   using Four = FourFloats;
   /// Corner a and edges to b and c.
@@ -71,22 +62,6 @@ class NearestTriangle {
   Leaf leaf_of(std::span<const std::uint32_t> triangles) const;
   void measure(std::uint32_t leaf, Asked& asked) const;
   void search(Asked& asked) const;
-  void add_around(const TriangleTree::Node& node, std::size_t child);
-  bool is_around(const Vec3f& point) const;
-  void measure_around(Asked& asked) const;
-
-  /// The surface near a box: boxes of leaves, four at a time.
-  struct Surroundings {
-    Vec3f low, high;
-    float reach = 0;  ///< squared: leaves within it are there
-    std::vector<TriangleTree::Node> leaves;
-    std::size_t count = 0;  ///< of leaves
-
-    void clear() {
-      leaves.clear();
-      count = 0;
-    }
-  };
 
   Vec3d centre_;
   double scale_;
@@ -94,8 +69,6 @@ class NearestTriangle {
   TriangleTree tree_;
   std::vector<Leaf> leaves_;
   std::uint32_t last_leaf_ = kNone;
-  Surroundings around_;
-  float farthest_ = 0;  ///< of the answers since the last look around, squared
 };
 
 }  // namespace meshhier::texture

@@ -32,6 +32,7 @@ struct NormalSurface {
   std::span<const CornerNormals> normals;    ///< one a triangle; empty: it has texels
   std::span<const CornerTexcoords> corners;  ///< likewise, in `texels`
   const NormalTexels* texels = nullptr;
+  std::span<const std::uint32_t> beside{};  ///< as TexturedSurface has it
 };
 
 struct BakedNormalMap {

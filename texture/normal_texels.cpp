@@ -1,23 +1,32 @@
 #include "texture/normal_texels.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 namespace meshhier::texture {
 namespace {
 
-constexpr double kStepsOfUnit = 32767;
-constexpr std::size_t kWordBits = 64;
+constexpr float kStepsOfUnit = 32767;
+constexpr std::size_t kWordBits = 64, kByteBits = 8;
 
 bool shows(const NormalTexel& texel) {
   return (texel[0] | texel[1] | texel[2]) != 0;
 }
 
-Vec3d wide_of(const NormalTexel& texel) {
-  return {static_cast<double>(texel[0]), static_cast<double>(texel[1]),
-          static_cast<double>(texel[2])};
+/// The number of bits in each value of a byte.
+constexpr std::array<std::uint8_t, 256> kBits = [] {
+  std::array<std::uint8_t, 256> bits{};
+  for (std::size_t i = 1; i < bits.size(); ++i)
+    bits[i] = static_cast<std::uint8_t>(bits[i / 2] + i % 2);
+  return bits;
+}();
+
+using FourTexelParts = std::int16_t __attribute__((vector_size(8)));
+
+FourFloats four_parts(const std::int16_t* from) {
+  return __builtin_convertvector(load_four<FourTexelParts>(from), FourFloats);
 }
 
 }  // namespace
@@ -25,15 +34,16 @@ Vec3d wide_of(const NormalTexel& texel) {
 /// Along one axis: the first of four texels around a place, and what each counts.
 struct NormalTexels::CubicTaps {
   std::int64_t first = 0;
-  std::array<double, 4> cubic{};
-  std::array<double, 2> linear{};  ///< of the second and the third
+  std::array<float, 4> cubic{};
+  std::array<float, 2> linear{};  ///< of the second and the third
 
+  /// Requires at >= 0.
   explicit CubicTaps(double at) {
-    const double before = std::floor(at - 0.5);
-    const double t = at - 0.5 - before;
-    first = static_cast<std::int64_t>(before) - 1;
-    cubic = {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1,
-             ((-1.5 * t + 2) * t + 0.5) * t, (0.5 * t - 0.5) * t * t};
+    const auto second = static_cast<std::int64_t>(at + 0.5) - 1;
+    const auto t = static_cast<float>(at - 0.5 - static_cast<double>(second));
+    first = second - 1;
+    cubic = {((-0.5f * t + 1) * t - 0.5f) * t, (1.5f * t - 2.5f) * t * t + 1,
+             ((-1.5f * t + 2) * t + 0.5f) * t, (0.5f * t - 0.5f) * t * t};
     linear = {1 - t, t};
   }
 };
@@ -57,10 +67,13 @@ NormalTexels::NormalTexels(std::uint32_t width, std::uint32_t height,
 }
 
 void NormalTexels::count() {
+  before_.reserve(words_.size() * (kWordBits / kByteBits));
   std::uint32_t sum = 0;
   for (const std::uint64_t word : words_) {
-    before_.push_back(sum);
-    sum += static_cast<std::uint32_t>(std::popcount(word));
+    for (std::size_t bit = 0; bit < kWordBits; bit += kByteBits) {
+      before_.push_back(sum);
+      sum += kBits[(word >> bit) & 255];
+    }
   }
 }
 
@@ -102,9 +115,10 @@ NormalTexel NormalTexels::at(std::uint32_t x, std::uint32_t y) const {
 
 /// The number of the texel among the known ones, if it is one of them.
 std::size_t NormalTexels::rank(std::size_t texel) const {
-  const std::uint64_t below =
-      words_[texel / kWordBits] & ((std::uint64_t{1} << texel % kWordBits) - 1);
-  return before_[texel / kWordBits] + static_cast<std::size_t>(std::popcount(below));
+  const std::size_t bit = texel % kByteBits;
+  const std::uint64_t byte = words_[texel / kWordBits] >> (texel % kWordBits - bit);
+  const std::uint64_t below = byte & ((std::uint64_t{1} << bit) - 1);
+  return before_[texel / kByteBits] + kBits[below];
 }
 
 const NormalTexel* NormalTexels::four_at(std::size_t texel) const {
@@ -116,47 +130,63 @@ const NormalTexel* NormalTexels::four_at(std::size_t texel) const {
   return (bits & kFour) == kFour ? known_.data() + rank(texel) : nullptr;
 }
 
-bool NormalTexels::add_cubic(const CubicTaps& columns, const CubicTaps& rows, Vec3d& sum) const {
+/// Mixes rows first, twelve numbers at once: four texels of three.
+bool NormalTexels::mix_cubic(const CubicTaps& columns, const CubicTaps& rows,
+                             FourFloats& mix) const {
   if (columns.first < 0 || columns.first + 4 > width_ || rows.first < 0 || rows.first + 4 > height_)
     return false;
-  for (std::size_t j = 0; j < 4; ++j) {
-    const NormalTexel* four = four_at((static_cast<std::size_t>(rows.first) + j) * width_ +
-                                      static_cast<std::size_t>(columns.first));
+  FourFloats head{}, middle{}, tail{};
+  std::size_t texel =
+      static_cast<std::size_t>(rows.first) * width_ + static_cast<std::size_t>(columns.first);
+  for (std::size_t j = 0; j < 4; ++j, texel += width_) {
+    const NormalTexel* four = four_at(texel);
     if (four == nullptr)
       return false;
-    Vec3d row;
-    for (std::size_t i = 0; i < 4; ++i)
-      row = row + wide_of(four[i]) * columns.cubic[i];
-    sum = sum + row * rows.cubic[j];
+    const std::int16_t* parts = four->data();
+    head += four_parts(parts) * rows.cubic[j];
+    middle += four_parts(parts + 4) * rows.cubic[j];
+    tail += four_parts(parts + 8) * rows.cubic[j];
   }
+  const auto& [a, b, c, d] = columns.cubic;
+  mix = FourFloats{head[0], head[1], head[2], 0} * a +
+        FourFloats{head[3], middle[0], middle[1], 0} * b +
+        FourFloats{middle[2], middle[3], tail[0], 0} * c +
+        FourFloats{tail[1], tail[2], tail[3], 0} * d;
   return true;
 }
 
-Vec3d NormalTexels::direction_at(const TexelPoint& at) const {
+FourFloats NormalTexels::direction_at(const TexelPoint& at) const {
   const CubicTaps columns(std::clamp(at.x, 0.0, double(width_)));
   const CubicTaps rows(std::clamp(at.y, 0.0, double(height_)));
-  if (Vec3d sum; add_cubic(columns, rows, sum))
-    return sum;
+  FourFloats mix{};
+  if (mix_cubic(columns, rows, mix))
+    return mix;
   const auto texel = [&](std::int64_t column, std::int64_t row) {
     const auto x = std::clamp<std::int64_t>(columns.first + column, 0, width_ - 1);
     const auto y = std::clamp<std::int64_t>(rows.first + row, 0, height_ - 1);
-    return this->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    return direction_of_texel(
+        this->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
   };
-  Vec3d sum;
   for (std::size_t j = 0; j < 2; ++j) {
     for (std::size_t i = 0; i < 2; ++i)
-      sum =
-          sum + wide_of(texel(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(j) + 1)) *
-                    (columns.linear[i] * rows.linear[j]);
+      mix += texel(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(j) + 1) *
+             (columns.linear[i] * rows.linear[j]);
   }
-  return sum;
+  return mix;
 }
 
-NormalTexel normal_texel(const Vec3d& direction) {
-  const auto rounded = [](double value) {
-    return static_cast<std::int16_t>(std::floor(std::clamp(value, -1.0, 1.0) * kStepsOfUnit + 0.5));
+NormalTexel normal_texel(FourFloats direction) {
+  const auto rounded = [](float value) {
+    // Above 0, where numbers are cut downwards.
+    const float steps = std::clamp(value, -1.0f, 1.0f) * kStepsOfUnit + (kStepsOfUnit + 1.5f);
+    return static_cast<std::int16_t>(static_cast<std::int32_t>(steps) - 32768);
   };
-  return {rounded(direction.x), rounded(direction.y), rounded(direction.z)};
+  return {rounded(direction[0]), rounded(direction[1]), rounded(direction[2])};
+}
+
+FourFloats direction_of_texel(const NormalTexel& texel) {
+  return FourFloats{static_cast<float>(texel[0]), static_cast<float>(texel[1]),
+                    static_cast<float>(texel[2]), 0};
 }
 
 }  // namespace meshhier::texture

@@ -1,7 +1,7 @@
 // Directions of a surface on the texels of a picture, as exact as the next coarser one needs them.
 #pragma once
 
-#include "base/vec.h"
+#include "base/lane_vector.h"
 #include "texture/corners.h"
 #include "texture/texel_raster.h"
 
@@ -17,7 +17,9 @@ namespace meshhier::texture {
 using NormalTexel = std::array<std::int16_t, 3>;
 
 /// The texel of a direction of length 1.
-NormalTexel normal_texel(const Vec3d& direction);
+NormalTexel normal_texel(FourFloats direction);
+/// A texel's direction, 32767 times as long.
+FourFloats direction_of_texel(const NormalTexel& texel);
 
 /// A picture of them that holds only what is shown: charts leave half of it free. Immutable.
 class NormalTexels {
@@ -35,7 +37,7 @@ class NormalTexels {
   std::span<const std::uint64_t> words() const& { return words_; }
   std::span<const NormalTexel> known() const& { return known_; }
   std::uint64_t bytes() const {
-    return words_.size() * (sizeof(std::uint64_t) + sizeof(std::uint32_t)) +
+    return words_.size() * sizeof(std::uint64_t) + before_.size() * sizeof(std::uint32_t) +
            known_.size() * sizeof(NormalTexel);
   }
   static std::size_t word_count(std::uint32_t width, std::uint32_t height) {
@@ -51,7 +53,7 @@ class NormalTexels {
   /// known. Texels are points of a smooth function (Catmull & Rom 1974, over 16 texels): means of
   /// four would be blurred again on each level. Where not all 16 are known, it is the mean of those
   /// of the four nearest that are.
-  Vec3d direction_at(const TexelPoint& at) const;
+  FourFloats direction_at(const TexelPoint& at) const;
 
  private:
   struct CubicTaps;
@@ -60,11 +62,11 @@ class NormalTexels {
   /// Four in a row from there on, if all are known.
   const NormalTexel* four_at(std::size_t texel) const;
   /// False if not all are known.
-  bool add_cubic(const CubicTaps& columns, const CubicTaps& rows, Vec3d& sum) const;
+  bool mix_cubic(const CubicTaps& columns, const CubicTaps& rows, FourFloats& mix) const;
 
   std::uint32_t width_ = 0, height_ = 0;
   std::vector<std::uint64_t> words_;
-  std::vector<std::uint32_t> before_;  ///< of each word: known ones before it
+  std::vector<std::uint32_t> before_;  ///< of each eight texels: known ones before them
   std::vector<NormalTexel> known_;
 };
 

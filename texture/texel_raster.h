@@ -13,6 +13,10 @@ struct TexelPoint {
   double x = 0, y = 0;
 };
 
+struct TexelRange {
+  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;
+};
+
 struct RowRange {
   std::uint32_t begin = 0, end = 0;
 };
@@ -31,11 +35,11 @@ class RasterTriangle {
   /// In squares of 1/256 texel; below 0 if the corners turn the other way.
   std::int64_t twice_area() const { return twice_area_; }
 
-  /// Calls visit(x, y, part of the second corner, part of the third) for each texel whose middle is
-  /// inside, in a picture of that size. O(rows + texels).
+  /// Calls visit(x, y, part of the second corner, part of the third) for each of those texels whose
+  /// middle is inside. O(rows + texels).
   template <class Visit>
-  void for_each(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
-    for_each_span(width, {0, height}, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+  void for_each(const TexelRange& range, const Visit& visit) const {
+    for_each_span(range, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
       const double scale = 1 / static_cast<double>(std::abs(twice_area_));
       const Edge to_b = edge(2, 0), to_c = edge(0, 1);
       std::int64_t b = to_b.at(middle(begin), middle(y));
@@ -48,13 +52,25 @@ class RasterTriangle {
     });
   }
 
+  /// Likewise in a picture of that size.
+  template <class Visit>
+  void for_each(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
+    for_each(TexelRange{0, 0, width, height}, visit);
+  }
+
   /// Calls visit(y, begin, end) for each of those rows that has texels, x in [begin, end).
   template <class Visit>
   void for_each_span(std::uint32_t width, const RowRange& rows, const Visit& visit) const {
+    for_each_span(TexelRange{0, rows.begin, width, rows.end}, visit);
+  }
+
+  /// Calls visit(y, begin, end) for each row of the range that has texels, x in [begin, end).
+  template <class Visit>
+  void for_each_span(const TexelRange& all, const Visit& visit) const {
     if (twice_area_ == 0)
       return;
-    const std::array<std::int64_t, 2> columns = range({0, width}, &Fixed::x);
-    const std::array<std::int64_t, 2> lines = range(rows, &Fixed::y);
+    const std::array<std::int64_t, 2> columns = range(all.left, all.right, &Fixed::x);
+    const std::array<std::int64_t, 2> lines = range(all.top, all.bottom, &Fixed::y);
     const std::array<Edge, 3> edges = {edge(1, 2), edge(2, 0), edge(0, 1)};
     for (std::int64_t y = lines[0]; y <= lines[1]; ++y) {
       std::array<std::int64_t, 2> inside = columns;
@@ -106,11 +122,12 @@ class RasterTriangle {
   static std::int64_t middle(std::int64_t texel) { return texel * kOne + kOne / 2; }
 
   /// The texels whose middles are not left of all corners, nor right of all.
-  std::array<std::int64_t, 2> range(const RowRange& all, std::int64_t Fixed::*axis) const {
+  std::array<std::int64_t, 2> range(std::uint32_t begin, std::uint32_t end,
+                                    std::int64_t Fixed::*axis) const {
     const auto [low, high] = std::minmax({corners_[0].*axis, corners_[1].*axis, corners_[2].*axis});
     return {
-        std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), all.begin),
-        std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{all.end} - 1)};
+        std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), begin),
+        std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{end} - 1)};
   }
 
   /// Middles on it belong to the triangle that it is the upper or the left edge of.

@@ -8,6 +8,7 @@
 #include "texture/corners.h"
 #include "texture/faces.h"
 #include "texture/texel_raster.h"
+#include "texture/texel_segment.h"
 
 #include <array>
 #include <cstddef>
@@ -17,11 +18,14 @@
 
 namespace meshhier::texture {
 
-/// The point of the surface that a texel shows.
+/// A point of a triangle as shares of its corners.
+using CornerWeights = std::array<float, 3>;
+
+/// The point of the surface that a texel shows: a + on_b * (b - a) + on_c * (c - a).
 struct TexelSample {
-  Vec3d point;
+  float on_b = 0, on_c = 0;
   std::uint32_t triangle = kNoFace;
-  float distance = 0;  ///< from the triangle, texels squared
+  float distance = 0;  ///< from the triangle, texels squared; its point is in its plane
 
   bool is_inside() const { return triangle != kNoFace && distance == 0; }
 };
@@ -36,12 +40,27 @@ class TexelSamples {
   const ChartLayout& layout() const { return layout_; }
   const TexelSample& at(std::uint32_t x, std::uint32_t y) const { return samples_[index(x, y)]; }
 
-  /// Where the surface looks to at a sample of a chart.
+  /// Returns the point of a sample.
+  Vec3d point(const TexelSample& sample) const {
+    const Vec3d a = position(sample.triangle, 0);
+    return a + (position(sample.triangle, 1) - a) * double{sample.on_b} +
+           (position(sample.triangle, 2) - a) * double{sample.on_c};
+  }
+  /// Returns the sample of a point in a triangle's plane, perhaps beside the triangle.
+  TexelSample beside(std::uint32_t triangle, const Vec3d& point) const;
+  /// Returns where the surface looks to at a sample of a chart.
   Vec3d facing(const ChartPlane& plane, const TexelSample& sample) const {
     return faces_.areas[sample.triangle] > 0 ? faces_.normals[sample.triangle] : plane.normal;
   }
   /// One a triangle.
   std::vector<CornerTexcoords> texcoords() const;
+  const TexturedSurface& tile() const { return tile_; }
+  const Faces& faces() const { return faces_; }
+  static TexelRange range_of(const ChartPlane& plane) {
+    return {plane.left, plane.top, plane.right, plane.bottom};
+  }
+  /// The chart that a triangle is in.
+  std::uint32_t chart_of(std::uint32_t triangle) const { return chart_of_[triangle]; }
   /// The triangles of a chart of the layout.
   std::span<const std::uint32_t> triangles_of(std::size_t chart) const {
     return std::span(charts_.triangles)
@@ -63,17 +82,24 @@ class TexelSamples {
     return std::size_t{y} * layout_.width + x;
   }
 
+  struct Shares {
+    double on_b = 0, on_c = 0;
+  };
+
   void fill(const BakeSize& size);
   void cover();
   void mark_middle(std::uint32_t t);
   void cover_borders();
   void cover_beyond(const ChartPlane& plane, std::uint32_t t, std::size_t k);
-  Vec3d beyond(const ChartPlane& plane, std::uint32_t t, double x, double y) const;
+  TexelSample beyond(const ChartPlane& plane, std::uint32_t t, std::size_t edge,
+                     const TexelSegment::Foot& foot) const;
+  Shares shares_of(std::uint32_t t, const Vec3d& way) const;
 
   const TexturedSurface& tile_;
   Faces faces_;
   SurfaceCharts charts_;
-  std::vector<ChartPlane> planes_;  ///< of the charts, before they are laid out
+  std::vector<std::uint32_t> chart_of_;  ///< of triangles
+  std::vector<ChartPlane> planes_;       ///< of the charts, before they are laid out
   ChartLayout layout_;
   std::vector<std::array<TexelPoint, 3>> corners_;  ///< of triangles, texels
   std::vector<TexelSample> samples_;                ///< of texels

@@ -9,10 +9,6 @@
 
 namespace meshhier::texture {
 
-struct TexelRange {
-  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;
-};
-
 class TexelSegment {
  public:
   TexelSegment(const TexelPoint& from, const TexelPoint& to)

@@ -3,6 +3,7 @@
 #include "texture/faces.h"
 
 #include <cmath>
+#include <cstddef>
 
 namespace meshhier::texture {
 namespace {
@@ -15,11 +16,11 @@ Vec3d shown_direction(const Vec3f& normal) {
 
 }  // namespace
 
-Vec3d VertexFrame::coefficients_of(const Vec3d& direction) const {
-  const Vec3d of_tangent = cross(bitangent, normal);
-  const double turn = dot(tangent, of_tangent) < 0 ? -1 : 1;
-  return Vec3d{dot(direction, of_tangent), dot(direction, cross(normal, tangent)),
-               dot(direction, cross(tangent, bitangent))} *
+FourFloats VertexFrame::coefficients_of(FourFloats direction) const {
+  const FourFloats of_tangent = cross_of(bitangent, normal);
+  const float turn = dot_of(tangent, of_tangent) < 0 ? -1.0f : 1.0f;
+  return FourFloats{dot_of(direction, of_tangent), dot_of(direction, cross_of(normal, tangent)),
+                    dot_of(direction, cross_of(tangent, bitangent)), 0} *
          turn;
 }
 
@@ -36,23 +37,20 @@ TangentCode tangent_of(const ChartPlane& plane, const Vec3f& corner) {
 }
 
 VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent) {
-  VertexFrame frame;
-  frame.normal = shown_direction(normal);
-  frame.tangent = direction_of({double(tangent[0]), double(tangent[1]), double(tangent[2])});
-  frame.bitangent =
-      direction_of(cross(frame.normal, frame.tangent)) * (tangent[3] < 0 ? -1.0 : 1.0);
-  return frame;
+  const Vec3d up = shown_direction(normal);
+  const Vec3d along = direction_of({double(tangent[0]), double(tangent[1]), double(tangent[2])});
+  const Vec3d across = direction_of(cross(up, along)) * (tangent[3] < 0 ? -1.0 : 1.0);
+  return {lanes_of(along), lanes_of(across), lanes_of(up)};
 }
 
-VertexFrame interpolated(const std::array<VertexFrame, 3>& corners,
-                         const std::array<double, 3>& weights) {
+VertexFrame interpolated(const std::array<VertexFrame, 3>& corners, const CornerWeights& weights) {
   VertexFrame frame;
   for (std::size_t k = 0; k < 3; ++k) {
-    frame.normal = frame.normal + corners[k].normal * weights[k];
-    frame.tangent = frame.tangent + corners[k].tangent * weights[k];
-    frame.bitangent = frame.bitangent + corners[k].bitangent * weights[k];
+    frame.normal += corners[k].normal * weights[k];
+    frame.tangent += corners[k].tangent * weights[k];
+    frame.bitangent += corners[k].bitangent * weights[k];
   }
-  return {direction_of(frame.tangent), direction_of(frame.bitangent), direction_of(frame.normal)};
+  return {unit_of(frame.tangent), unit_of(frame.bitangent), unit_of(frame.normal)};
 }
 
 }  // namespace meshhier::texture

@@ -5,22 +5,25 @@
 // written for that frame, with the vertices' numbers as they are rounded in the file.
 #pragma once
 
+#include "base/lane_vector.h"
 #include "base/vec.h"
 #include "hierarchy/tangent_code.h"
 #include "texture/chart_layout.h"
+#include "texture/texel_samples.h"
 
 #include <array>
 
 namespace meshhier::texture {
 
+/// In single precision, as viewers have it.
 struct VertexFrame {
-  Vec3d tangent, bitangent, normal;
+  FourFloats tangent{}, bitangent{}, normal{};
 
-  Vec3d mixed(const Vec3d& coefficients) const {
-    return tangent * coefficients.x + bitangent * coefficients.y + normal * coefficients.z;
+  FourFloats mixed(FourFloats coefficients) const {
+    return tangent * coefficients[0] + bitangent * coefficients[1] + normal * coefficients[2];
   }
   /// The inverse, of any length.
-  Vec3d coefficients_of(const Vec3d& direction) const;
+  FourFloats coefficients_of(FourFloats direction) const;
 };
 
 /// The tangent of a vertex: where on a surface with its normal the picture's u grows, as a
@@ -31,7 +34,6 @@ TangentCode tangent_of(const ChartPlane& plane, const Vec3f& normal);
 VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent);
 
 /// At a point of a triangle, from its corners.
-VertexFrame interpolated(const std::array<VertexFrame, 3>& corners,
-                         const std::array<double, 3>& weights);
+VertexFrame interpolated(const std::array<VertexFrame, 3>& corners, const CornerWeights& weights);
 
 }  // namespace meshhier::texture

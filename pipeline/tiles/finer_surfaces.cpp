@@ -1,6 +1,7 @@
 #include "pipeline/tiles/finer_surfaces.h"
 
 #include "base/bounds.h"
+#include "texture/vertex_feet.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -78,11 +79,42 @@ class BorderCells {
   std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
 };
 
+/// The vertices of a tile by their numbers in it, or in a neighbour that it has ghosts of.
+class ParentVertices {
+ public:
+  ParentVertices(NodeId node, NodeId parent, const TileMesh& mesh) : is_own_(node == parent) {
+    if (is_own_)
+      return;
+    const auto first = std::ranges::lower_bound(mesh.ghosts, GhostRef{parent.index, 0});
+    auto number = mesh.own_count + static_cast<std::uint32_t>(first - mesh.ghosts.begin());
+    for (auto ghost = first; ghost != mesh.ghosts.end() && ghost->tile == parent.index; ++ghost) {
+      ghosts_.resize(ghost->index + std::size_t{1}, texture::kNoVertex);
+      ghosts_[ghost->index] = number++;
+    }
+  }
+
+  /// Returns the tile's vertices that a finer surface's have become.
+  std::vector<std::uint32_t> beside(const BakeSource& source) const {
+    std::vector<std::uint32_t> vertices(source.positions.size(), texture::kNoVertex);
+    for (std::size_t v = 0; v < source.parents.size(); ++v) {
+      const std::uint16_t parent = source.parents[v];
+      if (is_own_ || parent < ghosts_.size())
+        vertices[v] = is_own_ ? parent : ghosts_[parent];
+    }
+    return vertices;
+  }
+
+ private:
+  bool is_own_;
+  std::vector<std::uint32_t> ghosts_;  ///< by their numbers in the neighbour
+};
+
 /// Returns a part with its own directions alone, so that the whole can go: there may be many
 /// neighbours.
 FinerSurface alone(FinerSurface part, const BakeSource& whole) {
   BakeSource source;
   source.positions = whole.positions;
+  source.parents = whole.parents;
   source.triangles = std::move(part.triangles);
   source.corners = std::move(part.corners);
   source.normals = std::move(part.normals);
@@ -112,25 +144,29 @@ FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> s
 
 }  // namespace
 
-BakeSource bare_source(const TileMesh& mesh) {
+BakeSource bare_source(const TileMesh& mesh, std::vector<std::uint16_t> parents) {
   BakeSource source;
   source.positions = mesh.vertices.positions;
+  source.parents = std::move(parents);
   source.triangles = mesh.interior;
   source.triangles.insert(source.triangles.end(), mesh.border.begin(), mesh.border.end());
   return source;
 }
 
 texture::TexturedSurface FinerSurface::surface() const {
-  return triangles.empty()
-             ? source->surface()
-             : texture::TexturedSurface{source->positions, triangles, corners, &source->image};
+  const bool is_whole = triangles.empty();
+  return {source->positions, is_whole ? source->triangles : triangles,
+          is_whole ? source->corners : corners, &source->image, beside};
 }
 
 texture::NormalSurface FinerSurface::normal_surface() const {
   const bool is_whole = triangles.empty();
-  return {source->positions, is_whole ? source->triangles : triangles,
-          is_whole ? source->normals : normals, is_whole ? source->corners : corners,
-          &source->directions};
+  return {source->positions,
+          is_whole ? source->triangles : triangles,
+          is_whole ? source->normals : normals,
+          is_whole ? source->corners : corners,
+          &source->directions,
+          beside};
 }
 
 std::vector<FinerSurface> finer_surfaces(
@@ -139,11 +175,14 @@ std::vector<FinerSurface> finer_surfaces(
   std::vector<FinerSurface> surfaces;
   const Tree& tree = forest.tree();
   const auto add = [&](NodeId parent, const auto& choose) {
+    const ParentVertices vertices(node, parent, mesh);
     const Tree::Children children = tree.children(parent);
     for (const NodeId child : children.span()) {
       FinerSurface one = choose(source(tree.tile_node(child)));
-      if (one.source && !one.source->triangles.empty())
-        surfaces.push_back(std::move(one));
+      if (!one.source || one.source->triangles.empty())
+        continue;
+      one.beside = vertices.beside(*one.source);
+      surfaces.push_back(std::move(one));
     }
   };
   add(node, [](auto whole) { return FinerSurface{std::move(whole)}; });

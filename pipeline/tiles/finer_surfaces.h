@@ -7,6 +7,7 @@
 #include "texture/corners.h"
 #include "texture/normal_bake.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace meshhier::pipeline {
 
 /// Returns a tile's places and triangles, interior ones first, without picture or directions.
-BakeSource bare_source(const TileMesh& mesh);
+/// `parents`: BakeSource::parents.
+BakeSource bare_source(const TileMesh& mesh, std::vector<std::uint16_t> parents);
 
 /// A finer surface, or the part of it that lies near the border of the tile.
 struct FinerSurface {
@@ -22,6 +24,7 @@ struct FinerSurface {
   std::vector<TileTriangle> triangles{};  ///< empty: all
   std::vector<texture::CornerTexcoords> corners{};
   std::vector<texture::CornerNormals> normals{};
+  std::vector<std::uint32_t> beside{};  ///< for each place one of the tile's, or kNoVertex
 
   texture::TexturedSurface surface() const;
   texture::NormalSurface normal_surface() const;

@@ -66,14 +66,15 @@ TileTexture decode_texture(std::span<const std::byte> bytes) {
   return texture;
 }
 
-using SourceHead = std::array<std::uint64_t, 9>;
+using SourceHead = std::array<std::uint64_t, 10>;
 
 std::vector<std::byte> encode(const BakeSource& source) {
   const texture::NormalTexels& directions = source.directions;
   const SourceHead head{
       source.positions.size(), source.triangles.size(), source.image.width,
       source.image.height,     source.image.channels,   static_cast<std::uint64_t>(source.alpha),
-      directions.width(),      directions.height(),     directions.known().size()};
+      directions.width(),      directions.height(),     directions.known().size(),
+      source.parents.size()};
   storage::Packer packer(sizeof head + source.bytes());
   packer.put(std::span<const std::uint64_t>(head));
   packer.put(all_of(source.positions));
@@ -82,6 +83,7 @@ std::vector<std::byte> encode(const BakeSource& source) {
   packer.put(all_of(source.image.texels));
   packer.put(directions.words());
   packer.put(directions.known());
+  packer.put(all_of(source.parents));
   return packer.take();
 }
 
@@ -102,6 +104,7 @@ BakeSource decode_source(std::span<const std::byte> bytes) {
   auto words = unpacker.get<std::uint64_t>(texture::NormalTexels::word_count(width, height));
   source.directions = {width, height, std::move(words),
                        unpacker.get<texture::NormalTexel>(head[8])};
+  source.parents = unpacker.get<std::uint16_t>(head[9]);
   unpacker.finish();
   return source;
 }
@@ -109,7 +112,8 @@ BakeSource decode_source(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::uint64_t BakeSource::bytes() const {
-  return positions.size() * sizeof(Vec3f) + triangles.size() * sizeof(TileTriangle) +
+  return positions.size() * sizeof(Vec3f) + parents.size() * sizeof(std::uint16_t) +
+         triangles.size() * sizeof(TileTriangle) +
          corners.size() * sizeof(texture::CornerTexcoords) + image.texels.size() +
          directions.bytes() + normals.size() * sizeof(texture::CornerNormals);
 }

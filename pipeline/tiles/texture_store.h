@@ -52,7 +52,8 @@ struct TileTexture {
 /// The surface that the pictures and normal maps of coarser tiles are made of: a tile with its
 /// picture, perhaps reduced, or with its directions.
 struct BakeSource {
-  std::vector<Vec3f> positions;  ///< one for each place
+  std::vector<Vec3f> positions;        ///< one for each place
+  std::vector<std::uint16_t> parents;  ///< of own ones: the vertex of the tile above they become
   std::vector<TileTriangle> triangles;
   std::vector<texture::CornerTexcoords> corners;
   images::Image image;

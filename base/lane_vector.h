@@ -1,0 +1,37 @@
+// Vectors of three in the first lanes of four floats; the last lane is 0, or is not looked at.
+#pragma once
+
+#include "base/four_floats.h"
+#include "base/vec.h"
+
+#include <cmath>
+
+namespace meshhier {
+
+inline FourFloats lanes_of(const Vec3f& v) {
+  return FourFloats{v.x, v.y, v.z, 0};
+}
+inline FourFloats lanes_of(const Vec3d& v) {
+  return lanes_of(to_float(v));
+}
+inline Vec3f vector_of(FourFloats lanes) {
+  return {lanes[0], lanes[1], lanes[2]};
+}
+
+inline float dot_of(FourFloats a, FourFloats b) {
+  const FourFloats product = a * b;
+  return (product[0] + product[1]) + product[2];
+}
+
+inline FourFloats cross_of(FourFloats a, FourFloats b) {
+  const FourInts next{1, 2, 0, 3};
+  return __builtin_shuffle(a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b, next);
+}
+
+/// Of length 1; 0 if it has no length.
+inline FourFloats unit_of(FourFloats lanes) {
+  const float squared = dot_of(lanes, lanes);
+  return squared > 0 ? lanes * (1 / std::sqrt(squared)) : FourFloats{};
+}
+
+}  // namespace meshhier
