@@ -455,7 +455,8 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning =
                "how pictures of tiles are stored; with `jpeg`, those with transparent texels "
                "are PNG; `ktx2` stays compressed in the memory of graphics devices, where others "
-               "take four to eight times as much, and wants Node.js where it is built"},
+               "take four to eight times as much; below a quality of 100 it wants Node.js where "
+               "it is built"},
           kImageFormats, [](auto& c) -> auto& { return c.texture.format.format; })),
       deciding(number(
           {.path = "texture.quality",

@@ -3,6 +3,7 @@
 #include "base/named_value.h"
 #include "images/coders.h"
 #include "images/ktx2_coder.h"
+#include "images/uastc_picture.h"
 
 #include <array>
 #include <utility>
@@ -10,7 +11,14 @@
 namespace meshhier::images {
 namespace {
 
-constexpr CoderProcesses kKtx2Processes{missing_for_ktx2, ktx2_coder_bytes, end_ktx2_coders};
+constexpr CoderProcesses kEtc1sProcesses{missing_for_ktx2, ktx2_coder_bytes, end_ktx2_coders};
+/// UASTC is coded here.
+constexpr bool is_etc1s(int quality) {
+  return quality < kBestQuality;
+}
+constexpr const CoderProcesses* no_processes(int /*quality*/) {
+  return nullptr;
+}
 constexpr std::uint32_t kMostJpegSide = 65500, kMostWebpSide = 16383;
 constexpr std::uint64_t kRgba = 4;
 
@@ -33,7 +41,7 @@ constexpr auto kFormats = std::to_array<FormatCoders>({
      .colours = {0.4, 4, 0},
      .best_colours = {0.4, 4, 0},
      .directions = {0.4, 4, 0},
-     .processes = nullptr},
+     .processes = no_processes},
     {.format = ImageFormat::png,
      .open = open_png,
      .encode = [](const Image& image, int) { return encode_png(image); },
@@ -45,7 +53,7 @@ constexpr auto kFormats = std::to_array<FormatCoders>({
      .colours = {1.5, 4, 0},
      .best_colours = {1.5, 4, 0},
      .directions = {1.5, 4, 0},
-     .processes = nullptr},
+     .processes = no_processes},
     {.format = ImageFormat::webp,
      .open = open_webp,
      .encode = encode_webp,
@@ -60,27 +68,28 @@ constexpr auto kFormats = std::to_array<FormatCoders>({
      .colours = {0.3, 4, 0},
      .best_colours = {0.3, 4, 0},
      .directions = {1.5, 4, 0},
-     .processes = nullptr},
+     .processes = no_processes},
     {.format = ImageFormat::ktx2,
      .open = open_ktx2,
      .encode =
          [](const Image& image, int quality) {
-           const bool is_best = quality == kBestQuality;
-           return encode_ktx2(image, is_best ? Ktx2Content::uastc : Ktx2Content::etc1s, quality);
+           return is_etc1s(quality) ? encode_etc1s(image, quality)
+                                    : encode_uastc(image, Ktx2Meaning::colours);
          },
-     .encode_directions =
-         [](const Image& image, int) {
-           return encode_ktx2(image, Ktx2Content::directions, kBestQuality);
-         },
+     .encode_directions = [](const Image& image,
+                             int) { return encode_uastc(image, Ktx2Meaning::directions); },
      .open_rows = nullptr,
      .most_held_texels = 0,
-     .encoder_bytes = [](std::uint64_t texels,
-                         int) { return 2 * kRgba * texels + ktx2_coder_bytes(texels); },
+     .encoder_bytes =
+         [](std::uint64_t texels, int quality) {
+           return is_etc1s(quality) ? 2 * kRgba * texels + ktx2_coder_bytes(texels)
+                                    : uastc_encoder_bytes(texels);
+         },
      .most_side = kMostKtx2Side,
      .colours = {0.4, 0.5, 2500e-9},
      .best_colours = {1.4, 1, 700e-9},
      .directions = {1.5, 1, 2780e-9},
-     .processes = &kKtx2Processes},
+     .processes = [](int quality) { return is_etc1s(quality) ? &kEtc1sProcesses : nullptr; }},
 });
 static_assert(kFormats.size() == kImageFormats.size());
 static_assert(are_in_order(kFormats, &FormatCoders::format));
@@ -100,20 +109,20 @@ const TexelCosts& costs_of(const NormalMapFormat& maps) {
   return coders_of(maps.format).directions;
 }
 
-std::string missing_coder(ImageFormat format) {
-  const CoderProcesses* const processes = coders_of(format).processes;
+std::string missing_coder(const TextureFormat& textures) {
+  const CoderProcesses* const processes = coders_of(textures.format).processes(textures.quality);
   return processes == nullptr ? "" : processes->missing();
 }
 
-std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels) {
-  const CoderProcesses* const processes = coders_of(format).processes;
+std::uint64_t coder_bytes(const TextureFormat& textures, std::uint64_t texels) {
+  const CoderProcesses* const processes = coders_of(textures.format).processes(textures.quality);
   return processes == nullptr ? 0 : processes->bytes(texels);
 }
 
 void end_coders() {
   for (const FormatCoders& row : kFormats) {
-    if (row.processes != nullptr)
-      row.processes->end();
+    if (const CoderProcesses* const processes = row.processes(1))
+      processes->end();
   }
 }
 

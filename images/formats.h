@@ -22,7 +22,7 @@ struct TexelCosts {
   double seconds;  ///< CPU time of other processes; that of libraries is little beside the baking
 };
 
-/// Processes that code a format for which there is no library.
+/// Processes that code what no library does.
 struct CoderProcesses {
   /// Says in a sentence what keeps this machine from coding, and what to do; empty: it can.
   /// Thread-safe.
@@ -49,7 +49,8 @@ struct FormatCoders {
   std::uint32_t most_side;  ///< the longest side that is written
   /// Costs at a quality of 90, at the best quality, and of normal maps.
   TexelCosts colours, best_colours, directions;
-  const CoderProcesses* processes;  ///< null: a library codes in this process
+  /// Returns the processes that code pictures of a quality; null: this process does.
+  const CoderProcesses* (*processes)(int quality);
 };
 
 /// Return the row of a format, and the costs of a texel in pictures and in normal maps.
@@ -57,9 +58,10 @@ const FormatCoders& coders_of(ImageFormat format);
 const TexelCosts& costs_of(const TextureFormat& textures);
 const TexelCosts& costs_of(const NormalMapFormat& maps);
 
-/// Return CoderProcesses::missing() and bytes() of a format; "" and 0 if a library codes it.
-std::string missing_coder(ImageFormat format);
-std::uint64_t coder_bytes(ImageFormat format, std::uint64_t texels);
+/// Return CoderProcesses::missing() and bytes() of a format; "" and 0 if this process codes it.
+/// Normal maps are all coded in it.
+std::string missing_coder(const TextureFormat& textures);
+std::uint64_t coder_bytes(const TextureFormat& textures, std::uint64_t texels);
 /// Ends the waiting processes of all formats. Thread-safe.
 void end_coders();
 

@@ -40,6 +40,9 @@ class ImageReader {
  public:
   virtual ~ImageReader() = default;
   virtual const ImageInfo& info() const = 0;
+  /// Says in a sentence what keeps this machine from decoding the rows, and what to do; empty: it
+  /// can.
+  virtual std::string missing() const { return {}; }
   /// Reads the next `count` rows, each width * channels bytes; all calls together at most
   /// info().height rows. Throws Error(input) that starts with the picture's name if it is broken or
   /// ends early, and what the source throws.

@@ -14,9 +14,9 @@
 namespace meshhier::images {
 namespace {
 
-// Both numbers are those of coder.mjs.
-constexpr std::uint32_t kProtocol = 1;
-constexpr std::uint32_t kDecode = 3;
+// The numbers are those of coder.mjs.
+constexpr std::uint32_t kProtocol = 2;
+constexpr std::uint32_t kEncode = 0, kDecode = 1;
 using Request = std::array<std::uint32_t, 5>;  ///< kind, width, height, quality, bytes
 
 constexpr const char* kPlaceVariable = "MESHHIER_KTX2";
@@ -30,7 +30,7 @@ struct Coding {
 };
 
 Coding find_coding() {
-  const std::string why = "pictures in KTX2 are coded by Node.js 18 or later";
+  const std::string why = "pictures in KTX2 as ETC1S are coded by Node.js 18 or later";
   const std::optional<std::string> node = storage::find_program("node");
   if (!node) {
     return {{},
@@ -86,12 +86,11 @@ std::string missing_for_ktx2() {
   return find_coding().missing;
 }
 
-std::vector<std::byte> encode_ktx2(const Image& image, Ktx2Content content, int quality) {
+std::vector<std::byte> encode_etc1s(const Image& image, int quality) {
   assert(image.width % 4 == 0 && image.height % 4 == 0);
   assert(std::max(image.width, image.height) <= kMostKtx2Side);
   const std::vector<std::byte> texels = with_alpha(image);
-  const Request request{static_cast<std::uint32_t>(content), image.width, image.height,
-                        static_cast<std::uint32_t>(quality),
+  const Request request{kEncode, image.width, image.height, static_cast<std::uint32_t>(quality),
                         static_cast<std::uint32_t>(texels.size())};
   std::optional<storage::WorkerPool::Answer> result = coders().ask(request, texels);
   if (!result) {

@@ -1,6 +1,7 @@
-// KTX2 of Basis Universal: pictures that graphics devices keep compressed.
+// KTX2 of Basis Universal as ETC1S: pictures that graphics devices keep in half a byte a texel.
 //
-// Problem. The library for it is no package of Debian's, but one of npm's.
+// Problem. The library for it is no package of Debian's, but one of npm's. (UASTC, of a byte a
+// texel, is coded here: uastc_picture.h, ktx2_reader.cpp.)
 //
 // Idea. A program of Node.js (images/ktx2/coder.mjs) codes, in processes of its own, each for one
 // picture at a time. A process that has coded waits for the next picture:
@@ -12,7 +13,7 @@
 // Invariant. A process has one picture at a time, so as many run as threads ask. An answer depends
 // on its request alone. A process that dies takes only its own picture with it.
 //
-// Cost. A process takes 130 MiB and keeps its highest memory; a texel takes 0.7 to 2.8 us of CPU
+// Cost. A process takes 130 MiB and keeps its highest memory; a texel takes 2.5 us of CPU
 // (formats.cpp).
 #pragma once
 
@@ -30,20 +31,15 @@ namespace meshhier::images {
 /// encoder's memory.
 inline constexpr std::uint32_t kMostKtx2Side = 2048;
 
-enum class Ktx2Content : std::uint32_t {
-  etc1s = 0,      ///< colours in half a byte a texel: like JPEG at the same quality, and coarser
-  uastc = 1,      ///< colours in a byte a texel: nobody tells them from the picture
-  directions = 2  ///< directions of a normal map in a byte a texel
-};
-
 /// Says in a sentence what keeps this machine from coding, and what to do; empty: it can.
 std::string missing_for_ktx2();
 
-/// Encodes a picture with all smaller ones, down to a single texel. Deterministic for one version
-/// of the library. `quality`: 1 ... 100; it counts for etc1s. Requires sides that are multiples of
-/// 4, up to kMostKtx2Side. Throws Error(io) if missing_for_ktx2(), or if processes end while they
-/// have the picture; Error(internal) with the library's words. Thread-safe.
-std::vector<std::byte> encode_ktx2(const Image& image, Ktx2Content content, int quality);
+/// Encodes a picture with all smaller ones, down to a single texel: like JPEG at the same quality,
+/// and coarser. Deterministic for one version of the library. `quality`: 1 ... 99. Requires sides
+/// that are multiples of 4, up to kMostKtx2Side. Throws Error(io) if missing_for_ktx2(), or if
+/// processes end while they have the picture; Error(internal) with the library's words.
+/// Thread-safe.
+std::vector<std::byte> encode_etc1s(const Image& image, int quality);
 
 /// Decodes the largest of a file's pictures. `shape`: its size and channels, as the file's head
 /// says; its texels do not count. Throws Error(input) that starts with `name` if it is broken,

@@ -1,8 +1,9 @@
 #include "base/error.h"
 #include "images/coders.h"
 #include "images/ktx2_coder.h"
+#include "images/ktx2_head.h"
 #include "images/source_buffer.h"
-#include "storage/io/little_endian.h"
+#include "images/uastc_block.h"
 
 #include <algorithm>
 #include <array>
@@ -12,139 +13,157 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
+
+#include <zstd.h>
 
 namespace meshhier::images {
 namespace {
 
-// KTX 2.0: bytes of the head, and where in it numbers lie.
-constexpr std::size_t kKtx2HeadBytes = 80, kKtx2LevelBytes = 24;
-constexpr std::size_t kVkFormatAt = 12, kWidthAt = 20, kHeightAt = 24, kDepthAt = 28,
-                      kLayersAt = 32, kFacesAt = 36, kLevelsAt = 40, kDescriptionAt = 48,
-                      kDescriptionBytesAt = 52, kGlobalDataAt = 64;
-constexpr std::uint32_t kMostLevels = 16;
-// Khronos Data Format: where the first block says its model, and its samples their channels.
-constexpr std::size_t kModelAt = 12, kSampleAt = 28, kSampleBytes = 16, kChannelAt = 3;
-constexpr std::uint32_t kEtc1s = 163, kUastc = 166;
-constexpr std::uint32_t kChannelBits = 0x0f, kUastcRgba = 3;
-constexpr std::uint32_t kLeastDescription = kSampleAt + kSampleBytes;
-constexpr std::uint32_t kMostDescription = 1024;
-
-/// No coder makes more of a picture with all smaller ones.
-constexpr std::uint64_t kMostKtx2BytesPerTexel = 4;
-constexpr std::uint64_t kMostSlack = std::uint64_t{1} << 20;
-
-class Ktx2Reader final : public ImageReader {
+/// What readers of both kinds have.
+class Ktx2Reader : public ImageReader {
  public:
-  Ktx2Reader(ByteSource source, std::string name)
-      : source_(std::move(source)), name_(std::move(name)) {
-    read_head();
+  Ktx2Reader(ByteSource source, std::string name, Ktx2Head head)
+      : head_(std::move(head)), source_(std::move(source)), name_(std::move(name)) {
+    info_ = {.format = ImageFormat::ktx2,
+             .width = head_.width,
+             .height = head_.height,
+             .channels = head_.channels,
+             .decoder_bytes = 0};
   }
   const ImageInfo& info() const override { return info_; }
-  void read_rows(std::uint8_t* rows, std::uint32_t count) override;
 
- private:
-  [[noreturn]] void fail(std::string_view message) const {
-    throw Error(ErrorCode::input, name_ + ": " + std::string(message));
+ protected:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(ErrorCode::input, name_ + ": the picture is broken: " + message);
   }
-  void read_all(std::uint64_t offset, std::span<std::byte> into) const {
-    if (read_at(source_, offset, into) < into.size())
-      fail(kEndsEarly);
+  std::vector<std::byte> read_part(std::uint64_t offset, std::uint64_t count) const {
+    std::vector<std::byte> bytes(count);
+    if (read_at(source_, offset, bytes) < count)
+      throw Error(ErrorCode::input, name_ + ": " + std::string(kEndsEarly));
+    return bytes;
   }
-  void read_head();
-  std::uint32_t channels_of(std::span<const std::byte> head) const;
-  std::uint64_t end_of(std::span<const std::byte> head) const;
+  std::uint64_t texels() const { return std::uint64_t{head_.width} * head_.height; }
 
+  Ktx2Head head_;
   ByteSource source_;
   std::string name_;
   ImageInfo info_;
-  std::uint64_t file_bytes_ = 0;
   std::uint32_t next_row_ = 0;  ///< the next row to be handed out
+};
+
+/// Another program decodes these as a whole.
+class Etc1sReader final : public Ktx2Reader {
+ public:
+  Etc1sReader(ByteSource source, std::string name, Ktx2Head head)
+      : Ktx2Reader(std::move(source), std::move(name), std::move(head)) {
+    info_.decoder_bytes = head_.file_bytes + 2 * 4 * texels() + ktx2_coder_bytes(texels());
+  }
+  std::string missing() const override { return missing_for_ktx2(); }
+  void read_rows(std::uint8_t* rows, std::uint32_t count) override {
+    assert(count <= info_.height - next_row_);
+    if (whole_.texels.empty()) {
+      Image shape;
+      shape.width = info_.width;
+      shape.height = info_.height;
+      shape.channels = info_.channels;
+      whole_ = decode_ktx2(read_part(0, head_.file_bytes), shape, name_);
+    }
+    std::copy_n(whole_.at(0, next_row_), std::size_t{count} * info_.width * info_.channels, rows);
+    next_row_ += count;
+  }
+
+ private:
   Image whole_;
 };
 
-std::uint32_t u32(std::span<const std::byte> bytes, std::size_t at) {
-  return storage::load_little<std::uint32_t>(bytes.data() + at);
-}
-
-std::uint64_t u64(std::span<const std::byte> bytes, std::size_t at) {
-  return storage::load_little<std::uint64_t>(bytes.data() + at);
-}
-
-void Ktx2Reader::read_head() {
-  std::array<std::byte, kKtx2HeadBytes> head{};
-  read_all(0, head);
-  const std::uint32_t width = u32(head, kWidthAt), height = u32(head, kHeightAt);
-  if (u32(head, kVkFormatAt) != 0 || u32(head, kDepthAt) != 0 || u32(head, kLayersAt) > 1 ||
-      u32(head, kFacesAt) != 1 || u32(head, kLevelsAt) == 0 || u32(head, kLevelsAt) > kMostLevels)
-    fail("of KTX2, single pictures of Basis Universal (ETC1S, UASTC) are read");
-  if (width == 0 || height == 0 || std::max(width, height) > kMaxImageSide)
-    fail("the picture is broken: a side has no texels, or more than " +
-         std::to_string(kMaxImageSide));
-  info_ = {.format = ImageFormat::ktx2,
-           .width = width,
-           .height = height,
-           .channels = channels_of(head),
-           .decoder_bytes = 0};
-  file_bytes_ = end_of(head);
-  const std::uint64_t texels = std::uint64_t{width} * height;
-  info_.decoder_bytes = file_bytes_ + 2 * 4 * texels + ktx2_coder_bytes(texels);
-}
-
-std::uint32_t Ktx2Reader::channels_of(std::span<const std::byte> head) const {
-  const std::uint32_t bytes = u32(head, kDescriptionBytesAt);
-  if (bytes < kLeastDescription || bytes > kMostDescription)
-    fail("the picture is broken: its description has an impossible size");
-  std::vector<std::byte> description(bytes);
-  read_all(u32(head, kDescriptionAt), description);
-  const auto model = std::to_integer<std::uint32_t>(description[kModelAt]);
-  if (model == kEtc1s)
-    return bytes >= kLeastDescription + kSampleBytes ? 4 : 3;
-  if (model != kUastc)
-    fail("of KTX2, pictures of Basis Universal (ETC1S, UASTC) are read");
-  const auto channel = std::to_integer<std::uint32_t>(description[kSampleAt + kChannelAt]);
-  return (channel & kChannelBits) == kUastcRgba ? 4 : 3;
-}
-
-/// Returns the end of all levels, and of the data that they share.
-std::uint64_t Ktx2Reader::end_of(std::span<const std::byte> head) const {
-  const std::uint64_t most =
-      std::uint64_t{info_.width} * info_.height * kMostKtx2BytesPerTexel + kMostSlack;
-  std::vector<std::byte> levels(std::size_t{u32(head, kLevelsAt)} * kKtx2LevelBytes);
-  read_all(kKtx2HeadBytes, levels);
-  std::uint64_t end = kKtx2HeadBytes + levels.size();
-  const auto add = [&](std::uint64_t offset, std::uint64_t bytes) {
-    if (offset > most || bytes > most - offset)
-      fail("the picture is broken: it says that it is larger than any picture of its size");
-    end = std::max(end, offset + bytes);
-  };
-  for (std::size_t at = 0; at < levels.size(); at += kKtx2LevelBytes)
-    add(u64(levels, at), u64(levels, at + 8));
-  add(u64(head, kGlobalDataAt), u64(head, kGlobalDataAt + 8));
-  return end;
-}
-
-void Ktx2Reader::read_rows(std::uint8_t* rows, std::uint32_t count) {
-  assert(count <= info_.height - next_row_);
-  if (whole_.texels.empty()) {
-    std::vector<std::byte> file(file_bytes_);
-    read_all(0, file);
-    Image shape;
-    shape.width = info_.width;
-    shape.height = info_.height;
-    shape.channels = info_.channels;
-    whole_ = decode_ktx2(file, shape, name_);
+/// Holds the blocks of the largest level, and the texels of one row of them.
+class UastcReader final : public Ktx2Reader {
+ public:
+  UastcReader(ByteSource source, std::string name, Ktx2Head head)
+      : Ktx2Reader(std::move(source), std::move(name), std::move(head)) {
+    constexpr std::uint64_t kUnpacking = std::uint64_t{1} << 18;
+    if (head_.levels[0].unpacked != block_bytes())
+      fail("its blocks are not those of its size");
+    info_.decoder_bytes = head_.levels[0].bytes + block_bytes() + kUnpacking +
+                          kBlockSide * std::uint64_t{head_.width} * head_.channels;
   }
-  std::copy_n(whole_.at(0, next_row_), std::size_t{count} * info_.width * info_.channels, rows);
-  next_row_ += count;
+  void read_rows(std::uint8_t* rows, std::uint32_t count) override {
+    assert(count <= info_.height - next_row_);
+    if (blocks_.empty())
+      read_blocks();
+    const std::size_t row = std::size_t{info_.width} * info_.channels;
+    for (std::uint32_t i = 0; i < count; ++i, ++next_row_) {
+      if (next_row_ % kBlockSide == 0)
+        decode_strip(next_row_ / kBlockSide);
+      std::copy_n(strip_.begin() + static_cast<std::ptrdiff_t>(next_row_ % kBlockSide * row), row,
+                  rows + i * row);
+    }
+  }
+
+ private:
+  std::uint32_t columns() const { return (head_.width + kBlockSide - 1) / kBlockSide; }
+  std::uint64_t block_bytes() const {
+    const std::uint32_t rows = (head_.height + kBlockSide - 1) / kBlockSide;
+    return std::uint64_t{columns()} * rows * kUastcBlockBytes;
+  }
+  void read_blocks();
+  void decode_strip(std::uint32_t row);
+  void put_texels(std::uint32_t column, const std::array<Rgba, kBlockTexels>& texels);
+
+  std::vector<std::byte> blocks_;
+  std::vector<std::uint8_t> strip_;
+};
+
+void UastcReader::read_blocks() {
+  std::vector<std::byte> level = read_part(head_.levels[0].offset, head_.levels[0].bytes);
+  const std::uint64_t wanted = block_bytes();
+  if (head_.scheme == ktx2::kPlain) {
+    if (level.size() != wanted)
+      fail("its blocks are not those of its size");
+    blocks_ = std::move(level);
+    return;
+  }
+  const unsigned long long said = ZSTD_getFrameContentSize(level.data(), level.size());
+  if (said == ZSTD_CONTENTSIZE_ERROR || (said != ZSTD_CONTENTSIZE_UNKNOWN && said != wanted))
+    fail("its level is no Zstandard data of its size");
+  std::vector<std::byte> blocks(wanted);
+  if (ZSTD_decompress(blocks.data(), blocks.size(), level.data(), level.size()) != wanted)
+    fail("its level is no Zstandard data that can be unpacked");
+  blocks_ = std::move(blocks);
+}
+
+void UastcReader::decode_strip(std::uint32_t row) {
+  strip_.resize(kBlockSide * std::size_t{info_.width} * info_.channels);
+  for (std::uint32_t column = 0; column < columns(); ++column) {
+    const std::size_t number = std::size_t{row} * columns() + column;
+    const auto block = unpack_block(std::span<const std::byte, kUastcBlockBytes>(
+        blocks_.data() + number * kUastcBlockBytes, kUastcBlockBytes));
+    if (!block)
+      fail("a block has a mode or a pattern that there is not");
+    put_texels(column, texels_of(*block));
+  }
+}
+
+void UastcReader::put_texels(std::uint32_t column, const std::array<Rgba, kBlockTexels>& texels) {
+  const std::uint32_t left = column * kBlockSide;
+  const std::uint32_t width = std::min(kBlockSide, info_.width - left);
+  for (std::uint32_t y = 0; y < kBlockSide; ++y) {
+    std::uint8_t* const to = strip_.data() + (std::size_t{y} * info_.width + left) * info_.channels;
+    for (std::uint32_t x = 0; x < width; ++x)
+      images::copy_texel(texels[y * kBlockSide + x].data(), to + std::size_t{x} * info_.channels,
+                         info_.channels);
+  }
 }
 
 }  // namespace
 
 std::unique_ptr<ImageReader> open_ktx2(ByteSource source, const std::string& name) {
-  return std::make_unique<Ktx2Reader>(std::move(source), name);
+  Ktx2Head head = read_ktx2_head(source, name);
+  if (head.model == ktx2::kEtc1s)
+    return std::make_unique<Etc1sReader>(std::move(source), name, std::move(head));
+  return std::make_unique<UastcReader>(std::move(source), name, std::move(head));
 }
 
 }  // namespace meshhier::images

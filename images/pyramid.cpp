@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -35,6 +37,17 @@ void mean_of_transparent(const LightTable& table, const Four& texels, std::uint8
       sum += table.light(texel[c]) * texel[3];
     mean[c] = table.value(sum / alpha);
   }
+}
+
+void mean_of_directions(const Four& texels, std::uint8_t* mean) {
+  constexpr float kHalf = 127.5F, kZero = 4 * kHalf;
+  std::array<float, 3> sum{};
+  for (std::size_t c = 0; c < 3; ++c)
+    sum[c] = static_cast<float>(texels[0][c] + texels[1][c] + texels[2][c] + texels[3][c]) - kZero;
+  const float length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  const float scale = length > 0 ? kHalf / length : 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    mean[c] = static_cast<std::uint8_t>(kHalf + sum[c] * scale + 0.5F);
 }
 
 template <std::size_t kChannels, class Mean>
@@ -73,6 +86,12 @@ void halve_rows(const std::uint8_t* above, const std::uint8_t* below, std::uint3
     halve<3>(above, below, width, means,
              [&](const Four& texels, std::uint8_t* mean) { mean_of_opaque(table, texels, mean); });
   }
+}
+
+void halve_directions(const std::uint8_t* above, const std::uint8_t* below, std::uint32_t width,
+                      [[maybe_unused]] std::uint32_t channels, std::uint8_t* means) {
+  assert(channels == 3);
+  halve<3>(above, below, width, means, mean_of_directions);
 }
 
 }  // namespace meshhier::images

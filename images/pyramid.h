@@ -29,4 +29,9 @@ TexelSize level_size(TexelSize picture, std::uint32_t level);
 void halve_rows(const std::uint8_t* above, const std::uint8_t* below, std::uint32_t width,
                 std::uint32_t channels, std::uint8_t* means);
 
+/// The same for directions, whose channels are 127.5 times (a coordinate + 1): means that are
+/// brought to unit length. Requires 3 channels.
+void halve_directions(const std::uint8_t* above, const std::uint8_t* below, std::uint32_t width,
+                      std::uint32_t channels, std::uint8_t* means);
+
 }  // namespace meshhier::images

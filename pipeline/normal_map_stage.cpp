@@ -93,14 +93,13 @@ double area_of(const BakeSource& source) {
 constexpr std::uint64_t kFramedTriangleBytes = 600;
 
 /// Returns the memory of a map at work, and of the directions that it is made of.
-std::uint64_t map_bytes(ImageFormat format, std::uint32_t side) {
+std::uint64_t map_bytes(std::uint32_t side) {
   constexpr double kTexelBytes = 70;
   constexpr double kSources = 16;
   constexpr double kShown = 0.45;  // so much of a picture's texels is covered
   const std::uint64_t texels = std::uint64_t{side} * side;
   constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
-  return images::coder_bytes(format, texels) +
-         static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
+  return static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
 }
 
 class MapStage {
@@ -120,7 +119,7 @@ class MapStage {
       textures_.put(node, {}, source, {});
       return;
     }
-    const execution::MemoryGate::Hold held = gate_.enter(map_bytes(job_.normal_map_format, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(map_bytes(side_));
     const std::vector<FinerSurface> finer =
         finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
     std::vector<texture::NormalSurface> surfaces;
@@ -253,7 +252,7 @@ void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal
 }
 
 StageMemory normal_map_memory(const JobSize& job) {
-  const std::uint64_t largest = map_bytes(job.normal_map_format, job.normal_map_side);
+  const std::uint64_t largest = map_bytes(job.normal_map_side);
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kFramedTriangleBytes;
   return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,

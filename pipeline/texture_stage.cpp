@@ -147,7 +147,7 @@ std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side)
 }
 
 /// Returns the memory of a simplified tile's picture, and of the finer ones that it is baked from.
-std::uint64_t bake_bytes(ImageFormat format, std::uint32_t side) {
+std::uint64_t bake_bytes(const TextureFormat& format, std::uint32_t side) {
   constexpr std::uint64_t kBakedBytes = 64;
   constexpr std::uint64_t kSources = 16;
   constexpr std::uint64_t kSourceTexels = 2;
@@ -253,7 +253,7 @@ class TextureMaker {
     const TileMesh mesh = forest_.load(node).mesh;
     BakeSource source = bare_source(mesh, forest_.published_parent_map(node));
     TexelSizes texels = texels_below(node);
-    const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(format_.format, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(format_, side_));
     if (!source.triangles.empty()) {
       const std::vector<FinerSurface> finer = finer_surfaces(
           forest_, node, mesh, [&](NodeId child) { return textures_.source(child); });
@@ -355,8 +355,8 @@ StageMemory texture_memory(const JobSize& job) {
   const images::WrittenImage leaf{stored_format(job.pictures, job.alpha), job.pictures.quality,
                                   leaf_side(job.pictures.format), leaf_side(job.pictures.format),
                                   4};
-  const std::uint64_t largest = std::max(cut_bytes(leaf, job.picture_side),
-                                         bake_bytes(job.pictures.format, job.picture_side));
+  const std::uint64_t largest =
+      std::max(cut_bytes(leaf, job.picture_side), bake_bytes(job.pictures, job.picture_side));
   // Items that wait for room have their geometry: read, ordered, cut into charts.
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;

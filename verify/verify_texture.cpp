@@ -1,7 +1,6 @@
 // Checks the parts that only tiles with a picture or a normal map have: splits by texture
 // coordinates, and the pictures.
 #include "base/error.h"
-#include "images/formats.h"
 #include "images/image_codec.h"
 #include "storage/format/layout.h"
 #include "verify/verify_parts.h"
@@ -82,7 +81,7 @@ void read_picture(const TileImage& image, const std::string& name) {
   }
   if (image.alpha == AlphaMode::opaque && info.channels != 3)
     throw Error(ErrorCode::corrupt, name + " has alpha, but the material is opaque");
-  if (!images::missing_coder(info.format).empty())
+  if (!reader->missing().empty())
     return;
   constexpr std::uint32_t kRows = 16;
   std::vector<std::uint8_t> rows(std::size_t{kRows} * info.width * info.channels);

@@ -291,8 +291,8 @@ void verify_tiles(const VerifyJob& job) {
   job.checks.push_back(fmt::format(
       "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
       records.size() - job.tiles.unreadable_count(), off_target));
-  if (const auto format = job.reader.manifest().image_format()) {
-    if (const std::string missing = images::missing_coder(*format); !missing.empty())
+  if (const auto& textures = job.reader.manifest().textures) {
+    if (const std::string missing = images::missing_coder(*textures); !missing.empty())
       job.checks.push_back("pictures: their heads alone, as " + missing);
   }
   job.checks.push_back(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encodes and decodes KTX2 (Basis Universal) for a program that speaks to it by one socket, which is its standard input and output: images/ktx2_coder.cpp.
+// Encodes and decodes ETC1S in KTX2 (Basis Universal) for a program that speaks to it by one socket, which is its standard input and output: images/ktx2_coder.cpp.
 // It is done when that is closed, or after a failure. Numbers are unsigned, 32 bits, little endian.
 //
 //   greeting   PROTOCOL
@@ -9,13 +9,11 @@
 import { readSync, writeSync } from 'node:fs';
 import createBasis from './node_modules/ktx2-encoder/dist/basis/basis_encoder.js';
 
-const PROTOCOL = 1;
-const KINDS = { etc1s: 0, uastc: 1, directions: 2, decode: 3 };
+const PROTOCOL = 2;
+const KINDS = { encode: 0, decode: 1 };
 const [INPUT, OUTPUT] = [0, 1];
 
 const ETC1S_EFFORT = 1; // 0 ... 6; 2 takes 1.7 times as long for 0.1 dB
-const UASTC_COLOURS = 0; // 0 ... 4; 1 takes 4 times as long for 0.4 dB
-const UASTC_DIRECTIONS = 1; // 0.5 degrees better than 0, 2 takes 3 times as long for 0.04
 const MOST_ETC1S_QUALITY = 255;
 const RAW_PIXELS = 0;
 const RGBA32 = 13;
@@ -43,31 +41,23 @@ function words(...values) {
   return bytes;
 }
 
-function settle(encoder, kind, quality) {
-  const isColour = kind !== KINDS.directions;
+function settle(encoder, quality) {
   encoder.setCreateKTX2File(true);
-  encoder.setUASTC(kind !== KINDS.etc1s);
-  if (!isColour) encoder.setNormalMapPreset();
-  encoder.setPerceptual(isColour);
-  encoder.setKTX2AndBasisSRGBTransferFunc(isColour);
+  encoder.setUASTC(false);
+  encoder.setPerceptual(true);
+  encoder.setKTX2AndBasisSRGBTransferFunc(true);
   encoder.setMipGen(true);
   encoder.setMipFilter('box'); // as devices do it: nothing of another chart comes in
-  encoder.setMipSRGB(isColour);
-  encoder.setMipRenormalize(!isColour);
+  encoder.setMipSRGB(true);
   encoder.setMipWrapping(false);
-  if (kind === KINDS.etc1s) {
-    encoder.setQualityLevel(Math.max(1, Math.round((quality * MOST_ETC1S_QUALITY) / 100)));
-    encoder.setETC1SCompressionLevel(ETC1S_EFFORT);
-  } else {
-    encoder.setKTX2UASTCSupercompression(true);
-    encoder.setPackUASTCFlags(isColour ? UASTC_COLOURS : UASTC_DIRECTIONS);
-  }
+  encoder.setQualityLevel(Math.max(1, Math.round((quality * MOST_ETC1S_QUALITY) / 100)));
+  encoder.setETC1SCompressionLevel(ETC1S_EFFORT);
 }
 
-function encode(basis, kind, width, height, quality, texels) {
+function encode(basis, width, height, quality, texels) {
   const encoder = new basis.BasisEncoder();
   try {
-    settle(encoder, kind, quality);
+    settle(encoder, quality);
     if (!encoder.setSliceSourceImage(0, texels, width, height, RAW_PIXELS)) throw new Error('the encoder does not take its texels');
     const made = new Uint8Array(Math.ceil((4 / 3) * texels.length) + SLACK);
     const count = encoder.encode(made);
@@ -102,7 +92,7 @@ async function main() {
     if (bytes === null) return;
     let [status, answer] = [0, bytes];
     try {
-      answer = kind === KINDS.decode ? decode(basis, width, height, bytes) : encode(basis, kind, width, height, quality, bytes);
+      answer = kind === KINDS.decode ? decode(basis, width, height, bytes) : encode(basis, width, height, quality, bytes);
     } catch (error) {
       [status, answer] = [1, Buffer.from(error instanceof Error ? error.message : String(error))];
     }

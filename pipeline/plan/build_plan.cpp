@@ -145,7 +145,8 @@ void check_coders(const JobSize& job) {
   if (!job.textured && job.normal_map_side == 0)
     return;
   const ImageFormat format = job.textured ? job.pictures.format : job.normal_map_format;
-  if (const std::string missing = images::missing_coder(format); !missing.empty())
+  const std::string missing = job.textured ? images::missing_coder(job.pictures) : "";
+  if (!missing.empty())
     throw Error(ErrorCode::usage, missing);
   const std::uint32_t side = job.textured ? job.picture_side : job.normal_map_side;
   const std::uint32_t most = images::coders_of(format).most_side;

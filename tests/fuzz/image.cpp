@@ -3,6 +3,7 @@
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
 #include "images/image_codec.h"
+#include "storage/io/little_endian.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,10 +23,19 @@ constexpr std::uint64_t kMostTexels = 1 << 16;
 constexpr std::size_t kLittle = 7;
 const std::string kName = "picture";
 
-bool starts_with_mark(Bytes input) {
+/// Says whether it is KTX2 of any kind but UASTC.
+bool is_of_another_program(Bytes input) {
   constexpr std::string_view kKtx2 = "\xabKTX 20";
-  return std::ranges::equal(input.first(std::min(input.size(), kKtx2.size())),
-                            std::as_bytes(std::span(kKtx2)));
+  constexpr std::size_t kDescriptionAt = 48, kModelAt = 12;
+  constexpr auto kUastc = std::byte{166};
+  if (!std::ranges::equal(input.first(std::min(input.size(), kKtx2.size())),
+                          std::as_bytes(std::span(kKtx2))))
+    return false;
+  if (input.size() < kDescriptionAt + sizeof(std::uint32_t))
+    return true;
+  const std::size_t model =
+      std::size_t{storage::load_little<std::uint32_t>(input.data() + kDescriptionAt)} + kModelAt;
+  return model >= input.size() || input[model] != kUastc;
 }
 
 images::ByteSource source_of(Bytes input) {
@@ -50,8 +60,8 @@ Image read_by_rows(Bytes input) {
 }  // namespace
 
 void image(Bytes input) {
-  // Another program decodes these: their heads are read here.
-  if (starts_with_mark(input)) {
+  // Their heads are read here.
+  if (is_of_another_program(input)) {
     refusal({ErrorCode::input}, kName, [&] { images::open_image(source_of(input), kName); });
     return;
   }

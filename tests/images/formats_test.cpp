@@ -22,7 +22,7 @@ template <class Test>
 void for_each_format(const Test& test) {
   for (const ImageFormatRow& row : kImageFormats) {
     SCOPED_TRACE(row.name);
-    if (missing_coder(row.value).empty())
+    if (missing_coder({row.value, 1, true}).empty())
       test(row);
   }
   end_coders();
@@ -81,10 +81,12 @@ TEST(FormatsTest, NamesAndEndingsAreThoseOfOneFormat) {
 
 TEST(FormatsTest, LibrariesMissNothing) {
   for (const ImageFormatRow& row : kImageFormats) {
-    if (coders_of(row.value).processes != nullptr)
-      continue;
-    EXPECT_EQ(missing_coder(row.value), "");
-    EXPECT_EQ(coder_bytes(row.value, 1 << 20), 0U);
+    for (const int quality : {1, kBestQuality}) {
+      if (coders_of(row.value).processes(quality) != nullptr)
+        continue;
+      EXPECT_EQ(missing_coder({row.value, quality, true}), "");
+      EXPECT_EQ(coder_bytes({row.value, quality, true}, 1 << 20), 0U);
+    }
   }
 }
 

@@ -235,7 +235,9 @@ std::vector<NamedFile> small_files() {
       {"webp_lossy", webp_file(image, 80)},
       {"webp_lossy_alpha", webp_file(clear, 80)},
       {"webp_lossless", webp_file(image, 100)},
-      {"webp_lossless_alpha", webp_file(clear, 100)}};
+      {"webp_lossless_alpha", webp_file(clear, 100)},
+      {"ktx2_uastc", encode_image(waves(24, 20), ImageFormat::ktx2, kBestQuality)},
+      {"ktx2_uastc_alpha", encode_image(waves(24, 20, 4), ImageFormat::ktx2, kBestQuality)}};
 }
 
 }  // namespace meshhier::images

@@ -3,7 +3,6 @@
 #include "config/config.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_codec.h"
-#include "images/ktx2_coder.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/files_of.h"
@@ -388,8 +387,6 @@ TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothing) {
 }
 
 TEST_F(TexturesTest, Ktx2IsTheSameWhateverBuildsIt) {
-  if (const std::string missing = images::missing_for_ktx2(); !missing.empty())
-    GTEST_SKIP() << missing;
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
   job.texture.format = {ImageFormat::ktx2, 100, true};
   build(job);
