@@ -87,8 +87,8 @@ constexpr auto kFormats = std::to_array<FormatCoders>({
          },
      .most_side = kMostKtx2Side,
      .colours = {0.4, 0.5, 2500e-9},
-     .best_colours = {1.4, 1, 700e-9},
-     .directions = {1.5, 1, 2780e-9},
+     .best_colours = {1.4, 1, 120e-9},
+     .directions = {1.5, 1, 300e-9},
      .processes = [](int quality) { return is_etc1s(quality) ? &kEtc1sProcesses : nullptr; }},
 });
 static_assert(kFormats.size() == kImageFormats.size());

@@ -19,7 +19,7 @@ namespace meshhier::images {
 struct TexelCosts {
   double file_bytes;
   double device_bytes;  ///< on a graphics device that knows blocks, without smaller pictures
-  double seconds;  ///< CPU time of other processes; that of libraries is little beside the baking
+  double seconds;  ///< CPU time of coding KTX2; that of other formats is little beside the baking
 };
 
 /// Processes that code what no library does.

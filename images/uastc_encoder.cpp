@@ -1,7 +1,6 @@
 #include "images/uastc_encoder.h"
 
 #include "images/uastc_hints.h"
-#include "images/uastc_line.h"
 #include "images/uastc_subsets.h"
 
 #include <algorithm>
@@ -19,13 +18,8 @@ constexpr float kLongLine = 40;   ///< from it on the finest weights count
 /// before, those of one colour.
 constexpr float kNewBytes = 15, kReusedBytes = 9, kSolidBytes = 7;
 
-constexpr std::uint8_t kShortMode = 5, kLongMode = 18, kPlaneMode = 6, kAlphaMode = 10,
-                       kShortAlphaMode = 12, kAlphaPlaneMode = 11;
-
-struct Candidate {
-  UastcBlock block;
-  float error = 1e30F;
-};
+constexpr std::uint8_t kShortMode = 5, kLongMode = 18, kPlaneMode = 6, kFineSubsetMode = 2,
+                       kAlphaMode = 10, kShortAlphaMode = 12, kAlphaPlaneMode = 11;
 
 // A decoder cuts what is behind the point, after it has multiplied by 257 / 256: values are raised
 // so that this rounds.
@@ -53,16 +47,16 @@ void put_weights(const Sixteen& weights, std::size_t first, std::size_t step, Ua
 }
 
 /// Keeps the better one.
-void keep_better(const Candidate& other, Candidate& best) {
+void keep_better(const UastcCandidate& other, UastcCandidate& best) {
   if (other.error < best.error)
     best = other;
 }
 
 template <std::size_t kChannels>
-Candidate with_one_line(const Channels<kChannels>& texels, const Line<kChannels>& principal,
-                        std::uint8_t mode) {
+UastcCandidate with_one_line(const Channels<kChannels>& texels, const Line<kChannels>& principal,
+                             std::uint8_t mode) {
   const auto line = fit_line(texels, {}, principal, uastc_mode(mode));
-  Candidate made;
+  UastcCandidate made;
   made.error = line.error;
   made.block.mode = mode;
   put_line(line, 0, made.block);
@@ -94,8 +88,8 @@ std::size_t worst_channel(const Channels<kChannels>& texels, const UastcBlock& b
 
 /// Fits a channel for itself, and a line through the others.
 template <std::size_t kChannels>
-Candidate with_two_planes(const Channels<kChannels>& texels, std::size_t second,
-                          std::uint8_t mode) {
+UastcCandidate with_two_planes(const Channels<kChannels>& texels, std::size_t second,
+                               std::uint8_t mode) {
   Channels<kChannels - 1> others;
   std::array<std::size_t, kChannels - 1> numbers{};
   for (std::size_t c = 0, at = 0; c < kChannels; ++c) {
@@ -106,7 +100,7 @@ Candidate with_two_planes(const Channels<kChannels>& texels, std::size_t second,
   const UastcMode& row = uastc_mode(mode);
   const auto line = fit_line(others, {}, principal_line(others, {}), row);
   const auto own = fit_line(alone, {}, principal_line(alone, {}), row);
-  Candidate made;
+  UastcCandidate made;
   made.error = line.error + own.error;
   made.block.mode = mode;
   made.block.plane_channel = static_cast<std::uint8_t>(second);
@@ -120,9 +114,9 @@ Candidate with_two_planes(const Channels<kChannels>& texels, std::size_t second,
   return made;
 }
 
-Candidate with_two_lines(const Channels<3>& texels, const MaskedPattern& pattern) {
+UastcCandidate with_two_lines(const Channels<3>& texels, const MaskedPattern& pattern) {
   const UastcMode& mode = uastc_mode(pattern.mode);
-  Candidate made;
+  UastcCandidate made;
   made.error = 0;
   made.block.mode = pattern.mode;
   made.block.pattern = pattern.number;
@@ -150,10 +144,10 @@ float width_of(const Line<kChannels>& line) {
 }
 
 /// Returns the best of new blocks.
-Candidate best_opaque(const Channels<3>& texels, const Line<3>& principal,
-                      const UastcEffort& effort) {
+UastcCandidate best_opaque(const Channels<3>& texels, const Line<3>& principal,
+                           const UastcEffort& effort) {
   const float width = width_of(principal);
-  Candidate best = with_one_line(texels, principal, kReusedMode);
+  UastcCandidate best = with_one_line(texels, principal, kReusedMode);
   if (width < kShortLine)
     keep_better(with_one_line(texels, principal, kShortMode), best);
   if (width > kLongLine)
@@ -164,15 +158,18 @@ Candidate best_opaque(const Channels<3>& texels, const Line<3>& principal,
     std::array<MaskedPattern, kMostPatternTries> all;
     const auto patterns = std::span(all).first(effort.pattern_tries);
     nearest_patterns(texels, principal, patterns);
-    for (const MaskedPattern& pattern : patterns)
+    for (const MaskedPattern& pattern : patterns) {
       keep_better(with_two_lines(texels, pattern), best);
+      if (effort.fine_weights && pattern.mode == kSubsetMode)
+        keep_better(with_two_lines(texels, {kFineSubsetMode, pattern.number, pattern.mask}), best);
+    }
   }
   return best;
 }
 
-Candidate best_transparent(const Channels<4>& texels, const UastcEffort& effort) {
+UastcCandidate best_transparent(const Channels<4>& texels, const UastcEffort& effort) {
   const Line<4> principal = principal_line(texels, {});
-  Candidate best = with_one_line(texels, principal, kAlphaMode);
+  UastcCandidate best = with_one_line(texels, principal, kAlphaMode);
   if (width_of(principal) < kLongLine)
     keep_better(with_one_line(texels, principal, kShortAlphaMode), best);
   if (best.error > effort.plane_error)
@@ -180,17 +177,26 @@ Candidate best_transparent(const Channels<4>& texels, const UastcEffort& effort)
   return best;
 }
 
-/// Returns the texels' places along a line, less their mean.
-Sixteen places_along(const Channels<3>& texels, const Line<3>& line) {
+/// The texels' places along their line, less their mean.
+struct Places {
   Sixteen along;
-  for (std::size_t c = 0; c < 3; ++c)
-    along += texels[c] * Sixteen::all(line.high[c] - line.low[c]);
-  return along - Sixteen::all(sum_of(along) / kBlockTexels);
+  float square;  ///< that of the line's length, by which the places are too large
+};
+
+Places places_along(const Channels<3>& texels, const Line<3>& line) {
+  Places places{{}, 0};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float way = line.high[c] - line.low[c];
+    places.along += texels[c] * Sixteen::all(way);
+    places.square += way * way;
+  }
+  places.along -= Sixteen::all(sum_of(places.along) / kBlockTexels);
+  return places;
 }
 
 /// Returns a block with these weights, and the endpoints that are best with them.
-Candidate with_weights(const Channels<3>& texels, const RecentWeights::Set& set) {
-  Candidate made;
+UastcCandidate with_weights(const Channels<3>& texels, const RecentWeights::Set& set) {
+  UastcCandidate made;
   Line<3> line;
   if (!best_line(texels, {}, set.parts, line))
     return made;
@@ -203,9 +209,9 @@ Candidate with_weights(const Channels<3>& texels, const RecentWeights::Set& set)
 }
 
 /// Returns a block of the mean colour.
-Candidate with_one_colour(const Channels<3>& texels) {
+UastcCandidate with_one_colour(const Channels<3>& texels) {
   constexpr float kRoundingError = 3 * kBlockTexels / 12.0F;
-  Candidate made;
+  UastcCandidate made;
   made.error = kRoundingError;
   made.block.solid[3] = 255;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -219,25 +225,36 @@ Candidate with_one_colour(const Channels<3>& texels) {
 
 }  // namespace
 
+void UastcEncoder::try_weights(const Channels<3>& texels, const Line<3>& principal,
+                               UastcCandidate& best) const {
+  const auto [along, square] = places_along(texels, principal);
+  const auto [set, alike] = recent_.most_alike(along);
+  // No endpoints make good what lies in no weight's way.
+  const float bytes = kReusedBytes * effort_.byte_error;
+  if (set == nullptr || sum_of(along * along) - alike * alike > (best.error - bytes) * square)
+    return;
+  UastcCandidate reused = with_weights(texels, *set);
+  reused.error += bytes;
+  keep_better(reused, best);
+}
+
 UastcBlock UastcEncoder::encode_opaque(std::span<const Rgba, kBlockTexels> texels) {
   const Channels<3> channels = channels_of<3>(texels);
   const Line<3> principal = principal_line(channels, {});
-  Candidate best = best_opaque(channels, principal, effort_);
+  UastcCandidate best = best_opaque(channels, principal, effort_);
   best.error += kNewBytes * effort_.byte_error;
-  bool is_new = best.block.mode == kReusedMode;
+  const float new_error = best.error;
   if (effort_.byte_error > 0) {
-    if (const auto* const set = recent_.most_alike(places_along(channels, principal))) {
-      Candidate reused = with_weights(channels, *set);
-      reused.error += kReusedBytes * effort_.byte_error;
-      is_new = is_new && best.error <= reused.error;
-      keep_better(reused, best);
+    try_weights(channels, principal, best);
+    const float width = width_of(principal);
+    if (width * width / 2 < best.error) {
+      UastcCandidate solid = with_one_colour(channels);
+      solid.error += kSolidBytes * effort_.byte_error;
+      keep_better(solid, best);
     }
-    Candidate solid = with_one_colour(channels);
-    solid.error += kSolidBytes * effort_.byte_error;
-    keep_better(solid, best);
   }
   orient(best.block);
-  if (is_new && best.block.mode == kReusedMode)
+  if (best.error == new_error && best.block.mode == kReusedMode)
     recent_.add(best.block);
   return best.block;
 }

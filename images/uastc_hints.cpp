@@ -77,19 +77,26 @@ std::uint8_t best_table(const std::array<float, 8>& apart) {
   return static_cast<std::uint8_t>(std::ranges::min_element(errors) - errors.begin());
 }
 
-std::uint8_t intensity(std::span<const Rgba, kBlockTexels> texels, bool flip, std::size_t half) {
-  std::array<float, 8> luma{};
-  std::size_t count = 0;
-  float mean = 0;
-  for (std::size_t i = 0; i < kBlockTexels; ++i) {
-    if ((flip ? i / 8 : i % 4 / 2) != half)
-      continue;
-    luma[count] = kLuma[0] * texels[i][0] + kLuma[1] * texels[i][1] + kLuma[2] * texels[i][2];
-    mean += luma[count++] / 8;
+using Lumas = std::array<float, kBlockTexels>;
+
+Lumas lumas_of(std::span<const Rgba, kBlockTexels> texels) {
+  Lumas lumas;
+  for (std::size_t i = 0; i < kBlockTexels; ++i)
+    lumas[i] = kLuma[0] * texels[i][0] + kLuma[1] * texels[i][1] + kLuma[2] * texels[i][2];
+  return lumas;
+}
+
+/// Returns the table of a half: of two rows if they are flipped, else of two columns.
+std::uint8_t intensity(const Lumas& lumas, bool flip, std::size_t half) {
+  std::array<float, 8> apart{};
+  float sum = 0;
+  for (std::size_t i = 0; i < apart.size(); ++i) {
+    apart[i] = lumas[flip ? 8 * half + i : i / 2 * 4 + 2 * half + i % 2];
+    sum += apart[i];
   }
-  for (float& value : luma)
-    value = std::abs(value - mean);
-  return best_table(luma);
+  for (float& value : apart)
+    value = std::abs(value - sum / 8);
+  return best_table(apart);
 }
 
 /// ETC2's alpha (EAC) has steps of a table, times a factor.
@@ -148,8 +155,9 @@ void set_hints(std::span<const Rgba, kBlockTexels> texels, UastcBlock& block) {
   const Sum left = a + c, right = b + d, top = a + b, bottom = c + d;
   hints.flip = square_distance(top, bottom) > square_distance(left, right);
   hints.difference = hints.flip ? is_near(top, bottom) : is_near(left, right);
+  const Lumas lumas = lumas_of(texels);
   for (std::size_t half = 0; half < 2; ++half)
-    hints.intensities[half] = intensity(texels, hints.flip, half);
+    hints.intensities[half] = intensity(lumas, hints.flip, half);
   if (mode.has_alpha())
     hints.alpha = alpha_hint(texels);
 }

@@ -8,13 +8,12 @@
 
 namespace meshhier::images {
 
-const RecentWeights::Set* RecentWeights::most_alike(const Sixteen& along) const {
-  const Set* best = nullptr;
-  float most = 0;
+RecentWeights::Found RecentWeights::most_alike(const Sixteen& along) const {
+  Found best{nullptr, 0};
   for (std::size_t i = 0; i < std::min(count_, kSets); ++i) {
     const float alike = std::abs(sum_of(along * sets_[i].way));
-    if (alike > most)
-      most = alike, best = &sets_[i];
+    if (alike > best.alike)
+      best = {&sets_[i], alike};
   }
   return best;
 }

@@ -33,8 +33,12 @@ class RecentWeights {
     Sixteen way;    ///< of mean 0 and length 1
   };
 
-  /// Returns the set that is most alike `along`, whose mean is 0; null if there is none.
-  const Set* most_alike(const Sixteen& along) const;
+  struct Found {
+    const Set* set;  ///< null: there is none
+    float alike;     ///< the part of `along` that lies in the set's way
+  };
+  /// Returns the set that is most alike `along`, whose mean is 0.
+  Found most_alike(const Sixteen& along) const;
   /// Remembers the weights of an oriented block instead of the oldest ones. Requires kReusedMode.
   void add(const UastcBlock& block);
 

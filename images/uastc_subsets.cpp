@@ -8,9 +8,6 @@
 namespace meshhier::images {
 namespace {
 
-/// The modes with two subsets of opaque texels and two bits of weights.
-constexpr std::array<std::uint8_t, 2> kSubsetModes{4, 7};
-
 std::uint16_t mask_of(const Pattern& pattern) {
   std::uint32_t mask = 0;
   for (std::size_t i = 0; i < kBlockTexels; ++i)
@@ -21,7 +18,7 @@ std::uint16_t mask_of(const Pattern& pattern) {
 const std::vector<MaskedPattern>& masked_patterns() {
   static const std::vector<MaskedPattern> all = [] {
     std::vector<MaskedPattern> made;
-    for (const std::uint8_t mode : kSubsetModes) {
+    for (const std::uint8_t mode : {kSubsetMode, kOtherSubsetMode}) {
       std::uint8_t number = 0;
       for (const Pattern& pattern : patterns_of(uastc_mode(mode).patterns))
         made.push_back({mode, number++, mask_of(pattern)});

@@ -24,6 +24,9 @@ struct MaskedPattern {
 };
 
 inline constexpr std::size_t kMostPatternTries = 8;
+/// The modes of two subsets of opaque texels with two bits of weights. The first one's patterns are
+/// those of mode 2 too.
+inline constexpr std::uint8_t kSubsetMode = 4, kOtherSubsetMode = 7;
 
 /// Writes the `patterns.size()` most alike ones, the nearest first. Requires at most
 /// kMostPatternTries.

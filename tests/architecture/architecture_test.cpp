@@ -257,6 +257,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"webp/", in({"images"})},
       {"stb/", in({"texture"})},
       {"draco/", in({"mesh_io"})},
+      {"zstd.h", in({"images"})},
       {"zlib.h", of({"mesh_io/gzip_stream.cpp", "storage/format/gzip.cpp"})},
       {"meshoptimizer.h",
        [](const Source& s) {

@@ -206,7 +206,7 @@ FourByFour mixed_block(const Image& image, std::uint32_t x, std::uint32_t y) {
 TEST(UastcEncoderTest, TheBytesAreTheSameOnEveryMachine) {
   const Image image = noise(64, 64, 4, 3);
   for (const auto& [effort, expected] : {std::pair(kColourEffort, 6129816669482231623ULL),
-                                         {kDirectionEffort, 17915188328291518765ULL}}) {
+                                         {kDirectionEffort, 15857293218515995014ULL}}) {
     storage::Checksum checksum;
     UastcEncoder encoder(effort);
     for (std::uint32_t y = 0; y < 64; y += 4) {
@@ -221,7 +221,7 @@ TEST(UastcEncoderTest, WeightsThatWereBeforeAreTakenAgain) {
   // The same ramp, brighter with each block, and a little noise.
   const Image grain = noise(400, 4);
   const auto sets = [&](float byte_error) {
-    UastcEncoder encoder({80, 320, 2, byte_error});
+    UastcEncoder encoder({80, 320, 2, false, byte_error});
     std::set<std::array<std::uint8_t, 32>> found;
     for (std::uint32_t i = 0; i < 100; ++i)
       found.insert(encoder
