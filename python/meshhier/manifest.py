@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .errors import CorruptError, NotAHierarchyError
 from .tree import Node, Tree
 
-_VERSIONS = range(7, 13)
+_VERSIONS = range(7, 14)
 
 
 @dataclass(frozen=True)

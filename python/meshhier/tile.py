@@ -248,7 +248,8 @@ class _Reader:
     def texcoords(self) -> Optional[NDArray[np.float32]]:
         if self.tile.get("rawTexcoords", -1) >= 0:
             return self.spread(self.section("rawTexcoords", "<f4", 2 * self.unsplit).reshape(-1, 2))
-        is_of_normal_map = self.tile.get("normalMapWidth", 0) > 0 and "TEXCOORD_1" not in self.accessors
+        has_map_alone = self.tile.get("normalMapWidth", 0) > 0 and self.tile.get("imageWidth", 0) == 0
+        is_of_normal_map = has_map_alone and "TEXCOORD_1" not in self.accessors
         if is_of_normal_map or "TEXCOORD_0" not in self.accessors:
             return None
         return self.accessor(self.accessors["TEXCOORD_0"]).copy()

@@ -8,7 +8,7 @@ import { letGo, partsOf, readTile, type Tile } from '../src/hierarchy/tile.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
 import { sharedMaterials } from '../src/scene/materials.js';
 import { DEFAULT_LOOK, type Look } from '../src/scene/settings.js';
-import { TileObject, memoryOf, mostMemory, vertexBytesOf } from '../src/scene/tile_object.js';
+import { TileObject, memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from '../src/scene/tile_object.js';
 import { FakeBitmap, jpeg } from './support/pictures.js';
 import { packedTileBytes, tileBytes, type TileParts } from './support/tile_bytes.js';
 
@@ -32,6 +32,10 @@ const ROOT: TileParts = {
   normalMap: MAP,
   interior: [0, 1, 2, 3, 2, 1],
 };
+
+/// A picture and a map on the same coordinates.
+const PICTURE = { ...MAP, unlit: false };
+const RELIEF: TileParts = { ...ROOT, picture: PICTURE };
 
 /// Two boundary vertices, two ghosts of tile 2/1.
 const FINE: TileParts = {
@@ -74,6 +78,26 @@ describe('readTile', () => {
     const tile = await read(ROOT);
     expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.normalMap!.texels, tile.tangents!.buffer]));
     letGo(tile);
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('reads a picture and a map of the same coordinates', async () => {
+    const tile = await read(RELIEF);
+    expect(tile.picture).toMatchObject({ width: 64, height: 32, unlit: false });
+    expect(tile.normalMap).toMatchObject({ width: 64, height: 32 });
+    expect([...tile.texcoords!]).toEqual([...Float32Array.from(ROOT.texcoords!)]);
+    expect([...tile.tangents!]).toEqual(ROOT.tangents);
+    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.picture!.texels, tile.normalMap!.texels]));
+    expect(FakeBitmap.open).toBe(2);
+    letGo(tile);
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it.each<[string, Record<string, number>, string]>([
+    ['other sides than the picture', { normalMapWidth: 32 }, 'different sides'],
+    ['no file', { normalMap: -1 }, 'is no file'],
+  ])('refuses a map beside a picture that has %s, and lets go of that', async (_, change, problem) => {
+    await expect(read(RELIEF, change)).rejects.toThrow(problem);
     expect(FakeBitmap.open).toBe(0);
   });
 
@@ -127,6 +151,15 @@ describe('TileObject', () => {
     expect(geometry.attributes.tangent).toMatchObject({ itemSize: 4, normalized: true });
   });
 
+  it('is lit by the map over its picture', async () => {
+    const { material } = await made(RELIEF);
+    expect(material).toBeInstanceOf(MeshStandardMaterial);
+    const { map, normalMap, vertexColors } = material as MeshStandardMaterial;
+    expect(map).toMatchObject({ flipY: false });
+    expect(normalMap).toMatchObject({ colorSpace: NoColorSpace });
+    expect(vertexColors).toBe(false);
+  });
+
   it('is lit so as clay too, but shows facets as they are', async () => {
     const clay = await made(ROOT, { material: 'matcap' });
     expect(clay.material).toBeInstanceOf(MeshMatcapMaterial);
@@ -142,10 +175,10 @@ describe('TileObject', () => {
     expect(freed).toHaveBeenCalledOnce();
   });
 
-  it('takes no more memory than the index says', async () => {
-    const tile = await read(ROOT);
+  it.each([ROOT, RELIEF])('takes no more memory than the index says', async (parts) => {
+    const tile = await read(parts);
     const counts = { own: 3, ghosts: 0, copies: 0, splits: 1, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32 };
-    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: 4 });
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: texelBytesOf(tile) });
     const bytes = memoryOf(tile, new Seam(tile, new Tree(4)), false);
     expect(bytes).toBeLessThanOrEqual(most);
     expect(bytes).toBeGreaterThan(4 * 64 * 32);

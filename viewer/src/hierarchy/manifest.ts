@@ -62,7 +62,7 @@ export interface NamedFile {
   readonly checksum: bigint;
 }
 
-const FORMAT_VERSION = 12; // 11: the same with another tileset; 10: and without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
+const FORMAT_VERSION = 13; // 12: the same without tiles that have both a picture and a normal map; 11: with another tileset; 10: and without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
 const MOST_PREVIEW_BYTES = 40_000;
 

@@ -33,7 +33,8 @@ function mostBytes(record: TileRecord, level: number): number {
   const perGhost = 2 * level + 8;
   const perSplit = 12 + 12 + 16 + 8 + 8 + 4; // nothing raw
   const vertices = perVertex * (own + ghosts + copies) + 4 * copies + perSplit * splits;
-  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + mostPictureBytes({ width, height });
+  const pictures = 2 * mostPictureBytes({ width, height }); // a normal map, too
+  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + pictures;
 }
 
 function expectedOf({ level, index }: Node, record: TileRecord): ExpectedCounts {

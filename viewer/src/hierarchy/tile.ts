@@ -30,7 +30,7 @@ export interface Tile extends TilePlaces {
   readonly coloursTint: boolean;
   /// All values of each vertex, in the manifest's order; or null.
   readonly values: Float32Array | null;
-  /// u, v of each vertex in the picture, or in the normal map; none without. Whoever drops the tile lets go of the picture: see letGo().
+  /// u, v of each vertex in the picture and the normal map; none without. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
   /// A tile has both a normal map and tangents, or none.
@@ -136,12 +136,12 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-/// Reads the texture coordinates of the tile's picture or normal map.
-function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, isNormalMap }: TileCounts, vertices: number): Float32Array | null {
+/// Reads the texture coordinates of the tile's picture, which its normal map shares, or of a map alone.
+function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, hasPicture }: TileCounts, vertices: number): Float32Array | null {
   if (pictureWidth === 0) return null;
-  const set = isNormalMap ? (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0) : 0;
+  const set = hasPicture ? 0 : (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0);
   const accessor = attribute(`TEXCOORD_${set}`) ?? glb.fail('a picture without texture coordinates');
-  return isNormalMap ? readMapTexcoords(glb, accessor, vertices) : readTexcoords(glb, accessor, vertices);
+  return hasPicture ? readTexcoords(glb, accessor, vertices) : readMapTexcoords(glb, accessor, vertices);
 }
 
 /// All but the picture and the normal map.
@@ -164,7 +164,7 @@ function decode(glb: Glb, values: TileValues, counts: TileCounts): Omit<Tile, 'p
   const scalars = readScalarValues(glb, values.values, vertices);
   const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
   const texcoords = texcoordsOf(glb, attribute, counts, vertices);
-  const tangents = counts.isNormalMap ? readTangents(glb, attribute('TANGENT') ?? glb.fail('a normal map without tangents'), vertices) : null;
+  const tangents = counts.hasNormalMap ? readTangents(glb, attribute('TANGENT') ?? glb.fail('a normal map without tangents'), vertices) : null;
   if (counts.splits > 0 && normalsFrom !== 'build' && !texcoords) glb.fail('splits without computed normals or a picture');
   checkSplits(glb, places, positions, 3);
   if (colours) checkSplits(glb, places, colours, 4);
@@ -182,7 +182,7 @@ function decode(glb: Glb, values: TileValues, counts: TileCounts): Omit<Tile, 'p
     normalsFrom,
     colours,
     values: scalars,
-    coloursTint: texcoords !== null && tangents === null && attribute('COLOR_0') !== undefined,
+    coloursTint: counts.hasPicture && attribute('COLOR_0') !== undefined,
     texcoords,
     tangents,
     indices: withRoom(interior, border),
@@ -206,10 +206,15 @@ async function readWhole(glb: Glb, expected: ExpectedCounts | null): Promise<Til
   const values = withAbsent(extension);
   const counts = readCounts(glb, values, expected);
   const tile = decode(glb, values, counts);
-  const { isNormalMap, pictureWidth: width, pictureHeight: height } = counts;
-  const stored = findPicture(glb, isNormalMap ? values.normalMap : values.image, { width, height });
-  const picture = stored && (await decodePicture(glb, stored));
-  return isNormalMap ? { ...tile, picture: null, normalMap: picture } : { ...tile, picture, normalMap: null };
+  const { hasPicture, hasNormalMap, pictureWidth: width, pictureHeight: height } = counts;
+  const decoded = async (view: number, image: number): Promise<Picture> => decodePicture(glb, findPicture(glb, view, image, { width, height }));
+  const picture = hasPicture ? await decoded(values.image, 0) : null;
+  try {
+    return { ...tile, picture, normalMap: hasNormalMap ? await decoded(values.normalMap, hasPicture ? 1 : 0) : null };
+  } catch (problem) {
+    if (picture) dropPicture(picture);
+    throw problem;
+  }
 }
 
 /// A tile's file, out of its gzip; `expected`: null of a root of which nothing is known yet. Everything in it is checked, so that what is made of it can be used without.

@@ -13,7 +13,7 @@ export interface ExpectedCounts {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// The texels of the picture or the normal map; 0: there is neither.
+  /// The texels of the picture and the normal map, which are as many; 0: there is neither.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
 }
@@ -21,8 +21,8 @@ export interface ExpectedCounts {
 export interface TileCounts extends ExpectedCounts {
   /// Colours are values of a screen; else they are light, as glTF has it.
   readonly screenColours: boolean;
-  /// It is no picture.
-  readonly isNormalMap: boolean;
+  readonly hasPicture: boolean;
+  readonly hasNormalMap: boolean;
   readonly neighbours: number;
   readonly chains: number;
 }
@@ -52,10 +52,11 @@ function parse(glb: Glb, values: TileValues): TileCounts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
   const isKnown = [VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
   if (!isKnown) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
-  const isNormalMap = values.normalMapWidth > 0;
+  const hasNormalMap = values.normalMapWidth > 0;
   return {
     screenColours,
-    isNormalMap,
+    hasPicture: values.imageWidth > 0,
+    hasNormalMap,
     level: count(glb, values, 'level', 0, 32),
     index: count(glb, values, 'index', 0, 2 ** 32 - 1),
     own: count(glb, values, 'ownCount', 1, MOST_OWN),
@@ -66,8 +67,8 @@ function parse(glb: Glb, values: TileValues): TileCounts {
     chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
     interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
     border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
-    pictureWidth: count(glb, values, isNormalMap ? 'normalMapWidth' : 'imageWidth', 0, MOST_SIDE),
-    pictureHeight: count(glb, values, isNormalMap ? 'normalMapHeight' : 'imageHeight', 0, MOST_SIDE),
+    pictureWidth: count(glb, values, hasNormalMap ? 'normalMapWidth' : 'imageWidth', 0, MOST_SIDE),
+    pictureHeight: count(glb, values, hasNormalMap ? 'normalMapHeight' : 'imageHeight', 0, MOST_SIDE),
   };
 }
 
@@ -79,9 +80,16 @@ function check(glb: Glb, counts: TileCounts, expected: ExpectedCounts | null): v
   if ((counts.pictureWidth === 0) !== (counts.pictureHeight === 0)) glb.fail('a picture with one side only');
 }
 
+/// They show the same texels, at the same coordinates.
+function checkSides(glb: Glb, values: TileValues, { hasPicture, hasNormalMap }: TileCounts): void {
+  const areAlike = values.imageWidth === values.normalMapWidth && values.imageHeight === values.normalMapHeight;
+  if (hasPicture && hasNormalMap && !areAlike) glb.fail('its picture and its normal map have different sides');
+}
+
 /// `expected`: null of a root of which nothing is known yet.
 export function readCounts(glb: Glb, values: TileValues, expected: ExpectedCounts | null): TileCounts {
   const counts = parse(glb, values);
   check(glb, counts, expected);
+  checkSides(glb, values, counts);
   return counts;
 }

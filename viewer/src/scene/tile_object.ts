@@ -22,8 +22,8 @@ export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
   const { level, copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + (tangents?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
-  const shown = picture ?? normalMap;
-  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (shown ? memoryOfPicture(shown, level) : 0);
+  const pictures = [picture, normalMap].reduce((bytes, each) => bytes + (each ? memoryOfPicture(each, level) : 0), 0);
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + pictures;
 }
 
 /// Returns the bytes that are drawn of a vertex: its position, normal, colour and values, if any; not its texture coordinate, which is there if there is a picture.
@@ -31,10 +31,10 @@ export function vertexBytesOf(tile: Tile): number {
   return 12 + 4 * tile.normals.BYTES_PER_ELEMENT + (tile.colours ? 4 : 0) + 4 * valueWidth(tile);
 }
 
-/// Bytes of a texel as the root has them: all tiles' pictures are stored alike.
+/// Bytes of a texel as the root has them, of picture and normal map together: all tiles' are stored alike.
 export function texelBytesOf({ picture, normalMap }: Tile): number {
-  const shown = picture ?? normalMap;
-  return shown ? bytesOfTexel(shown) : BITMAP_TEXEL_BYTES;
+  const shown = [picture, normalMap].filter((each) => each !== null);
+  return shown.length > 0 ? shown.reduce((bytes, each) => bytes + bytesOfTexel(each), 0) : BITMAP_TEXEL_BYTES;
 }
 
 /// A tile's record does not tell these.
@@ -42,7 +42,7 @@ export interface UnrecordedSizes {
   readonly level: number;
   readonly vertexBytes: number;
   readonly wires: boolean;
-  /// Bytes of a texel of its picture or normal map, on the GPU.
+  /// Bytes of a texel of its picture and normal map, on the GPU.
   readonly texelBytes: number;
 }
 

@@ -102,7 +102,7 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
   if (codes) attribute('NORMAL', coded(codes), { componentType: 5120, normalized: true, type: 'VEC3', ...parts.codeAccessor });
   if (colours) attribute(parts.picture && !parts.coloursTint ? '_COLOR_0' : 'COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
   if (parts.tangents) attribute('TANGENT', Int8Array.from(parts.tangents), { componentType: 5120, normalized: true, type: 'VEC4' });
-  if (parts.texcoords && parts.normalMap) attribute('TEXCOORD_0', Uint16Array.from(parts.texcoords, (part) => Math.round(65535 * part)), { componentType: 5123, normalized: true, type: 'VEC2' });
+  if (parts.texcoords && parts.normalMap && !parts.picture) attribute('TEXCOORD_0', Uint16Array.from(parts.texcoords, (part) => Math.round(65535 * part)), { componentType: 5123, normalized: true, type: 'VEC2' });
   else if (parts.texcoords) attribute('TEXCOORD_0', Float32Array.from(parts.texcoords), { componentType: 5126, type: 'VEC2' });
   const numbers = (values: readonly number[]): number => section(Uint16Array.from(values), { stride: 2, mode: 'INDICES' });
   const primitives: object[] = [];
@@ -118,7 +118,7 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
     ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf),
     ...pictured(parts.picture, section), ...mapped(parts.normalMap, section), ...change,
   };
-  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts.picture ?? parts.normalMap), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
+  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
   return container(text.padEnd(Math.ceil(text.length / 4) * 4), chunks, end);
 }
 
@@ -130,10 +130,11 @@ function mapped(map: PictureParts | undefined, section: (bytes: Uint8Array) => n
   return map ? { normalMapWidth: map.width, normalMapHeight: map.height, normalMap: section(map.file) } : {};
 }
 
-function materialOf(picture: PictureParts | undefined): object {
-  if (picture === undefined) return {};
-  const { mimeType, alphaMode, unlit } = picture;
-  return { images: [{ mimeType }], materials: [{ alphaMode, ...(unlit ? { extensions: { KHR_materials_unlit: {} } } : {}) }] };
+function materialOf({ picture, normalMap }: TileParts): object {
+  const shown = [picture, normalMap].filter((each) => each !== undefined);
+  if (shown.length === 0) return {};
+  const { alphaMode, unlit } = shown[0];
+  return { images: shown.map(({ mimeType }) => ({ mimeType })), materials: [{ alphaMode, ...(unlit ? { extensions: { KHR_materials_unlit: {} } } : {}) }] };
 }
 
 function container(text: string, chunks: readonly Uint8Array[], binBytes: number): Uint8Array {
