@@ -13,7 +13,7 @@ const tree = new Tree(64);
 function record({ level, index }: Node): TileRecord {
   const width = 64 / 2 ** level;
   const error = level === tree.lastLevel ? 0 : width / 100;
-  return { own: OWN, ghosts: 0, copies: 0, splits: 0, interior: 0, border: 0, pictureWidth: 0, pictureHeight: 0, error, bound: 0, min: [index * width, 0, 0], max: [(index + 1) * width, 1, 1], bytes: 1, checksum: 0n };
+  return { own: OWN, ghosts: 0, copies: 0, splits: 0, interior: 0, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false, error, bound: 0, min: [index * width, 0, 0], max: [(index + 1) * width, 1, 1], bytes: 1, checksum: 0n };
 }
 
 /// Sees the strip's x from `from` to `to`, from 10 before its middle.

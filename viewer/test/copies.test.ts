@@ -68,7 +68,7 @@ describe('readTile', () => {
   });
 
   it('refuses a tile with other copies than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, splits: 0, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, splits: 0, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false };
     await expect(read(TETRAHEDRON, {}, expected)).resolves.toBeDefined();
     await expect(read(TETRAHEDRON, {}, { ...expected, copies: 7 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -154,16 +154,16 @@ describe('Seam', () => {
     const copies = Array<number>(40).fill(0);
     const each = (values: readonly number[]): number[] => [0, ...copies].flatMap(() => values);
     const tile = await read({ own: 1, copyOf: copies, positions: each([0, 0, 0]), normals: each(UP), colours: each([9, 9, 9, 255]), interior: [0, 1, 2] });
-    const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0, pictureWidth: 0, pictureHeight: 0 };
-    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: 4 });
+    const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false };
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: { plain: 4, mapped: 4 } });
     expect(memoryOf(tile, new Seam(tile, new Tree(1)), false)).toBeLessThanOrEqual(most);
   });
 
   it('takes no more memory than the index says', async () => {
     const fine = await read(FINE);
     const seam = new Seam(fine, tree);
-    const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 };
-    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: 4 }));
+    const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false };
+    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: { plain: 4, mapped: 4 } }));
     expect(memoryOf(fine, seam, true)).toBeGreaterThan(memoryOf(await read({ ...FINE, copyOf: [], border: [0, 1, 2, 0, 3, 2], positions: FINE.positions.slice(0, 12), normals: FINE.normals!.slice(0, 12) }), seam, true));
   });
 });

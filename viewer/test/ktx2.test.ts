@@ -125,10 +125,10 @@ describe('tiles with KTX2', () => {
     const made = await read(tile(KTX2_OPAQUE));
     const ofPicture = memoryOf(made, new Seam(made, new Tree(4)), false) - memoryOf({ ...made, picture: null }, new Seam(made, new Tree(4)), false);
     expect(ofPicture).toBe(Math.ceil((4 / 3) * 0.5 * 16 * 8));
-    const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 16, pictureHeight: 8 };
-    const most = (texelBytes: number): number => mostMemory(record, { level: 1, vertexBytes: vertexBytesOf(made), wires: false, texelBytes });
-    expect(texelBytesOf(made)).toBe(0.5);
-    expect(most(4) - most(texelBytesOf(made))).toBe(Math.ceil((4 / 3) * 4 * 16 * 8) - ofPicture);
+    const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 16, pictureHeight: 8, hasNormalMap: false };
+    const most = (plain: number): number => mostMemory(record, { level: 1, vertexBytes: vertexBytesOf(made), wires: false, texelBytes: { plain, mapped: 0 } });
+    expect(texelBytesOf(made)).toEqual({ plain: 0.5, mapped: 4.5 });
+    expect(most(4) - most(0.5)).toBe(Math.ceil((4 / 3) * 4 * 16 * 8) - ofPicture);
   });
 
   it('are refused with a picture that is broken', async () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tiles with normal maps.
-import { MeshMatcapMaterial, MeshStandardMaterial, NoColorSpace, type Texture } from 'three';
+import { MeshMatcapMaterial, MeshStandardMaterial, NoColorSpace, SRGBColorSpace, type Texture } from 'three';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
@@ -9,7 +9,7 @@ import { Tree, keyOf } from '../src/hierarchy/tree.js';
 import { sharedMaterials } from '../src/scene/materials.js';
 import { DEFAULT_LOOK, type Look } from '../src/scene/settings.js';
 import { TileObject, memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from '../src/scene/tile_object.js';
-import { FakeBitmap, jpeg } from './support/pictures.js';
+import { FakeBitmap, jpeg, png } from './support/pictures.js';
 import { packedTileBytes, tileBytes, type TileParts } from './support/tile_bytes.js';
 
 const MAP = { file: jpeg(64, 32), mimeType: 'image/jpeg', width: 64, height: 32 };
@@ -33,10 +33,6 @@ const ROOT: TileParts = {
   interior: [0, 1, 2, 3, 2, 1],
 };
 
-/// A picture and a map on the same coordinates.
-const PICTURE = { ...MAP, unlit: false };
-const RELIEF: TileParts = { ...ROOT, picture: PICTURE };
-
 /// Two boundary vertices, two ghosts of tile 2/1.
 const FINE: TileParts = {
   level: 2, index: 2, own: 2, ghosts: 2,
@@ -50,6 +46,10 @@ const mapped = (parts: TileParts): TileParts => {
   const vertices = parts.positions.length / 3;
   return { ...parts, normalMap: MAP, tangents: of(vertices, TANGENT), texcoords: of(vertices, [0.5, 0.5]) };
 };
+
+const PICTURE = { ...MAP, mimeType: 'image/png', file: png(64, 32) };
+/// Coordinates are those of the picture.
+const RELIEF: TileParts = { ...ROOT, picture: PICTURE };
 
 async function read(parts: TileParts, change: Record<string, number> = {}): Promise<Tile> {
   return readTile(tileBytes(parts, change), 'tile.glb', null);
@@ -74,30 +74,33 @@ describe('readTile', () => {
     expect(await readTile(await packedTileBytes(ROOT), 'tile.glb', null)).toEqual(tile);
   });
 
+  it('reads the map beside a picture, with the same coordinates', async () => {
+    const tile = await read(RELIEF);
+    expect(tile.picture).toMatchObject({ width: 64, height: 32, unlit: false });
+    expect(tile.normalMap).toMatchObject({ width: 64, height: 32, alpha: 'OPAQUE' });
+    expect(tile.normalMap!.texels).not.toBe(tile.picture!.texels);
+    expect([...tile.texcoords!]).toEqual([...Float32Array.from(ROOT.texcoords!)]);
+    expect([...tile.tangents!]).toEqual(ROOT.tangents);
+    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.picture!.texels, tile.normalMap!.texels]));
+    letGo(tile);
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('lets go of a picture whose map is none', async () => {
+    await expect(read({ ...RELIEF, normalMap: { ...MAP, file: Uint8Array.of(1, 2, 3, 4) } })).rejects.toThrow('is no JPEG');
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('reads a tile whose map has not come', async () => {
+    const tile = await readTile(tileBytes(RELIEF), 'tile.glb', null, true);
+    expect(tile.normalMap).toBeNull();
+    expect(tile).toEqual({ ...(await read(RELIEF)), picture: tile.picture, normalMap: null });
+  });
+
   it('hands the map over, and lets go of it', async () => {
     const tile = await read(ROOT);
     expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.normalMap!.texels, tile.tangents!.buffer]));
     letGo(tile);
-    expect(FakeBitmap.open).toBe(0);
-  });
-
-  it('reads a picture and a map of the same coordinates', async () => {
-    const tile = await read(RELIEF);
-    expect(tile.picture).toMatchObject({ width: 64, height: 32, unlit: false });
-    expect(tile.normalMap).toMatchObject({ width: 64, height: 32 });
-    expect([...tile.texcoords!]).toEqual([...Float32Array.from(ROOT.texcoords!)]);
-    expect([...tile.tangents!]).toEqual(ROOT.tangents);
-    expect(partsOf(tile)).toEqual(expect.arrayContaining([tile.picture!.texels, tile.normalMap!.texels]));
-    expect(FakeBitmap.open).toBe(2);
-    letGo(tile);
-    expect(FakeBitmap.open).toBe(0);
-  });
-
-  it.each<[string, Record<string, number>, string]>([
-    ['other sides than the picture', { normalMapWidth: 32 }, 'different sides'],
-    ['no file', { normalMap: -1 }, 'is no file'],
-  ])('refuses a map beside a picture that has %s, and lets go of that', async (_, change, problem) => {
-    await expect(read(RELIEF, change)).rejects.toThrow(problem);
     expect(FakeBitmap.open).toBe(0);
   });
 
@@ -109,6 +112,7 @@ describe('readTile', () => {
     ['a map larger than any', {}, { normalMapWidth: 8193 }, 'is not from 0 to 8192'],
     ['a map that is not there', {}, { normalMap: -1 }, 'is no file'],
     ['a map of another size', { normalMap: { ...MAP, file: jpeg(64, 33) } }, {}, 'has another size'],
+    ['a picture of another size than the map', { picture: PICTURE }, { imageHeight: 16 }, 'have different sides'],
     ['a newer version', {}, { version: 7 }, 'version 7 of MESHHIER_tile is not known'],
   ])('refuses %s', async (_, parts, change, problem) => {
     const refused = read({ ...ROOT, ...parts }, change);
@@ -151,20 +155,27 @@ describe('TileObject', () => {
     expect(geometry.attributes.tangent).toMatchObject({ itemSize: 4, normalized: true });
   });
 
-  it('is lit by the map over its picture', async () => {
-    const { material } = await made(RELIEF);
-    expect(material).toBeInstanceOf(MeshStandardMaterial);
-    const { map, normalMap, vertexColors } = material as MeshStandardMaterial;
-    expect(map).toMatchObject({ flipY: false });
-    expect(normalMap).toMatchObject({ colorSpace: NoColorSpace });
-    expect(vertexColors).toBe(false);
-  });
-
   it('is lit so as clay too, but shows facets as they are', async () => {
     const clay = await made(ROOT, { material: 'matcap' });
     expect(clay.material).toBeInstanceOf(MeshMatcapMaterial);
     expect((clay.material as MeshMatcapMaterial).normalMap).not.toBeNull();
     expect(((await made(ROOT, { shading: 'flat' })).material as MeshStandardMaterial).normalMap).toBeNull();
+  });
+
+  it('is lit by the map under its picture, and without the picture', async () => {
+    const { material, geometry } = await made(RELIEF);
+    expect(material).toBeInstanceOf(MeshStandardMaterial);
+    const { map, normalMap } = material as MeshStandardMaterial;
+    expect(map).toMatchObject({ colorSpace: SRGBColorSpace });
+    expect(normalMap).toMatchObject({ colorSpace: NoColorSpace });
+    expect(geometry.attributes.uv.count).toBe(geometry.attributes.tangent.count);
+    expect((await made(RELIEF, { texture: false })).material).toMatchObject({ map: null, normalMap: { colorSpace: NoColorSpace } });
+  });
+
+  it('is lit under its picture without a map, too, as its neighbours are', async () => {
+    const [mappedTile, plain] = [await made(RELIEF), await made({ ...RELIEF, normalMap: undefined, tangents: undefined })];
+    expect(plain.material).toBeInstanceOf(MeshStandardMaterial);
+    for (const key of ['color', 'roughness', 'metalness', 'vertexColors'] as const) expect(plain.material).toHaveProperty(key, (mappedTile.material as MeshStandardMaterial)[key]);
   });
 
   it('frees the map with itself', async () => {
@@ -177,10 +188,10 @@ describe('TileObject', () => {
 
   it.each([ROOT, RELIEF])('takes no more memory than the index says', async (parts) => {
     const tile = await read(parts);
-    const counts = { own: 3, ghosts: 0, copies: 0, splits: 1, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32 };
+    const counts = { own: 3, ghosts: 0, copies: 0, splits: 1, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32, hasNormalMap: true };
     const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false, texelBytes: texelBytesOf(tile) });
     const bytes = memoryOf(tile, new Seam(tile, new Tree(4)), false);
     expect(bytes).toBeLessThanOrEqual(most);
-    expect(bytes).toBeGreaterThan(4 * 64 * 32);
+    expect(bytes).toBeGreaterThan((parts.picture ? 2 : 1) * 4 * 64 * 32);
   });
 });

@@ -103,7 +103,7 @@ describe('readTile', () => {
   });
 
   it('refuses a tile with other splits than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 2, splits: 6, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 2, splits: 6, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false };
     await expect(read(TETRAHEDRON, {}, expected)).resolves.toBeDefined();
     await expect(read(TETRAHEDRON, {}, { ...expected, splits: 5 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -224,7 +224,7 @@ describe('Seam', () => {
     const [fine, given] = [await read(FINE), await read({ ...FINE, splitOf: [], codes: undefined, copyOf: [0, 2, 2, 2, 3], border: [0, 1, 2, 4, 8, 7], normals: FINE.codes!.map((value) => value / 127) })];
     const bytes = memoryOf(fine, new Seam(fine, tree), true);
     const most = (splits: number): number =>
-      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: 4 });
+      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true, texelBytes: { plain: 4, mapped: 4 } });
     expect(vertexBytesOf(fine)).toBe(20);
     expect(bytes).toBeLessThanOrEqual(most(4));
     expect(most(4) - most(3)).toBeGreaterThanOrEqual(2 * 20);
@@ -252,7 +252,7 @@ describe('RemoteHierarchy', () => {
     const record = (parts: TileParts): TileRecord => {
       const { own, copyOf = [], splitOf = [], interior } = parts;
       const bytes = tileBytes(parts);
-      return { own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: bytes.length, checksum: checksum(bytes) };
+      return { own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: bytes.length, checksum: checksum(bytes) };
     };
     await expect(remote.tile({ level: 1, index: 0 }, record(computed), signal)).resolves.toBeDefined();
     await expect(remote.tile({ level: 1, index: 1 }, record({ ...none, index: 1 }), signal)).rejects.toThrow('tiles/01/000001.glb: its normals are not of the kind that the root has');

@@ -135,7 +135,7 @@ describe('readTile', () => {
   });
 
   it('refuses a picture of another size than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 0, splits: 2, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 0, splits: 2, interior: 2, border: 0, pictureWidth: 64, pictureHeight: 32, hasNormalMap: false };
     await expect(read(SQUARE, {}, expected)).resolves.toBeDefined();
     await expect(read(SQUARE, {}, { ...expected, pictureWidth: 128 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -267,7 +267,7 @@ describe('TileObject', () => {
     const tile = await read(FINE);
     const [bare, tree] = [{ ...tile, picture: null, texcoords: null }, new Tree(4)];
     const most = (pictureWidth: number, pictureHeight: number): number =>
-      mostMemory({ own: 2, ghosts: 2, copies: 0, splits: 1, interior: 0, border: 2, pictureWidth, pictureHeight }, { level: 2, vertexBytes: vertexBytesOf(tile), wires: true, texelBytes: 4 });
+      mostMemory({ own: 2, ghosts: 2, copies: 0, splits: 1, interior: 0, border: 2, pictureWidth, pictureHeight, hasNormalMap: false }, { level: 2, vertexBytes: vertexBytesOf(tile), wires: true, texelBytes: { plain: 4, mapped: 4 } });
     const bytes = memoryOf(tile, new Seam(tile, tree), true);
     const picture = Math.ceil((4 / 3) * 4 * 64 * 32); // on the GPU with what is made smaller of it
     expect(bytes - memoryOf(bare, new Seam(bare, tree), true)).toBe(picture + 2 * 8 * 5);
@@ -278,7 +278,7 @@ describe('TileObject', () => {
 
 describe('TileStore', () => {
   const tree = new Tree(2);
-  const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 64, pictureHeight: 32, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1, checksum: 0n } as const;
+  const record = { own: 3, ghosts: 0, copies: 0, splits: 0, interior: 1, border: 0, pictureWidth: 64, pictureHeight: 32, hasNormalMap: false, error: 0, bound: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1, checksum: 0n } as const;
   const node = { level: 1, index: 0 };
   const withRoot = async (load: () => Promise<Tile>): Promise<TileStore> => {
     const nothing = (): void => undefined;

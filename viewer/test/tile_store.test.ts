@@ -9,7 +9,7 @@ import { random } from './support/random.js';
 
 const tree = new Tree(32);
 const BYTES = 100;
-const RECORD: TileRecord = { own: 1, ghosts: 0, copies: 0, splits: 0, interior: 0, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, bound: 0, min: [0, 0, 0], max: [0, 0, 0], bytes: 1, checksum: 0n };
+const RECORD: TileRecord = { own: 1, ghosts: 0, copies: 0, splits: 0, interior: 0, border: 0, pictureWidth: 0, pictureHeight: 0, hasNormalMap: false, error: 0, bound: 0, min: [0, 0, 0], max: [0, 0, 0], bytes: 1, checksum: 0n };
 
 function tile({ level, index }: Node): Tile {
   const empty = { positions: new Float32Array(3), copyOf: new Uint16Array(0), normals: new Int16Array(4), normalsFrom: 'viewer' as const, splitOf: new Uint16Array(0), colours: null, values: null, coloursTint: false, texcoords: null, picture: null, indices: new Uint16Array(0) };

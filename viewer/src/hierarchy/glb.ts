@@ -25,8 +25,8 @@ export interface Gltf {
   meshes: { primitives: { attributes: Record<string, number>; indices?: number; mode: number }[] }[];
   accessors: { bufferView: number; componentType: number; normalized?: boolean; count: number; type: string; min?: number[]; max?: number[] }[];
   bufferViews: BufferView[];
-  /// A tile with a picture has one.
-  images?: { mimeType?: unknown }[];
+  /// A tile's picture and its normal map, if it has them.
+  images?: { bufferView?: unknown; mimeType?: unknown }[];
   materials?: { alphaMode?: unknown; normalTexture?: { texCoord?: number }; extensions?: Record<string, unknown> }[];
   extensions: Record<string, Record<string, number>>;
   /// The root has them.

@@ -56,9 +56,9 @@ export function mostPictureBytes(size: Size): number {
   return size.width > 0 ? 5 * size.width * size.height + 65536 : 0;
 }
 
-/// `number`: of its buffer view; `image`: of its image; `size`: that the file must say, for whoever decodes it makes room for as much.
-export function findPicture(glb: Glb, number: number, image: number, size: Size): StoredPicture {
-  const type = String(glb.gltf.images?.[image]?.mimeType);
+/// `number`: of its buffer view; `size`: that the file must say, for whoever decodes it makes room for as much.
+export function findPicture(glb: Glb, number: number, size: Size): StoredPicture {
+  const type = String(glb.gltf.images?.find(({ bufferView }) => bufferView === number)?.mimeType);
   const material = glb.gltf.materials?.[0];
   const bytes = glb.file(number);
   const found = pictureSize(bytes, type);

@@ -15,8 +15,8 @@ import type { TileDecoder } from './tile_decoder.js';
 import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
 
-/// A root has 32,768 vertices at the most, seldom more than twice as many triangles, and a picture.
-const MOST_ROOT = 2 ** 25 + mostPictureBytes({ width: MOST_SIDE, height: MOST_SIDE });
+/// A root has 32,768 vertices at the most, seldom more than twice as many triangles, a picture and a normal map.
+const MOST_ROOT = 2 ** 25 + 2 * mostPictureBytes({ width: MOST_SIDE, height: MOST_SIDE });
 const ROOT: Node = { level: 0, index: 0 };
 
 /// All tiles but the root need this.
@@ -28,18 +28,17 @@ export interface Directory {
 
 /// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
 function mostBytes(record: TileRecord, level: number): number {
-  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
+  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height, hasNormalMap } = record;
   const perVertex = 2 * (12 + 16 + 8) + 12 + 8;
   const perGhost = 2 * level + 8;
   const perSplit = 12 + 12 + 16 + 8 + 8 + 4; // nothing raw
   const vertices = perVertex * (own + ghosts + copies) + 4 * copies + perSplit * splits;
-  const pictures = 2 * mostPictureBytes({ width, height }); // a normal map, too
-  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + pictures;
+  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + (hasNormalMap ? 2 : 1) * mostPictureBytes({ width, height });
 }
 
 function expectedOf({ level, index }: Node, record: TileRecord): ExpectedCounts {
-  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight } = record;
-  return { level, index, own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight };
+  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight, hasNormalMap } = record;
+  return { level, index, own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight, hasNormalMap };
 }
 
 export class RemoteHierarchy {

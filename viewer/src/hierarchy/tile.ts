@@ -33,7 +33,7 @@ export interface Tile extends TilePlaces {
   /// u, v of each vertex in the picture and the normal map; none without. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
-  /// A tile has both a normal map and tangents, or none.
+  /// Beside the picture it has the same sides. A root that is drawn before its map has come has the tangents alone, other tiles both or neither.
   readonly normalMap: Picture | null;
   readonly tangents: Int8Array | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
@@ -136,9 +136,9 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-/// Reads the texture coordinates of the tile's picture, which its normal map shares, or of a map alone.
-function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { pictureWidth, hasPicture }: TileCounts, vertices: number): Float32Array | null {
-  if (pictureWidth === 0) return null;
+/// Reads the texture coordinates of the tile's picture, which are those of its normal map, too; or of the map alone.
+function texcoordsOf(glb: Glb, attribute: (name: string) => Accessor | undefined, { hasPicture, hasNormalMap }: TileCounts, vertices: number): Float32Array | null {
+  if (!hasPicture && !hasNormalMap) return null;
   const set = hasPicture ? 0 : (glb.gltf.materials?.[0]?.normalTexture?.texCoord ?? 0);
   const accessor = attribute(`TEXCOORD_${set}`) ?? glb.fail('a picture without texture coordinates');
   return hasPicture ? readTexcoords(glb, accessor, vertices) : readMapTexcoords(glb, accessor, vertices);
@@ -200,17 +200,20 @@ function decode(glb: Glb, values: TileValues, counts: TileCounts): Omit<Tile, 'p
   };
 }
 
-async function readWhole(glb: Glb, expected: ExpectedCounts | null): Promise<Tile> {
+async function readImage(glb: Glb, number: number, { pictureWidth: width, pictureHeight: height }: TileCounts): Promise<Picture> {
+  return decodePicture(glb, findPicture(glb, number, { width, height }));
+}
+
+async function readWhole(glb: Glb, expected: ExpectedCounts | null, isBeginning: boolean): Promise<Tile> {
   const extension = glb.gltf.extensions?.MESHHIER_tile;
   if (extension === undefined) glb.fail('not a tile of meshhier');
   const values = withAbsent(extension);
   const counts = readCounts(glb, values, expected);
   const tile = decode(glb, values, counts);
-  const { hasPicture, hasNormalMap, pictureWidth: width, pictureHeight: height } = counts;
-  const decoded = async (view: number, image: number): Promise<Picture> => decodePicture(glb, findPicture(glb, view, image, { width, height }));
-  const picture = hasPicture ? await decoded(values.image, 0) : null;
+  const { hasPicture, hasNormalMap } = counts;
+  const picture = hasPicture ? await readImage(glb, values.image, counts) : null;
   try {
-    return { ...tile, picture, normalMap: hasNormalMap ? await decoded(values.normalMap, hasPicture ? 1 : 0) : null };
+    return { ...tile, picture, normalMap: hasNormalMap && !isBeginning ? await readImage(glb, values.normalMap, counts) : null };
   } catch (problem) {
     if (picture) dropPicture(picture);
     throw problem;
@@ -218,11 +221,12 @@ async function readWhole(glb: Glb, expected: ExpectedCounts | null): Promise<Til
 }
 
 /// A tile's file, out of its gzip; `expected`: null of a root of which nothing is known yet. Everything in it is checked, so that what is made of it can be used without.
-export async function readTile(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
+/// `isBeginning`: but for its normal map, which has not come yet.
+export async function readTile(bytes: Uint8Array, name: string, expected: ExpectedCounts | null, isBeginning = false): Promise<Tile> {
   await MeshoptDecoder.ready;
   const glb = Glb.read(bytes, name);
   try {
-    return await readWhole(glb, expected);
+    return await readWhole(glb, expected, isBeginning);
   } catch (problem) {
     // JSON of another shape than a tile's, which no check above knows.
     if (problem instanceof TypeError || problem instanceof RangeError) glb.fail('its JSON is not that of a tile');

@@ -13,16 +13,16 @@ export interface ExpectedCounts {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// The texels of the picture and the normal map, which are as many; 0: there is neither.
+  /// The texels of the picture, and of the normal map; 0: there is neither.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
+  readonly hasNormalMap: boolean;
 }
 
 export interface TileCounts extends ExpectedCounts {
   /// Colours are values of a screen; else they are light, as glTF has it.
   readonly screenColours: boolean;
   readonly hasPicture: boolean;
-  readonly hasNormalMap: boolean;
   readonly neighbours: number;
   readonly chains: number;
 }
@@ -31,7 +31,7 @@ const VERSION = 6;
 const NO_MAPS_VERSION = 5; // the same in hierarchies without normal maps
 const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
-const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
+const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight', 'hasNormalMap'] as const;
 /// Tiles without splits, pictures, values or normal maps need not say these.
 const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1, normalMapWidth: 0, normalMapHeight: 0, normalMap: -1 };
 
@@ -52,11 +52,17 @@ function parse(glb: Glb, values: TileValues): TileCounts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
   const isKnown = [VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
   if (!isKnown) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
-  const hasNormalMap = values.normalMapWidth > 0;
+  const side = (key: string): number => count(glb, values, key, 0, MOST_SIDE);
+  const [picture, map] = [{ width: side('imageWidth'), height: side('imageHeight') }, { width: side('normalMapWidth'), height: side('normalMapHeight') }];
+  const [hasPicture, hasNormalMap] = [picture, map].map(({ width }) => width > 0);
+  if (hasPicture && hasNormalMap && (picture.width !== map.width || picture.height !== map.height)) glb.fail('its picture and its normal map have different sides');
+  const { width: pictureWidth, height: pictureHeight } = hasNormalMap ? map : picture;
   return {
     screenColours,
-    hasPicture: values.imageWidth > 0,
+    hasPicture,
     hasNormalMap,
+    pictureWidth,
+    pictureHeight,
     level: count(glb, values, 'level', 0, 32),
     index: count(glb, values, 'index', 0, 2 ** 32 - 1),
     own: count(glb, values, 'ownCount', 1, MOST_OWN),
@@ -67,8 +73,6 @@ function parse(glb: Glb, values: TileValues): TileCounts {
     chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
     interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
     border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
-    pictureWidth: count(glb, values, hasNormalMap ? 'normalMapWidth' : 'imageWidth', 0, MOST_SIDE),
-    pictureHeight: count(glb, values, hasNormalMap ? 'normalMapHeight' : 'imageHeight', 0, MOST_SIDE),
   };
 }
 
@@ -80,16 +84,9 @@ function check(glb: Glb, counts: TileCounts, expected: ExpectedCounts | null): v
   if ((counts.pictureWidth === 0) !== (counts.pictureHeight === 0)) glb.fail('a picture with one side only');
 }
 
-/// They show the same texels, at the same coordinates.
-function checkSides(glb: Glb, values: TileValues, { hasPicture, hasNormalMap }: TileCounts): void {
-  const areAlike = values.imageWidth === values.normalMapWidth && values.imageHeight === values.normalMapHeight;
-  if (hasPicture && hasNormalMap && !areAlike) glb.fail('its picture and its normal map have different sides');
-}
-
 /// `expected`: null of a root of which nothing is known yet.
 export function readCounts(glb: Glb, values: TileValues, expected: ExpectedCounts | null): TileCounts {
   const counts = parse(glb, values);
   check(glb, counts, expected);
-  checkSides(glb, values, counts);
   return counts;
 }

@@ -16,9 +16,10 @@ export interface TileRecord {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// The texels of the tile's picture or normal map; 0: there is none.
+  /// The texels of the tile's picture, and of its normal map; 0: it has neither.
   readonly pictureWidth: number;
   readonly pictureHeight: number;
+  readonly hasNormalMap: boolean;
   /// Estimated distance to the input, in its units, and no less than a texel that is coarser than the input's; 0 of partitions.
   readonly error: number;
   /// No point of its surface is farther from the input's, and none of the input's from it: certain; of partitions what rounding did.
@@ -38,7 +39,7 @@ export type ReadRange = (first: number, end: number) => Promise<Uint8Array>;
 
 const FILE = 'tiles.bin';
 const MAGIC = 'MHTILES\n';
-const VERSIONS = [4, 5]; // 5: some of the pictures are normal maps
+const VERSIONS = [4, 5]; // 5: some tiles have normal maps
 const HEADER_BYTES = 32;
 const RECORD_BYTES = 120;
 const PAGE_RECORDS = 545; // a page is just below 64 KiB
@@ -78,6 +79,7 @@ function readRecord(view: DataView, at: number, place: Corner): TileRecord {
     border: u32(28),
     pictureWidth: u32(88),
     pictureHeight: u32(92),
+    hasNormalMap: u32(100) !== 0,
     error: f32(48),
     bound,
     min: corner(60, -bound),

@@ -17,12 +17,12 @@ import { memoryOfPicture, pictureMemory, tileTexture } from './tile_texture.js';
 const TEXCOORD_BYTES = 8;
 const TANGENT_BYTES = 4;
 
-/// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need; of its picture one copy.
+/// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need; of its picture and its normal map one copy.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
   const { level, copyOf, splitOf, positions, normals, colours, values, texcoords, tangents, picture, normalMap, indices, border, neighbours, ghostStarts, chains } = tile;
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (values?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + (tangents?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
-  const pictures = [picture, normalMap].reduce((bytes, each) => bytes + (each ? memoryOfPicture(each, level) : 0), 0);
+  const pictures = [picture, normalMap].reduce((sum, each) => sum + (each ? memoryOfPicture(each, level) : 0), 0);
   return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + pictures;
 }
 
@@ -31,10 +31,17 @@ export function vertexBytesOf(tile: Tile): number {
   return 12 + 4 * tile.normals.BYTES_PER_ELEMENT + (tile.colours ? 4 : 0) + 4 * valueWidth(tile);
 }
 
-/// Bytes of a texel as the root has them, of picture and normal map together: all tiles' are stored alike.
-export function texelBytesOf({ picture, normalMap }: Tile): number {
-  const shown = [picture, normalMap].filter((each) => each !== null);
-  return shown.length > 0 ? shown.reduce((bytes, each) => bytes + bytesOfTexel(each), 0) : BITMAP_TEXEL_BYTES;
+/// Bytes that a texel takes on the GPU, of all that a tile shows there.
+export interface TexelBytes {
+  /// Of a tile without a normal map, and of one with it.
+  readonly plain: number;
+  readonly mapped: number;
+}
+
+/// As the root has them: all tiles' pictures are stored alike, and all their maps. What it lacks may take most.
+export function texelBytesOf({ picture, normalMap }: Tile): TexelBytes {
+  const [ofPicture, ofMap] = [picture, normalMap].map((each) => each && bytesOfTexel(each));
+  return { plain: ofPicture ?? BITMAP_TEXEL_BYTES, mapped: (ofPicture ?? 0) + (ofMap ?? BITMAP_TEXEL_BYTES) };
 }
 
 /// A tile's record does not tell these.
@@ -42,8 +49,7 @@ export interface UnrecordedSizes {
   readonly level: number;
   readonly vertexBytes: number;
   readonly wires: boolean;
-  /// Bytes of a texel of its picture and normal map, on the GPU.
-  readonly texelBytes: number;
+  readonly texelBytes: TexelBytes;
 }
 
 /// The same from counts alone; not less.
@@ -51,14 +57,14 @@ export function mostMemory(
   record: Omit<TileRecord, 'error' | 'bound' | 'min' | 'max' | 'bytes' | 'checksum'>,
   { level, vertexBytes, wires, texelBytes }: UnrecordedSizes,
 ): number {
-  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
+  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height, hasNormalMap } = record;
   const vertices = own + ghosts + copies + splits;
   const indexBytes = vertices > 65535 ? 4 : 2;
   const indices = 3 * (interior + border) * indexBytes;
   const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES + TANGENT_BYTES : 0)) + indices;
   // A ghost takes its chain, its neighbour's number, start and keys, and what the seam keeps of it; a vertex behind the ghosts takes the last, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
-  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, texelBytes, level);
+  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, hasNormalMap ? texelBytes.mapped : texelBytes.plain, level);
 }
 
 function edgesOf(triangles: Indices, corners: number): Indices {

@@ -27,7 +27,7 @@ export interface TileParts {
   /// u, v of each vertex, and what they are in.
   readonly texcoords?: readonly number[] | Float32Array | null;
   readonly picture?: PictureParts;
-  /// Instead: then coordinates are stored in parts of 65535; and tangents, in parts of 127.
+  /// Instead: then coordinates are stored in parts of 65535; or beside it. And tangents, in parts of 127.
   readonly normalMap?: PictureParts;
   readonly tangents?: readonly number[];
   readonly interior: readonly number[];
@@ -116,25 +116,29 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
     neighbourCount: neighbours.length, chainEntryCount: chains.length, interiorCount: interior.length / 3, borderCount: border.length / 3,
     interiorPrimitive: primitive(interior), borderPrimitive: primitive(border), neighbours: section(Uint32Array.from(neighbours)),
     ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf),
-    ...pictured(parts.picture, section), ...mapped(parts.normalMap, section), ...change,
+    ...pictured(parts.picture, section), ...mapped(parts.normalMap, section),
   };
-  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
+  const images = [[parts.picture, extension.image], [parts.normalMap, extension.normalMap]] as const;
+  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...imagesOf(images), ...materialOf(parts.picture), accessors, bufferViews, extensions: { MESHHIER_tile: { ...extension, ...change } } });
   return container(text.padEnd(Math.ceil(text.length / 4) * 4), chunks, end);
 }
 
-function pictured(picture: PictureParts | undefined, section: (bytes: Uint8Array) => number): object {
+function pictured(picture: PictureParts | undefined, section: (bytes: Uint8Array) => number): { image?: number; imageWidth?: number; imageHeight?: number } {
   return picture ? { imageWidth: picture.width, imageHeight: picture.height, image: section(picture.file) } : {};
 }
 
-function mapped(map: PictureParts | undefined, section: (bytes: Uint8Array) => number): object {
+function mapped(map: PictureParts | undefined, section: (bytes: Uint8Array) => number): { normalMap?: number; normalMapWidth?: number; normalMapHeight?: number } {
   return map ? { normalMapWidth: map.width, normalMapHeight: map.height, normalMap: section(map.file) } : {};
 }
 
-function materialOf({ picture, normalMap }: TileParts): object {
-  const shown = [picture, normalMap].filter((each) => each !== undefined);
-  if (shown.length === 0) return {};
-  const { alphaMode, unlit } = shown[0];
-  return { images: shown.map(({ mimeType }) => ({ mimeType })), materials: [{ alphaMode, ...(unlit ? { extensions: { KHR_materials_unlit: {} } } : {}) }] };
+function imagesOf(images: readonly (readonly [PictureParts | undefined, number | undefined])[]): object {
+  return { images: images.flatMap(([picture, bufferView]) => (picture ? [{ bufferView, mimeType: picture.mimeType }] : [])) };
+}
+
+function materialOf(picture: PictureParts | undefined): object {
+  if (picture === undefined) return {};
+  const { alphaMode, unlit } = picture;
+  return { materials: [{ alphaMode, ...(unlit ? { extensions: { KHR_materials_unlit: {} } } : {}) }] };
 }
 
 function container(text: string, chunks: readonly Uint8Array[], binBytes: number): Uint8Array {
