@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy, or the beginning of one, within the page itself (`meshhier page`): JSON in a script element.
 import { JsonValue } from '../src/json_value.js';
-import { unpacked } from '../src/hierarchy/bytes.js';
+import { unpacked, type Asking } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from '../src/hierarchy/manifest_file.js';
 import type { RemoteFiles, FilePlace } from '../src/hierarchy/files.js';
@@ -42,7 +42,7 @@ export class EmbeddedFiles implements RemoteFiles {
   }
 
   /// Without its gzip where this page has it.
-  async stored(name: string, most: number, init?: RequestInit, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>> {
+  async stored(name: string, most: number, init?: Asking, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>> {
     const file = this.files.get(name);
     if (file !== undefined) return this.held(name, await unpacked(decoded(file), most, name));
     return this.ask(name, (link) => link.stored(name, most, init, where));

@@ -121,6 +121,16 @@ describe.skipIf(!hasProgram)('a remote archive', () => {
     expect(opened.host.asked).toHaveLength(4); // siblings come together
   });
 
+  it.each(habits.slice(0, 3))('shows who watches the pieces of a file, %s', async (_, how) => {
+    const { files } = open(small().archive, how);
+    await files.stored(ROOT, MOST); // the directory of the archive is there
+    for (const name of [ROOT, tilePath({ level: 1, index: 1 })]) {
+      const pieces: Uint8Array[] = [];
+      const stored = await files.stored(name, MOST, { watch: (piece) => { pieces.push(piece.slice()); } });
+      expect(Buffer.concat(pieces).equals(stored)).toBe(true);
+    }
+  });
+
   it('gives each tile of a large one', async () => {
     const opened = open(large());
     const { index, tree } = await directoryOf(opened);

@@ -2,7 +2,7 @@
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { MeshBasicMaterial, Vector3, type Mesh, type WebGLRenderer } from 'three';
+import { MeshBasicMaterial, Vector3, type Mesh, type MeshStandardMaterial, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
 import type { ViewOptions } from '../src/index.js';
@@ -21,7 +21,7 @@ class Device {
   draw(meshes: readonly Mesh[]): void {
     for (const mesh of meshes) {
       const { map } = mesh.material as MeshBasicMaterial;
-      mesh.onBeforeRender({ domElement: this.canvas } as unknown as WebGLRenderer, null!, null!, null!, null!, null!);
+      mesh.onBeforeRender({ domElement: this.canvas, initTexture: () => undefined } as unknown as WebGLRenderer, null!, null!, null!, null!, null!);
       map?.onUpdate?.(map);
     }
   }
@@ -542,6 +542,98 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     session.look([0.5, 58.6, 0.5], [0.5, 70, 0.5001]);
     await session.settle();
     expect(session.view.stats().finestLevel).toBeGreaterThan(3);
+  });
+
+  describe('with normal maps', () => {
+    const mapped = (): string => workshop.build('mapped', ['surface', '--triangles', '6000', '--shape', 'torus'], { partition: { vertices: 100 }, storage: { normals: 'map' } });
+    /// A host that stops amid the root's map until `end` is called, with an error if that is given.
+    const halting = (known: Fetch): { fetch: Fetch; end: (problem?: Error) => void } => {
+      let end!: (problem?: Error) => void;
+      const fetch: Fetch = async (address, init) => {
+        const answer = await known(address, init);
+        if (!withoutQuery(address).endsWith('tiles/00/000000.glb') || end !== undefined) return answer;
+        const bytes = new Uint8Array(await answer.arrayBuffer());
+        const body = new ReadableStream<Uint8Array>({
+          start: (controller) => {
+            controller.enqueue(bytes.slice(0, bytes.length - 1000));
+            end = (problem) => {
+              if (problem) controller.error(problem);
+              else controller.enqueue(bytes.slice(bytes.length - 1000));
+              if (problem === undefined) controller.close();
+            };
+          },
+        });
+        return new Response(body);
+      };
+      return { fetch, end: (problem) => { end(problem); } };
+    };
+    const root = (session: Session): MeshStandardMaterial => session.meshes()[0].material as MeshStandardMaterial;
+    beforeEach(() => {
+      FakeBitmap.open = 0;
+      vi.stubGlobal('createImageBitmap', fakeDecode);
+    });
+
+    it('draws the root before its map has come, and then with it', async () => {
+      const host = halting(fetchFrom(mapped()));
+      const session = begin(host.fetch);
+      await session.view.opened;
+      closeUp(session);
+      for (let frames = 0; frames < 5; ++frames) await session.frame();
+      expect(session.meshes()).toHaveLength(1);
+      expect(root(session).normalMap).toBeNull();
+      expect(session.view.stats()).toMatchObject({ settled: false, fetchedFiles: 0 });
+      const cut = session.cut();
+      host.end();
+      while (root(session).normalMap === null) await session.frame();
+      expect(session.cut()).toEqual(cut);
+      expect(await session.settle()).toBe(true);
+      expect(session.view.stats().tiles).toBeGreaterThan(4);
+      expect(session.problems).toEqual([]);
+      session.view.dispose();
+      expect(FakeBitmap.open).toBe(0);
+    });
+
+    it('asks again for a root whose map broke off', async () => {
+      const host = halting(fetchFrom(mapped()));
+      const session = begin(host.fetch);
+      await session.view.opened;
+      closeUp(session);
+      await session.frame();
+      host.end(new TypeError('the line'));
+      expect(await session.settle()).toBe(true);
+      expect(session.problems).toEqual([expect.stringContaining('tiles/00/000000.glb: broke off')]);
+      expect(session.missing).toBe(0);
+    });
+
+    it('keeps a root whose map does not come, and asks for it when it is told to', async () => {
+      let isDown = false;
+      const host = halting(fetchFrom(mapped()));
+      const session = begin(troubled(host.fetch, () => (isDown ? down() : null)));
+      await session.view.opened;
+      closeUp(session);
+      await session.frame();
+      isDown = true;
+      host.end(new TypeError('the line'));
+      expect(await session.settle(60)).toBe(true);
+      expect(root(session).normalMap).toBeNull();
+      expect(session.missing).toBeGreaterThan(0);
+      isDown = false;
+      session.view.retry();
+      expect(await session.settle()).toBe(true);
+      expect(session.missing).toBe(0);
+      expect(session.view.stats().tiles).toBeGreaterThan(4);
+    });
+
+    it('is closed before the map has come', async () => {
+      const host = halting(fetchFrom(mapped()));
+      const session = begin(host.fetch);
+      await session.view.opened;
+      session.view.dispose();
+      host.end();
+      await session.frame();
+      expect(FakeBitmap.open).toBe(0);
+      expect(session.problems).toEqual([]);
+    });
   });
 
   it('ends what is under way', async () => {

@@ -4,6 +4,12 @@ import { HierarchyProblem } from './problem.js';
 
 export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
 
+/// How a file is asked for.
+export interface Asking extends RequestInit {
+  /// Is given the pieces of a file as they come, once each and in order; not all who have files have pieces of them.
+  readonly watch?: (piece: Uint8Array) => void;
+}
+
 /// A host that sends nothing for so long does not answer: it may have taken the connection, and no more.
 const SILENT_MS = 20_000;
 
@@ -144,15 +150,19 @@ export async function receive(
   response: Response,
   most: number,
   name: string,
-  signal: AbortSignal | null | undefined,
+  { signal, watch }: Asking,
 ): Promise<Uint8Array<ArrayBuffer>> {
   const pieces: Uint8Array[] = [];
-  return joined(pieces, await receivePieces(response, most, name, signal, (piece) => { pieces.push(piece); }));
+  const take = (piece: Uint8Array): void => {
+    pieces.push(piece);
+    watch?.(piece);
+  };
+  return joined(pieces, await receivePieces(response, most, name, signal, take));
 }
 
 /// A file of at most `most` bytes as the host sends it, perhaps in gzip.
-export async function fetchStored(fetch: Fetch, url: string, name: string, most: number, init: RequestInit = {}): Promise<Uint8Array<ArrayBuffer>> {
-  return receive(await respond(fetch, url, name, init), most, name, init.signal);
+export async function fetchStored(fetch: Fetch, url: string, name: string, most: number, init: Asking = {}): Promise<Uint8Array<ArrayBuffer>> {
+  return receive(await respond(fetch, url, name, init), most, name, init);
 }
 
 /// The content of a file of at most `most` bytes, out of its gzip.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The files of a hierarchy, wherever they lie.
-import { unpacked } from './bytes.js';
+import { unpacked, type Asking } from './bytes.js';
 
 /// Where a file in an archive begins: so many bytes behind the start of another one.
 export interface FilePlace {
@@ -13,7 +13,7 @@ export interface FilePlace {
 /// Names are relative to the hierarchy. Every failure throws HierarchyProblem, or what ends `init.signal`.
 export interface RemoteFiles {
   /// A file of at most `most` bytes as it is stored, perhaps in gzip; a host may have unpacked it. `where`: if it is known.
-  stored(name: string, most: number, init?: RequestInit, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>>;
+  stored(name: string, most: number, init?: Asking, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>>;
   /// Tells whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
   lacks?(name: string): boolean;
   /// Bytes [first, end) of a file of `length`; or all of it, where a host knows no ranges.
@@ -29,6 +29,6 @@ export interface RemoteFiles {
 }
 
 /// The content of a file of at most `most` bytes, out of its gzip.
-export async function whole(files: RemoteFiles, name: string, most: number, init?: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+export async function whole(files: RemoteFiles, name: string, most: number, init?: Asking): Promise<Uint8Array<ArrayBuffer>> {
   return unpacked(await files.stored(name, most, init), most, name);
 }

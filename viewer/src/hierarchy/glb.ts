@@ -33,6 +33,12 @@ export interface Gltf {
   extras?: unknown;
 }
 
+/// Returns the end of a section's bytes in the BIN chunk.
+export function endOf({ byteOffset = 0, byteLength, extensions }: BufferView): number {
+  const packed = extensions?.EXT_meshopt_compression;
+  return packed ? (packed.byteOffset ?? 0) + packed.byteLength : byteOffset + byteLength;
+}
+
 /// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers; three indices
 /// take a byte, an index of a sequence too.
 const MOST_EXPANSION: Readonly<Record<string, number>> = { ATTRIBUTES: 256, TRIANGLES: 12, INDICES: 4 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One file over HTTP, of which parts are read (RFC 9110, section 14).
-import { receive, receivePieces, respond, type Fetch } from './bytes.js';
+import { receive, receivePieces, respond, type Asking, type Fetch } from './bytes.js';
 import { HierarchyProblem, HierarchyReplaced } from './problem.js';
 
 /// Parts that lie so near to each other come in one answer.
@@ -14,7 +14,7 @@ const MOST_WHOLE = 2 ** 26;
 interface WantedPart {
   readonly first: number;
   readonly end: number;
-  readonly init: RequestInit;
+  readonly init: Asking;
   readonly resolve: (bytes: Uint8Array<ArrayBuffer>) => void;
   readonly reject: (problem: unknown) => void;
 }
@@ -70,7 +70,9 @@ class Parts {
       const from = Math.max(wanted.first, at);
       const end = Math.min(wanted.end, at + bytes.length);
       if (from >= end) continue;
-      to.set(bytes.subarray(from - at, end - at), from - wanted.first);
+      const piece = bytes.subarray(from - at, end - at);
+      to.set(piece, from - wanted.first);
+      wanted.init.watch?.(piece);
       if (end === wanted.end) wanted.resolve(to);
     }
   }
@@ -94,11 +96,11 @@ export class RangedFile {
     const response = await respond(this.fetch, this.url, this.name, { ...init, headers: rangeHeader(first, end) });
     if (response.status === 200) return (await this.readWhole(response, init.signal)).slice(first, end);
     this.check(response, first);
-    return receive(response, end - first, this.name, init.signal);
+    return receive(response, end - first, this.name, init);
   }
 
   /// Bytes [first, end). Together with others that are asked for at the same time and lie near.
-  async read(first: number, end: number, init: RequestInit = {}): Promise<Uint8Array<ArrayBuffer>> {
+  async read(first: number, end: number, init: Asking = {}): Promise<Uint8Array<ArrayBuffer>> {
     init.signal?.throwIfAborted();
     if (this.whole !== null) return this.partOfWhole(first, end);
     return new Promise((resolve, reject) => {
@@ -203,7 +205,7 @@ export class RangedFile {
       return refuse();
     }
     try {
-      this.whole = await receive(response, MOST_WHOLE, this.name, signal);
+      this.whole = await receive(response, MOST_WHOLE, this.name, { signal });
     } catch (problem) {
       if (problem instanceof HierarchyProblem && !problem.mayPass) refuse();
       throw problem;

@@ -4,7 +4,7 @@
 // An archive begins with the manifest, the root tile and the index of tiles: they are found from its beginning, and so is
 // what follows them side by side. All else is found by the index of names at its end.
 import { archivedBytes, beginsAsArchive, findInIndex, HEAD_BYTES, MOST_END_BYTES, MOST_LOCAL_BYTES, readEnd, readLocalHeader, type IndexPlace, type LocalHeader } from './archive_format.js';
-import type { Fetch } from './bytes.js';
+import type { Asking, Fetch } from './bytes.js';
 import { browserStore, KeptFiles } from './kept_files.js';
 import { readManifest, type Manifest } from './manifest.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
@@ -41,6 +41,11 @@ function nameOfUrl(url: string): string {
   return url.replace(/[?#].*$/, '').replace(/^.*\//, '');
 }
 
+/// What is read begins before the file.
+function unwatched(init: Asking): Asking {
+  return { ...init, watch: undefined };
+}
+
 export class RemoteArchive implements RemoteFiles {
   private readonly file: RangedFile;
   private readonly name: string;
@@ -61,7 +66,7 @@ export class RemoteArchive implements RemoteFiles {
     this.file = new RangedFile(url, this.name, fetch);
   }
 
-  async stored(name: string, most: number, init: RequestInit = {}, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>> {
+  async stored(name: string, most: number, init: Asking = {}, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>> {
     return this.fromVisits(name, () => (where === undefined ? this.contentOf(name, most, init) : this.contentAt(name, where, most, init)));
   }
 
@@ -176,20 +181,21 @@ export class RemoteArchive implements RemoteFiles {
   }
 
   /// Reads a file of any size.
-  private async contentOf(name: string, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+  private async contentOf(name: string, most: number, init: Asking): Promise<Uint8Array<ArrayBuffer>> {
     const head = await this.head();
     const place = this.known.get(name);
     if (place !== undefined) return this.contentIn(place, head, name, most, init);
     const at = await this.offsetOf(name);
     const tail = await this.tail();
-    const piece = { first: at, bytes: await this.file.read(at, Math.min(at + MOST_LOCAL_BYTES + PEEK_BYTES, tail.index.offset), init) };
+    const piece = { first: at, bytes: await this.file.read(at, Math.min(at + MOST_LOCAL_BYTES + PEEK_BYTES, tail.index.offset), unwatched(init)) };
     return this.contentIn(this.note(this.headerOf(name, piece.bytes), at), piece, name, most, init);
   }
 
   /// A content of which `piece` may have the beginning.
-  private async contentIn({ offset, bytes }: Place, piece: Piece, name: string, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+  private async contentIn({ offset, bytes }: Place, piece: Piece, name: string, most: number, init: Asking): Promise<Uint8Array<ArrayBuffer>> {
     if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
     const there = piece.bytes.slice(offset - piece.first, offset - piece.first + bytes);
+    init.watch?.(there);
     if (there.length === bytes) return there;
     const all = new Uint8Array(bytes);
     all.set(there);
@@ -198,10 +204,10 @@ export class RemoteArchive implements RemoteFiles {
   }
 
   /// Reads a file whose place and size are known.
-  private async contentAt(name: string, { anchor, distance, bytes }: FilePlace, most: number, init: RequestInit): Promise<Uint8Array<ArrayBuffer>> {
+  private async contentAt(name: string, { anchor, distance, bytes }: FilePlace, most: number, init: Asking): Promise<Uint8Array<ArrayBuffer>> {
     if (bytes > most) throw new HierarchyProblem(name, `larger than ${most} bytes`);
     const at = (await this.offsetOf(anchor)) + distance;
-    const all = await this.file.read(at, at + archivedBytes(name, bytes), init);
+    const all = await this.file.read(at, at + archivedBytes(name, bytes), unwatched(init));
     const header = this.headerOf(name, all);
     if (header.bytes !== bytes) throw new HierarchyProblem(name, 'has another length than the index says');
     return all.subarray(header.headerBytes);

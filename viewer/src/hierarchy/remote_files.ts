@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The files of a hierarchy at a URL: those of a directory, or those in an archive.
 import { isArchiveUrl } from './archive_format.js';
-import { fetchRange, fetchStored, unpacked, withoutLastSlashes, type Fetch } from './bytes.js';
+import { fetchRange, fetchStored, unpacked, withoutLastSlashes, type Asking, type Fetch } from './bytes.js';
 import type { RemoteFiles } from './files.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
 import { RemoteArchive } from './remote_archive.js';
@@ -17,7 +17,7 @@ class RemoteDirectory implements RemoteFiles {
     this.base = `${withoutLastSlashes(url)}/`;
   }
 
-  stored(name: string, most: number, init: RequestInit = {}): Promise<Uint8Array<ArrayBuffer>> {
+  stored(name: string, most: number, init: Asking = {}): Promise<Uint8Array<ArrayBuffer>> {
     return fetchStored(this.fetch, this.base + name + this.query, name, most, init);
   }
 

@@ -10,6 +10,7 @@ import { mostPictureBytes } from './picture.js';
 import { whole, type RemoteFiles } from './files.js';
 import { fits, type OpenedTile, type Seal } from './stored_tile.js';
 import { letGo, type NormalSource, type Tile } from './tile.js';
+import { TileBeginning } from './tile_beginning.js';
 import type { ExpectedCounts } from './tile_counts.js';
 import type { TileDecoder } from './tile_decoder.js';
 import { TileIndex, type TileRecord } from './tile_index.js';
@@ -56,13 +57,27 @@ export class RemoteHierarchy {
     private readonly isAnew = false,
   ) {}
 
-  async root(): Promise<Tile> {
+  /// `early`: is given the root without its normal map, which takes most of the bytes, if all else comes noticeably before; whoever is given it
+  /// owns it. The root that is returned is another one.
+  async root(early?: (root: Tile) => void): Promise<Tile> {
     const name = tilePath(ROOT);
-    const bytes = await this.files.stored(name, MOST_ROOT, { priority: 'high', signal: this.signal, ...(this.isAnew && { cache: 'reload' as const }) });
-    const { tile } = await this.decoder.decode(bytes, { name, most: MOST_ROOT, expected: null, seal: null });
-    if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(name, 'not a root');
+    let isWhole = false;
+    const showEarly = (bytes: Uint8Array<ArrayBuffer>): void => {
+      this.decodeRoot(bytes, true).then((root) => { if (isWhole) letGo(root); else early?.(root); }, () => undefined); // what is wrong is told of the whole file
+    };
+    const watch = early && new TileBeginning(name, (bytes) => { if (!isWhole) showEarly(bytes); }).take;
+    const bytes = await this.files.stored(name, MOST_ROOT, { priority: 'high', signal: this.signal, watch, ...(this.isAnew && { cache: 'reload' as const }) });
+    isWhole = true;
+    const tile = await this.decodeRoot(bytes);
     this.normalsFrom = tile.normalsFrom;
     this.rootBytes = bytes;
+    return tile;
+  }
+
+  private async decodeRoot(bytes: Uint8Array<ArrayBuffer>, isBeginning = false): Promise<Tile> {
+    const name = tilePath(ROOT);
+    const { tile } = await this.decoder.decode(bytes, { name, most: MOST_ROOT, expected: null, seal: null, isBeginning });
+    if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(name, 'not a root');
     return tile;
   }
 

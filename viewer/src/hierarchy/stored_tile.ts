@@ -22,6 +22,8 @@ export interface TileWanted {
   readonly expected: ExpectedCounts | null;
   /// Null: not known, or of no matter.
   readonly seal: Seal | null;
+  /// The normal map has not come yet: zeros stand in its place, and the tile is read without it.
+  readonly isBeginning?: boolean;
 }
 
 export interface OpenedTile {
@@ -37,9 +39,8 @@ export function fits(bytes: Uint8Array, sum: bigint, seal: Seal): boolean | null
 }
 
 /// Unpacks, compares and decodes a tile. Throws HierarchyProblem of `wanted.name`.
-export async function openTile(bytes: Uint8Array<ArrayBuffer>, { name, most, expected, seal }: TileWanted): Promise<OpenedTile> {
-  const sum = checksum(bytes);
-  const isFitting = seal && fits(bytes, sum, seal);
+export async function openTile(bytes: Uint8Array<ArrayBuffer>, { name, most, expected, seal, isBeginning = false }: TileWanted): Promise<OpenedTile> {
+  const isFitting = seal && fits(bytes, checksum(bytes), seal);
   if (isFitting === false) throw new HierarchyProblem(name, 'its size or checksum is not that of the index: it is damaged, or of another build');
-  return { tile: await readTile(await unpacked(bytes, most, name), name, expected), isSealed: isFitting ?? false };
+  return { tile: await readTile(await unpacked(bytes, most, name), name, expected, isBeginning), isSealed: isFitting ?? false };
 }

@@ -8,7 +8,7 @@ import type { Manifest } from '../hierarchy/manifest.js';
 import { HierarchyReplaced } from '../hierarchy/problem.js';
 import { remoteFiles } from '../hierarchy/remote_files.js';
 import type { Directory } from '../hierarchy/remote_hierarchy.js';
-import type { Tile } from '../hierarchy/tile.js';
+import { letGo, type Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
@@ -30,6 +30,8 @@ export class ShownCut {
   state: Refined | null = null;
   /// Nothing else will come.
   isRootAll = false;
+  /// Of the root there is all but its normal map.
+  isEarly = false;
   isFirstFrame = true;
   /// Resolves once there is a picture of the root.
   rootDrawn!: () => void;
@@ -59,23 +61,9 @@ export class Loading implements FileHost {
     this.outline = new OutlineLayer(context, this);
   }
 
-  /// Resolves when the root can be drawn. Rejects with an Error that names the file.
+  /// Resolves when the root can be drawn, perhaps before its normal map is there. Rejects with an Error that names the file.
   async open(): Promise<void> {
-    const { opening, context } = this;
-    const manifest = opening.remote.manifest();
-    manifest.catch(() => undefined); // told when it is needed
-    let root: Tile;
-    try {
-      root = await opening.root();
-    } catch (problem) {
-      if (problem instanceof HierarchyReplaced && !opening.isAnew) return this.reload(); // nothing was seen of it
-      throw problem;
-    }
-    if (context.form.root !== null) this.forget();
-    context.form.takeRoot(root, context.standing);
-    context.tiles.show([this.store.addRoot(root, new Tree(1))], context.look);
-    context.changed();
-    void this.openDirectory(opening, root, manifest, this.cut.drawn);
+    return new Promise((resolve, reject) => { this.openRoot(resolve).then(resolve, reject); });
   }
 
   /// Begins anew, with what the host has now. Resolves and rejects as open() does.
@@ -95,8 +83,10 @@ export class Loading implements FileHost {
     this.store.retry();
     this.opening.hurry();
     if (this.cut.isRootAll && root !== null) {
+      const { isEarly } = this.cut;
       this.cut.isRootAll = false;
-      void this.openDirectory(this.opening, root, this.opening.remote.manifest());
+      if (isEarly) this.open().catch(() => undefined); // told already
+      else void this.openDirectory(this.opening, root, this.opening.remote.manifest());
     }
     this.showOutline();
     this.context.changed();
@@ -181,6 +171,48 @@ export class Loading implements FileHost {
       failed: ({ level, index }: Node, problem: unknown): void => { this.tell(keyOf(level, index), problem); },
     };
     return new TileStore(host, () => this.directory!.tree, context.settings.memoryBudget, context.options.requests ?? REQUESTS);
+  }
+
+  /// Resolves when all of the root is there; `drawable` is called when a part of it can be drawn.
+  private async openRoot(drawable: () => void): Promise<void> {
+    const { opening } = this;
+    const manifest = opening.remote.manifest();
+    manifest.catch(() => undefined); // told when it is needed
+    const showEarly = (early: Tile): void => {
+      if (opening.isClosed) {
+        letGo(early);
+        return;
+      }
+      this.showRoot(early);
+      this.cut.isEarly = true;
+      drawable();
+    };
+    let root: Tile;
+    try {
+      root = await opening.root(showEarly);
+    } catch (problem) {
+      if (problem instanceof HierarchyReplaced && !opening.isAnew) return this.reload(); // nothing was seen of it
+      if (this.cut.isEarly && !opening.isClosed) this.leaveEarly(problem);
+      throw problem;
+    }
+    this.showRoot(root);
+    void this.openDirectory(opening, root, manifest, this.cut.drawn);
+  }
+
+  /// Instead of what was shown before, if there was anything.
+  private showRoot(root: Tile): void {
+    const { context } = this;
+    if (context.form.root !== null) this.forget();
+    context.form.takeRoot(root, context.standing);
+    context.tiles.show([this.store.addRoot(root, new Tree(1))], context.look);
+    context.changed();
+  }
+
+  /// The normal map does not come: nobody awaits it any longer.
+  private leaveEarly(problem: unknown): void {
+    this.tell('root', problem);
+    this.cut.isRootAll = true;
+    this.context.changed();
   }
 
   /// All of an earlier opening; the manifest stays until there is another one.

@@ -47,8 +47,9 @@ export class Opening {
     return this.ending.signal.aborted;
   }
 
-  async root(): Promise<Tile> {
-    return this.persist('root', MOST_TRIES, () => this.remote.root());
+  /// `early`: as RemoteHierarchy.root() has it, with each try.
+  async root(early?: (root: Tile) => void): Promise<Tile> {
+    return this.persist('root', MOST_TRIES, () => this.remote.root(early));
   }
 
   /// Tries until it is there, unless what failed will not pass. `onPage`: more of the index has come.
