@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tiles with normal maps.
-import { MeshMatcapMaterial, MeshStandardMaterial, NoColorSpace, SRGBColorSpace, type Texture } from 'three';
+import { MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, NoColorSpace, SRGBColorSpace, type Texture } from 'three';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
@@ -193,5 +193,26 @@ describe('TileObject', () => {
     const bytes = memoryOf(tile, new Seam(tile, new Tree(4)), false);
     expect(bytes).toBeLessThanOrEqual(most);
     expect(bytes).toBeGreaterThan((parts.picture ? 2 : 1) * 4 * 64 * 32);
+  });
+});
+
+describe('the samples of a tile', () => {
+  const made = async (parts: TileParts, look: Partial<Look> = {}): Promise<TileObject> => {
+    const tile = await read(parts);
+    return new TileObject({ node: tile, key: 0, tile, seam: new Seam(tile, new Tree(4)) }, { ...DEFAULT_LOOK, ...look }, sharedMaterials());
+  };
+  const bare = (parts: TileParts): TileParts => ({ ...parts, normalMap: undefined, tangents: undefined, texcoords: parts.picture && parts.texcoords });
+
+  it.each([[ROOT, bare(ROOT)], [RELIEF, bare(RELIEF)]])('have the materials and the attributes of one with a map and one without', async (parts, without) => {
+    const [one, other] = [await made(parts), await made(without)];
+    const kind = ({ material, geometry }: Pick<TileObject, 'material' | 'geometry'>): unknown[] =>
+      [material.type, material.customProgramCacheKey(), (material as MeshStandardMaterial).normalMap !== null, Object.entries(geometry.attributes).filter(([name]) => name !== 'uv').map(([name, { itemSize }]) => [name, itemSize]).sort()];
+    for (const each of [one, other]) expect(each.makeSamples().map(kind)).toEqual([kind(one), kind(other)]);
+  });
+
+  it('are none where no light is', async () => {
+    const unlit = await made({ ...bare(RELIEF), picture: { ...PICTURE, unlit: true } });
+    expect(unlit.material).toBeInstanceOf(MeshBasicMaterial);
+    expect(unlit.makeSamples()).toEqual([]);
   });
 });

@@ -72,6 +72,20 @@ function key({ level, index }: Node): number {
 const [LEFT, RIGHT] = tree.children({ level: 0, index: 0 });
 
 describe('TileStore', () => {
+  it('does not give a tile that cannot be drawn yet, and does not ask for it again', async () => {
+    const host = new SlowHost();
+    const waiting = new Set([key(LEFT)]);
+    const tiles = store(Object.assign(host, { awaits: (one: number) => waiting.has(one) }), 1e6);
+    expect(tiles.want(wanted(LEFT, RIGHT), 1)).toBe(2);
+    await host.answerAll();
+    expect(tiles.want(wanted(LEFT, RIGHT), 2)).toBe(1);
+    expect(host.calls).toHaveLength(0);
+    expect([tiles.has(key(LEFT)), tiles.has(key(RIGHT)), tiles.residentCount]).toEqual([false, true, 3]);
+    waiting.clear();
+    expect(tiles.want(wanted(LEFT, RIGHT), 3)).toBe(0);
+    expect(tiles.has(key(LEFT))).toBe(true);
+  });
+
   it('asks in order, for as many at a time as it may, parents first', async () => {
     const host = new SlowHost();
     const tiles = store(host, 1e6, 2);

@@ -634,6 +634,23 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
       expect(FakeBitmap.open).toBe(0);
       expect(session.problems).toEqual([]);
     });
+
+    it('shows tiles once their maps are on the GPU, and prepares the programs of both kinds', async () => {
+      const session = begin(fetchFrom(mapped()), { settings: { threshold: 8, restDetail: 1 } });
+      await session.view.opened;
+      closeUp(session);
+      await session.frame();
+      const uploaded: unknown[] = [];
+      const compiled: Mesh[] = [];
+      const renderer = { domElement: new EventTarget(), initTexture: (texture: unknown) => uploaded.push(texture), compile: (mesh: Mesh) => compiled.push(mesh) } as unknown as WebGLRenderer;
+      session.meshes()[0].onBeforeRender(renderer, null!, null!, null!, null!, null!);
+      await session.frame();
+      expect(compiled.map(({ material }) => (material as MeshStandardMaterial).normalMap !== null)).toEqual([true, false]);
+      expect(await session.settle()).toBe(true);
+      const shown = session.meshes().flatMap(({ material }) => (material as MeshStandardMaterial).normalMap ?? []);
+      expect(shown.length).toBeGreaterThan(0);
+      expect(uploaded).toEqual(expect.arrayContaining(shown));
+    });
   });
 
   it('ends what is under way', async () => {

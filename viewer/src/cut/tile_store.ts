@@ -24,6 +24,8 @@ export interface Wanted {
 export interface StoreHost {
   load(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile>;
   bytesOf(tile: Tile, seam: Seam): number;
+  /// A tile that is here cannot be drawn yet; if it is not said, all can. Once it can be drawn it stays so.
+  awaits?(key: number): boolean;
   came(tile: ResidentTile): void;
   gone(tile: ResidentTile): void;
   failed(node: Node, problem: unknown): void;
@@ -86,7 +88,9 @@ export class TileStore {
     return resident;
   }
 
+  /// A tile that can be drawn.
   get(key: number): ResidentTile | undefined {
+    if (this.host.awaits?.(key)) return undefined;
     return this.entries.get(key)?.resident ?? undefined;
   }
 

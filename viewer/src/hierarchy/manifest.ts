@@ -44,6 +44,8 @@ export interface Manifest {
   readonly licence: string;
   readonly partitions: number;
   readonly totalBytes: number;
+  /// Tiles above the partitions may have normal maps.
+  readonly hasNormalMaps: boolean;
   /// Tiles are stored in gzip.
   readonly packedTiles: boolean;
   readonly index: NamedFile;
@@ -136,6 +138,7 @@ export function readManifest(text: string): Manifest {
     outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
     preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
     build: root.at('checksum').checksum(),
+    hasNormalMaps: root.at('storage').has('normal_map'),
     packedTiles: COMPRESSIONS[root.at('storage').at('compression').oneOf(...COMPRESSION_NAMES)],
   };
 }

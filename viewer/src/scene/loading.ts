@@ -22,6 +22,7 @@ import type { ViewContext } from './view_context.js';
 const WORKERS = 2;
 const REQUESTS = 6; // what browsers open to a host at once
 const ROOT: Node = { level: 0, index: 0 };
+const ROOT_KEY = keyOf(0, 0);
 
 /// The cut that is shown of one opening.
 export class ShownCut {
@@ -163,6 +164,7 @@ export class Loading implements FileHost {
     const host = {
       load: (node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> => remote.tile(node, record, signal),
       bytesOf: (tile: Tile, seam: ResidentTile['seam']): number => memoryOf(tile, seam, context.look.wires),
+      awaits: (key: number): boolean => context.tiles.awaits(key),
       came: (tile: ResidentTile): void => { this.came(tile); },
       gone: (tile: ResidentTile): void => {
         context.tiles.drop(tile);
@@ -204,6 +206,7 @@ export class Loading implements FileHost {
     const { context } = this;
     if (context.form.root !== null) this.forget();
     context.form.takeRoot(root, context.standing);
+    context.tiles.hasNormalMaps = root.tangents !== null;
     context.tiles.show([this.store.addRoot(root, new Tree(1))], context.look);
     context.changed();
   }
@@ -246,6 +249,7 @@ export class Loading implements FileHost {
     this.directory = directory;
     this.manifest = manifest;
     context.form.takeManifest(manifest);
+    context.tiles.hasNormalMaps = manifest.hasNormalMaps;
     const [vertexBytes, texelBytes] = [vertexBytesOf(root), texelBytesOf(root)];
     this.cut.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
       mostMemory(record, { level, vertexBytes, wires: context.look.wires, texelBytes }));
@@ -254,8 +258,10 @@ export class Loading implements FileHost {
     context.changed();
   }
 
-  private came({ key, node }: ResidentTile): void {
-    const { account } = this.context;
+  private came(resident: ResidentTile): void {
+    const { key, node } = resident;
+    const { account, tiles, look } = this.context;
+    if (key !== ROOT_KEY) tiles.take(resident, look);
     this.epochs.set(key, account.epoch);
     this.recover(key);
     const record = this.directory?.index.record(node);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A tile in a three scene: its triangles, and on request its edges and vertices.
-import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
-import type { Intersection, Material, Raycaster, Texture } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, LineSegments, Mesh, MeshBasicMaterial, Points, Sphere, Texture, Vector3 } from 'three';
+import type { Intersection, Material, Raycaster } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import { BITMAP_TEXEL_BYTES, bytesOfTexel } from '../hierarchy/picture.js';
 import { valueWidth } from '../hierarchy/scalar_values.js';
@@ -105,7 +105,8 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
   private points: Points | null = null;
   private readonly painting: Painting;
   /// How its surface was made.
-  private surface: string;
+  surface: string;
+  isResolved = false;
 
   /// To be drawn once it is resolved; wires and points come with setLook().
   constructor(
@@ -160,9 +161,31 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.resident.seam.forget();
   }
 
+  /// Those of its picture and its normal map.
+  get textures(): Texture[] {
+    const { texture, normals } = this.painting;
+    return [texture, normals].filter((each) => each !== null);
+  }
+
+  /// Makes meshes without vertices that are drawn as this one is, with a normal map and without. None if no light is on it.
+  makeSamples(): Mesh<BufferGeometry, SurfaceMaterial>[] {
+    if (this.material instanceof MeshBasicMaterial) return [];
+    const { look, painting, shared } = this;
+    return [new Texture(), null].map((normals) => new Mesh(this.sampleGeometry(normals !== null), surfaceMaterial(look, { ...painting, normals }, shared)));
+  }
+
+  private sampleGeometry(hasTangents: boolean): BufferGeometry {
+    const geometry = new BufferGeometry();
+    const give = (name: string, width: number): void => { geometry.setAttribute(name, new BufferAttribute(new Float32Array(width), width)); };
+    for (const [name, { itemSize }] of Object.entries(this.geometry.attributes)) if (name !== 'tangent') give(name, itemSize);
+    if (hasTangents) give('tangent', 4);
+    return geometry;
+  }
+
   /// Takes the seam over as it is in the cut last looked at.
   resolve(): void {
     const { tile, seam } = this.resident;
+    this.isResolved = true;
     this.triangles = tile.interiorCount + seam.resolve();
     this.geometry.setDrawRange(0, 3 * this.triangles);
     if (tile.ghosts > 0) this.uploadGhosts();

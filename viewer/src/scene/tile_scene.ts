@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tiles of a cut in a three scene, joined along their seams.
-import { Group } from 'three';
+import { Group, type Camera, type Scene, type WebGLRenderer } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Vector } from '../cut/viewpoint.js';
@@ -15,6 +15,8 @@ import type { DrawnTile } from './surface.js';
 import { uprightRows, type Standing } from './standing.js';
 import { heightsOf } from './terrain.js';
 import { TileObject } from './tile_object.js';
+import { TilePrograms } from './tile_programs.js';
+import { Uploads } from './uploads.js';
 
 export class TileScene extends Group {
   private readonly objects = new Map<number, TileObject>();
@@ -25,6 +27,11 @@ export class TileScene extends Group {
   private readonly told = new Set<number>();
   private readonly materials: SharedMaterials;
   private readonly contexts: ContextWatch;
+  private readonly uploads = new Uploads();
+  private readonly programs = new TilePrograms();
+  private renderer: WebGLRenderer | null = null; // that has drawn a tile
+  /// Some tiles have normal maps, and others have none.
+  hasNormalMaps = false;
 
   /// `restored`: a lost device is back, without the pictures that only it had. `changed`: tiles are to be shown anew.
   constructor(restored: () => void, changed: () => void) {
@@ -57,6 +64,25 @@ export class TileScene extends Group {
     this.matrixWorldNeedsUpdate = true;
   }
 
+  /// A tile has come. Where tiles were drawn before its pictures go to the GPU first.
+  take(resident: ResidentTile, look: Look): void {
+    const { picture, normalMap } = resident.tile;
+    if (this.renderer === null || (picture === null && normalMap === null)) return;
+    const object = this.make(resident, look);
+    object.visible = false;
+    this.uploads.add(resident.key, object.textures);
+  }
+
+  /// True while the pictures of a tile are still to go to the GPU.
+  awaits(key: number): boolean {
+    return this.uploads.awaits(key);
+  }
+
+  /// Brings pictures to the GPU, as many as go in a frame. Returns whether there are more.
+  upload(): boolean {
+    return this.renderer !== null && this.uploads.step(this.renderer);
+  }
+
   /// Shows a cut instead of the one before; true if that changes the picture. `attributes`: of the model.
   show(residents: readonly ResidentTile[], look: Look, attributes: readonly ScalarAttribute[] = []): boolean {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
@@ -76,10 +102,9 @@ export class TileScene extends Group {
   }
 
   private join(resident: ResidentTile, look: Look): void {
-    const known = this.objects.get(resident.key);
-    const object = known ?? this.make(resident, look);
+    const object = this.objects.get(resident.key) ?? this.make(resident, look);
     const changed = resident.seam.look(this.cut);
-    if (changed || !known) object.resolve();
+    if (changed || !object.isResolved) object.resolve();
     object.setLook(look);
     if (resident.seam.isDamaged) this.tellDamaged(resident.node);
     object.visible = true;
@@ -87,14 +112,21 @@ export class TileScene extends Group {
 
   private make(resident: ResidentTile, look: Look): TileObject {
     const object = new TileObject(resident, look, this.materials);
-    object.onBeforeRender = ({ domElement }) => { this.contexts.drawnOn(domElement); };
+    object.onBeforeRender = (renderer, scene, camera) => { this.drawnBy(renderer, scene, camera, object); };
     this.objects.set(resident.key, object);
     this.add(object);
     return object;
   }
 
+  private drawnBy(renderer: WebGLRenderer, scene: Scene, camera: Camera, object: TileObject): void {
+    this.renderer = renderer;
+    this.contexts.drawnOn(renderer.domElement);
+    if (this.hasNormalMaps) this.programs.drawn(object, renderer, scene, camera);
+  }
+
   /// The tile is no longer in memory.
   drop({ key }: ResidentTile): void {
+    this.uploads.forget(key);
     this.objects.get(key)?.dispose();
     this.objects.delete(key);
   }
@@ -130,6 +162,7 @@ export class TileScene extends Group {
 
   dispose(): void {
     this.contexts.stop();
+    this.programs.forget();
     for (const object of this.objects.values()) object.dispose();
     this.objects.clear();
     this.materials.wires.dispose();
