@@ -583,7 +583,13 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
       expect(root(session).normalMap).toBeNull();
       expect(session.view.stats()).toMatchObject({ settled: false, fetchedFiles: 0 });
       const cut = session.cut();
+      const compiling: (() => void)[] = [];
+      const compileAsync = async (): Promise<void> => new Promise((resolve) => { compiling.push(resolve); });
+      session.meshes()[0].onBeforeRender({ domElement: new EventTarget(), initTexture: () => undefined, extensions: new Set(['KHR_parallel_shader_compile']), compileAsync } as unknown as WebGLRenderer, null!, null!, null!, null!, null!);
       host.end();
+      for (let frames = 0; frames < 20; ++frames) await session.frame();
+      expect(root(session).normalMap).toBeNull(); // until its program is there
+      for (const done of compiling) done();
       while (root(session).normalMap === null) await session.frame();
       expect(session.cut()).toEqual(cut);
       expect(await session.settle()).toBe(true);
@@ -642,7 +648,7 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
       await session.frame();
       const uploaded: unknown[] = [];
       const compiled: Mesh[] = [];
-      const renderer = { domElement: new EventTarget(), initTexture: (texture: unknown) => uploaded.push(texture), compile: (mesh: Mesh) => compiled.push(mesh) } as unknown as WebGLRenderer;
+      const renderer = { domElement: new EventTarget(), initTexture: (texture: unknown) => uploaded.push(texture), extensions: new Set(), compile: (mesh: Mesh) => compiled.push(mesh) } as unknown as WebGLRenderer;
       session.meshes()[0].onBeforeRender(renderer, null!, null!, null!, null!, null!);
       await session.frame();
       expect(compiled.map(({ material }) => (material as MeshStandardMaterial).normalMap !== null)).toEqual([true, false]);

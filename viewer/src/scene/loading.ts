@@ -197,6 +197,11 @@ export class Loading implements FileHost {
       if (this.cut.isEarly && !opening.isClosed) this.leaveEarly(problem);
       throw problem;
     }
+    if (this.cut.isEarly) await this.context.tiles.compiled;
+    if (opening.isClosed) {
+      letGo(root);
+      return;
+    }
     this.showRoot(root);
     void this.openDirectory(opening, root, manifest, this.cut.drawn);
   }

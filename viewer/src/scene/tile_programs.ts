@@ -16,6 +16,8 @@ export interface DrawnTileSurface {
 export class TilePrograms {
   private surface: string | null = null;
   private samples: readonly Sample[] = [];
+  /// Resolves once the programs that were begun can be used without waiting for them.
+  compiled: Promise<unknown> = Promise.resolve();
 
   /// A tile is drawn.
   drawn(tile: DrawnTileSurface, renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
@@ -23,7 +25,9 @@ export class TilePrograms {
     this.forget();
     const samples = tile.makeSamples();
     [this.surface, this.samples] = [tile.surface, samples];
-    queueMicrotask(() => { for (const sample of samples) renderer.compile(sample, camera, scene); }); // once this frame's drawing is over
+    const begin = async (sample: Sample): Promise<unknown> =>
+      renderer.extensions.has('KHR_parallel_shader_compile') ? renderer.compileAsync(sample, camera, scene) : renderer.compile(sample, camera, scene);
+    this.compiled = Promise.resolve().then(() => Promise.all(samples.map(begin))).catch(() => undefined); // once this frame's drawing is over; what fails is told when it is drawn
   }
 
   /// Programs that no tile needs either are deleted.

@@ -83,6 +83,11 @@ export class TileScene extends Group {
     return this.renderer !== null && this.uploads.step(this.renderer);
   }
 
+  /// Resolves once tiles with normal maps and without can be drawn at once.
+  get compiled(): Promise<unknown> {
+    return this.programs.compiled;
+  }
+
   /// Shows a cut instead of the one before; true if that changes the picture. `attributes`: of the model.
   show(residents: readonly ResidentTile[], look: Look, attributes: readonly ScalarAttribute[] = []): boolean {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
