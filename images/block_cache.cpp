@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <span>
+#include <utility>
+#include <vector>
 
 namespace meshhier::images {
 namespace {
@@ -32,10 +33,10 @@ BlockCache::Part& BlockCache::part_of(std::uint64_t key) {
   return parts_[(key * kGoldenRatio >> 32) % part_count_];
 }
 
-void BlockCache::put(std::uint64_t key, std::span<const std::byte> block) {
+void BlockCache::put(std::uint64_t key, std::vector<std::byte> block) {
   Part& part = part_of(key);
   const std::lock_guard lock(part.mutex);
-  part.put(key, block, most_bytes_of_part_);
+  part.put(key, std::move(block), most_bytes_of_part_);
 }
 
 const std::byte* BlockCache::Part::find(std::uint64_t key) {
@@ -46,15 +47,15 @@ const std::byte* BlockCache::Part::find(std::uint64_t key) {
   return found->second->bytes.data();
 }
 
-void BlockCache::Part::put(std::uint64_t key, std::span<const std::byte> bytes,
+void BlockCache::Part::put(std::uint64_t key, std::vector<std::byte> bytes,
                            std::uint64_t most_bytes) {
   if (cost(bytes.size()) > most_bytes || places.contains(key))
     return;
   while (held_bytes + cost(bytes.size()) > most_bytes)
     drop_oldest();
-  blocks.push_front({key, {bytes.begin(), bytes.end()}});
-  places.emplace(key, blocks.begin());
   held_bytes += cost(bytes.size());
+  blocks.push_front({key, std::move(bytes)});
+  places.emplace(key, blocks.begin());
 }
 
 void BlockCache::Part::drop_oldest() {

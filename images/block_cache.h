@@ -6,7 +6,6 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -31,8 +30,8 @@ class BlockCache {
     return block != nullptr;
   }
 
-  /// Keeps a copy of the block, unless there is one or the block is larger than all room.
-  void put(std::uint64_t key, std::span<const std::byte> block);
+  /// Keeps the block, unless it is there or larger than all room.
+  void put(std::uint64_t key, std::vector<std::byte> block);
 
  private:
   struct Block {
@@ -42,7 +41,7 @@ class BlockCache {
   struct Part {
     /// Returns null if the block is not there; else the block becomes the last to go.
     const std::byte* find(std::uint64_t key);
-    void put(std::uint64_t key, std::span<const std::byte> bytes, std::uint64_t most_bytes);
+    void put(std::uint64_t key, std::vector<std::byte> bytes, std::uint64_t most_bytes);
     void drop_oldest();
 
     std::mutex mutex;         ///< guards the members below

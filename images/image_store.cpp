@@ -7,7 +7,6 @@
 #include "storage/io/hash.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +23,6 @@ namespace meshhier::images {
 namespace {
 
 static_assert(ImageStore::kBlockSide == BlockGrid::kBlockSide);
-constexpr std::size_t kMostBlockBytes =
-    std::size_t{4} * BlockGrid::kBlockSide * BlockGrid::kBlockSide;
 
 BlockGrid grid_of(const ImageInfo& info) {
   return {{info.width, info.height}, info.channels};
@@ -142,12 +139,11 @@ void ImageStore::Impl::read_block(std::uint32_t image, std::uint32_t level, std:
   if (cache.use(key, copy))
     return;
   check(image, strip, grid.strip_bytes(level, row));
-  std::array<std::byte, kMostBlockBytes> buffer;
-  const auto block = std::span(buffer).first(std::size_t{part.block_width} * grid.rows(level, row) *
-                                             grid.channels());
+  std::vector<std::byte> block(std::size_t{part.block_width} * grid.rows(level, row) *
+                               grid.channels());
   scratch.read(images[image].strips[strip].offset + grid.offset(level, column, row), block);
   copy(block.data());
-  cache.put(key, block);
+  cache.put(key, std::move(block));
 }
 
 ImageStore::ImageStore(storage::ScratchFile& scratch, std::uint64_t cache_bytes)

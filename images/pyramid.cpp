@@ -13,27 +13,31 @@
 namespace meshhier::images {
 namespace {
 
-using Four = std::array<const std::uint8_t*, 4>;
+/// A square of texels.
+struct Four {
+  const std::uint8_t *a, *b, *c, *d;
+};
 
 void mean_of_opaque(const LightTable& table, const Four& texels, std::uint8_t* mean) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::uint32_t sum = 0;
-    for (const std::uint8_t* texel : texels)
-      sum += table.light(texel[c]);
-    mean[c] = table.value((sum + 2) / 4);
-  }
+  const auto mean_of = [&](std::size_t c) {
+    return table.value((table.light(texels.a[c]) + table.light(texels.b[c]) +
+                        table.light(texels.c[c]) + table.light(texels.d[c]) + 2) /
+                       4);
+  };
+  mean[0] = mean_of(0), mean[1] = mean_of(1), mean[2] = mean_of(2);
 }
 
 /// Weighs colours by alpha; where all is transparent, they count alike.
 void mean_of_transparent(const LightTable& table, const Four& texels, std::uint8_t* mean) {
+  const std::array all = {texels.a, texels.b, texels.c, texels.d};
   std::uint32_t alpha = 0;
-  for (const std::uint8_t* texel : texels)
+  for (const std::uint8_t* texel : all)
     alpha += texel[3];
   mean_of_opaque(table, texels, mean);
   mean[3] = static_cast<std::uint8_t>((alpha + 2) / 4);
   for (std::size_t c = 0; c < 3 && alpha > 0; ++c) {
     std::uint32_t sum = alpha / 2;
-    for (const std::uint8_t* texel : texels)
+    for (const std::uint8_t* texel : all)
       sum += table.light(texel[c]) * texel[3];
     mean[c] = table.value(sum / alpha);
   }

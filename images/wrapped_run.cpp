@@ -21,25 +21,35 @@ std::uint64_t below_zero(std::int64_t x) {
   return x < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(x) : 0;
 }
 
+void clamp_run(std::int64_t first, std::uint32_t side, std::vector<std::uint32_t>& run) {
+  const std::uint64_t left = below_zero(first);
+  const std::uint64_t right = first < 0 ? 0 : static_cast<std::uint64_t>(first);
+  for (std::uint64_t i = 0; i < run.size(); ++i) {
+    const std::uint64_t place = i < left ? 0 : right + (i - left);
+    run[i] = static_cast<std::uint32_t>(std::min<std::uint64_t>(place, side - 1));
+  }
+}
+
+/// The second half of a period that is longer than the side is the first one mirrored.
+void repeat_run(std::int64_t first, std::uint32_t side, std::uint64_t period,
+                std::vector<std::uint32_t>& run) {
+  std::uint64_t place = floor_modulo(first, static_cast<std::int64_t>(period));
+  for (std::uint32_t& at : run) {
+    at = static_cast<std::uint32_t>(place < side ? place : period - 1 - place);
+    if (++place == period)
+      place = 0;
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> wrapped_run(std::int64_t first, std::uint32_t count, std::uint32_t side,
                                        Wrap wrap) {
   std::vector<std::uint32_t> run(count);
-  const std::uint64_t period = wrap == Wrap::mirrored ? std::uint64_t{2} * side : side;
-  const std::uint64_t start = floor_modulo(first, static_cast<std::int64_t>(period));
-  const std::uint64_t left = below_zero(first);
-  const std::uint64_t right = first < 0 ? 0 : static_cast<std::uint64_t>(first);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    std::uint64_t place = 0;
-    if (wrap == Wrap::clamp) {
-      place = i < left ? 0 : std::min<std::uint64_t>(right + (i - left), side - 1);
-    } else {
-      place = (start + i) % period;
-      place = place < side ? place : period - 1 - place;
-    }
-    run[i] = static_cast<std::uint32_t>(place);
-  }
+  if (wrap == Wrap::clamp)
+    clamp_run(first, side, run);
+  else
+    repeat_run(first, side, wrap == Wrap::mirrored ? std::uint64_t{2} * side : side, run);
   return run;
 }
 

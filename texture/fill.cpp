@@ -1,79 +1,103 @@
 #include "texture/fill.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace meshhier::texture {
 namespace {
 
-/// Steps to neighbours that a pass has seen already, with their lengths.
-struct Step {
-  int x, y;
-  std::uint32_t length;
-};
-constexpr std::array<Step, 4> kSteps = {{{-1, 0, 3}, {-1, -1, 4}, {0, -1, 3}, {1, -1, 4}}};
+/// What a pass knows: a nearest known texel, and how far it is.
+struct Nearest {
+  static constexpr std::uint32_t kFar = 1 << 24;
+  /// The lengths of steps to neighbours beside and aslant.
+  static constexpr std::uint32_t kBeside = 3, kAslant = 4;
 
+  std::uint32_t distance = kFar;
+  std::uint32_t texel = 0;
+
+  void look(const Nearest& neighbour, std::uint32_t step) {
+    const bool is_nearer = neighbour.distance + step < distance;
+    distance = is_nearer ? neighbour.distance + step : distance;
+    texel = is_nearer ? neighbour.texel : texel;
+  }
+};
+
+/// Texels of a row side by side that are not known.
+struct Gap {
+  std::uint32_t y, begin, end;
+};
+
+/// Two passes, down and up, each to and fro in every row. The texels lie in a frame of texels that
+/// are far from everything, so that none has to ask whether it has neighbours.
 class Filler {
  public:
   Filler(images::Image& image, std::span<const std::uint8_t> is_known)
-      : image_(image), nearest_(is_known.size()), distance_(is_known.size()) {
-    for (std::size_t i = 0; i < is_known.size(); ++i) {
-      nearest_[i] = static_cast<std::uint32_t>(i);
-      distance_[i] = is_known[i] != 0 ? 0 : kFar;
+      : image_(image),
+        row_(std::size_t{image.width} + 2),
+        nearest_(row_ * (std::size_t{image.height} + 2)) {
+    for (std::uint32_t y = 0, texel = 0; y < image.height; ++y) {
+      bool was_known = true;
+      for (std::uint32_t x = 0; x < image.width; ++x, ++texel) {
+        const bool is = is_known[texel] != 0;
+        at(x, y) = {is ? 0 : Nearest::kFar, texel};
+        if (was_known && !is)
+          gaps_.push_back({y, x, x});
+        if (!is)
+          gaps_.back().end = x + 1;
+        was_known = is;
+      }
     }
   }
 
   void operator()() {
-    const int width = static_cast<int>(image_.width), height = static_cast<int>(image_.height);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x)
-        look(x, y, 1);
-      for (int x = width - 1; x >= 0; --x)
-        look_at(x, y, {1, 0, 3});
+    const auto row = static_cast<std::ptrdiff_t>(row_);
+    for (const Gap& gap : gaps_) {
+      forward(gap, [&](Nearest* here) { look_aside(here, -1, -row); });
+      backward(gap, [](Nearest* here) { here->look(here[1], Nearest::kBeside); });
     }
-    for (int y = height - 1; y >= 0; --y) {
-      for (int x = width - 1; x >= 0; --x)
-        look(x, y, -1);
-      for (int x = 0; x < width; ++x)
-        look_at(x, y, {-1, 0, 3});
+    for (auto gap = gaps_.rbegin(); gap != gaps_.rend(); ++gap) {
+      backward(*gap, [&](Nearest* here) { look_aside(here, 1, row); });
+      forward(*gap, [](Nearest* here) { here->look(here[-1], Nearest::kBeside); });
     }
-    for (std::size_t i = 0; i < nearest_.size(); ++i) {
-      if (nearest_[i] != i)
-        images::copy_texel(image_.texels.data() + std::size_t{nearest_[i]} * image_.channels,
-                           image_.texels.data() + i * image_.channels, image_.channels);
+    for (const Gap& gap : gaps_) {
+      for (std::uint32_t x = gap.begin; x < gap.end; ++x)
+        images::copy_texel(image_.texels.data() + std::size_t{at(x, gap.y).texel} * image_.channels,
+                           image_.at(x, gap.y), image_.channels);
     }
   }
 
  private:
-  static constexpr std::uint32_t kFar = 1 << 24;
+  Nearest& at(std::uint32_t x, std::uint32_t y) { return nearest_[(y + 1) * row_ + x + 1]; }
 
-  void look(int x, int y, int direction) {
-    if (is_known(x, y))
-      return;
-    for (const Step& step : kSteps)
-      look_at(x, y, {step.x * direction, step.y * direction, step.length});
+  template <class Visit>
+  void forward(const Gap& gap, const Visit& visit) {
+    Nearest* const end = &at(gap.end, gap.y);
+    for (Nearest* here = &at(gap.begin, gap.y); here != end; ++here)
+      visit(here);
   }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * image_.width + static_cast<std::size_t>(x);
+  template <class Visit>
+  void backward(const Gap& gap, const Visit& visit) {
+    Nearest* const begin = &at(gap.begin, gap.y);
+    for (Nearest* here = &at(gap.end, gap.y); here != begin;)
+      visit(--here);
   }
-  bool is_known(int x, int y) const { return distance_[index(x, y)] == 0; }
-  void look_at(int x, int y, const Step& step) {
-    const int width = static_cast<int>(image_.width), height = static_cast<int>(image_.height);
-    const std::size_t here = index(x, y);
-    if (is_known(x, y) || x + step.x < 0 || x + step.x >= width || y + step.y < 0 ||
-        y + step.y >= height)
-      return;
-    const std::size_t there = here + static_cast<std::size_t>(step.y * width + step.x);
-    if (distance_[there] + step.length < distance_[here]) {
-      distance_[here] = distance_[there] + step.length;
-      nearest_[here] = nearest_[there];
-    }
+
+  /// Looks at the neighbours that a pass has seen: the one before in the row, three in the last
+  /// row.
+  static void look_aside(Nearest* here, std::ptrdiff_t before, std::ptrdiff_t last_row) {
+    Nearest found = *here;
+    found.look(here[before], Nearest::kBeside);
+    found.look(here[last_row + before], Nearest::kAslant);
+    found.look(here[last_row], Nearest::kBeside);
+    found.look(here[last_row - before], Nearest::kAslant);
+    *here = found;
   }
 
   images::Image& image_;
-  std::vector<std::uint32_t> nearest_, distance_;
+  std::size_t row_;  ///< texels of a row, with the frame
+  std::vector<Nearest> nearest_;
+  std::vector<Gap> gaps_;
 };
 
 }  // namespace

@@ -2,17 +2,27 @@
 
 #include "texture/bake.h"
 #include "texture/fill.h"
+#include "texture/shown_texels.h"
 #include "texture/texel_light.h"
 #include "texture/texel_segment.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <numeric>
 #include <utility>
 
 namespace meshhier::texture {
 namespace {
 
+constexpr std::uint32_t kNothing = ~std::uint32_t{0};
 constexpr float kUnknown = 1e9f;
+
+TexelBits any_of_squares(TexelBits bits, std::uint32_t side) {
+  for (; side > 1; side /= 2)
+    bits = bits.halved();
+  return bits;
+}
 
 }  // namespace
 
@@ -21,65 +31,57 @@ Reduction::Reduction(std::uint32_t width, std::uint32_t height, std::uint32_t ch
     : width_(width),
       height_(height),
       factor_(factor),
-      is_shown_(width, height, corners),
-      result_(width / factor, height / factor, channels),
-      distance_(std::size_t{result_.width} * result_.height, kUnknown) {
-  find_means();
-  find_copies(corners);
+      is_shown_(shown_texels(width, height, corners)),
+      is_mean_(any_of_squares(is_shown_, factor)),
+      result_(width / factor, height / factor, channels) {
+  take_copies(nearest_texels(corners));
 }
 
-/// Texels of which a part is shown are means of it.
-void Reduction::find_means() {
-  std::size_t texel = 0;
-  for (std::uint32_t y = 0; y < result_.height; ++y) {
-    for (std::uint32_t x = 0; x < result_.width; ++x, ++texel) {
-      for (std::uint32_t i = 0; i < factor_ * factor_ && distance_[texel] > 0; ++i) {
-        if (is_shown_(x * factor_ + i % factor_, y * factor_ + i / factor_))
-          distance_[texel] = 0;
-      }
-    }
-  }
-}
-
-/// Texels beside a triangle, which filters see, have the colour of its nearest texel, although one
-/// of another chart may be nearer.
-void Reduction::find_copies(std::span<const CornerTexcoords> corners) {
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::vector<std::uint32_t> from(distance_.size(), kNone);
+/// Returns for texels beside a triangle, which filters see, its nearest texel, although one of
+/// another chart may be nearer; kNothing for all others.
+std::vector<std::uint32_t> Reduction::nearest_texels(
+    std::span<const CornerTexcoords> corners) const {
+  const std::size_t texels = std::size_t{result_.width} * result_.height;
+  std::vector<std::uint32_t> nearest(texels, kNothing);
+  std::vector<float> distance(texels, kUnknown);
   const TexelRange all{0, 0, result_.width, result_.height};
-  const auto is_open = [&](std::uint32_t x, std::uint32_t y) {
-    return distance_[std::size_t{y} * result_.width + x] > 0;
+  const auto is_open = [&](std::uint32_t x, std::uint32_t y) { return !is_mean_(x, y); };
+  const auto look = [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
+    const std::size_t to = std::size_t{y} * result_.width + x;
+    if (foot.distance >= distance[to])
+      return;
+    distance[to] = static_cast<float>(foot.distance);
+    const TexelPoint at{(x + 0.5 - foot.off_x) * factor_, (y + 0.5 - foot.off_y) * factor_};
+    nearest[to] = static_cast<std::uint32_t>(texel_at(at, width_, height_));
   };
   for (const CornerTexcoords& triangle : corners) {
     const std::array<TexelPoint, 3> at = in_texels(triangle, result_.width, result_.height);
-    for (std::size_t k = 0; k < 3; ++k) {
-      TexelSegment(at[k], at[(k + 1) % 3])
-          .for_each_near(
-              all, is_open, [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
-                const std::size_t to = std::size_t{y} * result_.width + x;
-                if (foot.distance >= distance_[to])
-                  return;
-                distance_[to] = static_cast<float>(foot.distance);
-                const TexelPoint nearest{(x + 0.5 - foot.off_x) * factor_,
-                                         (y + 0.5 - foot.off_y) * factor_};
-                from[to] = static_cast<std::uint32_t>(texel_at(nearest, width_, height_));
-              });
-    }
+    if (is_mean_.is_full(near_texels(at, all)))
+      continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      TexelSegment(at[k], at[(k + 1) % 3]).for_each_near(all, is_open, look);
   }
-  for (std::uint32_t to = 0; to < from.size(); ++to) {
-    if (from[to] != kNone)
-      copies_.push_back({from[to], to});
+  return nearest;
+}
+
+/// Sorts what is copied by the rows that it comes from.
+void Reduction::take_copies(const std::vector<std::uint32_t>& nearest) {
+  std::vector<std::size_t> begins(std::size_t{height_} + 1);
+  for (const std::uint32_t from : nearest) {
+    if (from != kNothing)
+      ++begins[from / width_ + 1];
   }
-  std::ranges::sort(copies_, {}, &Copy::from);
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  copies_.resize(begins.back());
+  for (std::uint32_t to = 0; to < nearest.size(); ++to) {
+    if (nearest[to] != kNothing)
+      copies_[begins[nearest[to] / width_]++] = {nearest[to], to};
+  }
 }
 
 void Reduction::add(const images::Image& band) {
-  for (std::uint32_t y = row_ / factor_; y < (row_ + band.height) / factor_; ++y) {
-    for (std::uint32_t x = 0; x < result_.width; ++x) {
-      if (distance_[std::size_t{y} * result_.width + x] == 0)
-        average(band, x, y);
-    }
-  }
+  for (std::uint32_t y = row_ / factor_; y < (row_ + band.height) / factor_; ++y)
+    is_mean_.for_each_in(y, [&](std::uint32_t x) { average(band, x, y); });
   const std::size_t first = std::size_t{row_} * width_;
   row_ += band.height;
   for (; copied_ < copies_.size() && copies_[copied_].from < std::size_t{row_} * width_; ++copied_)
@@ -88,32 +90,35 @@ void Reduction::add(const images::Image& band) {
                        band.channels);
 }
 
+/// Takes the mean of what is shown of a square of texels.
 void Reduction::average(const images::Image& band, std::uint32_t x, std::uint32_t y) {
-  TexelLight sum{};
-  float count = 0;
-  for (std::uint32_t j = y * factor_; j < (y + 1) * factor_; ++j) {
-    for (std::uint32_t i = x * factor_; i < (x + 1) * factor_; ++i) {
-      if (!is_shown_(i, j))
-        continue;
-      add_texel(sum, band.at(i, j - row_), band.channels, 1);
-      ++count;
+  TexelBits::Word shown = is_shown_.square(x * factor_, y * factor_, factor_);
+  const auto count = static_cast<float>(std::popcount(shown));
+  FourFloats sum{};
+  for (std::uint32_t j = 0; j < factor_; ++j) {
+    const std::uint8_t* texel = band.at(x * factor_, y * factor_ + j - row_);
+    for (std::uint32_t i = 0; i < factor_; ++i, texel += band.channels, shown >>= 1) {
+      if ((shown & 1) != 0)
+        sum += weighted_light(texel, band.channels, 1);
     }
   }
-  for (float& channel : sum)
-    channel /= count;
-  store_texel(sum, result_.at(x, y), band.channels);
+  store_texel(sum / count, result_.at(x, y), band.channels);
 }
 
 images::Image Reduction::operator()() && {
-  std::vector<std::uint8_t> is_known(distance_.size());
-  std::ranges::transform(distance_, is_known.begin(), [](float d) { return d < kUnknown; });
+  std::vector<std::uint8_t> is_known(std::size_t{result_.width} * result_.height);
+  for (std::uint32_t y = 0; y < result_.height; ++y)
+    is_mean_.for_each_in(
+        y, [&](std::uint32_t x) { is_known[std::size_t{y} * result_.width + x] = 1; });
+  for (const Copy& copy : copies_)
+    is_known[copy.to] = 1;
   fill_unknown(result_, is_known);
   return std::move(result_);
 }
 
 std::uint64_t Reduction::bytes(std::uint64_t texels, std::uint64_t reduced_texels) {
-  constexpr std::uint64_t kReducedTexel = 4 + sizeof(float) + sizeof(std::uint32_t) + sizeof(Copy);
-  constexpr std::uint64_t kFilledTexel = 4 + sizeof(float) + sizeof(Copy) + 1 + 8;
+  constexpr std::uint64_t kReducedTexel = 5 + sizeof(float) + sizeof(std::uint32_t) + sizeof(Copy);
+  constexpr std::uint64_t kFilledTexel = 5 + sizeof(Copy) + 1 + 8;
   return texels / 8 + reduced_texels * std::max(kReducedTexel, kFilledTexel);
 }
 

@@ -3,7 +3,7 @@
 
 #include "images/image.h"
 #include "texture/corners.h"
-#include "texture/shown_texels.h"
+#include "texture/texel_bits.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace meshhier::texture {
 class Reduction {
  public:
   /// The picture's size and its triangles' corners. Requires sides that are multiples of `factor`,
-  /// a power of two.
+  /// a power of two up to 8.
   Reduction(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
             std::span<const CornerTexcoords> corners, std::uint32_t factor);
 
@@ -26,8 +26,7 @@ class Reduction {
   /// Requires all rows.
   images::Image operator()() &&;
 
-  /// The bytes that it holds at most, its result included, besides the few megabytes that
-  /// ShownTexels takes first.
+  /// The bytes that it holds at most, its result included.
   static std::uint64_t bytes(std::uint64_t texels, std::uint64_t reduced_texels);
 
  private:
@@ -36,16 +35,15 @@ class Reduction {
     std::uint32_t from = 0, to = 0;  ///< in the picture, in the result
   };
 
-  void find_means();
-  void find_copies(std::span<const CornerTexcoords> corners);
+  std::vector<std::uint32_t> nearest_texels(std::span<const CornerTexcoords> corners) const;
+  void take_copies(const std::vector<std::uint32_t>& nearest);
   void average(const images::Image& band, std::uint32_t x, std::uint32_t y);
 
   std::uint32_t width_, height_, factor_;
-  ShownTexels is_shown_;
+  TexelBits is_shown_;
+  TexelBits is_mean_;  ///< of the result's texels: a part of them is shown
   images::Image result_;
-  std::vector<float>
-      distance_;              ///< of the result's texels from the triangle that they show, squared
-  std::vector<Copy> copies_;  ///< in their order in the picture
+  std::vector<Copy> copies_;  ///< in the order of the rows that they are from
   std::size_t copied_ = 0;
   std::uint32_t row_ = 0;  ///< of the picture: the first one that is not there yet
 };

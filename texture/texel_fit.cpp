@@ -15,11 +15,8 @@ constexpr float kOwn = 4.0f / 6, kBeside = 1.0f / 6;
 /// level to level.
 constexpr int kIterations = 2;
 
-TexelLight weighted(const TexelLight& before, const TexelLight& own, const TexelLight& behind) {
-  TexelLight sum;
-  for (std::size_t k = 0; k < sum.size(); ++k)
-    sum[k] = kOwn * own[k] + kBeside * (before[k] + behind[k]);
-  return sum;
+FourFloats weighted(FourFloats before, FourFloats own, FourFloats behind) {
+  return kOwn * own + kBeside * (before + behind);
 }
 
 class Fitting {
@@ -33,7 +30,7 @@ class Fitting {
         means_(width_ * height_) {
     for_each([&](std::size_t here, std::size_t in_all) {
       is_known_[here] = all_.is_known[in_all];
-      means_[here] = all_.lights[in_all];
+      means_[here] = load_four(&all_.lights[in_all]);
     });
     texels_ = across_ = means_;
   }
@@ -44,7 +41,9 @@ class Fitting {
       filter_rows();
       correct();
     }
-    for_each([&](std::size_t here, std::size_t in_all) { all_.lights[in_all] = texels_[here]; });
+    for_each([&](std::size_t here, std::size_t in_all) {
+      store_four(&all_.lights[in_all], texels_[here]);
+    });
   }
 
  private:
@@ -77,10 +76,11 @@ class Fitting {
       for (std::size_t x = 0; x < width_; ++x, ++at) {
         if (is_known_[at] == 0)
           continue;
-        const TexelLight filtered = weighted(across_[beside(at, y > 0, at - width_)], across_[at],
+        const FourFloats filtered = weighted(across_[beside(at, y > 0, at - width_)], across_[at],
                                              across_[beside(at, y + 1 < height_, at + width_)]);
-        for (std::size_t k = 0; k < filtered.size(); ++k)
-          texels_[at][k] = std::clamp(texels_[at][k] + means_[at][k] - filtered[k], 0.0f, 1.0f);
+        const FourFloats texel = texels_[at] + means_[at] - filtered;
+        const FourFloats least{}, most = least + 1;
+        texels_[at] = texel < least ? least : texel > most ? most : texel;
       }
     }
   }
@@ -89,7 +89,7 @@ class Fitting {
   const TexelRange& range_;
   std::size_t width_, height_;
   std::vector<std::uint8_t> is_known_;
-  std::vector<TexelLight> means_, texels_, across_;
+  std::vector<FourFloats> means_, texels_, across_;
 };
 
 }  // namespace

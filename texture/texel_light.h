@@ -25,23 +25,23 @@ inline std::uint8_t value_of_part(float part) {
 /// Light of red, green and blue times alpha, and alpha.
 using TexelLight = std::array<float, 4>;
 
-/// Adds `weight` times a texel of 3 or 4 channels.
-inline void add_texel(TexelLight& sum, const std::uint8_t* texel, std::uint32_t channels,
-                      float weight) {
+/// Returns `weight` times a texel of 3 or 4 channels.
+inline FourFloats weighted_light(const std::uint8_t* texel, std::uint32_t channels, float weight) {
   static_assert(sizeof(FourFloats) == sizeof(TexelLight));
   if (channels == 4)
     weight *= static_cast<float>(texel[3]) / 255;
-  const FourFloats light{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1};
-  store_four(&sum, load_four(&sum) + light * weight);
+  return FourFloats{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1} * weight;
+}
+
+inline void add_texel(TexelLight& sum, const std::uint8_t* texel, std::uint32_t channels,
+                      float weight) {
+  store_four(&sum, load_four(&sum) + weighted_light(texel, channels, weight));
 }
 
 /// Stores a mean; what is not there at all is black.
+void store_texel(FourFloats mean, std::uint8_t* texel, std::uint32_t channels);
 inline void store_texel(const TexelLight& mean, std::uint8_t* texel, std::uint32_t channels) {
-  const float scale = mean[3] > 0 ? 1 / mean[3] : 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    texel[k] = value_of_light(mean[k] * scale);
-  if (channels == 4)
-    texel[3] = value_of_part(std::min(mean[3], 1.0f));
+  store_texel(load_four(&mean), texel, channels);
 }
 
 inline TexelPoint middle_of(const std::array<TexelPoint, 3>& corners) {

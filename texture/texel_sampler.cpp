@@ -8,10 +8,14 @@
 namespace meshhier::texture {
 namespace {
 
-/// Pictures are taken at a half and a quarter, as far as charts are aligned for sure.
+/// Pictures are taken at a half and a quarter, as far as charts are aligned for sure: where the
+/// texels asked for are wider than so many of a picture.
 constexpr std::uint32_t kHalvings = 2;
+constexpr double kWidestWhole = 2.5;
 constexpr float kMostSize = 4;
-constexpr std::size_t kMostTaps = 2 * static_cast<std::size_t>(kMostSize) + 1;
+constexpr std::uint32_t kLanes = 4;
+constexpr std::uint32_t kMostTaps = 12;
+static_assert(kMostTaps >= 2 * kMostSize + 1 && kMostTaps % kLanes == 0);
 
 /// The radius of a tent over a picture whose texels are tents as well: squares add up. But beyond
 /// two texels, which charts have around them, it is no wider than it must be.
@@ -24,31 +28,47 @@ float with_own_filter(float radius) {
 struct Taps {
   std::uint32_t first = 0, count = 0;
   std::array<float, kMostTaps> weights;
+  float sum = 0;  ///< of the weights
 
   Taps(float at, float radius, std::uint32_t side) {
     const auto most = static_cast<float>(side - 1);
     at = at > 0.5f ? std::min(at - 0.5f, most) : 0;
-    first = static_cast<std::uint32_t>(std::max(std::ceil(at - radius), 0.0f));
-    const auto last = static_cast<std::uint32_t>(std::min(std::floor(at + radius), most));
-    float sum = 0;
-    for (std::uint32_t i = first; i <= last && count < kMostTaps; ++i) {
-      const float weight = std::max(radius - std::abs(static_cast<float>(i) - at), 0.0f);
-      weights[count++] = weight;
-      sum += weight;
+    first = not_below(std::max(at - radius, 0.0f));
+    count = static_cast<std::uint32_t>(std::min(at + radius, most)) + 1 - first;
+    FourFloats sums{};
+    for (std::uint32_t i = 0; i < count; i += kLanes) {
+      const FourFloats weight = tent(static_cast<float>(first + i) - at, radius, count - i);
+      store_four(weights.data() + i, weight);
+      sums += weight;
     }
-    for (std::uint32_t i = 0; i < count; ++i)
-      weights[i] /= sum;
+    sum = sum_of(sums);
+  }
+
+ private:
+  static std::uint32_t not_below(float value) {
+    const auto below = static_cast<std::uint32_t>(value);
+    return below + (static_cast<float>(below) < value ? 1 : 0);
+  }
+  /// The weights of texels from `off` on beside the middle; those beyond `count` have none.
+  static FourFloats tent(float off, float radius, std::uint32_t count) {
+    const FourFloats away = FourFloats{0, 1, 2, 3} + off;
+    const FourFloats weight = radius - (away < 0 ? -away : away);
+    const FourFloats none{};
+    return (weight > none) & first_lanes(static_cast<std::int32_t>(count)) ? weight : none;
   }
 };
 
-TexelLight mix(const images::Image& picture, const Taps& columns, const Taps& rows) {
-  TexelLight sum{};
+template <std::uint32_t kChannels>
+FourFloats mix(const images::Image& picture, const Taps& columns, const Taps& rows) {
+  FourFloats sum{};
   for (std::uint32_t j = 0; j < rows.count; ++j) {
     const std::uint8_t* texel = picture.at(columns.first, rows.first + j);
-    for (std::uint32_t i = 0; i < columns.count; ++i, texel += picture.channels)
-      add_texel(sum, texel, picture.channels, rows.weights[j] * columns.weights[i]);
+    FourFloats row{};
+    for (std::uint32_t i = 0; i < columns.count; ++i, texel += kChannels)
+      row += weighted_light(texel, kChannels, columns.weights[i]);
+    sum += row * rows.weights[j];
   }
-  return sum;
+  return sum * (1 / (columns.sum * rows.sum));
 }
 
 }  // namespace
@@ -75,7 +95,7 @@ TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double tex
       const double size = length(normal) / 2;
       double wide = std::max(1.0, size > 0 ? texel * std::sqrt(covered / size) : 1);
       std::uint32_t level = 0;
-      while (wide >= 2 && level < kHalvings && picture.width % (2U << level) == 0 &&
+      while (wide >= kWidestWhole && level < kHalvings && picture.width % (2U << level) == 0 &&
              picture.height % (2U << level) == 0) {
         wide /= 2;
         ++level;
@@ -103,7 +123,10 @@ TexelLight TexelSampler::mean(const NearestTriangle::Found& at, float part) cons
   const float radius = with_own_filter(part * spot.size);
   const Taps columns(spot.x + b * spot.bx + c * spot.cx, radius, picture.width);
   const Taps rows(spot.y + b * spot.by + c * spot.cy, radius, picture.height);
-  return mix(picture, columns, rows);
+  TexelLight light;
+  store_four(&light, picture.channels == 4 ? mix<4>(picture, columns, rows)
+                                           : mix<3>(picture, columns, rows));
+  return light;
 }
 
 }  // namespace meshhier::texture

@@ -3,6 +3,7 @@
 #include "base/srgb.h"
 #include "texture/fill.h"
 #include "texture/shown_texels.h"
+#include "texture/texel_bits.h"
 #include "texture/texel_raster.h"
 #include "texture/texel_segment.h"
 
@@ -62,6 +63,18 @@ std::vector<std::uint8_t> blocks_of(const texture::LeafAtlas& atlas) {
   return is_piece;
 }
 
+texture::TexelBits blocks_outside(std::span<const std::uint8_t> is_piece, std::uint32_t width,
+                                  std::uint32_t height) {
+  texture::TexelBits outside(width, height);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      if (is_piece[std::size_t{y} * width + x] == 0)
+        outside.set(x, y);
+    }
+  }
+  return outside;
+}
+
 void fill_block(const std::uint8_t* texel, Image& image, std::uint32_t left, std::uint32_t top) {
   for (std::uint32_t y = top; y < top + kLeafAlignment; ++y) {
     for (std::uint32_t x = left; x < left + kLeafAlignment; ++x)
@@ -95,21 +108,23 @@ void LeafPicture::find_shown(std::span<const texture::CornerTexcoords> corners) 
   // A block that the gutter reaches has its middle no farther than a block from the triangle.
   static_assert(2 * texture::kLeafGutter <= kLeafAlignment);
   const std::uint32_t width = background_.width, height = background_.height;
+  const texture::TexelRange all{0, 0, width, height};
   const std::vector<std::uint8_t> is_piece = blocks_of(atlas_);
   is_shown_.resize(is_piece.size());
-  const auto is_hidden = [&](std::uint32_t x, std::uint32_t y) {
-    return is_shown_[std::size_t{y} * width + x] == 0;
-  };
+  texture::TexelBits is_settled = blocks_outside(is_piece, width, height);
+  const auto is_open = [&](std::uint32_t x, std::uint32_t y) { return !is_settled(x, y); };
   const auto show = [&](std::uint32_t x, std::uint32_t y, const auto&...) {
     const std::size_t block = std::size_t{y} * width + x;
     is_shown_[block] = is_piece[block];
+    is_settled.set(x, y);
   };
   for (const texture::CornerTexcoords& triangle : corners) {
     const std::array<texture::TexelPoint, 3> at = texture::in_texels(triangle, width, height);
+    if (is_settled.is_full(texture::near_texels(at, all)))
+      continue;
     texture::RasterTriangle(at).for_each(width, height, show);
     for (std::size_t k = 0; k < 3; ++k)
-      texture::TexelSegment(at[k], at[(k + 1) % 3])
-          .for_each_near({0, 0, width, height}, is_hidden, show);
+      texture::TexelSegment(at[k], at[(k + 1) % 3]).for_each_near(all, is_open, show);
   }
 }
 

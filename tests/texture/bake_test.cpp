@@ -71,14 +71,13 @@ TEST(Reduction, BandsMakeThePictureOfTheWhole) {
   }
 }
 
-/// Rows of a picture that is looked at in several parts.
-TEST(Reduction, ShownTexelsOfLargePicturesAreThoseOfTheirParts) {
+TEST(Reduction, ShownTexelsAreThoseOfTheTriangles) {
   const std::array<CornerTexcoords, 3> corners = {
       {{{{0.1f, 0.05f}, {0.9f, 0.5f}, {0.2f, 0.95f}}},
        {{{0.8f, 0.8f}, {0.9f, 0.8f}, {0.8f, 0.81f}}},
        {{{0.95f, 0.9f}, {0.95f, 0.9f}, {0.95f, 0.9f}}}}};
-  constexpr std::uint32_t kWidth = 2048, kHeight = 1536;  // three parts
-  const ShownTexels shown(kWidth, kHeight, corners);
+  constexpr std::uint32_t kWidth = 2048, kHeight = 1536;
+  const TexelBits shown = shown_texels(kWidth, kHeight, corners);
   std::size_t count = 0;
   for (const CornerTexcoords& triangle : corners) {
     RasterTriangle(in_texels(triangle, kWidth, kHeight))
