@@ -14,19 +14,20 @@ constexpr double kLeastOwn = 0.4;
 constexpr int kRings = 5;
 
 std::vector<Vec3d> smooth_normals(const Faces& faces) {
-  std::vector<Vec3d> smooth(faces.normals.size());
-  for (std::size_t t = 0; t < smooth.size(); ++t)
+  const auto count = static_cast<std::uint32_t>(faces.normals.size());
+  std::vector<Vec3d> smooth(count + 1), next(count + 1);  // the last is what lies across no edge
+  for (std::size_t t = 0; t < count; ++t)
     smooth[t] = faces.normals[t] * faces.areas[t];
   for (int ring = 0; ring < kRings; ++ring) {
-    std::vector<Vec3d> next = smooth;
-    for (std::size_t t = 0; t < smooth.size(); ++t) {
-      for (const std::uint32_t other : faces.across[t]) {
-        if (other != kNoFace)
-          next[t] = next[t] + smooth[other];
-      }
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto across = [&](std::size_t k) {
+        return smooth[std::min(faces.across[t][k], count)];
+      };
+      next[t] = smooth[t] + across(0) + across(1) + across(2);
     }
-    smooth = std::move(next);
+    smooth.swap(next);
   }
+  smooth.pop_back();
   for (Vec3d& normal : smooth)
     normal = direction_of(normal);
   return smooth;

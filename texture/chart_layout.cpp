@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -13,49 +12,6 @@
 
 namespace meshhier::texture {
 namespace {
-
-constexpr double kHuge = std::numeric_limits<double>::max();
-
-/// Directions that a box may have, over a quarter of a circle.
-constexpr int kTurns = 12;
-
-Vec3d mean_normal(const Faces& faces, std::span<const std::uint32_t> chart) {
-  Vec3d sum;
-  for (const std::uint32_t t : chart)
-    sum = sum + faces.normals[t] * faces.areas[t];
-  const double size = length(sum);
-  return size > 0 ? sum * (1 / size) : Vec3d{0, 0, 1};
-}
-
-/// Any two directions with it at right angles.
-std::pair<Vec3d, Vec3d> across(const Vec3d& normal) {
-  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
-  const Vec3d axis = x <= y && x <= z ? Vec3d{1, 0, 0} : y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-  const Vec3d other = cross(axis, normal);
-  const Vec3d u = other * (1 / length(other));
-  return {u, cross(normal, u)};
-}
-
-struct PlaneBox {
-  double low_x = kHuge, low_y = kHuge, high_x = -kHuge, high_y = -kHuge;
-
-  void add(double x, double y) {
-    low_x = std::min(low_x, x);
-    low_y = std::min(low_y, y);
-    high_x = std::max(high_x, x);
-    high_y = std::max(high_y, y);
-  }
-  double width() const { return high_x - low_x; }
-  double height() const { return high_y - low_y; }
-};
-
-/// The box of points in a plane once they are turned.
-PlaneBox turned_box(std::span<const TexelPoint> points, double cosine, double sine) {
-  PlaneBox box;
-  for (const TexelPoint& p : points)
-    box.add(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
-  return box;
-}
 
 /// Rectangles of charts, in units of the alignment.
 class Fitter {
@@ -182,42 +138,6 @@ TexelPoint ChartLayout::texel_of(const ChartPlane& plane, const Vec3d& position)
     return {plane.left + kBakeAlignment / 2.0, plane.top + kBakeAlignment / 2.0};
   return {plane.left + kBakeGutter + density * (dot(position, plane.x) - plane.low_x),
           plane.top + kBakeGutter + density * (dot(position, plane.y) - plane.low_y)};
-}
-
-ChartPlane project(std::span<const Vec3f> positions, std::span<const TileTriangle> triangles,
-                   const Faces& faces, std::span<const std::uint32_t> chart) {
-  ChartPlane plane;
-  plane.normal = mean_normal(faces, chart);
-  const auto [u, v] = across(plane.normal);
-  std::vector<TexelPoint> points;
-  points.reserve(3 * chart.size());
-  for (const std::uint32_t t : chart) {
-    for (const TileVertex corner : triangles[t]) {
-      const Vec3d p = to_double(positions[raw(corner)]);
-      points.push_back({dot(p, u), dot(p, v)});
-    }
-  }
-  double least = kHuge;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const double half = turn / double(kTurns);  // the tangent of half of the angle
-    const double cosine = (1 - half * half) / (1 + half * half);
-    const double sine = 2 * half / (1 + half * half);
-    const PlaneBox box = turned_box(points, cosine, sine);
-    if (const double area = box.width() * box.height(); area < least) {
-      least = area;
-      plane.x = u * cosine + v * sine;
-      plane.y = v * cosine + u * -sine;
-      plane.low_x = box.low_x;
-      plane.low_y = box.low_y;
-      plane.width = box.width();
-      plane.height = box.height();
-    }
-  }
-  if (plane.height > plane.width) {  // lying charts pack better: a quarter of a turn
-    const PlaneBox box = turned_box(points, dot(plane.y, u), dot(plane.y, v));
-    plane = {plane.y, plane.x * -1, plane.normal, box.low_x, box.low_y, box.width(), box.height()};
-  }
-  return plane;
 }
 
 ChartLayout lay_out(std::vector<ChartPlane> planes, const BakeSize& size) {

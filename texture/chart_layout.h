@@ -1,15 +1,11 @@
-// Charts of a surface laid out in a picture: projected, turned, and packed at one density.
+// Charts of a surface laid out in a picture: packed at one density.
 #pragma once
 
 #include "base/vec.h"
-#include "hierarchy/tile_mesh.h"
 #include "texture/bake.h"
-#include "texture/chart_growing.h"
-#include "texture/faces.h"
 #include "texture/texel_raster.h"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace meshhier::texture {
@@ -30,10 +26,6 @@ struct ChartLayout {
 
   TexelPoint texel_of(const ChartPlane& plane, const Vec3d& position) const;
 };
-
-/// The plane of the mean normal, turned so that the chart's box is small.
-ChartPlane project(std::span<const Vec3f> positions, std::span<const TileTriangle> triangles,
-                   const Faces& faces, std::span<const std::uint32_t> chart);
 
 /// The highest density at which all charts fit into side * side, within a hundredth; none that
 /// makes texels smaller than `size.least_texel`. If there are too many charts, the smallest are

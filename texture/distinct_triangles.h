@@ -16,11 +16,7 @@ namespace meshhier::texture {
 class DistinctTriangles {
  public:
   explicit DistinctTriangles(std::span<const TileTriangle> all) : number_(all.size()) {
-    std::vector<std::uint32_t> order(all.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return all[a] != all[b] ? all[a] < all[b] : a < b;
-    });
+    const std::vector<std::uint32_t> order = sorted(all);
     for (std::size_t i = 0; i < order.size(); ++i) {
       const bool again = i > 0 && all[order[i]] == all[order[i - 1]];
       number_[order[i]] = again ? number_[order[i - 1]] : order[i];
@@ -49,6 +45,23 @@ class DistinctTriangles {
   }
 
  private:
+  /// Equal ones in their order. A tile's triangles come sorted, those inside it and those at its
+  /// border: two sequences, which only need to be merged.
+  static std::vector<std::uint32_t> sorted(std::span<const TileTriangle> all) {
+    const auto before = [&](std::uint32_t a, std::uint32_t b) {
+      const auto order = all[a] <=> all[b];
+      return order != 0 ? order < 0 : a < b;
+    };
+    std::vector<std::uint32_t> order(all.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto second = std::is_sorted_until(order.begin(), order.end(), before);
+    if (std::is_sorted(second, order.end(), before))
+      std::inplace_merge(order.begin(), second, order.end(), before);
+    else
+      std::sort(order.begin(), order.end(), before);
+    return order;
+  }
+
   std::vector<std::uint32_t> number_;  ///< in triangles_, of each triangle
   std::vector<std::uint32_t> firsts_;
   std::vector<TileTriangle> triangles_;

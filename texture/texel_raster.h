@@ -21,13 +21,30 @@ struct RowRange {
   std::uint32_t begin = 0, end = 0;
 };
 
+/// In 1/256 of a texel.
+struct FixedTexelPoint {
+  static constexpr std::int64_t kOne = 256;
+
+  std::int64_t x = 0, y = 0;
+
+  static FixedTexelPoint of(const TexelPoint& point) {
+    return {rounded(point.x), rounded(point.y)};
+  }
+  static std::int64_t rounded(double at) {
+    constexpr double kMost = 1 << 16;
+    return static_cast<std::int64_t>(std::floor(std::clamp(at, -kMost, kMost) * kOne + 0.5));
+  }
+};
+
 /// A triangle in 1/256 of a texel: there whole numbers tell exactly on which side of an edge a
 /// middle is, so triangles that share an edge never cover the same texel, and leave none out.
 class RasterTriangle {
  public:
-  explicit RasterTriangle(const std::array<TexelPoint, 3>& corners) {
-    for (std::size_t k = 0; k < 3; ++k)
-      corners_[k] = {fixed(corners[k].x), fixed(corners[k].y)};
+  using Fixed = FixedTexelPoint;
+
+  explicit RasterTriangle(const std::array<TexelPoint, 3>& corners)
+      : RasterTriangle({Fixed::of(corners[0]), Fixed::of(corners[1]), Fixed::of(corners[2])}) {}
+  explicit RasterTriangle(const std::array<Fixed, 3>& corners) : corners_(corners) {
     const Fixed &a = corners_[0], &b = corners_[1], &c = corners_[2];
     twice_area_ = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   }
@@ -83,10 +100,7 @@ class RasterTriangle {
   }
 
  private:
-  static constexpr std::int64_t kOne = 256;
-  struct Fixed {
-    std::int64_t x, y;
-  };
+  static constexpr std::int64_t kOne = Fixed::kOne;
   /// dx * x + dy * y + offset is twice the area on it: >= least on its inner side.
   struct Edge {
     std::int64_t dx, dy, offset, least;
@@ -104,10 +118,6 @@ class RasterTriangle {
     }
   };
 
-  static std::int64_t fixed(double at) {
-    constexpr double kMost = 1 << 16;
-    return static_cast<std::int64_t>(std::floor(std::clamp(at, -kMost, kMost) * kOne + 0.5));
-  }
   /// `by` > 0.
   static std::int64_t floor_divided(std::int64_t what, std::int64_t by) {
     return what >= 0 ? what / by : -((by - 1 - what) / by);
