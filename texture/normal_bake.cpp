@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/lane_vector.h"
+#include "texture/corner_frames.h"
 #include "texture/distinct_triangles.h"
 #include "texture/finer_normals.h"
 #include "texture/finer_points.h"
@@ -104,7 +105,8 @@ class MapMaker {
         layout_(samples.layout()),
         finer_(finer),
         normals_(surfaces, finer),
-        points_(finer.points(samples)) {}
+        points_(finer.points(samples)),
+        frames_(tile.positions.size(), tile.triangles, tile.normals) {}
 
   BakedNormalMap operator()() {
     BakedNormalMap baked;
@@ -142,17 +144,9 @@ class MapMaker {
   }
 
   std::vector<CornerTangents> find_frames() {
-    std::vector<CornerTangents> tangents(tile_.triangles.size());
-    frames_.resize(tile_.triangles.size());
-    for (std::size_t c = 0; c < layout_.planes.size(); ++c) {
-      for (const std::uint32_t t : samples_.triangles_of(c)) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          tangents[t][k] = tangent_of(layout_.planes[c], tile_.normals[t][k]);
-          frames_[t][k] = frame_of(tile_.normals[t][k], tangents[t][k]);
-        }
-      }
-    }
-    return tangents;
+    for (std::size_t c = 0; c < layout_.planes.size(); ++c)
+      frames_.add_chart(layout_.planes[c], samples_.triangles_of(c));
+    return frames_.tangents();
   }
 
   void draw(BakedNormalMap& baked) {
@@ -204,7 +198,8 @@ class MapMaker {
   }
 
   VertexFrame frame_at(const TexelSample& sample) const {
-    return interpolated(frames_[sample.triangle], weights_of(sample));
+    const std::uint32_t t = sample.triangle;
+    return interpolated(frames_.at(t, 0), frames_.at(t, 1), frames_.at(t, 2), weights_of(sample));
   }
 
   std::size_t index(std::uint32_t x, std::uint32_t y) const {
@@ -255,7 +250,7 @@ class MapMaker {
   FinerSurfaces& finer_;
   FinerNormals normals_;
   const std::vector<FinerPoint> points_;
-  std::vector<std::array<VertexFrame, 3>> frames_;  ///< of triangles
+  CornerFrames frames_;
 };
 
 }  // namespace

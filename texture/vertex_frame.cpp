@@ -43,14 +43,13 @@ VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent) {
   return {lanes_of(along), lanes_of(across), lanes_of(up)};
 }
 
-VertexFrame interpolated(const std::array<VertexFrame, 3>& corners, const CornerWeights& weights) {
-  VertexFrame frame;
-  for (std::size_t k = 0; k < 3; ++k) {
-    frame.normal += corners[k].normal * weights[k];
-    frame.tangent += corners[k].tangent * weights[k];
-    frame.bitangent += corners[k].bitangent * weights[k];
-  }
-  return {unit_of(frame.tangent), unit_of(frame.bitangent), unit_of(frame.normal)};
+VertexFrame interpolated(const VertexFrame& a, const VertexFrame& b, const VertexFrame& c,
+                         const CornerWeights& weights) {
+  const auto mixed = [&](FourFloats VertexFrame::*axis) {
+    return unit_of(a.*axis * weights[0] + b.*axis * weights[1] + c.*axis * weights[2]);
+  };
+  return {mixed(&VertexFrame::tangent), mixed(&VertexFrame::bitangent),
+          mixed(&VertexFrame::normal)};
 }
 
 }  // namespace meshhier::texture

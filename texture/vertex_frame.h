@@ -34,6 +34,7 @@ TangentCode tangent_of(const ChartPlane& plane, const Vec3f& normal);
 VertexFrame frame_of(const Vec3f& normal, const TangentCode& tangent);
 
 /// At a point of a triangle, from its corners.
-VertexFrame interpolated(const std::array<VertexFrame, 3>& corners, const CornerWeights& weights);
+VertexFrame interpolated(const VertexFrame& a, const VertexFrame& b, const VertexFrame& c,
+                         const CornerWeights& weights);
 
 }  // namespace meshhier::texture

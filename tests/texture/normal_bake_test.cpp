@@ -141,7 +141,7 @@ TEST(VertexFrame, ReadsWhatIsWritten) {
       corner = frame_of(normal, tangent);
       EXPECT_NEAR(dot_of(corner.normal, corner.tangent), 0, 0.01);
     }
-    const VertexFrame frame = interpolated(corners, {0.2F, 0.5F, 0.3F});
+    const VertexFrame frame = interpolated(corners[0], corners[1], corners[2], {0.2F, 0.5F, 0.3F});
     const FourFloats direction = unit_of(lanes_of(vector() + Vec3d{0, 0, 1.5}));
     const FourFloats back = unit_of(frame.mixed(frame.coefficients_of(direction)));
     EXPECT_NEAR(dot_of(back, direction), 1, 1e-6);
