@@ -1,30 +1,37 @@
 #include "texture/corners.h"
 
-#include "base/sort_few.h"
 #include "hierarchy/normal_code.h"
 #include "hierarchy/vertex_numbers.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace meshhier::texture {
 namespace {
 
-/// A corner's look, and which one it is: 3 * triangle + its place in the triangle.
+/// The look of a corner, as it has its bits.
 struct Look {
-  std::uint32_t normal = 0, u = 0, v = 0;  ///< their bits
+  std::uint32_t normal = 0, u = 0, v = 0;
+  friend constexpr auto operator<=>(const Look&, const Look&) = default;
+};
+
+/// A corner: 3 * triangle + its place in the triangle.
+struct LookingCorner {
+  std::uint32_t vertex = 0;
+  Look look;
   std::uint32_t corner = 0;
 
-  bool is_like(const Look& other) const {
-    return normal == other.normal && u == other.u && v == other.v;
+  bool is_like(const LookingCorner& other) const {
+    return vertex == other.vertex && look == other.look;
   }
-  friend constexpr auto operator<=>(const Look&, const Look&) = default;
+  friend constexpr auto operator<=>(const LookingCorner&, const LookingCorner&) = default;
 };
 
 /// Both zeros are one.
@@ -32,13 +39,16 @@ std::uint32_t bits(float value) {
   return std::bit_cast<std::uint32_t>(value + 0.0f);
 }
 
-/// Gives the vertices of a tile their looks, and splits those that have several.
+/// Gives the vertices of a tile their looks, and splits those that have several. Most corners look
+/// like the first one of their vertex; only the others are sorted.
 class Splitter {
  public:
   Splitter(const TileMesh& mesh, const Shading& normals, std::span<const CornerTexcoords> corners)
       : normals_(normals),
         texcoords_(corners),
-        vertex_count_(static_cast<std::uint32_t>(mesh.vertices.size() + mesh.copies.size())) {
+        vertex_count_(static_cast<std::uint32_t>(mesh.vertices.size() + mesh.copies.size())),
+        first_looks_(vertex_count_),
+        has_look_(vertex_count_) {
     shading_.interior = normals.interior;
     shading_.border = normals.border;
     if (normals.split_of.empty()) {
@@ -53,8 +63,14 @@ class Splitter {
     if (!normals_.normals.empty())
       shading_.normals.assign(normals_.normals.begin(), normals_.normals.begin() + vertex_count_);
     shading_.texcoords.resize(vertex_count_);
-    const std::vector<std::uint32_t> first_alike = find_first_alike();
-    give(first_alike);
+    std::uint32_t corner = 0;
+    for (auto* triangles : {&shading_.interior, &shading_.border}) {
+      for (TileTriangle& t : *triangles) {
+        for (TileVertex& shown : t)
+          look_at(shown, corner++);
+      }
+    }
+    split();
     if (shading_.split_of.empty()) {
       shading_.interior.clear();
       shading_.border.clear();
@@ -63,95 +79,64 @@ class Splitter {
   }
 
  private:
-  std::uint32_t corner_count() const { return static_cast<std::uint32_t>(3 * texcoords_.size()); }
+  /// The first look is the vertex's own.
+  void look_at(TileVertex& shown, std::uint32_t corner) {
+    const std::uint32_t number = raw(shown);
+    const std::uint32_t vertex =
+        number < vertex_count_ ? number : normals_.split_of[number - vertex_count_];
+    const NormalCode normal = normals_.normals.empty() ? NormalCode{} : normals_.normals[number];
+    const Vec2f& at = texcoords_[corner / 3][corner % 3];
+    const Look look{std::bit_cast<std::uint32_t>(normal), bits(at.u), bits(at.v)};
+    if (has_look_[vertex] == 0) {
+      has_look_[vertex] = 1;
+      first_looks_[vertex] = look;
+      shading_.texcoords[vertex] = at;
+      if (!shading_.normals.empty())
+        shading_.normals[vertex] = normal;
+    } else if (look != first_looks_[vertex]) {
+      others_.push_back({vertex, look, corner});
+    }
+    shown = TileVertex{vertex};
+  }
 
-  TileVertex& shown(std::uint32_t corner) {
+  /// Makes a split of each other look, by vertices and the first corners that show them.
+  void split() {
+    std::sort(others_.begin(), others_.end());
+    std::vector<std::array<std::size_t, 2>> groups;  // of equal looks: begin and end
+    for (std::size_t i = 0, end = 0; i < others_.size(); i = end) {
+      while (end < others_.size() && others_[end].is_like(others_[i]))
+        ++end;
+      groups.push_back({i, end});
+    }
+    std::sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+      const LookingCorner &left = others_[a[0]], &right = others_[b[0]];
+      return std::pair(left.vertex, left.corner) < std::pair(right.vertex, right.corner);
+    });
+    for (const auto& [begin, end] : groups)
+      add_split(std::span(others_).subspan(begin, end - begin));
+  }
+
+  void add_split(std::span<const LookingCorner> corners) {
+    const auto& [vertex, look, first] = corners.front();
+    const auto number =
+        TileVertex{static_cast<std::uint32_t>(vertex_count_ + shading_.split_of.size())};
+    shading_.split_of.push_back(vertex);
+    shading_.texcoords.push_back(texcoords_[first / 3][first % 3]);
+    if (!shading_.normals.empty())
+      shading_.normals.push_back(std::bit_cast<NormalCode>(look.normal));
     const std::size_t interior = shading_.interior.size();
-    const std::size_t t = corner / 3;
-    return t < interior ? shading_.interior[t][corner % 3]
-                        : shading_.border[t - interior][corner % 3];
-  }
-  /// The vertex at a corner, whichever split of it the normals show there.
-  std::uint32_t vertex_at(std::uint32_t corner) {
-    const std::uint32_t number = raw(shown(corner));
-    return number < vertex_count_ ? number : normals_.split_of[number - vertex_count_];
-  }
-  const Vec2f& texcoord_at(std::uint32_t corner) const {
-    return texcoords_[corner / 3][corner % 3];
-  }
-  NormalCode normal_at(std::uint32_t corner) {
-    return normals_.normals.empty() ? NormalCode{} : normals_.normals[raw(shown(corner))];
-  }
-  Look look_at(std::uint32_t corner) {
-    const Vec2f& at = texcoord_at(corner);
-    return {std::bit_cast<std::uint32_t>(normal_at(corner)), bits(at.u), bits(at.v), corner};
-  }
-
-  /// The looks of all corners, those of a vertex side by side; `ends`: where each vertex's end.
-  std::vector<Look> looks_by_vertex(std::vector<std::uint32_t>& ends) {
-    ends.assign(vertex_count_ + 1, 0);
-    for (std::uint32_t c = 0; c < corner_count(); ++c)
-      ++ends[vertex_at(c) + 1];
-    std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    std::vector<Look> looks(corner_count());
-    for (std::uint32_t c = 0; c < corner_count(); ++c)
-      looks[ends[vertex_at(c)]++] = look_at(c);
-    ends.pop_back();
-    return looks;
-  }
-
-  /// Finds, for each corner, the first one of the same vertex that looks alike.
-  std::vector<std::uint32_t> find_first_alike() {
-    std::vector<std::uint32_t> ends, first(corner_count());
-    std::vector<Look> looks = looks_by_vertex(ends);
-    std::uint32_t begin = 0;
-    for (const std::uint32_t end : ends) {
-      const std::span<Look> group = std::span(looks).subspan(begin, end - begin);
-      sort_few(group, [](const Look& look) { return look; });
-      for (std::size_t i = 0; i < group.size(); ++i) {
-        const bool goes_on = i > 0 && group[i].is_like(group[i - 1]);
-        first[group[i].corner] = goes_on ? first[group[i - 1].corner] : group[i].corner;
-      }
-      begin = end;
+    for (const LookingCorner& c : corners) {
+      const std::size_t t = c.corner / 3;
+      (t < interior ? shading_.interior[t] : shading_.border[t - interior])[c.corner % 3] = number;
     }
-    return first;
-  }
-
-  /// The first look is the vertex's own, the others are splits.
-  void give(const std::vector<std::uint32_t>& first_alike) {
-    std::vector<std::uint32_t> number(corner_count());
-    std::vector<bool> has_look(vertex_count_);
-    std::vector<std::uint32_t> splits;  // the first corners that show them
-    for (std::uint32_t c = 0; c < corner_count(); ++c) {
-      if (first_alike[c] != c)
-        continue;
-      const std::uint32_t vertex = vertex_at(c);
-      if (has_look[vertex]) {
-        splits.push_back(c);
-        continue;
-      }
-      has_look[vertex] = true;
-      number[c] = vertex;
-      shading_.texcoords[vertex] = texcoord_at(c);
-      if (!shading_.normals.empty())
-        shading_.normals[vertex] = normal_at(c);
-    }
-    std::stable_sort(splits.begin(), splits.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return vertex_at(a) < vertex_at(b); });
-    for (const std::uint32_t c : splits) {
-      number[c] = static_cast<std::uint32_t>(vertex_count_ + shading_.split_of.size());
-      shading_.split_of.push_back(vertex_at(c));
-      shading_.texcoords.push_back(texcoord_at(c));
-      if (!shading_.normals.empty())
-        shading_.normals.push_back(normal_at(c));
-    }
-    for (std::uint32_t c = 0; c < corner_count(); ++c)
-      shown(c) = TileVertex{number[first_alike[c]]};
   }
 
   const Shading& normals_;
   std::span<const CornerTexcoords> texcoords_;
   std::uint32_t vertex_count_;
+  std::vector<Look> first_looks_;  ///< of vertices
+  std::vector<char> has_look_;
+  std::vector<LookingCorner> others_;
   Shading shading_;
 };
 
