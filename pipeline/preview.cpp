@@ -76,10 +76,10 @@ PublishedTile tile_of(const PreviewInput& input, NodeId node, const StageContext
   return storage::decode_tile(bytes, record.node, context.tree(), input.format, path.string());
 }
 
-/// Returns the facets of a tile without its picture, which need not be decoded to see where they
+/// Returns the facets of a tile without its pictures, which need not be decoded to see where they
 /// lie.
 std::vector<render::Facet> facets_of(PublishedTile tile, const AttributeLayout& layout) {
-  tile.image = {};
+  tile.image = tile.normal_map = {};
   return render::scene_tile(tile, layout).facets;
 }
 
