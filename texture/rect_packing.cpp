@@ -21,6 +21,13 @@ namespace {
 
 using Rects = std::vector<stbrp_rect>;
 
+std::uint64_t area_of(std::span<const RectSize> sizes) {
+  std::uint64_t area = 0;
+  for (const RectSize& size : sizes)
+    area += std::uint64_t{size.width} * size.height;
+  return area;
+}
+
 Rects rects_of(std::span<const RectSize> sizes) {
   Rects rects(sizes.size());
   for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -55,8 +62,10 @@ std::optional<RectPacking> pack_sorted(RectSize box, Rects& rects, int heuristic
   stbrp_init_target(&context, static_cast<int>(box.width), static_cast<int>(box.height),
                     nodes.data(), static_cast<int>(nodes.size()));
   stbrp_setup_heuristic(&context, heuristic);
-  if (stbrp_pack_rects(&context, rects.data(), static_cast<int>(rects.size())) == 0)
-    return std::nullopt;
+  for (stbrp_rect& rect : rects) {  // one at a time, so that the first without a place ends it
+    if (stbrp_pack_rects(&context, &rect, 1) == 0)
+      return std::nullopt;
+  }
   RectPacking packing{box.width, 0, std::vector<RectPlace>(rects.size())};
   for (const stbrp_rect& rect : rects) {
     packing.places[static_cast<std::size_t>(rect.id)] = {static_cast<std::uint32_t>(rect.x),
@@ -69,6 +78,8 @@ std::optional<RectPacking> pack_sorted(RectSize box, Rects& rects, int heuristic
 }  // namespace
 
 std::optional<RectPacking> pack_into(RectSize box, std::span<const RectSize> sizes) {
+  if (area_of(sizes) > std::uint64_t{box.width} * box.height)
+    return std::nullopt;
   const Rects rects = rects_of(sizes);
   for (const auto& order : {by_height, by_longer_side, by_area}) {
     Rects ordered = order(rects);
@@ -82,23 +93,21 @@ std::optional<RectPacking> pack_into(RectSize box, std::span<const RectSize> siz
 }
 
 std::optional<RectPacking> pack_tightly(std::span<const RectSize> sizes, std::uint32_t most_side) {
-  std::uint64_t area = 0;
   std::uint32_t widest = 1;
-  for (const RectSize& size : sizes) {
-    area += std::uint64_t{size.width} * size.height;
+  for (const RectSize& size : sizes)
     widest = std::max(widest, size.width);
-  }
-  const auto side = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(area))));
+  const auto side =
+      static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(area_of(sizes)))));
   Rects rects = by_height(rects_of(sizes));
   std::optional<RectPacking> best;
-  const auto area_of = [](const RectPacking& p) { return std::uint64_t{p.width} * p.height; };
+  const auto box_of = [](const RectPacking& p) { return std::uint64_t{p.width} * p.height; };
   constexpr std::uint64_t kShapes = 8;
   for (std::uint64_t shape = 0; shape <= kShapes; ++shape) {
     const std::uint64_t wished = std::max<std::uint64_t>(widest, side + side * shape / kShapes);
     const auto width = static_cast<std::uint32_t>(std::min<std::uint64_t>(most_side, wished));
     std::optional<RectPacking> packing =
         pack_sorted({width, most_side}, rects, STBRP_HEURISTIC_Skyline_BL_sortHeight);
-    if (packing && (!best || area_of(*packing) < area_of(*best)))
+    if (packing && (!best || box_of(*packing) < box_of(*best)))
       best = std::move(packing);
   }
   return best;
