@@ -35,49 +35,49 @@ constexpr double kMostOfTriangles = 0.75;
 /// Holds the normals of all corners, interior triangles first, as the file has them.
 class CornerShading {
  public:
-  CornerShading(const Forest& forest, NodeId node, const TileMesh& mesh)
-      : layout_(forest.layout(node.level)), mesh_(mesh) {
+  CornerShading(const Forest& forest, NodeId node, const TileMesh& mesh) {
+    Shading shading;
     if (forest.computes_normals()) {
-      shading_ = shading::shade_tile(mesh, forest.normals(node), [&](std::uint32_t tile) {
+      shading = shading::shade_tile(mesh, forest.normals(node), [&](std::uint32_t tile) {
         return forest.boundary_normals({node.level, tile});
       });
     }
+    find_normals(mesh, shading, forest.layout(node.level));
     const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()),
                                 mesh.copies.places);
-    const bool split = !shading_.split_of.empty();
-    add(split ? shading_.interior : numbers.numbered(mesh.interior, mesh.interior_wedges));
-    add(split ? shading_.border : numbers.numbered(mesh.border, mesh.border_wedges));
+    const bool split = !shading.split_of.empty();
+    corners_.reserve(mesh.interior.size() + mesh.border.size());
+    add(split ? shading.interior : numbers.numbered(mesh.interior, mesh.interior_wedges));
+    add(split ? shading.border : numbers.numbered(mesh.border, mesh.border_wedges));
   }
 
-  std::vector<texture::CornerNormals> take() && { return std::move(normals_); }
+  std::vector<texture::CornerNormals> take() && { return std::move(corners_); }
 
  private:
-  void add(std::span<const TileTriangle> triangles) {
-    for (const TileTriangle& triangle : triangles) {
-      texture::CornerNormals& corners = normals_.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = normal(raw(triangle[k]));
+  /// Of all vertices and splits: those that were computed, or else those of the input.
+  void find_normals(const TileMesh& mesh, const Shading& shading, const AttributeLayout& layout) {
+    normals_.reserve(std::max(shading.normals.size(), mesh.vertices.size() + mesh.copies.size()));
+    for (const NormalCode& code : shading.normals)
+      normals_.push_back(normal_of(code));
+    if (!normals_.empty())
+      return;
+    const AttributePart& part = layout.part(AttributeKind::normals);
+    for (const VertexArray* vertices : {&mesh.vertices, &mesh.copies.vertices}) {
+      for (std::size_t i = 0; i < vertices->size(); ++i) {
+        const auto given = part.of(vertices->attributes_of(i));
+        const Vec3f normal{given[0], given[1], given[2]};
+        normals_.push_back(is_finite(normal) ? normal : Vec3f{});
+      }
     }
   }
 
-  Vec3f normal(std::uint32_t number) const {
-    if (!shading_.normals.empty())
-      return normal_of(shading_.normals[number]);
-    const std::size_t places = mesh_.vertices.size();
-    const std::span<const float> attributes =
-        number < places ? mesh_.vertices.attributes_of(number)
-                        : mesh_.copies.vertices.attributes_of(number - places);
-    const auto at = layout_.part(AttributeKind::normals).first;
-    const Vec3f given{attributes[at], attributes[at + 1], attributes[at + 2]};
-    const bool is_finite =
-        std::isfinite(given.x) && std::isfinite(given.y) && std::isfinite(given.z);
-    return is_finite ? given : Vec3f{};
+  void add(std::span<const TileTriangle> triangles) {
+    for (const auto& [a, b, c] : triangles)
+      corners_.push_back({normals_[raw(a)], normals_[raw(b)], normals_[raw(c)]});
   }
 
-  const AttributeLayout& layout_;
-  const TileMesh& mesh_;
-  Shading shading_;
-  std::vector<texture::CornerNormals> normals_;
+  std::vector<Vec3f> normals_;
+  std::vector<texture::CornerNormals> corners_;
 };
 
 double area_of(const BakeSource& source) {
