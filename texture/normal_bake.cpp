@@ -99,14 +99,14 @@ class ChartTexels {
 class MapMaker {
  public:
   MapMaker(const NormalSurface& tile, std::span<const NormalSurface> surfaces, FinerSurfaces& finer,
-           const TexelSamples& samples)
+           const TexelSamples& samples, const CornerFrames& frames)
       : tile_(tile),
         samples_(samples),
         layout_(samples.layout()),
         finer_(finer),
         normals_(surfaces, finer),
         points_(finer.points(samples)),
-        frames_(tile.positions.size(), tile.triangles, tile.normals) {}
+        frames_(frames) {}
 
   BakedNormalMap operator()() {
     BakedNormalMap baked;
@@ -115,7 +115,7 @@ class MapMaker {
       for (Vec2f& corner : corners)
         corner = {on_grid(corner.u), on_grid(corner.v)};
     }
-    baked.tangents = find_frames();
+    baked.tangents = frames_.tangents();
     draw(baked);
     baked.texel = static_cast<float>(1 / layout_.density);
     baked.vertices = count_vertices();
@@ -141,12 +141,6 @@ class MapMaker {
       }
     }
     return count;
-  }
-
-  std::vector<CornerTangents> find_frames() {
-    for (std::size_t c = 0; c < layout_.planes.size(); ++c)
-      frames_.add_chart(layout_.planes[c], samples_.triangles_of(c));
-    return frames_.tangents();
   }
 
   void draw(BakedNormalMap& baked) {
@@ -250,7 +244,7 @@ class MapMaker {
   FinerSurfaces& finer_;
   FinerNormals normals_;
   const std::vector<FinerPoint> points_;
-  CornerFrames frames_;
+  const CornerFrames& frames_;
 };
 
 }  // namespace
@@ -271,7 +265,10 @@ struct NormalBaker::Work {
       return;
     }
     samples = std::make_unique<const TexelSamples>(bare, size);
-    shapes = std::make_unique<FinerSurfaces>(shapes_of(surfaces), *samples);
+    shapes.emplace(shapes_of(surfaces), *samples);
+    frames.emplace(surface.positions.size(), surface.triangles, surface.normals);
+    for (std::size_t c = 0; c < samples->layout().planes.size(); ++c)
+      frames->add_chart(samples->layout().planes[c], samples->triangles_of(c));
   }
 
   const DistinctTriangles distinct;
@@ -281,7 +278,8 @@ struct NormalBaker::Work {
   NormalSurface surface;
   TexturedSurface bare;  ///< without its normals
   std::unique_ptr<const TexelSamples> samples;
-  std::unique_ptr<FinerSurfaces> shapes;
+  std::optional<FinerSurfaces> shapes;
+  std::optional<CornerFrames> frames;
 };
 
 NormalBaker::NormalBaker(const NormalSurface& tile, std::span<const NormalSurface> finer,
@@ -292,7 +290,8 @@ NormalBaker::~NormalBaker() = default;
 BakedNormalMap NormalBaker::bake(float least_texel) {
   Work& work = *work_;
   work.lay_out({work.side, least_texel});
-  BakedNormalMap baked = MapMaker(work.surface, work.surfaces, *work.shapes, *work.samples)();
+  BakedNormalMap baked =
+      MapMaker(work.surface, work.surfaces, *work.shapes, *work.samples, *work.frames)();
   baked.corners = work.distinct.expanded(baked.corners);
   baked.tangents = work.distinct.expanded(baked.tangents);
   return baked;
