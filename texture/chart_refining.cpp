@@ -119,13 +119,29 @@ class Refiner {
     if (covered[0] + covered[1] >= kFullEnough * texels ||
         least_texels(covered[0]) + least_texels(covered[1]) > most)
       return kNoCut;
-    std::array<std::vector<std::uint32_t>, 2> halves;
-    for (const std::uint32_t t : whole.triangles)
-      halves[is_second_[t] != 0 ? 1 : 0].push_back(t);
-    if (halves[0].empty() || halves[1].empty())
+    auto [first, second] = halves(whole);
+    if (first.empty() || second.empty())
       return kNoCut;
-    const double first = cut(std::move(halves[0]));
-    return first + least_texels(covered[1]) > most ? kNoCut : first + cut(std::move(halves[1]));
+    const double texels_of_first = cut(std::move(first));
+    if (texels_of_first + least_texels(covered[1]) > most)
+      return kNoCut;
+    return texels_of_first + cut(std::move(second));
+  }
+
+  using Halves = std::pair<std::vector<std::uint32_t>, std::vector<std::uint32_t>>;
+
+  Halves halves(const Piece& whole) const {
+    const std::size_t count = whole.triangles.size();
+    Halves result{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count)};
+    std::size_t first = 0, second = 0;
+    for (const std::uint32_t t : whole.triangles) {  // into both: without a branch
+      result.first[first] = result.second[second] = t;
+      first += is_second_[t] == 0 ? 1 : 0;
+      second += is_second_[t] != 0 ? 1 : 0;
+    }
+    result.first.resize(first);
+    result.second.resize(second);
+    return result;
   }
 
   /// Chooses sides by the middles of the triangles, across the longer side. Returns the texels that
