@@ -18,9 +18,9 @@ std::unique_ptr<ImageReader> open_png(ByteSource source, const std::string& name
 std::unique_ptr<ImageReader> open_webp(ByteSource source, const std::string& name);
 std::unique_ptr<ImageReader> open_ktx2(ByteSource source, const std::string& name);
 
-/// Huffman codes. The best ones for a picture are known after its last row: all of its coefficients
-/// wait for them.
-enum class JpegCodes { standard, best };
+/// Huffman codes: the standard's, those that fit directions, or the best ones for a picture. These
+/// are known after its last row: all of its coefficients wait for them.
+enum class JpegCodes { standard, of_directions, best };
 /// The meaning of three channels: colours, whose hues are seen with less detail, or directions.
 enum class JpegContent { colours, directions };
 std::unique_ptr<RowWriter> open_jpeg_writer(const WrittenImage& image, JpegCodes codes,

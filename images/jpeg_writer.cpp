@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "images/coders.h"
+#include "images/direction_codes.h"
 #include "images/encode_rows.h"
 #include "images/library_call.h"
 
@@ -21,6 +22,8 @@ namespace {
 constexpr int kFullChromaQuality = 90;
 /// The quality of a direction's blue, which follows from red and green but for its sign.
 constexpr int kBlueQuality = 30;
+/// Between these kDirectionCodes fit; at 50 files of smooth maps would be a tenth larger.
+constexpr int kLeastFittedQuality = 75, kMostFittedQuality = 95;
 
 class JpegWriter final : public RowWriter {
  public:
@@ -42,6 +45,7 @@ class JpegWriter final : public RowWriter {
   void set_callbacks();
   void set_parameters(const WrittenImage& image, JpegCodes codes, JpegContent content);
   void keep_directions(int quality);
+  void put_direction_codes();
   void empty_buffer();
   void send_buffer(std::size_t bytes);
 
@@ -114,6 +118,8 @@ void JpegWriter::set_parameters(const WrittenImage& image, JpegCodes codes, Jpeg
   jpeg_.comp_info[0].v_samp_factor = jpeg_.comp_info[0].h_samp_factor;
   if (content == JpegContent::directions)
     keep_directions(image.quality);
+  if (codes == JpegCodes::of_directions)
+    put_direction_codes();
 }
 
 /// Keeps red, green and blue as they are (the Adobe marker says so), by the table of luminance.
@@ -124,9 +130,22 @@ void JpegWriter::keep_directions(int quality) {
   std::ranges::copy(jpeg_.quant_tbl_ptrs[0]->quantval, coarse.begin());
   jpeg_set_quality(&jpeg_, quality, TRUE);
   jpeg_add_quant_table(&jpeg_, 1, coarse.data(), 100, TRUE);
-  jpeg_.comp_info[2].quant_tbl_no = 1;
+  jpeg_component_info& blue = jpeg_.comp_info[2];
+  blue.quant_tbl_no = blue.dc_tbl_no = blue.ac_tbl_no = 1;
   for (int i = 0; i < 3; ++i)
     jpeg_.comp_info[i].h_samp_factor = jpeg_.comp_info[i].v_samp_factor = 1;
+}
+
+void JpegWriter::put_direction_codes() {
+  const auto put = [](const auto& code, JHUFF_TBL& table) {
+    std::ranges::copy(code.counts, table.bits + 1);
+    std::ranges::copy(code.symbols, table.huffval);
+    table.sent_table = FALSE;
+  };
+  for (std::size_t i = 0; i < kDirectionCodes.size(); ++i) {
+    put(kDirectionCodes[i].steady, *jpeg_.dc_huff_tbl_ptrs[i]);
+    put(kDirectionCodes[i].changes, *jpeg_.ac_huff_tbl_ptrs[i]);
+  }
 }
 
 void JpegWriter::write_row(const std::uint8_t* row) {
@@ -149,9 +168,11 @@ std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
 }
 
 std::vector<std::byte> encode_normal_jpeg(const Image& image, int quality) {
+  const bool fits = quality >= kLeastFittedQuality && quality <= kMostFittedQuality;
+  const JpegCodes codes = fits ? JpegCodes::of_directions : JpegCodes::best;
   return encode_rows(image, [&](ByteSink sink) {
     return open_jpeg_writer({ImageFormat::jpeg, quality, image.width, image.height, image.channels},
-                            JpegCodes::best, std::move(sink), JpegContent::directions);
+                            codes, std::move(sink), JpegContent::directions);
   });
 }
 
