@@ -35,14 +35,16 @@ images::Image halved(const images::Image& picture) {
 /// The same of numbers: a mean of four.
 images::Image halved_numbers(const images::Image& picture) {
   images::Image half((picture.width + 1) / 2, (picture.height + 1) / 2, picture.channels);
+  const std::uint32_t channels = picture.channels;
   for (std::uint32_t y = 0; y < half.height; ++y) {
-    const std::uint32_t below = std::min(2 * y + 1, picture.height - 1);
+    const std::uint8_t* above = picture.at(0, 2 * y);
+    const std::uint8_t* below = picture.at(0, std::min(2 * y + 1, picture.height - 1));
+    std::uint8_t* to = half.at(0, y);
     for (std::uint32_t x = 0; x < half.width; ++x) {
-      const std::uint32_t beside = std::min(2 * x + 1, picture.width - 1);
-      for (std::uint32_t c = 0; c < picture.channels; ++c) {
-        const int sum = picture.at(2 * x, 2 * y)[c] + picture.at(beside, 2 * y)[c] +
-                        picture.at(2 * x, below)[c] + picture.at(beside, below)[c];
-        half.at(x, y)[c] = static_cast<std::uint8_t>((sum + 2) / 4);
+      const std::size_t beside = 2 * x + 1 < picture.width ? channels : 0;
+      for (std::size_t c = 0, at = std::size_t{2} * x * channels; c < channels; ++c, ++at) {
+        const int sum = above[at] + above[at + beside] + below[at] + below[at + beside];
+        *to++ = static_cast<std::uint8_t>((sum + 2) / 4);
       }
     }
   }
@@ -69,9 +71,11 @@ std::uint32_t wrapped(std::int64_t texel, std::uint32_t count, Wrap wrap) {
 
 /// `size`: of the whole picture in texels of the level, whose last one may reach beyond it.
 MipTexture::TexelPair pair_at(double coordinate, double size, std::uint32_t count, Wrap wrap) {
-  const double at = coordinate * size - 0.5, first = std::floor(at);
-  const auto texel = static_cast<std::int64_t>(first);
-  return {{wrapped(texel, count, wrap), wrapped(texel + 1, count, wrap)}, at - first};
+  const double at = coordinate * size - 0.5;
+  auto texel = static_cast<std::int64_t>(at);
+  texel -= static_cast<double>(texel) > at ? 1 : 0;  // std::floor() is a call
+  return {{wrapped(texel, count, wrap), wrapped(texel + 1, count, wrap)},
+          at - static_cast<double>(texel)};
 }
 
 /// 0 to 65535.
@@ -136,18 +140,25 @@ MipTexture::TexelSquare MipTexture::square_on(std::uint32_t level, Vec2f texcoor
           pair_at(within_picture(texcoord.v, wraps_.v), height() * scale, image.height, wraps_.v)};
 }
 
-Vec3d MipTexture::light_on(std::uint32_t level, Vec2f texcoord) const {
-  const images::Image& image = levels_[level];
-  const LightTable& table = LightTable::get();
-  const auto [across, down] = square_on(level, texcoord);
-  const auto texel = [&](std::uint32_t x, std::uint32_t y) {
-    return kind_ == TexelKind::light ? light_of_texel(table, image.at(x, y))
-                                     : number_of_texel(image.at(x, y));
-  };
+/// Mixes the four; `texel`: what one of them stands for.
+template <class Texel>
+Vec3d MipTexture::mixed(const images::Image& image, const TexelSquare& square, const Texel& texel) {
+  const auto& [across, down] = square;
   const auto row = [&, &across = across](std::uint32_t y) {
-    return mix(texel(across.texels[0], y), texel(across.texels[1], y), across.share);
+    return mix(texel(image.at(across.texels[0], y)), texel(image.at(across.texels[1], y)),
+               across.share);
   };
   return mix(row(down.texels[0]), row(down.texels[1]), down.share) * (1.0 / 65535);
+}
+
+Vec3d MipTexture::light_on(std::uint32_t level, Vec2f texcoord) const {
+  const images::Image& image = levels_[level];
+  const TexelSquare square = square_on(level, texcoord);
+  if (kind_ == TexelKind::numbers)
+    return mixed(image, square, number_of_texel);
+  const LightTable& table = LightTable::get();
+  return mixed(image, square,
+               [&](const std::uint8_t* texel) { return light_of_texel(table, texel); });
 }
 
 double MipTexture::alpha_on(std::uint32_t level, Vec2f texcoord) const {

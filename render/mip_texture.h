@@ -52,6 +52,8 @@ class MipTexture {
   TexelSquare square_on(std::uint32_t level, Vec2f texcoord) const;
   double alpha_on(std::uint32_t level, Vec2f texcoord) const;
   Vec3d light_on(std::uint32_t level, Vec2f texcoord) const;
+  template <class Texel>
+  static Vec3d mixed(const images::Image& image, const TexelSquare& square, const Texel& texel);
 
   std::vector<images::Image> levels_;
   Wraps wraps_;
