@@ -63,11 +63,12 @@ class Splitter {
     if (!normals_.normals.empty())
       shading_.normals.assign(normals_.normals.begin(), normals_.normals.begin() + vertex_count_);
     shading_.texcoords.resize(vertex_count_);
-    std::uint32_t corner = 0;
+    std::uint32_t t = 0;
     for (auto* triangles : {&shading_.interior, &shading_.border}) {
-      for (TileTriangle& t : *triangles) {
-        for (TileVertex& shown : t)
-          look_at(shown, corner++);
+      for (TileTriangle& shown : *triangles) {
+        for (std::uint32_t k = 0; k < 3; ++k)
+          look_at(shown[k], texcoords_[t][k], 3 * t + k);
+        ++t;
       }
     }
     split();
@@ -80,12 +81,11 @@ class Splitter {
 
  private:
   /// The first look is the vertex's own.
-  void look_at(TileVertex& shown, std::uint32_t corner) {
+  void look_at(TileVertex& shown, const Vec2f& at, std::uint32_t corner) {
     const std::uint32_t number = raw(shown);
     const std::uint32_t vertex =
         number < vertex_count_ ? number : normals_.split_of[number - vertex_count_];
     const NormalCode normal = normals_.normals.empty() ? NormalCode{} : normals_.normals[number];
-    const Vec2f& at = texcoords_[corner / 3][corner % 3];
     const Look look{std::bit_cast<std::uint32_t>(normal), bits(at.u), bits(at.v)};
     if (has_look_[vertex] == 0) {
       has_look_[vertex] = 1;

@@ -126,6 +126,17 @@ TEST(ChartOverlap, IsAllWhereATriangleShowsItsBackSide) {
   expect_equal(overlap_of(mesh), kAll);
 }
 
+// It takes bounded memory.
+TEST(ChartOverlap, IsAllWhereTheBorderIsTooLong) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 6000; ++i) {
+    for (const auto& [x, y] : {std::pair{9., 1.}, {12., 1.}, {9., 63.}})
+      mesh.positions.push_back(to_float(Vec3d{x, y, 0}));
+    mesh.triangles.push_back({TileVertex{3 * i}, TileVertex{3 * i + 1}, TileVertex{3 * i + 2}});
+  }
+  expect_equal(overlap_of(mesh), kAll);
+}
+
 TEST(ChartOverlap, BeyondThePictureNothingIsCovered) {
   RandomNumbers random(5);
   Mesh mesh;
