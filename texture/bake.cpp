@@ -1,6 +1,6 @@
 #include "texture/bake.h"
 
-#include "texture/distinct_triangles.h"
+#include "texture/charted_tile.h"
 #include "texture/fill.h"
 #include "texture/finer_points.h"
 #include "texture/texel_fit.h"
@@ -30,11 +30,11 @@ std::uint32_t channels_of(std::span<const TexturedSurface> surfaces) {
 /// Takes the colours of samples from finer surfaces.
 class Painter {
  public:
-  Painter(const TexelSamples& samples, std::span<const TexturedSurface> finer)
-      : samples_(samples),
-        texel_(1 / samples.layout().density),
-        finer_(shapes_of(finer), samples),
-        points_(finer_.points(samples)),
+  Painter(const ChartedTile& tile, std::span<const TexturedSurface> finer)
+      : samples_(tile.samples),
+        texel_(1 / samples_.layout().density),
+        finer_(tile.finer),
+        points_(tile.points),
         sampler_(finer, texel_),
         channels_(channels_of(finer)) {}
 
@@ -123,30 +123,30 @@ class Painter {
 
   const TexelSamples& samples_;
   double texel_;
-  FinerSurfaces finer_;
-  const std::vector<FinerPoint> points_;
+  const FinerSurfaces& finer_;
+  const std::span<const FinerPoint> points_;
   TexelSampler sampler_;
   std::uint32_t channels_;
 };
 
 }  // namespace
 
-BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
-                  const BakeSize& size) {
-  if (tile.triangles.empty())
-    return {};
-  const DistinctTriangles distinct(tile.triangles);
-  TexturedSurface surface = tile;
-  surface.triangles = distinct.triangles();
-  const TexelSamples samples(surface, size);
-  Painter painter(samples, finer);
+BakedTexture bake(const ChartedTile& tile, std::span<const TexturedSurface> finer) {
+  const TexelSamples& samples = tile.samples;
+  Painter painter(tile, finer);
   BakedTexture baked;
   baked.image = painter.paint();
-  baked.corners = distinct.expanded(samples.texcoords());
+  baked.corners = tile.distinct.expanded(samples.texcoords());
   baked.texel = static_cast<float>(1 / samples.layout().density);
   baked.lost = static_cast<float>(painter.lost(baked.image));
   baked.charts = static_cast<std::uint32_t>(samples.layout().planes.size());
   return baked;
+}
+
+BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
+                  const BakeSize& size) {
+  return tile.triangles.empty() ? BakedTexture{}
+                                : bake(ChartedTile(tile, size, shapes_of(finer)), finer);
 }
 
 float texel_size(const TexturedSurface& surface, std::uint32_t width, std::uint32_t height) {

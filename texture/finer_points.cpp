@@ -223,7 +223,8 @@ std::vector<FinerPoint> FinerSurfaces::points(const TexelSamples& samples) const
 std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples& samples,
                                                               const TexelRange& chart,
                                                               std::span<const FinerPoint> points,
-                                                              std::uint32_t x, std::uint32_t y) {
+                                                              std::uint32_t x,
+                                                              std::uint32_t y) const {
   Vec3d middle;
   for (const auto& [i, j] : four_texels(x, y)) {
     const TexelSample& sample = samples.at(i, j);
@@ -231,22 +232,24 @@ std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples
       return std::nullopt;
     middle = middle + samples.point(sample) * 0.25;
   }
-  around_.clear();
+  std::array<std::uint32_t, 16> around;
+  std::size_t count = 0;
   for (std::uint32_t j = std::max(y, chart.top + 1) - 1; j < std::min(y + 3, chart.bottom); ++j) {
     for (std::uint32_t i = std::max(x, chart.left + 1) - 1; i < std::min(x + 3, chart.right); ++i) {
       const std::uint32_t triangle = points[std::size_t{j} * samples.layout().width + i].triangle;
-      if (triangle != FinerPoint::kNone &&
-          std::find(around_.begin(), around_.end(), triangle) == around_.end())
-        around_.push_back(triangle);
+      const auto end = around.begin() + static_cast<std::ptrdiff_t>(count);
+      if (triangle != FinerPoint::kNone && std::find(around.begin(), end, triangle) == end)
+        around[count++] = triangle;
     }
   }
-  return Amid{middle, nearest_around(middle)};
+  return Amid{middle, nearest_of(std::span(around).first(count), middle)};
 }
 
-FinerPoint FinerSurfaces::nearest_around(const Vec3d& point) const {
+FinerPoint FinerSurfaces::nearest_of(std::span<const std::uint32_t> triangles,
+                                     const Vec3d& point) const {
   FinerPoint nearest;
   double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t t : around_) {
+  for (const std::uint32_t t : triangles) {
     const auto [a, b, c] = corners(t);
     const ClosestPoint there = closest_point(point, {to_double(a), to_double(b), to_double(c)});
     if (!(there.squared_distance < least))

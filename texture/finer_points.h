@@ -108,7 +108,7 @@ class FinerSurfaces {
   friend class PointDrawing;
   SurfaceTriangle corners(std::uint32_t triangle) const;
   static SurfaceTriangle corners(const FinerShape& shape, const TileTriangle& triangle);
-  FinerPoint nearest_around(const Vec3d& point) const;
+  FinerPoint nearest_of(std::span<const std::uint32_t> triangles, const Vec3d& point) const;
   NearestTriangle tree_of(std::span<const SurfaceTriangle> triangles) const;
 
   std::vector<FinerShape> shapes_;
@@ -116,7 +116,6 @@ class FinerSurfaces {
   std::vector<std::vector<Foot>> feet_;
   std::vector<FootShares> shares_;  ///< of triangles
   std::span<const Vec3f> tile_;
-  std::vector<std::uint32_t> around_;  ///< triangles around the last texels that were asked for
 };
 
 }  // namespace meshhier::texture

@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/lane_vector.h"
+#include "texture/charted_tile.h"
 #include "texture/corner_frames.h"
 #include "texture/distinct_triangles.h"
 #include "texture/finer_normals.h"
@@ -98,15 +99,16 @@ class ChartTexels {
 /// Makes the map of one tile, whose triangles are distinct.
 class MapMaker {
  public:
-  MapMaker(const NormalSurface& tile, std::span<const NormalSurface> surfaces, FinerSurfaces& finer,
-           const TexelSamples& samples, const CornerFrames& frames)
+  MapMaker(const NormalSurface& tile, const TexelSamples& samples, const CornerFrames& frames,
+           std::span<const NormalSurface> surfaces, const FinerSurfaces& finer,
+           std::span<const FinerPoint> points)
       : tile_(tile),
         samples_(samples),
         layout_(samples.layout()),
-        finer_(finer),
+        frames_(frames),
         normals_(surfaces, finer),
-        points_(finer.points(samples)),
-        frames_(frames) {}
+        finer_(finer),
+        points_(points) {}
 
   BakedNormalMap operator()() {
     BakedNormalMap baked;
@@ -241,19 +243,42 @@ class MapMaker {
   const NormalSurface& tile_;
   const TexelSamples& samples_;
   const ChartLayout& layout_;
-  FinerSurfaces& finer_;
-  FinerNormals normals_;
-  const std::vector<FinerPoint> points_;
   const CornerFrames& frames_;
+  FinerNormals normals_;
+  const FinerSurfaces& finer_;
+  const std::span<const FinerPoint> points_;
 };
+
+/// Returns the entries of those triangles that are there once.
+std::vector<CornerNormals> normals_of(const DistinctTriangles& distinct,
+                                      std::span<const CornerNormals> all) {
+  std::vector<CornerNormals> normals;
+  for (const std::uint32_t t : distinct.firsts())
+    normals.push_back(all[t]);
+  return normals;
+}
+
+CornerFrames frames_of(const NormalSurface& tile, const TexelSamples& samples) {
+  CornerFrames frames(tile.positions.size(), tile.triangles, tile.normals);
+  for (std::size_t c = 0; c < samples.layout().planes.size(); ++c)
+    frames.add_chart(samples.layout().planes[c], samples.triangles_of(c));
+  return frames;
+}
+
+BakedNormalMap expanded(BakedNormalMap baked, const DistinctTriangles& distinct) {
+  baked.corners = distinct.expanded(baked.corners);
+  baked.tangents = distinct.expanded(baked.tangents);
+  return baked;
+}
 
 }  // namespace
 
 struct NormalBaker::Work {
   Work(const NormalSurface& tile, std::span<const NormalSurface> finer, std::uint32_t longest)
-      : distinct(tile.triangles), side(longest), surfaces(finer) {
-    for (const std::uint32_t t : distinct.firsts())
-      normals.push_back(tile.normals[t]);
+      : distinct(tile.triangles),
+        side(longest),
+        surfaces(finer),
+        normals(normals_of(distinct, tile.normals)) {
     surface = {tile.positions, distinct.triangles(), normals, {}, nullptr};
     bare = {tile.positions, distinct.triangles(), {}, nullptr};
   }
@@ -266,15 +291,13 @@ struct NormalBaker::Work {
     }
     samples = std::make_unique<const TexelSamples>(bare, size);
     shapes.emplace(shapes_of(surfaces), *samples);
-    frames.emplace(surface.positions.size(), surface.triangles, surface.normals);
-    for (std::size_t c = 0; c < samples->layout().planes.size(); ++c)
-      frames->add_chart(samples->layout().planes[c], samples->triangles_of(c));
+    frames.emplace(frames_of(surface, *samples));
   }
 
   const DistinctTriangles distinct;
   const std::uint32_t side;
   const std::span<const NormalSurface> surfaces;
-  std::vector<CornerNormals> normals;
+  const std::vector<CornerNormals> normals;
   NormalSurface surface;
   TexturedSurface bare;  ///< without its normals
   std::unique_ptr<const TexelSamples> samples;
@@ -290,11 +313,19 @@ NormalBaker::~NormalBaker() = default;
 BakedNormalMap NormalBaker::bake(float least_texel) {
   Work& work = *work_;
   work.lay_out({work.side, least_texel});
-  BakedNormalMap baked =
-      MapMaker(work.surface, work.surfaces, *work.shapes, *work.samples, *work.frames)();
-  baked.corners = work.distinct.expanded(baked.corners);
-  baked.tangents = work.distinct.expanded(baked.tangents);
-  return baked;
+  const std::vector<FinerPoint> points = work.shapes->points(*work.samples);
+  MapMaker maker(work.surface, *work.samples, *work.frames, work.surfaces, *work.shapes, points);
+  return expanded(maker(), work.distinct);
+}
+
+BakedNormalMap bake_normal_map(const ChartedTile& tile, std::span<const CornerNormals> normals,
+                               std::span<const NormalSurface> finer) {
+  const std::vector<CornerNormals> distinct = normals_of(tile.distinct, normals);
+  const NormalSurface surface{
+      tile.surface.positions, tile.surface.triangles, distinct, {}, nullptr};
+  const CornerFrames frames = frames_of(surface, tile.samples);
+  MapMaker maker(surface, tile.samples, frames, finer, tile.finer, tile.points);
+  return expanded(maker(), tile.distinct);
 }
 
 }  // namespace meshhier::texture

@@ -1,7 +1,9 @@
 #include "texture/normal_bake.h"
 
 #include "tests/texture/random_numbers.h"
+#include "texture/bake.h"
 #include "texture/chart_layout.h"
+#include "texture/charted_tile.h"
 #include "texture/normal_texels.h"
 #include "texture/vertex_frame.h"
 
@@ -60,6 +62,34 @@ BakedNormalMap map_of(const Sheet& tile, const NormalSurface& finer, std::uint32
                       float least_texel = 0) {
   const std::vector<NormalSurface> surfaces{finer};
   return NormalBaker(tile.surface(), surfaces, side).bake(least_texel);
+}
+
+TEST(NormalBake, APictureAndAMapLieOnTheSameCharts) {
+  const Sheet tile = make_sheet(4, 0), finer = make_sheet(24, 0.02);
+  const std::vector<NormalSurface> surfaces{finer.surface()};
+  const TexturedSurface bare{tile.positions, tile.triangles, {}, nullptr};
+  const BakeSize size{64, 0.02F};
+  const ChartedTile charts(bare, size);
+  const BakedNormalMap map = bake_normal_map(charts, tile.normals, surfaces);
+  const BakedNormalMap alone = map_of(tile, finer.surface(), size.side, size.least_texel);
+  EXPECT_EQ(map.map.texels, alone.map.texels);
+  EXPECT_EQ(map.tangents, alone.tangents);
+
+  images::Image white(8, 8, 3);
+  std::ranges::fill(white.texels, std::uint8_t{255});
+  const std::vector<CornerTexcoords> corners(finer.triangles.size(),
+                                             {Vec2f{0.2F, 0.2F}, {0.6F, 0.2F}, {0.2F, 0.6F}});
+  const std::vector<TexturedSurface> pictured{{finer.positions, finer.triangles, corners, &white}};
+  const BakedTexture picture = bake(charts, pictured);
+  const BakedTexture as_ever = bake(bare, pictured, size);
+  EXPECT_EQ(picture.image.texels, as_ever.image.texels);
+  EXPECT_EQ(picture.corners, as_ever.corners);
+  EXPECT_EQ(picture.image.width, map.map.width);
+  EXPECT_EQ(picture.image.height, map.map.height);
+  for (std::size_t t = 0; t < map.corners.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(picture.corners[t][k].u, map.corners[t][k].u, 1.0 / 65535) << "rounded alone";
+  }
 }
 
 TEST(NormalTexels, GiveBackWhatIsThere) {
