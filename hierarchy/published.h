@@ -45,7 +45,7 @@ struct TileRecord {
       0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
   std::uint32_t image_width = 0, image_height = 0;  ///< of its picture, texels; 0: it has none
   float texel = 0;  ///< mean size of the picture's texels on the surface, input units; 0 without
-  bool has_normal_map = false;  ///< `image` and `texel` are those of its normal map
+  bool has_normal_map = false;  ///< `image` and `texel` are those of its normal map, too
   std::uint64_t file_bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };

@@ -62,6 +62,7 @@ void AttributePainter::paint(PublishedTile& tile) const {
   paint(tile.mesh.copies.vertices);
   if (tile.normal_map.empty())
     drop_pictures(tile);
+  tile.image = {};
 }
 
 void AttributePainter::paint(VertexArray& vertices) const {

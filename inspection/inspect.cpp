@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -283,7 +284,9 @@ std::string pictures_text(const TextureFormat& format, const storage::PictureSum
 /// Returns a text about the normal maps of the tiles that have one.
 std::string normal_maps_text(const NormalMapFormat& format,
                              const std::vector<TileRecord>& records) {
-  const storage::PictureSummary maps = storage::summarize_pictures(records);
+  std::vector<TileRecord> mapped;
+  std::ranges::copy_if(records, std::back_inserter(mapped), &TileRecord::has_normal_map);
+  const storage::PictureSummary maps = storage::summarize_pictures(mapped);
   const auto simplified = static_cast<std::uint64_t>(
       std::ranges::count_if(records, [](const TileRecord& r) { return r.error > 0; }));
   return fmt::format(

@@ -33,7 +33,7 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
     result.normal_map = std::make_unique<const MipTexture>(
         images::decode_image(map.bytes, "the normal map of tile " + to_text(tile.node), texels),
         Wraps{Wrap::clamp, Wrap::clamp}, AlphaMode::opaque, TexelKind::numbers);
-    result.skins = map_skins_of(tile, *result.normal_map, border);
+    add_normal_map(tile, *result.normal_map, border, result.skins);
   }
   drop_repeated(result.facets, result.skins);
   return result;

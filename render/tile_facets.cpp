@@ -130,12 +130,14 @@ std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& lay
   return skins;
 }
 
-std::vector<Skin> map_skins_of(const PublishedTile& tile, const MipTexture& normal_map,
-                               std::span<const std::uint32_t> border) {
+void add_normal_map(const PublishedTile& tile, const MipTexture& normal_map,
+                    std::span<const std::uint32_t> border, std::vector<Skin>& skins) {
   const Shading& shading = tile.shading;
-  std::vector<Skin> skins;
-  for (const TileTriangle& t : drawn_triangles(tile, border)) {
-    Skin& skin = skins.emplace_back();
+  const std::vector<TileTriangle> triangles = drawn_triangles(tile, border);
+  skins.resize(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const TileTriangle& t = triangles[i];
+    Skin& skin = skins[i];
     skin.normal_map = &normal_map;
     for (std::size_t k = 0; k < 3; ++k) {
       const TangentCode& tangent = shading.tangents[raw(t[k])];
@@ -144,7 +146,6 @@ std::vector<Skin> map_skins_of(const PublishedTile& tile, const MipTexture& norm
       skin.is_mirrored = tangent[3] < 0;
     }
   }
-  return skins;
 }
 
 AttributeLayout drawn_layout(std::span<const Facet> root, AttributeLayout layout) {

@@ -29,9 +29,10 @@ std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& l
 std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& layout,
                            const MipTexture& texture, std::span<const std::uint32_t> border);
 
-/// The same of a tile with a normal map: colours stay.
-std::vector<Skin> map_skins_of(const PublishedTile& tile, const MipTexture& normal_map,
-                               std::span<const std::uint32_t> border);
+/// Gives the skins of the same facets the tile's normal map; without skins, those that let colours
+/// stay. Requires a tile that has one.
+void add_normal_map(const PublishedTile& tile, const MipTexture& normal_map,
+                    std::span<const std::uint32_t> border, std::vector<Skin>& skins);
 
 /// `layout` as it is drawn where the root tile has these facets: without colours if all of them are
 /// white. Such colours say nothing, and would hide the form.

@@ -97,7 +97,7 @@ class FinerSurfaces {
   /// they and the texels around them show; nothing if one of the four is not inside of the chart.
   std::optional<Amid> amid_texels(const TexelSamples& samples, const TexelRange& chart,
                                   std::span<const FinerPoint> points, std::uint32_t x,
-                                  std::uint32_t y);
+                                  std::uint32_t y) const;
 
   std::uint32_t triangle_count() const { return begins_.back(); }
   /// Returns the surface that a triangle is of.

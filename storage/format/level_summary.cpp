@@ -153,7 +153,9 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.textures = format.textures;
     shape.screen_colours = format.screen_colours;
     shape.normal_maps = format.normal_maps;
-    (record.has_normal_map ? shape.normal_map : shape.image).bytes = texel_count(record) * 3;
+    const std::uint64_t texels = texel_count(record);
+    shape.image.bytes = format.textures ? texels * 3 : 0;
+    shape.normal_map.bytes = record.has_normal_map ? texels * 3 : 0;
     shape.interior = record.interior_count;
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, format.attributes);

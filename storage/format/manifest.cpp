@@ -202,12 +202,9 @@ std::optional<TextureFormat> read_textures(const JsonObject& object, const Sourc
   return textures;
 }
 
-std::optional<NormalMapFormat> read_normal_maps(const JsonObject& object,
-                                                const SourceSummary& source) {
+std::optional<NormalMapFormat> read_normal_maps(const JsonObject& object) {
   if (!object.has("normal_map"))
     return std::nullopt;
-  if (source.textures)
-    object.wrong("normal_map", "not to be there beside textures");
   return read_picture_format<NormalMapFormat>(object.object("normal_map"));
 }
 
@@ -312,8 +309,10 @@ void read_tileset(const JsonObject& object, std::uint64_t version, Manifest& man
     object.wrong("pixels", fmt::format("{} to {}", kFewestTilesetPixels, kMostTilesetPixels));
 }
 
-/// Throws if the version does not follow from the content, as it did until 11.
+/// Throws if the version does not follow from the content; of 12 and later ones one thing decides.
 void check_version(std::uint64_t version, const Manifest& manifest, const JsonObject& object) {
+  if ((version == kFormatVersion) != manifest.has_relief())
+    object.wrong("format_version", "13 if and only if there are pictures and normal maps");
   if (version > kTrueErrorsFormatVersion)
     return;
   if (version < kNoKtx2FormatVersion &&
@@ -425,7 +424,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.quantization = read_quantization(storage);
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);
-  manifest.normal_maps = read_normal_maps(storage, manifest.source);
+  manifest.normal_maps = read_normal_maps(storage);
   check_version(version, manifest, object);
   manifest.config = object.at("config");
   if (!manifest.config.is_object())

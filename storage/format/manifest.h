@@ -19,8 +19,10 @@ namespace meshhier::storage {
 
 // The versions that are read. Manifest::format_version() tells by the content which one a manifest
 // has.
-inline constexpr int kFormatVersion = 12;
-/// No Manifest::tileset_pixels; pictures or normal maps in KTX2.
+inline constexpr int kFormatVersion = 13;
+/// No tiles with both a picture and a normal map.
+inline constexpr int kNoReliefFormatVersion = 12;
+/// No Manifest::tileset_pixels either; pictures or normal maps in KTX2.
 inline constexpr int kTrueErrorsFormatVersion = 11;
 /// No KTX2 either; tiles with normal maps.
 inline constexpr int kNoKtx2FormatVersion = 10;
@@ -103,16 +105,17 @@ struct Manifest {
   /// The frame of the nodes of tiles and of the outline.
   Frame tile_frame() const { return {tileset_pixels ? Vec3d{} : origin, up}; }
 
-  /// The format of pictures or normal maps: there are never both.
-  std::optional<ImageFormat> image_format() const {
-    return textures      ? std::optional(textures->format)
-           : normal_maps ? std::optional(normal_maps->format)
-                         : std::nullopt;
+  bool has_images_in(ImageFormat format) const {
+    return (textures && textures->format == format) ||
+           (normal_maps && normal_maps->format == format);
   }
-  bool has_ktx2() const { return image_format() == ImageFormat::ktx2; }
+  bool has_ktx2() const { return has_images_in(ImageFormat::ktx2); }
+  /// Whether simplified tiles have pictures and normal maps.
+  bool has_relief() const { return textures && normal_maps; }
 
   int format_version() const {
-    return tileset_pixels                      ? kFormatVersion
+    return has_relief()                        ? kFormatVersion
+           : tileset_pixels                    ? kNoReliefFormatVersion
            : has_ktx2()                        ? kTrueErrorsFormatVersion
            : normal_maps                       ? kNoKtx2FormatVersion
            : !source.attributes.values.empty() ? kNoMapsFormatVersion

@@ -112,7 +112,7 @@ class Writer {
 
   /// Writes coordinates in the tile's picture, or in its normal map.
   void put_texcoords(std::span<const Vec2f> texcoords) {
-    if (plan_.shape().has_normal_map())
+    if (plan_.shape().has_map_texcoords())
       return put_map_texcoords(texcoords);
     const Section& section = plan_[TilePart::texcoord];
     for (std::size_t v = 0; v < texcoords.size(); ++v) {
@@ -253,11 +253,10 @@ bool has_map(const TileImage* normal_map) {
 
 [[maybe_unused]] bool has_sound_map(const TileImage* map, const TileMesh& mesh,
                                     const TileFormat& format) {
-  return !has_map(map) ||
-         (format.normal_maps && !format.textures && map->format == format.normal_maps->format &&
-          map->alpha == AlphaMode::opaque && !map->bytes.empty() &&
-          std::max(map->width, map->height) <= kMaxImageSide &&
-          !(mesh.interior.empty() && mesh.border.empty()));
+  return !has_map(map) || (format.normal_maps && map->format == format.normal_maps->format &&
+                           map->alpha == AlphaMode::opaque && !map->bytes.empty() &&
+                           std::max(map->width, map->height) <= kMaxImageSide &&
+                           !(mesh.interior.empty() && mesh.border.empty()));
 }
 
 [[maybe_unused]] bool has_sound_layout(const TileFormat& format) {
@@ -317,6 +316,10 @@ ImageShape read_image_shape(const Json& document, const Json& extension, const I
           read_alpha(document)};
 }
 
+bool have_same_sides(const ImageShape& a, const ImageShape& b) {
+  return a.width == b.width && a.height == b.height;
+}
+
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
@@ -349,8 +352,11 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
   if (shape.normal_maps && extension.contains(map) && extension[map] != -1) {
     shape.normal_map =
         read_image_shape(document, extension, {map, "normalMapWidth", "normalMapHeight"}, name);
+    shape.normal_map.alpha = AlphaMode::opaque;  // the material's is the picture's
     if (tree.is_partition(node) || shape.interior + shape.border == 0)
       throw Error(ErrorCode::corrupt, name + ": a normal map of a partition, or of no triangle");
+    if (shape.has_image() && !have_same_sides(shape.image, shape.normal_map))
+      throw Error(ErrorCode::corrupt, name + ": picture and normal map have different sides");
   }
   if (node == tree.root())
     shape.first_view = read_first_view(document, name);

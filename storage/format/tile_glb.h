@@ -35,7 +35,8 @@ struct TileFormat {
   std::optional<TextureFormat> textures{};
   /// Format versions up to 7: tiles hold colours as screens have them, else as TileColours says.
   bool screen_colours = false;
-  /// Tiles above the partitions may have a normal map; none has a picture then.
+  /// Tiles above the partitions may have a normal map, of the sides of their picture if they have
+  /// one.
   std::optional<NormalMapFormat> normal_maps{};
 };
 

@@ -76,7 +76,7 @@ std::pair<unsigned, std::size_t> computed_elements(TilePart part, const TileShap
     return {kI8, 4};
   if (part == TilePart::texcoord && shape.has_image())
     return {kF32, 2};
-  if (part == TilePart::map_texcoord && shape.has_normal_map())
+  if (part == TilePart::map_texcoord && shape.has_map_texcoords())
     return {kU16, 2};
   return {};
 }
@@ -200,28 +200,44 @@ Json primitives_json(const TilePlan& plan) {
   return primitives;
 }
 
-ImageFormat image_format(const TileShape& shape) {
-  return stored_format(*shape.textures, shape.image.alpha);
+/// A picture or normal map; the texture and the image of its number are it.
+struct ShownImage {
+  TilePart part;
+  ImageFormat format;
+};
+
+std::vector<ShownImage> images_of(const TileShape& shape) {
+  std::vector<ShownImage> images;
+  if (shape.has_image())
+    images.push_back({TilePart::image, stored_format(*shape.textures, shape.image.alpha)});
+  if (shape.has_normal_map())
+    images.push_back({TilePart::normal_map, shape.normal_maps->format});
+  return images;
 }
 
 Json material_of(const TilePlan& plan) {
   const TileShape& shape = plan.shape();
-  if (shape.has_image())
-    return material_json(0, shape.image.alpha, shape.textures->unlit);
-  Json material = material_json();
+  Json material = shape.has_image() ? material_json(0, shape.image.alpha, shape.textures->unlit)
+                                    : material_json();
   if (shape.has_normal_map())
-    material["normalTexture"] = normal_texture_json(0, map_texcoord_set(plan));
+    material["normalTexture"] =
+        normal_texture_json(shape.has_image() ? 1 : 0, map_texcoord_set(plan));
   return material;
 }
 
-/// Adds all that leads from the material to the picture, or the normal map.
-void add_image(const TilePlan& plan, Json& document) {
-  const bool is_map = plan.shape().has_normal_map();
-  const ImageFormat format = is_map ? plan.shape().normal_maps->format : image_format(plan.shape());
-  const TilePart part = is_map ? TilePart::normal_map : TilePart::image;
-  document["textures"] = Json::array({texture_json(0, format)});
+/// Adds all that leads from the material to the picture and the normal map.
+void add_images(const TilePlan& plan, Json& document) {
+  const std::vector<ShownImage> shown = images_of(plan.shape());
+  if (shown.empty())
+    return;
+  Json textures = Json::array(), images = Json::array();
+  for (const ShownImage& image : shown) {
+    textures.push_back(texture_json(images.size(), image.format));
+    images.push_back(image_json(plan[image.part].view, image.format));
+  }
+  document["textures"] = std::move(textures);
   document["samplers"] = Json::array({sampler_json()});
-  document["images"] = Json::array({image_json(plan[part].view, format)});
+  document["images"] = std::move(images);
 }
 
 /// Whether the extension has the key of a part.
@@ -294,12 +310,11 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
   const TileShape& shape = plan.shape();
   if (plan.has_short_positions() || shape.computed_normals || shape.has_normal_map())
     names.push_back(kQuantizationExtension);
-  const char* const extension = shape.has_image() ? row_of(image_format(shape)).gltf_extension
-                                : shape.has_normal_map()
-                                    ? row_of(shape.normal_maps->format).gltf_extension
-                                    : nullptr;
-  if (extension != nullptr)
-    names.push_back(extension);
+  for (const ShownImage& image : images_of(shape)) {
+    const char* const extension = meshhier::row_of(image.format).gltf_extension;
+    if (extension != nullptr && std::ranges::find(names, extension) == names.end())
+      names.push_back(extension);
+  }
   return names;
 }
 
@@ -418,8 +433,7 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["nodes"] = Json::array({node_json(*this, frame)});
   document["meshes"] = Json::array({mesh});
   document["materials"] = Json::array({material_of(*this)});
-  if (shape_.has_image() || shape_.has_normal_map())
-    add_image(*this, document);
+  add_images(*this, document);
   document["accessors"] = std::move(accessors);
   document["bufferViews"] = std::move(views);
   document["buffers"] = buffers_json(*this, packing);

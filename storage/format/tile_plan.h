@@ -49,8 +49,8 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   normal         N                 3 f32; computed ones 3 i8, stride 4
 //   tangent        N or none         4 i8: of tiles with a normal map
 //   colour         N                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
-//   texcoord       N                 2 f32; of textured tiles those in their picture
-//   map_texcoord   N or none         2 u16: of tiles with a normal map
+//   texcoord       N                 2 f32; of textured tiles those in their picture, and map
+//   map_texcoord   N or none         2 u16: of tiles with a normal map and no picture
 //   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
 //   values         N                 4 bytes for each value, of which its component type may take
@@ -170,6 +170,8 @@ struct TileShape {
   bool is_shaded() const { return computed_normals || textures || normal_maps; }
   bool has_image() const { return image.bytes > 0; }
   bool has_normal_map() const { return normal_map.bytes > 0; }
+  /// Whether coordinates are those of a normal map alone; beside a picture it has the picture's.
+  bool has_map_texcoords() const { return has_normal_map() && !has_image(); }
   std::uint64_t places() const { return own + ghosts; }
   std::uint64_t vertices() const { return places() + copies; }
   /// Corners of triangles are numbers below this.

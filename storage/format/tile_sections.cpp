@@ -118,7 +118,7 @@ class Reader {
     Shading& shading = tile.shading;
     shading.normals = normals();
     shading.tangents = tangents();
-    shading.texcoords = plan_.shape().has_normal_map() ? map_texcoords() : texcoords();
+    shading.texcoords = plan_.shape().has_image() ? texcoords() : map_texcoords();
     shading.split_of = splits();
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
     read_triangles(TilePart::interior, numbers, shading.split_of,

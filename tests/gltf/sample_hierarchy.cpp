@@ -306,6 +306,17 @@ SampleHierarchy textured(SampleHierarchy sample, const TextureFormat& format, Al
   return sample;
 }
 
+SampleHierarchy with_relief(SampleHierarchy sample, ImageFormat pictures, ImageFormat maps,
+                            AlphaMode alpha) {
+  sample = textured(std::move(sample), {pictures, 80, false}, alpha);
+  sample.format.normal_maps = NormalMapFormat{maps, 80};
+  for (PublishedTile& tile : sample.tiles) {
+    if (!sample.tree.is_partition(tile.node) && !tile.image.empty())
+      add_relief(tile, sample_image(maps));
+  }
+  return sample;
+}
+
 SampleHierarchy shaded(SampleHierarchy sample) {
   sample.format.computed_normals = true;
   for (PublishedTile& tile : sample.tiles)

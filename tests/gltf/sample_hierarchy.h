@@ -41,6 +41,10 @@ SampleHierarchy shaded(SampleHierarchy sample);
 SampleHierarchy textured(SampleHierarchy sample, const TextureFormat& format = {},
                          AlphaMode alpha = AlphaMode::opaque);
 
+/// The same with lit pictures, and under those of tiles above the partitions normal maps.
+SampleHierarchy with_relief(SampleHierarchy sample, ImageFormat pictures, ImageFormat maps,
+                            AlphaMode alpha = AlphaMode::opaque);
+
 /// The same with its positions rounded to a lattice of so many bits over all of them.
 SampleHierarchy quantized(SampleHierarchy sample, int bits);
 

@@ -163,6 +163,19 @@ TEST_F(GltfValidator, AcceptsTexturedTiles) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsTilesWithPicturesAndNormalMaps) {
+  int number = 0;
+  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+    for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
+      SampleHierarchy sample = with_relief(shaded(make_sample(torus(150, 0.05F), 3)),
+                                           ImageFormat::webp, format, AlphaMode::mask);
+      sample.format.compression = compression;
+      write_tiles(fmt::format("relief{}", number++), sample);
+    }
+  }
+  expect_clean();
+}
+
 TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
   int number = 0;
   for (const AttributeLayout& layout : sample_layouts()) {

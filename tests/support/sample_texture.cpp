@@ -256,8 +256,13 @@ void add_normal_map(PublishedTile& tile, const TileImage& map) {
   const auto on_grid = [](float part) {
     return storage::map_texcoord(storage::map_texcoord_number(part));
   };
-  for (Vec2f& at : tile.shading.texcoords) {
+  for (Vec2f& at : tile.shading.texcoords)
     at = {on_grid(at.u), on_grid(at.v)};
+  add_relief(tile, map);
+}
+
+void add_relief(PublishedTile& tile, const TileImage& map) {
+  for (const Vec2f& at : tile.shading.texcoords) {
     const bool is_odd = tile.shading.tangents.size() % 2 == 1;
     tile.shading.tangents.push_back(tangent_code({at.u, is_odd ? -1.0 : 0.5, at.v}, is_odd));
   }

@@ -27,6 +27,9 @@ void add_texture(PublishedTile& tile, const TileImage& image);
 /// The same for a normal map, with coordinates as files have them, and tangents of both hands.
 void add_normal_map(PublishedTile& tile, const TileImage& map);
 
+/// Gives a tile with a picture a map of its coordinates, and tangents.
+void add_relief(PublishedTile& tile, const TileImage& map);
+
 /// Gives all tiles of a sample a picture, and says so in its records and its manifest. Requires a
 /// layout without texture coordinates. Comes last: a tile's coordinates follow from its mesh and
 /// normals.

@@ -623,6 +623,21 @@ TEST(Manifest, PixelsOfTheTilesetAreOfVersionTwelveAlone) {
   }
 }
 
+TEST(Manifest, NormalMapsBesidePicturesAreOfVersionThirteenAlone) {
+  Manifest manifest = make_textured();
+  manifest.tileset_pixels = 16;
+  manifest.normal_maps = NormalMapFormat{ImageFormat::webp, 40};
+  EXPECT_EQ(manifest.format_version(), 13);
+  const std::string text = to_json_text(manifest);
+  expect_same(manifest, parse_manifest(text, kManifestName));
+  Json changed = Json::parse(text);
+  changed["format_version"] = 12;
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("13 if and only if there are pictures and"));
+  changed["format_version"] = 13;
+  changed["storage"].erase("normal_map");
+  EXPECT_THAT(failure(sealed(changed)), HasSubstr("13 if and only if there are pictures and"));
+}
+
 TEST(Manifest, TheRootOfTheTilesetHasTheOriginSinceVersionTwelve) {
   Manifest manifest = make_manifest();
   manifest.transform.reset();
@@ -639,13 +654,13 @@ TEST(Manifest, TheRootOfTheTilesetHasTheOriginSinceVersionTwelve) {
 
 TEST(Manifest, SANITIZED_OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 13;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 13 is newer than 12"));
+  document["format_version"] = 14;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 14 is newer than 13"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 12: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 13: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

@@ -115,6 +115,14 @@ std::vector<SampleHierarchy> mapped_samples() {
       mapped(quantized(shaded(make_sample(open_grid(9, 9), 5)), 12), ImageFormat::webp));
   samples.push_back(mapped(shaded(make_sample(open_grid(9, 9), 5)), ImageFormat::ktx2));
   samples.push_back(mapped(shaded(make_sample(points(40), 3)), ImageFormat::jpeg));
+  const SampleHierarchy shaded_torus = shaded(make_sample(torus(150, 0.05F), 5));
+  for (const AlphaMode alpha : {AlphaMode::opaque, AlphaMode::mask})
+    samples.push_back(with_relief(shaded_torus, ImageFormat::jpeg, ImageFormat::webp, alpha));
+  samples.push_back(with_relief(shaded_torus, ImageFormat::ktx2, ImageFormat::ktx2));
+  samples.push_back(with_relief(make_sample(torus(150), 5, {{.normals = true}, {}}),
+                                ImageFormat::webp, ImageFormat::png));
+  samples.push_back(
+      with_relief(shaded(make_sample(points(40), 3)), ImageFormat::png, ImageFormat::png));
   return samples;
 }
 
@@ -128,6 +136,7 @@ TEST(TileNormalMaps, ComeBackHoweverTilesArePacked) {
         const PublishedTile back = read_textured(bytes, tile.node, sample);
         expect_same_mesh(tile, back);
         EXPECT_EQ(back.normal_map, tile.normal_map);
+        EXPECT_EQ(back.image, tile.image);
         EXPECT_EQ(back.shading.tangents.size(), tile.shading.tangents.size());
         EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
         maps += back.normal_map.empty() ? 0 : 1;
@@ -158,6 +167,33 @@ TEST(TileNormalMaps, APartitionHasNone) {
   add_normal_map(tile, sample_image(ImageFormat::jpeg));
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
   EXPECT_THAT(decode_failure(bytes, tile.node, sample), HasSubstr("a normal map of a partition"));
+}
+
+TEST(TileNormalMaps, APictureAndAMapAreOfOneMaterialAndTheSameCoordinates) {
+  const SampleHierarchy sample =
+      with_relief(shaded(make_sample(torus(200, 0.05F), 5)), ImageFormat::jpeg, ImageFormat::webp);
+  const PublishedTile& root = sample.tiles.front();
+  OpenGlb glb(encode_tile(root, sample.tree, sample.format));
+  EXPECT_EQ(glb.json["materials"][0].dump(),
+            R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":1,)"
+            R"("baseColorTexture":{"index":0}},"doubleSided":true,"normalTexture":{"index":1}})");
+  EXPECT_EQ(glb.json["textures"].dump(),
+            R"([{"sampler":0,"source":0},)"
+            R"({"sampler":0,"extensions":{"EXT_texture_webp":{"source":1}}}])");
+  EXPECT_EQ(glb.json["images"][0]["mimeType"], "image/jpeg");
+  EXPECT_EQ(glb.json["images"][1]["bufferView"], glb.extension()["normalMap"]);
+  const auto& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_TRUE(attributes.contains("TANGENT"));
+  EXPECT_FALSE(attributes.contains("TEXCOORD_1"));
+}
+
+TEST(TileNormalMaps, SANITIZED_AMapOfOtherSidesThanItsPictureIsRefused) {
+  const SampleHierarchy sample =
+      with_relief(shaded(make_sample(torus(200, 0.05F), 5)), ImageFormat::jpeg, ImageFormat::jpeg);
+  PublishedTile tile = sample.tiles.front();
+  tile.normal_map.height *= 2;
+  EXPECT_THAT(decode_failure(encode_tile(tile, sample.tree, sample.format), tile.node, sample),
+              HasSubstr("picture and normal map have different sides"));
 }
 
 TEST(TileTextures, DoNotChangeTheMesh) {
