@@ -209,6 +209,13 @@ struct Config {
     return BoundsD{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
   }
   UpAxis up_axis() const { return up.value_or(UpAxis::y); }
+  /// The format of tiles' pictures. A normal map shows nothing without light: a mesh with pictures
+  /// that is to have maps is lit.
+  TextureFormat picture_format() const {
+    TextureFormat format = texture.format;
+    format.unlit = format.unlit && storage.normals != Normals::map;
+    return format;
+  }
   friend bool operator==(const Config&, const Config&) = default;
 };
 

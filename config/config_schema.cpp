@@ -422,13 +422,13 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
                       "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
                       "they are. `map`: simplified tiles get a normal map of the original surface "
-                      "besides; `auto`: those where its bytes are worth more than triangles. "
-                      "Meshes with pictures have no maps"},
+                      "besides, and pictures are lit; `auto`: those where its bytes are worth "
+                      "more than triangles, none where there are pictures"},
           kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
       deciding(number(
           {.path = "normal_map.texels",
            .meaning = "side of a normal map, at most; there are fewer texels where the "
-                      "original has no more to show"},
+                      "original has no more to show, and beside a picture as many as it has"},
           kTexels, [](auto& c) -> auto& { return c.normal_map.texels; })),
       deciding(choice(
           {.path = "normal_map.format",
@@ -466,7 +466,8 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(boolean(
           {.path = "texture.unlit",
            .meaning = "viewers show the pictures as they are (`KHR_materials_unlit`): those of "
-                      "photogrammetry have their light already"},
+                      "photogrammetry have their light already; with normal maps they are lit in "
+                      "any case"},
           [](auto& c) -> auto& { return c.texture.format.unlit; })),
       deciding(choice(
           {.path = "missing_images",

@@ -204,11 +204,9 @@ bool has_area(const storage::HierarchyReader& made, const execution::CancelToken
 namespace {
 
 const char* why_no_maps(const SourceSummary& source, const config::Config& config) {
-  if (source.textures)
-    return "the mesh has pictures";
-  return config.storage.normals == config::Normals::map
-             ? "none lies above the partitions, or none of these has triangles"
-             : "none would pay";
+  if (config.storage.normals == config::Normals::map)
+    return "none lies above the partitions, or none of these has triangles";
+  return source.textures ? "the mesh has pictures" : "none would pay";
 }
 
 }  // namespace

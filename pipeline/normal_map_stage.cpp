@@ -1,13 +1,12 @@
 #include "pipeline/normal_map_stage.h"
 
 #include "execution/memory_gate.h"
-#include "hierarchy/vertex_numbers.h"
 #include "images/formats.h"
 #include "images/image_codec.h"
 #include "pipeline/picture_levels.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/tiles/finer_surfaces.h"
-#include "shading/tile_shading.h"
+#include "pipeline/tiles/tile_normals.h"
 #include "storage/format/tile_plan.h"
 #include "texture/normal_bake.h"
 
@@ -32,74 +31,14 @@ constexpr double kGoodDegrees = 0.5;
 constexpr double kLeastDegrees = 1;
 constexpr double kMostOfTriangles = 0.75;
 
-/// Holds the normals of all corners, interior triangles first, as the file has them.
-class CornerShading {
- public:
-  CornerShading(const Forest& forest, NodeId node, const TileMesh& mesh) {
-    Shading shading;
-    if (forest.computes_normals()) {
-      shading = shading::shade_tile(mesh, forest.normals(node), [&](std::uint32_t tile) {
-        return forest.boundary_normals({node.level, tile});
-      });
-    }
-    find_normals(mesh, shading, forest.layout(node.level));
-    const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()),
-                                mesh.copies.places);
-    const bool split = !shading.split_of.empty();
-    corners_.reserve(mesh.interior.size() + mesh.border.size());
-    add(split ? shading.interior : numbers.numbered(mesh.interior, mesh.interior_wedges));
-    add(split ? shading.border : numbers.numbered(mesh.border, mesh.border_wedges));
-  }
-
-  std::vector<texture::CornerNormals> take() && { return std::move(corners_); }
-
- private:
-  /// Of all vertices and splits: those that were computed, or else those of the input.
-  void find_normals(const TileMesh& mesh, const Shading& shading, const AttributeLayout& layout) {
-    normals_.reserve(std::max(shading.normals.size(), mesh.vertices.size() + mesh.copies.size()));
-    for (const NormalCode& code : shading.normals)
-      normals_.push_back(normal_of(code));
-    if (!normals_.empty())
-      return;
-    const AttributePart& part = layout.part(AttributeKind::normals);
-    for (const VertexArray* vertices : {&mesh.vertices, &mesh.copies.vertices}) {
-      for (std::size_t i = 0; i < vertices->size(); ++i) {
-        const auto given = part.of(vertices->attributes_of(i));
-        const Vec3f normal{given[0], given[1], given[2]};
-        normals_.push_back(is_finite(normal) ? normal : Vec3f{});
-      }
-    }
-  }
-
-  void add(std::span<const TileTriangle> triangles) {
-    for (const auto& [a, b, c] : triangles)
-      corners_.push_back({normals_[raw(a)], normals_[raw(b)], normals_[raw(c)]});
-  }
-
-  std::vector<Vec3f> normals_;
-  std::vector<texture::CornerNormals> corners_;
-};
-
-double area_of(const BakeSource& source) {
+/// Returns the size of a texel of so many on a surface.
+float texel_for(const BakeSource& source, double texels) {
   double area = 0;
   for (const TileTriangle& t : source.triangles) {
     const auto corner = [&](std::size_t k) { return to_double(source.positions[raw(t[k])]); };
     area += length(cross(corner(1) - corner(0), corner(2) - corner(0))) / 2;
   }
-  return area;
-}
-
-/// Memory of a triangle at work: as in the stage `texture`, and its frames.
-constexpr std::uint64_t kFramedTriangleBytes = 600;
-
-/// Returns the memory of a map at work, and of the directions that it is made of.
-std::uint64_t map_bytes(std::uint32_t side) {
-  constexpr double kTexelBytes = 70;
-  constexpr double kSources = 16;
-  constexpr double kShown = 0.45;  // so much of a picture's texels is covered
-  const std::uint64_t texels = std::uint64_t{side} * side;
-  constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
-  return static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
+  return static_cast<float>(std::sqrt(area / texels));
 }
 
 class MapStage {
@@ -125,7 +64,7 @@ class MapStage {
     std::vector<texture::NormalSurface> surfaces;
     for (const FinerSurface& one : finer)
       surfaces.push_back(one.normal_surface());
-    const auto normals = CornerShading(forest_, node, mesh).take();
+    const auto normals = corner_normals(node, mesh);
     const texture::NormalSurface tile{source.positions, source.triangles, normals, {}, nullptr};
     texture::NormalBaker baker(tile, surfaces, side_);
     texture::BakedNormalMap baked = bake(baker, least_texels(node, source));
@@ -139,13 +78,18 @@ class MapStage {
   }
 
  private:
+  std::vector<texture::CornerNormals> corner_normals(NodeId node, const TileMesh& mesh) const {
+    return pipeline::corner_normals(mesh, forest_.layout(node.level),
+                                    computed_shading(forest_, node, mesh));
+  }
+
   std::shared_ptr<const BakeSource> finer_source(NodeId tile) const {
     if (!forest_.tree().is_partition(tile))
       return textures_.source(tile);
     return textures_.source(tile, [&] {
       const TileMesh mesh = forest_.load(tile).mesh;
       BakeSource source = bare_source(mesh, forest_.published_parent_map(tile));
-      source.normals = CornerShading(forest_, tile, mesh).take();
+      source.normals = corner_normals(tile, mesh);
       return source;
     });
   }
@@ -156,12 +100,9 @@ class MapStage {
   };
 
   LeastTexels least_texels(NodeId node, const BakeSource& source) const {
-    const double area = area_of(source);
     const auto vertices = static_cast<double>(forest_.tree().ranks(node).size());
-    const auto texel = [&](double a_vertex) {
-      return static_cast<float>(std::sqrt(area / (a_vertex * vertices)));
-    };
-    return {texel(kFewTexelsAVertex), texel(kMostTexelsAVertex)};
+    return {texel_for(source, kFewTexelsAVertex * vertices),
+            texel_for(source, kMostTexelsAVertex * vertices)};
   }
 
   /// Bakes a map of few texels, and with more if that is not good. Differences shrink about as
@@ -209,10 +150,8 @@ class MapStage {
   }
 
   TileTexture encoded(texture::BakedNormalMap baked) const {
-    const NormalMapFormat& format = config_.normal_map.format;
     TileTexture texture;
-    texture.normal_map = {format.format, AlphaMode::opaque, baked.map.width, baked.map.height,
-                          images::encode_normal_map(baked.map, format)};
+    texture.normal_map = encoded_map(baked.map, config_.normal_map.format);
     texture.corners = std::move(baked.corners);
     texture.tangents = std::move(baked.tangents);
     return texture;
@@ -227,9 +166,12 @@ class MapStage {
 };
 
 /// Returns the texels of all maps: three levels above the partitions have about as many as the
-/// original's vertices ask for, the others as many as a map may have.
+/// original's vertices ask for, the others as many as a map may have, and those under pictures,
+/// too.
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
   const double side = job.normal_map_side;
+  if (job.textured)
+    return (tiles.simplified.count - tiles.early.count) * side * side;
   const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);
   constexpr double kShown = 0.4, kUsualTexelsAVertex = kMostTexelsAVertex;
   double texels = 0, left = tiles.simplified.count - tiles.early.count;
@@ -242,6 +184,25 @@ double map_texels(const JobSize& job, const TilePopulation& tiles) {
 }
 
 }  // namespace
+
+float finest_map_texel(const Forest& forest, NodeId node, const BakeSource& source) {
+  return texel_for(source,
+                   kMostTexelsAVertex * static_cast<double>(forest.tree().ranks(node).size()));
+}
+
+TileImage encoded_map(const images::Image& map, const NormalMapFormat& format) {
+  return {format.format, AlphaMode::opaque, map.width, map.height,
+          images::encode_normal_map(map, format)};
+}
+
+std::uint64_t map_bytes(std::uint32_t side) {
+  constexpr double kTexelBytes = 70;
+  constexpr double kSources = 16;
+  constexpr double kShown = 0.45;  // so much of a picture's texels is covered
+  const std::uint64_t texels = std::uint64_t{side} * side;
+  constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
+  return static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
+}
 
 void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal& journal,
                       const LevelRange& levels, const StageContext& context) {
@@ -267,24 +228,35 @@ double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
   return map_texels(job, tiles) * texel + tiles.simplified.vertices * kVertex;
 }
 
-StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles) {
+double map_seconds(const JobSize& job, const TilePopulation& tiles) {
+  if (job.normal_map_side == 0)
+    return 0;
   constexpr double kTileSeconds = 40e-3;
   constexpr double kBakedSeconds = 220e-9;
   const double texel = kBakedSeconds + images::coders_of(job.normal_map_format).directions.seconds;
-  return {{"normal maps", "tiles",
-           static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
-           tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel}};
+  return tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel;
 }
 
-DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,
-                            const MemoryPlan& /*memory*/) {
+StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles) {
+  return {{"normal maps", "tiles",
+           static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
+           map_seconds(job, tiles)}};
+}
+
+double map_scratch_bytes(const JobSize& job, const TilePopulation& tiles) {
+  if (job.normal_map_side == 0)
+    return 0;
   constexpr double kShown = 0.45;
   const double directions = map_texels(job, tiles) * (kShown * sizeof(texture::NormalTexel) + 0.2);
   constexpr double kTriangle =
       sizeof(TileTriangle) + 2 * sizeof(texture::CornerTexcoords) + sizeof(texture::CornerTangents);
-  return {{directions + published_map_bytes(job, tiles) + tiles.simplified.triangles * kTriangle +
-               tiles.simplified.vertices * sizeof(Vec3f),
-           DiskMoment::simplify, DiskMoment::simplify}};
+  return directions + published_map_bytes(job, tiles) + tiles.simplified.triangles * kTriangle +
+         tiles.simplified.vertices * sizeof(Vec3f);
+}
+
+DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,
+                            const MemoryPlan& /*memory*/) {
+  return {{map_scratch_bytes(job, tiles), DiskMoment::simplify, DiskMoment::simplify}};
 }
 
 }  // namespace meshhier::pipeline

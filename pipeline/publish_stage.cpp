@@ -14,8 +14,7 @@
 #include "pipeline/simplify_stage.h"
 #include "pipeline/texture_stage.h"
 #include "pipeline/tiles/texture_store.h"
-#include "pipeline/tiles/vertex_order.h"
-#include "shading/tile_shading.h"
+#include "pipeline/tiles/tile_normals.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
@@ -54,7 +53,7 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
                                 {}};
   format.computed_normals = computed_normals;
   if (source.summary.textures)
-    format.textures = context.config.texture.format;
+    format.textures = context.config.picture_format();
   if (context.plan.job.normal_map_side > 0 && textures.has_normal_maps())
     format.normal_maps = context.config.normal_map.format;
   format.lattice = lattice_of(source, context);
@@ -103,42 +102,30 @@ struct FinishedMesh {
   std::vector<std::uint16_t> parent_map;
 };
 
-void add_normal_map(TileTexture texture, FinishedMesh& finished) {
-  if (texture.normal_map.empty())
+/// Adds the picture and the normal map, as far as there are any, and their coordinates.
+void add_texture(TileTexture texture, FinishedMesh& finished) {
+  if (texture.image.empty() && texture.normal_map.empty())
     return;
   finished.shading = texture::with_texcoords(finished.mesh, finished.shading, texture.corners);
-  finished.shading.tangents =
-      texture::tangents_of(finished.mesh, finished.shading, texture.tangents);
+  if (!texture.normal_map.empty()) {
+    finished.shading.tangents =
+        texture::tangents_of(finished.mesh, finished.shading, texture.tangents);
+  }
+  finished.image = std::move(texture.image);
   finished.normal_map = std::move(texture.normal_map);
 }
 
 /// Orders a partition's vertices, and gives all vertices their normals and texture coordinates.
 FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
-  const Forest& forest = to.forest;
-  FinishedMesh finished{std::move(mesh), {}, {}, {}, forest.published_parent_map(node)};
-  OwnShading normals = forest.computes_normals() ? forest.normals(node) : OwnShading{};
-  if (forest.tree().is_partition(node)) {
-    const std::vector<std::uint32_t> copy_places = finished.mesh.copies.places;
-    const std::vector<std::uint32_t> place =
-        order_inner_vertices(finished.mesh, finished.parent_map);
-    if (forest.computes_normals())
-      normals = shading::renumbered(normals, copy_places, place, finished.mesh.own_count);
-  }
-  if (forest.computes_normals()) {
-    finished.shading = shading::shade_tile(finished.mesh, normals, [&](std::uint32_t tile) {
-      return forest.boundary_normals({node.level, tile});
-    });
-  }
+  OrderedTile tile = ordered_tile(to.forest, node, std::move(mesh));
+  FinishedMesh finished{
+      std::move(tile.mesh), std::move(tile.shading), {}, {}, std::move(tile.parent_map)};
   if (to.format.textures) {
-    TileTexture texture = to.textures.texture(node);
     finished.mesh.vertices.keep_channels(to.format.attributes.channels());
     finished.mesh.copies.vertices.keep_channels(to.format.attributes.channels());
-    if (!texture.image.empty())
-      finished.shading = texture::with_texcoords(finished.mesh, finished.shading, texture.corners);
-    finished.image = std::move(texture.image);
   }
-  if (to.format.normal_maps && !forest.tree().is_partition(node))
-    add_normal_map(to.textures.texture(node), finished);
+  if (to.format.textures || (to.format.normal_maps && !to.forest.tree().is_partition(node)))
+    add_texture(to.textures.texture(node), finished);
   return finished;
 }
 

@@ -128,7 +128,8 @@ constexpr std::array kStages{
           .then = settle_tiles,
           .tasks = {{"level"}, {"top"}},
           .notes = {"simplify", "root"}},
-    // tiles and decoded pictures → a picture a tile
+    // tiles and decoded pictures → a picture a tile, with a normal map of a simplified one if asked
+    // for
     Stage{.name = "texture",
           .applies = has_pictures,
           .memory = texture_memory,
@@ -140,7 +141,7 @@ constexpr std::array kStages{
           .notes = {"texture"}},
     // tiles → a normal map a simplified tile
     Stage{.name = "normal maps",
-          .applies = [](const JobSize& job) { return job.normal_map_side > 0; },
+          .applies = [](const JobSize& job) { return job.normal_map_side > 0 && !job.textured; },
           .memory = normal_map_memory,
           .disk = normal_map_disk,
           .time = normal_map_time,

@@ -6,10 +6,13 @@
 #include "images/formats.h"
 #include "images/image_codec.h"
 #include "images/row_writer.h"
+#include "pipeline/normal_map_stage.h"
 #include "pipeline/picture_levels.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/finer_surfaces.h"
+#include "pipeline/tiles/tile_normals.h"
 #include "pipeline/tiles/vertex_order.h"
+#include "texture/charted_tile.h"
 #include "texture/leaf_atlas.h"
 #include "texture/reduction.h"
 
@@ -146,14 +149,16 @@ std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side)
          texels * encoded + texture::Reduction::bytes(texels, texels / (factor * factor));
 }
 
-/// Returns the memory of a simplified tile's picture, and of the finer ones that it is baked from.
-std::uint64_t bake_bytes(const TextureFormat& format, std::uint32_t side) {
+/// Returns the memory of a simplified tile's picture, and of the finer ones that it is baked from;
+/// and of its normal map.
+std::uint64_t bake_bytes(const JobSize& job) {
   constexpr std::uint64_t kBakedBytes = 64;
   constexpr std::uint64_t kSources = 16;
   constexpr std::uint64_t kSourceTexels = 2;
-  const std::uint64_t texels = std::uint64_t{side} * side;
+  const std::uint64_t texels = std::uint64_t{job.picture_side} * job.picture_side;
   return texels * (kBakedBytes + kSources * kSourceTexels * 3) +
-         images::coder_bytes(format, texels);
+         images::coder_bytes(job.pictures, texels) +
+         (job.has_relief() ? map_bytes(job.normal_map_side) : 0);
 }
 
 float root_of_squares(double a, double b) {
@@ -168,7 +173,9 @@ class TextureMaker {
         input_(input),
         materials_(texels_of(input)),
         textures_(textures),
-        format_(context.config.texture.format),
+        config_(context.config),
+        job_(context.plan.job),
+        format_(job_.pictures),
         side_(context.config.texture.texels / texture::kBakeAlignment * texture::kBakeAlignment),
         gate_(picture_room_bytes(context.memory().work_bytes)) {}
 
@@ -253,23 +260,71 @@ class TextureMaker {
     const TileMesh mesh = forest_.load(node).mesh;
     BakeSource source = bare_source(mesh, forest_.published_parent_map(node));
     TexelSizes texels = texels_below(node);
-    const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(format_, side_));
+    const execution::MemoryGate::Hold held = gate_.enter(bake_bytes(job_));
+    TileTexture texture;
     if (!source.triangles.empty()) {
-      const std::vector<FinerSurface> finer = finer_surfaces(
-          forest_, node, mesh, [&](NodeId child) { return textures_.source(child); });
-      std::vector<texture::TexturedSurface> surfaces;
-      for (const FinerSurface& one : finer) {
-        surfaces.push_back(one.surface());
-        source.alpha = std::max(source.alpha, one.source->alpha);
-      }
-      texture::BakedTexture baked = texture::bake({source.positions, source.triangles, {}, nullptr},
-                                                  surfaces, {side_, texels.finest});
-      texels.lost = root_of_squares(texels.lost, baked.lost);
-      source.image = std::move(baked.image);
-      source.corners = std::move(baked.corners);
+      const std::vector<FinerSurface> finer =
+          finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
+      std::vector<texture::FinerShape> shapes;
+      for (const FinerSurface& one : finer)
+        shapes.push_back(one.shape());
+      const texture::ChartedTile charts({source.positions, source.triangles, {}, nullptr},
+                                        {side_, least_texel(node, source, texels.finest)},
+                                        std::move(shapes));
+      texels.lost = root_of_squares(texels.lost, add_picture(charts, finer, source));
+      texture = encoded(source);
+      if (job_.has_relief())
+        add_normal_map(charts, finer, normals_of(node, mesh), source, texture);
     }
     texels.own = texel_of(source);
-    textures_.put(node, encoded(source), source, texels);
+    textures_.put(node, texture, source, texels);
+  }
+
+  std::vector<texture::CornerNormals> normals_of(NodeId node, const TileMesh& mesh) const {
+    return corner_normals(mesh, forest_.layout(node.level), computed_shading(forest_, node, mesh));
+  }
+
+  /// Returns the surface of a tile; that of a partition has its normals if a map is made of them.
+  std::shared_ptr<const BakeSource> finer_source(NodeId tile) const {
+    if (!job_.has_relief() || !forest_.tree().is_partition(tile))
+      return textures_.source(tile);
+    return textures_.source(tile, [&] {
+      BakeSource source = textures_.read_source(tile);
+      const OrderedTile ordered = ordered_tile(forest_, tile, forest_.load(tile).mesh);
+      source.normals = corner_normals(ordered.mesh, forest_.layout(tile.level), ordered.shading);
+      return source;
+    });
+  }
+
+  /// Returns how small texels may be: as the finest ones below, and as a normal map asks for.
+  float least_texel(NodeId node, const BakeSource& source, float finest) const {
+    return job_.has_relief() ? std::min(finest, finest_map_texel(forest_, node, source)) : finest;
+  }
+
+  /// Returns what it lost.
+  static float add_picture(const texture::ChartedTile& charts,
+                           const std::vector<FinerSurface>& finer, BakeSource& source) {
+    std::vector<texture::TexturedSurface> surfaces;
+    for (const FinerSurface& one : finer) {
+      surfaces.push_back(one.surface());
+      source.alpha = std::max(source.alpha, one.source->alpha);
+    }
+    texture::BakedTexture baked = texture::bake(charts, surfaces);
+    source.image = std::move(baked.image);
+    source.corners = std::move(baked.corners);
+    return baked.lost;
+  }
+
+  void add_normal_map(const texture::ChartedTile& charts, const std::vector<FinerSurface>& finer,
+                      const std::vector<texture::CornerNormals>& normals, BakeSource& source,
+                      TileTexture& texture) const {
+    std::vector<texture::NormalSurface> surfaces;
+    for (const FinerSurface& one : finer)
+      surfaces.push_back(one.normal_surface());
+    texture::BakedNormalMap baked = texture::bake_normal_map(charts, normals, surfaces);
+    source.directions = std::move(baked.texels);
+    texture.normal_map = encoded_map(baked.map, config_.normal_map.format);
+    texture.tangents = std::move(baked.tangents);
   }
 
   images::WrittenImage written_as(AlphaMode alpha, std::uint32_t width,
@@ -282,8 +337,6 @@ class TextureMaker {
   }
 
   TileTexture encoded(const BakeSource& source) const {
-    if (source.triangles.empty())
-      return {{}, source.corners};
     const AlphaMode alpha = source.image.channels == 3 ? AlphaMode::opaque : source.alpha;
     const images::WrittenImage written = written_as(alpha, source.image.width, source.image.height);
     TileTexture texture{tile_image(written, alpha), source.corners};
@@ -315,6 +368,8 @@ class TextureMaker {
   const TexturedInput& input_;
   const std::vector<texture::AtlasMaterial> materials_;
   TextureStore& textures_;
+  const config::Config& config_;
+  const JobSize& job_;
   const TextureFormat format_;
   const std::uint32_t side_;
   execution::MemoryGate gate_;
@@ -355,11 +410,10 @@ StageMemory texture_memory(const JobSize& job) {
   const images::WrittenImage leaf{stored_format(job.pictures, job.alpha), job.pictures.quality,
                                   leaf_side(job.pictures.format), leaf_side(job.pictures.format),
                                   4};
-  const std::uint64_t largest =
-      std::max(cut_bytes(leaf, job.picture_side), bake_bytes(job.pictures, job.picture_side));
+  const std::uint64_t largest = std::max(cut_bytes(leaf, job.picture_side), bake_bytes(job));
   // Items that wait for room have their geometry: read, ordered, cut into charts.
-  const std::uint64_t waiting =
-      (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;
+  const std::uint64_t waiting = (job.threads + 1) * job.part_triangles(job.largest_tile) *
+                                (job.has_relief() ? kFramedTriangleBytes : kTriangleBytes);
   return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
           2 * kMostPictureCache + waiting + (job.threads + 1) * largest};
 }
@@ -373,7 +427,8 @@ StageTimes texture_time(const JobSize& job, const TilePopulation& tiles) {
            static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
                                       tiles.early.count),
            static_cast<double>(job.source_texels) * (kTexelSeconds + coded) +
-               tiles.simplified.count * side * side * (kBakedSeconds + coded)}};
+               tiles.simplified.count * side * side * (kBakedSeconds + coded) +
+               map_seconds(job, tiles)}};
 }
 
 double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) {
@@ -397,7 +452,8 @@ DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles,
       (tiles.simplified.count * side * side + cut) * 3 + published_picture_bytes(job, tiles);
   const double triangles = tiles.partitions.triangles + tiles.simplified.triangles;
   constexpr double kTriangle = 3 * sizeof(Vec2f) * 2 + 12 + 6;
-  return {{pictures + triangles * kTriangle, DiskMoment::simplify, DiskMoment::simplify}};
+  return {{pictures + triangles * kTriangle + map_scratch_bytes(job, tiles), DiskMoment::simplify,
+           DiskMoment::simplify}};
 }
 
 }  // namespace meshhier::pipeline

@@ -37,7 +37,7 @@ std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSyste
 
 void add_textures(const config::Config& config, const TexturePlan& textures, JobSize& job) {
   job.textured = textures.is_textured();
-  job.pictures = config.texture.format;
+  job.pictures = config.picture_format();
   for (const images::Material& material : textures.materials.materials)
     job.alpha = std::max(job.alpha, material.alpha);
   job.picture_side = config.texture.texels;
@@ -45,6 +45,15 @@ void add_textures(const config::Config& config, const TexturePlan& textures, Job
   job.picture_bytes = textures.stored_bytes();
   job.decoder_bytes = textures.decoder_bytes();
   job.adding_bytes = textures.adding_bytes();
+}
+
+std::uint32_t normal_map_side(const config::Config& config, const JobSize& job) {
+  const config::Normals normals = config.storage.normals;
+  if (job.face_count == 0 || !config::makes_maps(normals))
+    return 0;
+  if (!job.textured)
+    return config.normal_map.texels;
+  return normals == config::Normals::map ? job.picture_side : 0;
 }
 
 TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree,
@@ -113,7 +122,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
   job.computes_normals = config.storage.normals != config::Normals::none &&
                          !mesh.attributes.normals && mesh.face_count > 0 &&
-                         !(textures.is_textured() && config.texture.format.unlit);
+                         !(textures.is_textured() && config.picture_format().unlit);
   job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes) +
                                   (job.computes_normals ? sizeof(NormalCode) : 0);
   job.published_ratio = row_of(config.storage.compression).expected_ratio;
@@ -122,8 +131,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.has_map = config.placement.crs.has_value();
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);
-  if (config::makes_maps(config.storage.normals) && !job.textured && mesh.face_count > 0)
-    job.normal_map_side = config.normal_map.texels;
+  job.normal_map_side = normal_map_side(config, job);
   job.normal_map_format = config.normal_map.format.format;
   return job;
 }
@@ -142,19 +150,22 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
 }
 
 void check_coders(const JobSize& job) {
-  if (!job.textured && job.normal_map_side == 0)
-    return;
-  const ImageFormat format = job.textured ? job.pictures.format : job.normal_map_format;
-  const std::string missing = job.textured ? images::missing_coder(job.pictures) : "";
-  if (!missing.empty())
-    throw Error(ErrorCode::usage, missing);
-  const std::uint32_t side = job.textured ? job.picture_side : job.normal_map_side;
-  const std::uint32_t most = images::coders_of(format).most_side;
-  if (side > most) {
-    throw Error(ErrorCode::usage, fmt::format("{}.texels is {}: in {} there are at most {} a side",
-                                              job.textured ? "texture" : "normal_map", side,
-                                              row_of(format).file.title, most));
+  const auto check = [&](ImageFormat format, std::uint32_t side) {
+    const std::uint32_t most = images::coders_of(format).most_side;
+    if (side > most) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("{}.texels is {}: in {} there are at most {} a side",
+                              job.textured ? "texture" : "normal_map", side,
+                              row_of(format).file.title, most));
+    }
+  };
+  if (job.textured) {
+    if (const std::string missing = images::missing_coder(job.pictures); !missing.empty())
+      throw Error(ErrorCode::usage, missing);
+    check(job.pictures.format, job.picture_side);
   }
+  if (job.normal_map_side > 0)
+    check(job.normal_map_format, job.normal_map_side);
 }
 
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,

@@ -36,11 +36,15 @@ struct JobSize {
   std::uint64_t picture_bytes = 0;      ///< scratch space that these take, decoded
   std::uint64_t decoder_bytes = 0;      ///< memory to decode the hungriest of them
   std::uint64_t adding_bytes = 0;       ///< memory to store the widest of them
-  std::uint32_t normal_map_side = 0;    ///< a simplified tile's, texels at most; 0: there are none
+  /// A simplified tile's, texels at most; 0: there are none. The picture's side if it has one.
+  std::uint32_t normal_map_side = 0;
   ImageFormat normal_map_format = ImageFormat::jpeg;
   bool draws_preview = false;
   std::uint32_t outline_sectors = 0;
   bool has_map = false;  ///< PROJ places the model
+
+  /// Whether simplified tiles get normal maps under their pictures.
+  bool has_relief() const { return textured && normal_map_side > 0; }
 
   /// Returns how many vertices each place has beside its first one, on average.
   double copies_per_place() const {

@@ -153,6 +153,10 @@ BakeSource bare_source(const TileMesh& mesh, std::vector<std::uint16_t> parents)
   return source;
 }
 
+texture::FinerShape FinerSurface::shape() const {
+  return {source->positions, triangles.empty() ? source->triangles : triangles, beside};
+}
+
 texture::TexturedSurface FinerSurface::surface() const {
   const bool is_whole = triangles.empty();
   return {source->positions, is_whole ? source->triangles : triangles,

@@ -5,6 +5,7 @@
 #include "pipeline/tiles/texture_store.h"
 #include "texture/bake.h"
 #include "texture/corners.h"
+#include "texture/finer_points.h"
 #include "texture/normal_bake.h"
 
 #include <cstdint>
@@ -26,6 +27,7 @@ struct FinerSurface {
   std::vector<texture::CornerNormals> normals{};
   std::vector<std::uint32_t> beside{};  ///< for each place one of the tile's, or kNoVertex
 
+  texture::FinerShape shape() const;
   texture::TexturedSurface surface() const;
   texture::NormalSurface normal_surface() const;
 };

@@ -138,9 +138,11 @@ TileTexture TextureStore::texture(NodeId node) const {
 }
 
 std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
-  return source(node, [&] {
-    return decode_source(levels_[raw(node.level)].sources.view(node.index).bytes());
-  });
+  return source(node, [&] { return read_source(node); });
+}
+
+BakeSource TextureStore::read_source(NodeId node) const {
+  return decode_source(levels_[raw(node.level)].sources.view(node.index).bytes());
 }
 
 std::shared_ptr<const BakeSource> TextureStore::source(

@@ -40,7 +40,7 @@ constexpr std::uint64_t picture_room_bytes(std::uint64_t work_bytes) {
   return work_bytes - std::min(work_bytes, 2 * picture_cache_bytes(work_bytes));
 }
 
-/// The picture or normal map that a tile is published with. Its triangles are those that
+/// The picture and the normal map that a tile is published with. Its triangles are those that
 /// Forest::load() gives, interior ones first; a partition's once its vertices are ordered.
 struct TileTexture {
   TileImage image;                                  ///< empty if the tile has no triangles
@@ -59,7 +59,8 @@ struct BakeSource {
   images::Image image;
   AlphaMode alpha = AlphaMode::opaque;
   texture::NormalTexels directions{};
-  std::vector<texture::CornerNormals> normals{};  ///< partitions have these, no `directions`
+  std::vector<texture::CornerNormals>
+      normals{};  ///< partitions have these, no `directions`; not stored
 
   texture::TexturedSurface surface() const { return {positions, triangles, corners, &image}; }
   std::uint64_t bytes() const;
@@ -85,7 +86,9 @@ class TextureStore {
            const TexelSizes& texels);
   TileTexture texture(NodeId node) const;
   std::shared_ptr<const BakeSource> source(NodeId node) const;
-  /// Returns a source that was never put: makes it unless it is still in memory.
+  /// Returns the same as it was put, past those in memory.
+  BakeSource read_source(NodeId node) const;
+  /// Returns a source that was never put so: makes it unless it is still in memory.
   std::shared_ptr<const BakeSource> source(NodeId node,
                                            const std::function<BakeSource()>& make) const;
   const TexelSizes& texels(NodeId node) const {

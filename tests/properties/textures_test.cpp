@@ -444,6 +444,93 @@ TEST_F(TexturesTest, SLOW_AStoppedBuildGoesOnToTheSameBytes) {
               testing::IsSupersetOf({"images", "leaves", "simplify", "texture", "publish"}));
 }
 
+// ---- normal maps under pictures
+
+/// Returns the config of a torus whose coarse tiles get maps.
+config::Config with_relief(config::Config job) {
+  job.storage.normals = config::Normals::map;
+  return job;
+}
+
+TEST_F(TexturesTest, WithNormalMapsSimplifiedTilesHaveBothAndAreLit) {
+  const config::Config job = with_relief(config(write(tests::make_textured_torus(6, 3))));
+  build(job);
+  const storage::HierarchyReader reader(*files_, job.output);
+  EXPECT_EQ(reader.manifest().format_version(), 13);
+  EXPECT_EQ(reader.manifest().normal_maps, job.normal_map.format);
+  EXPECT_TRUE(reader.manifest().computed_normals);
+  EXPECT_FALSE(reader.manifest().textures->unlit);
+  for (const TileRecord& record : reader.records()) {
+    const bool is_partition = reader.tree().is_partition(record.node);
+    ASSERT_NE(record.has_normal_map, is_partition);
+    const PublishedTile tile = reader.read_tile(record.node);
+    EXPECT_FALSE(tile.image.empty());
+    ASSERT_EQ(tile.normal_map.empty(), is_partition);
+    EXPECT_EQ(tile.shading.tangents.size(), is_partition ? 0 : tile.shading.texcoords.size());
+    if (is_partition)
+      continue;
+    const Image map = images::decode_image(tile.normal_map.bytes, "map", 1 << 20);
+    EXPECT_EQ(map.width, tile.image.width);
+    EXPECT_EQ(map.height, tile.image.height);
+  }
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, PicturesAndMeshAreWhatTheyAreWithoutMaps) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  job.texture.format.unlit = false;
+  build(job);
+  const std::vector<BuiltTile> without = tiles(job);
+  build(with_relief(job));
+  const std::vector<BuiltTile> with = tiles(job);
+  ASSERT_EQ(with.size(), without.size());
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    ASSERT_EQ(with[i].tile.mesh.vertices.positions, without[i].tile.mesh.vertices.positions);
+    ASSERT_EQ(with[i].tile.mesh.interior, without[i].tile.mesh.interior);
+    EXPECT_GE(with[i].tile.image.width, without[i].tile.image.width);
+    if (with[i].tile.normal_map.empty()) {
+      EXPECT_EQ(with[i].tile.image, without[i].tile.image);
+    }
+  }
+}
+
+TEST_F(TexturesTest, AutoMakesNoMapsUnderPictures) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  build(job);
+  const std::vector<BuiltTile> without = tiles(job);
+  job.storage.normals = config::Normals::map_or_none;
+  build(job);
+  const std::vector<BuiltTile> with = tiles(job);
+  for (std::size_t i = 0; i < with.size(); ++i)
+    EXPECT_EQ(with[i].record.checksum, without[i].record.checksum);
+}
+
+TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothingOfRelief) {
+  const config::Config job = with_relief(config(write(tests::make_textured_torus(6, 3))));
+  build(job);
+  const auto expected = files_of(job.output);
+  for (const std::uint32_t threads : {1U, 3U}) {
+    config::Config other = job;
+    other.threads = threads;
+    other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
+    build(other);
+    EXPECT_EQ(files_of(job.output), expected) << threads;
+  }
+}
+
+TEST_F(TexturesTest, ABuildWithReliefThatIsStoppedGoesOnToTheSameBytes) {
+  const config::Config job = with_relief(config(write(tests::make_textured_torus(6, 3))));
+  build(job);
+  const auto expected = files_of(job.output);
+  std::filesystem::remove_all(job.output);
+  for (const char* stage : {"texture", "publish"}) {
+    stop(job, stage);
+    build(job);
+    ASSERT_EQ(files_of(job.output), expected) << stage;
+    std::filesystem::remove_all(job.output);
+  }
+}
+
 /// Writes pictures that are all grey, of at least so many bytes.
 void write_grey(const std::filesystem::path& directory, std::uintmax_t bytes) {
   TexturedTorus grey = tests::make_textured_torus(6, 3);

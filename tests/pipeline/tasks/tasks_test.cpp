@@ -123,6 +123,10 @@ class TasksTest : public testing::Test {
     config_.storage.normals = config::Normals::map_or_none;
     config_.normal_map.texels = 128;
   }
+  void use_relief() {
+    use_texture();
+    config_.storage.normals = config::Normals::map;
+  }
   void use_archive() {
     use_sphere();
     config_.output = file("mesh.3tz");
@@ -244,6 +248,11 @@ TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithTextures) {
 
 TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithNormalMaps) {
   use_normal_maps();
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithRelief) {
+  use_relief();
   expect_any_cut_makes_the_same();
 }
 
