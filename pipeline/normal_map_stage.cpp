@@ -73,8 +73,11 @@ class MapStage {
     const TexelSizes texels{baked.texel, 0, 0};
     const Gain gain{baked.own_degrees, baked.map_degrees,
                     baked.vertices - std::min<std::size_t>(baked.vertices, mesh.vertices.size())};
-    TileTexture texture = encoded(std::move(baked));
-    textures_.put(node, pays(gain, mesh, texture) ? texture : TileTexture{}, source, texels);
+    TileTexture texture;
+    if (!baked.map.texels.empty())
+      texture = encoded(std::move(baked));
+    const bool is_kept = !texture.normal_map.empty() && pays(gain, mesh, texture);
+    textures_.put(node, is_kept ? texture : TileTexture{}, source, texels);
   }
 
  private:
@@ -105,15 +108,17 @@ class MapStage {
             texel_for(source, kMostTexelsAVertex * vertices)};
   }
 
-  /// Bakes a map of few texels, and with more if that is not good. Differences shrink about as
-  /// texels do.
-  static texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least) {
-    texture::BakedNormalMap baked = baker.bake(least.of_few);
+  /// Bakes a map of few texels, and with more if that is not good, as coarser tiles are made of its
+  /// directions. Differences shrink about as texels do.
+  texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least) const {
+    const double least_degrees =
+        config_.storage.normals == config::Normals::map ? 0 : kLeastDegrees;
+    texture::BakedNormalMap baked = baker.bake(least.of_few, least_degrees);
     const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
     if (is_largest || baked.map_degrees <= kGoodDegrees)
       return baked;
     const auto wanted = static_cast<float>(least.of_few * kGoodDegrees / baked.map_degrees);
-    return baker.bake(std::max(wanted, least.of_most));
+    return baker.bake(std::max(wanted, least.of_most), least_degrees);
   }
 
   /// The effect of a map, and the splits that it takes.

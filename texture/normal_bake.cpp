@@ -110,7 +110,7 @@ class MapMaker {
         finer_(finer),
         points_(points) {}
 
-  BakedNormalMap operator()() {
+  BakedNormalMap operator()(double least_degrees) {
     BakedNormalMap baked;
     baked.corners = samples_.texcoords();
     for (CornerTexcoords& corners : baked.corners) {
@@ -118,10 +118,21 @@ class MapMaker {
         corner = {on_grid(corner.u), on_grid(corner.v)};
     }
     baked.tangents = frames_.tangents();
-    draw(baked);
     baked.texel = static_cast<float>(1 / layout_.density);
     baked.vertices = count_vertices();
-    compare(baked);
+    find_directions();
+    baked.texels = {layout_.width, layout_.height, directions_};
+    find_amid();
+    baked.own_degrees = degrees_off([](const Amid& at) { return at.frame.normal; });
+    if (baked.own_degrees < least_degrees) {
+      // The numbers of a map, 8 bits each, would add so much.
+      constexpr double kOfNumbers = 0.3;
+      const double found = degrees_between_texels(baked.texels);
+      baked.map_degrees = std::sqrt(found * found + kOfNumbers * kOfNumbers);
+      return baked;
+    }
+    baked.map = drawn();
+    baked.map_degrees = degrees_off([&](const Amid& at) { return shown_by(baked.map, at); });
     return baked;
   }
 
@@ -145,20 +156,31 @@ class MapMaker {
     return count;
   }
 
-  void draw(BakedNormalMap& baked) {
-    images::Image& map = baked.map = images::Image(layout_.width, layout_.height, 3);
+  /// Finds what is passed on. Points share places: the first one counts.
+  void find_directions() {
+    directions_.resize(points_.size());
+    for (const ChartPlane& plane : layout_.planes) {
+      for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
+        NormalTexel& texel = directions_[index(x, y)];
+        if ((texel[0] | texel[1] | texel[2]) == 0)
+          texel = normal_texel(direction(plane, sample, points_[index(x, y)]));
+      });
+    }
+  }
+
+  images::Image drawn() const {
+    images::Image map(layout_.width, layout_.height, 3);
     for (std::size_t i = 0; i < map.texels.size(); i += 3)
       std::ranges::copy(kFlat, map.texels.begin() + static_cast<std::ptrdiff_t>(i));
-    std::vector<NormalTexel> directions(points_.size());
     ChartTexels texels;
     for (const ChartPlane& plane : layout_.planes) {
-      find_coefficients(plane, directions, texels);
+      find_coefficients(plane, texels);
       texels.mix_rows();
       for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample&) {
         store(in_front(texels.sharpened(x - plane.left, y - plane.top)), map.at(x, y));
       });
     }
-    baked.texels = {layout_.width, layout_.height, directions};
+    return map;
   }
 
   template <class Visit>
@@ -171,17 +193,12 @@ class MapMaker {
     }
   }
 
-  /// The coefficients are those of the directions that are passed on. Points share places: the
-  /// first one counts.
-  void find_coefficients(const ChartPlane& plane, std::vector<NormalTexel>& directions,
-                         ChartTexels& texels) {
+  /// The coefficients are those of the directions that are passed on.
+  void find_coefficients(const ChartPlane& plane, ChartTexels& texels) const {
     texels.clear(plane.right - plane.left, plane.bottom - plane.top);
     for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
-      NormalTexel& texel = directions[index(x, y)];
-      if ((texel[0] | texel[1] | texel[2]) == 0)
-        texel = normal_texel(direction(plane, sample, points_[index(x, y)]));
-      FourFloats coefficients =
-          in_front(frame_at(sample).coefficients_of(direction_of_texel(texel)));
+      const FourFloats direction = direction_of_texel(directions_[index(x, y)]);
+      FourFloats coefficients = in_front(frame_at(sample).coefficients_of(direction));
       coefficients[3] = 1;
       texels.at(x - plane.left, y - plane.top) = coefficients;
     });
@@ -207,37 +224,55 @@ class MapMaker {
     texel[2] = value_of(coefficients[2]);
   }
 
-  /// Amid four texels of the map, one in so many along each side.
-  void compare(BakedNormalMap& baked) {
+  /// The middle of four texels, all of them within a chart.
+  struct Amid {
+    std::uint32_t x, y;  ///< the first one
+    FourFloats original;
+    VertexFrame frame;
+  };
+
+  /// Finds where the map is compared with the original: one in so many texels along each side.
+  void find_amid() {
     constexpr std::uint32_t kStep = 8;
-    std::size_t count = 0;
     for (const ChartPlane& plane : layout_.planes) {
       for (std::uint32_t y = plane.top + kBakeGutter; y + 1 < plane.bottom; y += kStep) {
         for (std::uint32_t x = plane.left + kBakeGutter; x + 1 < plane.right; x += kStep)
-          count += compare(plane, x, y, baked) ? 1 : 0;
+          add_amid(plane, x, y);
       }
-    }
-    if (count > 0) {
-      baked.own_degrees /= static_cast<double>(count);
-      baked.map_degrees /= static_cast<double>(count);
     }
   }
 
-  bool compare(const ChartPlane& plane, std::uint32_t x, std::uint32_t y, BakedNormalMap& baked) {
-    const auto amid = finer_.amid_texels(samples_, TexelSamples::range_of(plane), points_, x, y);
-    if (!amid)
-      return false;
-    FourFloats shown{};
-    for (const auto& [i, j] : four_texels(x, y)) {
-      const std::uint8_t* texel = baked.map.at(i, j);
-      shown += FourFloats{part_of(texel[0]), part_of(texel[1]), part_of(texel[2]), 0};
-    }
+  void add_amid(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) {
+    const auto found = finer_.amid_texels(samples_, TexelSamples::range_of(plane), points_, x, y);
+    if (!found)
+      return;
     const TexelSample& sample = samples_.at(x, y);
-    const VertexFrame frame = frame_at(samples_.beside(sample.triangle, amid->point));
-    const FourFloats original = direction(plane, sample, amid->finer);
-    baked.own_degrees += degrees_between(frame.normal, original);
-    baked.map_degrees += degrees_between(frame.mixed(shown), original);
-    return true;
+    amid_.push_back({x, y, direction(plane, sample, found->finer),
+                     frame_at(samples_.beside(sample.triangle, found->point))});
+  }
+
+  /// Returns the mean angle between the original and what `shown` says that is seen there.
+  template <class Shown>
+  double degrees_off(const Shown& shown) const {
+    double sum = 0;
+    for (const Amid& at : amid_)
+      sum += degrees_between(shown(at), at.original);
+    return amid_.empty() ? 0 : sum / static_cast<double>(amid_.size());
+  }
+
+  double degrees_between_texels(const NormalTexels& texels) const {
+    return degrees_off([&](const Amid& at) {
+      return texels.direction_at({at.x + 1.0, at.y + 1.0});
+    });
+  }
+
+  static FourFloats shown_by(const images::Image& map, const Amid& at) {
+    FourFloats sum{};
+    for (const auto& [i, j] : four_texels(at.x, at.y)) {
+      const std::uint8_t* texel = map.at(i, j);
+      sum += FourFloats{part_of(texel[0]), part_of(texel[1]), part_of(texel[2]), 0};
+    }
+    return at.frame.mixed(sum);
   }
 
   const NormalSurface& tile_;
@@ -247,6 +282,8 @@ class MapMaker {
   FinerNormals normals_;
   const FinerSurfaces& finer_;
   const std::span<const FinerPoint> points_;
+  std::vector<NormalTexel> directions_;  ///< of texels
+  std::vector<Amid> amid_;
 };
 
 /// Returns the entries of those triangles that are there once.
@@ -310,12 +347,12 @@ NormalBaker::NormalBaker(const NormalSurface& tile, std::span<const NormalSurfac
     : work_(std::make_unique<Work>(tile, finer, side)) {}
 NormalBaker::~NormalBaker() = default;
 
-BakedNormalMap NormalBaker::bake(float least_texel) {
+BakedNormalMap NormalBaker::bake(float least_texel, double least_degrees) {
   Work& work = *work_;
   work.lay_out({work.side, least_texel});
   const std::vector<FinerPoint> points = work.shapes->points(*work.samples);
   MapMaker maker(work.surface, *work.samples, *work.frames, work.surfaces, *work.shapes, points);
-  return expanded(maker(), work.distinct);
+  return expanded(maker(least_degrees), work.distinct);
 }
 
 BakedNormalMap bake_normal_map(const ChartedTile& tile, std::span<const CornerNormals> normals,
@@ -325,7 +362,7 @@ BakedNormalMap bake_normal_map(const ChartedTile& tile, std::span<const CornerNo
       tile.surface.positions, tile.surface.triangles, distinct, {}, nullptr};
   const CornerFrames frames = frames_of(surface, tile.samples);
   MapMaker maker(surface, tile.samples, frames, finer, tile.finer, tile.points);
-  return expanded(maker(), tile.distinct);
+  return expanded(maker(0), tile.distinct);
 }
 
 }  // namespace meshhier::texture

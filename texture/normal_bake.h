@@ -36,14 +36,16 @@ struct NormalSurface {
 };
 
 struct BakedNormalMap {
-  images::Image map;                     ///< 3 channels, as glTF has it; flat between charts
+  images::Image map;                     ///< 3 channels, as glTF has it; flat between charts; empty
+                                         ///< if the tile wants none
   std::vector<CornerTexcoords> corners;  ///< one a triangle; multiples of 1 / 65535
   std::vector<CornerTangents> tangents;  ///< one a triangle
   NormalTexels texels;                   ///< for the next coarser tile
   float texel = 0;                       ///< size of a texel on the surface
   std::uint32_t vertices = 0;  ///< of all charts: a vertex counts once for each that it is in
   double own_degrees = 0;      ///< mean angle between the tile's own shading and the original's
-  double map_degrees = 0;      ///< the same with the map, before it is encoded
+  double map_degrees = 0;      ///< the same with the map, before it is encoded; without a map as
+                               ///< `texels` lets expect
 };
 
 /// Bakes the map of a tile, with larger texels or smaller ones. Deterministic, single-threaded.
@@ -57,9 +59,10 @@ class NormalBaker {
   NormalBaker(const NormalBaker&) = delete;
   NormalBaker& operator=(const NormalBaker&) = delete;
 
-  /// No texel is smaller than `least_texel`. Equal triangles get equal corners. Does not depend on
-  /// what was baked before. O(t + texels log t).
-  BakedNormalMap bake(float least_texel);
+  /// No texel is smaller than `least_texel`. A tile whose own shading is off by less than
+  /// `least_degrees` wants no map. Equal triangles get equal corners. Does not depend on what was
+  /// baked before. O(t + texels log t).
+  BakedNormalMap bake(float least_texel, double least_degrees = 0);
 
  private:
   struct Work;
