@@ -39,8 +39,8 @@ struct UastcEffort {
   float byte_error;           ///< the error that is as bad as a byte more in the packed file
 };
 
-/// 48.3 dB of photographs; the encoder of Basis Universal has 47.7 at its quickest.
-inline constexpr UastcEffort kColourEffort{80, 320, 2, false, 1.5F};
+/// 48.2 dB of photographs; the encoder of Basis Universal has 47.7 at its quickest.
+inline constexpr UastcEffort kColourEffort{80, 320, 2, false, 2};
 /// Directions have two channels that do not follow each other, and are seen in highlights.
 inline constexpr UastcEffort kDirectionEffort{8, 64, 6, true, 0};
 
