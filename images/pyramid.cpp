@@ -47,7 +47,7 @@ void mean_of_directions(const Four& texels, std::uint8_t* mean) {
   constexpr float kHalf = 127.5F, kZero = 4 * kHalf;
   std::array<float, 3> sum{};
   for (std::size_t c = 0; c < 3; ++c)
-    sum[c] = static_cast<float>(texels[0][c] + texels[1][c] + texels[2][c] + texels[3][c]) - kZero;
+    sum[c] = static_cast<float>(texels.a[c] + texels.b[c] + texels.c[c] + texels.d[c]) - kZero;
   const float length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
   const float scale = length > 0 ? kHalf / length : 0;
   for (std::size_t c = 0; c < 3; ++c)
