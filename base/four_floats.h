@@ -1,6 +1,7 @@
 // Four floats at a time.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -36,6 +37,15 @@ inline float largest_of(FourFloats four) {
   const float low = four[0] > four[1] ? four[0] : four[1];
   const float high = four[2] > four[3] ? four[2] : four[3];
   return low > high ? low : high;
+}
+
+/// The square root of each lane, rounded as std::sqrt() is. Requires no lane below 0.
+inline FourFloats roots_of(FourFloats four) {
+#ifdef __SSE2__
+  return __builtin_ia32_sqrtps(four);
+#else
+  return FourFloats{std::sqrt(four[0]), std::sqrt(four[1]), std::sqrt(four[2]), std::sqrt(four[3])};
+#endif
 }
 
 inline bool any_of(FourInts lanes) {

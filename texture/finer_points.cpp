@@ -136,7 +136,7 @@ class PointDrawing {
     for (const ChartPlane& plane : layout_.planes) {
       for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
         for (std::uint32_t x = plane.left; x < plane.right; ++x) {
-          if (samples_.at(x, y).triangle != kNoFace && !takes_drawn(x, y))
+          if (samples_.at(x, y).triangle != kNoFace && !takes_drawn(plane, x, y))
             left.push_back({&plane, x, y});
         }
       }
@@ -145,20 +145,36 @@ class PointDrawing {
   }
 
   /// The foot of the texel's own point counts, as far as it is within the triangle: places in the
-  /// chart are those of corners, and between them a little off.
-  bool takes_drawn(std::uint32_t x, std::uint32_t y) {
+  /// chart are those of corners, and between them a little off. Else it may be in a triangle that a
+  /// texel beside it shows.
+  bool takes_drawn(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) {
     const std::uint32_t triangle = drawn_[index(x, y)];
     if (!is_one(triangle))
       return false;
+    const Vec3d point = samples_.point(samples_.at(x, y));
+    if (takes_foot(triangle, point, points_[index(x, y)]))
+      return true;
+    for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
+      for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right);
+           ++i) {
+        const std::uint32_t other = drawn_[index(i, j)];
+        if (is_one(other) && other != triangle && takes_foot(other, point, points_[index(x, y)]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  bool takes_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& texel) const {
     const FootShares& shares = finer_.shares_[triangle];
-    const Vec3f to = to_float(samples_.point(samples_.at(x, y)) - shares.a);
+    const Vec3f to = to_float(point - shares.a);
     const float on_b = dot(to, shares.to_b), on_c = dot(to, shares.to_c);
     constexpr float kBeside = 1.0f / 16;  // of the triangle: rounding, or the next one's
     if (!(on_b >= -kBeside && on_c >= -kBeside && on_b + on_c <= 1 + kBeside))
       return false;
     const float b = std::max(on_b, 0.0f), c = std::max(on_c, 0.0f);
     const float scale = b + c > 1 ? 1 / (b + c) : 1;
-    points_[index(x, y)] = {triangle, b * scale, c * scale};
+    texel = {triangle, b * scale, c * scale};
     return true;
   }
 

@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/lane_vector.h"
+#include "texture/chart_map.h"
 #include "texture/charted_tile.h"
 #include "texture/corner_frames.h"
 #include "texture/distinct_triangles.h"
@@ -28,73 +29,12 @@ double degrees_between(FourFloats a, FourFloats b) {
 
 // ---- the map -------------------------------------------------------------------------------
 
-/// glTF: 0 to 255 are -1 to 1.
-std::uint8_t value_of(float part) {
-  return static_cast<std::uint8_t>(std::clamp((part * 0.5f + 0.5f) * 255 + 0.5f, 0.0f, 255.0f));
-}
 /// Along the normal.
 constexpr std::array<std::uint8_t, 3> kFlat{128, 128, 255};
+/// glTF: 0 to 255 are -1 to 1.
 float part_of(std::uint8_t value) {
   return static_cast<float>(value) / 127.5f - 1;
 }
-
-/// Makes a direction of length 1; one that looks away from the tile's own normal is turned to its
-/// side.
-FourFloats in_front(FourFloats coefficients) {
-  constexpr float kLeast = 0.05f;
-  coefficients = unit_of(coefficients);
-  if (coefficients[2] >= kLeast)
-    return coefficients;
-  coefficients[2] = kLeast;
-  return unit_of(coefficients);
-}
-
-/// Shares of a point of a triangle, or of the nearest one to a point in its plane, about.
-CornerWeights weights_of(const TexelSample& sample) {
-  CornerWeights weights{1 - sample.on_b - sample.on_c, sample.on_b, sample.on_c};
-  if (sample.is_inside())
-    return weights;
-  float sum = 0;
-  for (float& weight : weights)
-    sum += weight = std::max(weight, 0.0f);
-  for (float& weight : weights)
-    weight /= sum;
-  return weights;
-}
-
-/// The coefficients of a chart's texels, in a frame of texels that are not known. Each has a 1
-/// beside its three numbers; all four are 0 where nothing is known.
-class ChartTexels {
- public:
-  /// Makes room for a chart of that size.
-  void clear(std::uint32_t width, std::uint32_t height) {
-    stride_ = std::size_t{width} + 2;
-    own_.assign(stride_ * (std::size_t{height} + 2), FourFloats{});
-  }
-  FourFloats& at(std::uint32_t x, std::uint32_t y) { return own_[(y + 1) * stride_ + x + 1]; }
-
-  /// Mixes along rows, for sharpened().
-  void mix_rows() {
-    mixed_.resize(own_.size());
-    for (std::size_t i = 1; i + 1 < own_.size(); ++i)
-      mixed_[i] = own_[i - 1] + own_[i] * kMiddle + own_[i + 1];
-  }
-
-  /// Viewers mix four texels, which blurs: away from the mean of its surroundings by half of what
-  /// it differs from that, a texel comes nearer to the surface.
-  FourFloats sharpened(std::uint32_t x, std::uint32_t y) const {
-    constexpr float kMore = 0.5f;
-    const std::size_t i = (y + 1) * stride_ + x + 1;
-    const FourFloats sum = mixed_[i - stride_] + mixed_[i] * kMiddle + mixed_[i + stride_];
-    return own_[i] + (own_[i] - sum * (1 / sum[3])) * kMore;
-  }
-
- private:
-  static constexpr float kMiddle = 6;  ///< of it in a mean along an axis, to one of each neighbour
-
-  std::size_t stride_ = 0;
-  std::vector<FourFloats> own_, mixed_;
-};
 
 /// Makes the map of one tile, whose triangles are distinct.
 class MapMaker {
@@ -172,14 +112,9 @@ class MapMaker {
     images::Image map(layout_.width, layout_.height, 3);
     for (std::size_t i = 0; i < map.texels.size(); i += 3)
       std::ranges::copy(kFlat, map.texels.begin() + static_cast<std::ptrdiff_t>(i));
-    ChartTexels texels;
-    for (const ChartPlane& plane : layout_.planes) {
-      find_coefficients(plane, texels);
-      texels.mix_rows();
-      for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample&) {
-        store(in_front(texels.sharpened(x - plane.left, y - plane.top)), map.at(x, y));
-      });
-    }
+    ChartMap charts(samples_, frames_, directions_);
+    for (const ChartPlane& plane : layout_.planes)
+      charts.draw(plane, map);
     return map;
   }
 
@@ -191,17 +126,6 @@ class MapMaker {
           visit(x, y, sample);
       }
     }
-  }
-
-  /// The coefficients are those of the directions that are passed on.
-  void find_coefficients(const ChartPlane& plane, ChartTexels& texels) const {
-    texels.clear(plane.right - plane.left, plane.bottom - plane.top);
-    for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
-      const FourFloats direction = direction_of_texel(directions_[index(x, y)]);
-      FourFloats coefficients = in_front(frame_at(sample).coefficients_of(direction));
-      coefficients[3] = 1;
-      texels.at(x - plane.left, y - plane.top) = coefficients;
-    });
   }
 
   /// The finer surfaces' direction at one of their points; the tile's own where they have none.
@@ -217,11 +141,6 @@ class MapMaker {
 
   std::size_t index(std::uint32_t x, std::uint32_t y) const {
     return std::size_t{y} * layout_.width + x;
-  }
-  static void store(FourFloats coefficients, std::uint8_t* texel) {
-    texel[0] = value_of(coefficients[0]);
-    texel[1] = value_of(coefficients[1]);
-    texel[2] = value_of(coefficients[2]);
   }
 
   /// The middle of four texels, all of them within a chart.

@@ -30,6 +30,19 @@ struct TexelSample {
   bool is_inside() const { return triangle != kNoFace && distance == 0; }
 };
 
+/// Returns the shares of a sample's point, or of one of its triangle that is near, about.
+inline CornerWeights weights_of(const TexelSample& sample) {
+  CornerWeights weights{1 - sample.on_b - sample.on_c, sample.on_b, sample.on_c};
+  if (sample.is_inside())
+    return weights;
+  float sum = 0;
+  for (float& weight : weights)
+    sum += weight = weight > 0 ? weight : 0;
+  for (float& weight : weights)
+    weight /= sum;
+  return weights;
+}
+
 class TexelSamples {
  public:
   /// `tile` must outlive it: positions and triangles of it are used, no triangle is there twice.

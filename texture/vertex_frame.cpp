@@ -16,14 +16,6 @@ Vec3d shown_direction(const Vec3f& normal) {
 
 }  // namespace
 
-FourFloats VertexFrame::coefficients_of(FourFloats direction) const {
-  const FourFloats of_tangent = cross_of(bitangent, normal);
-  const float turn = dot_of(tangent, of_tangent) < 0 ? -1.0f : 1.0f;
-  return FourFloats{dot_of(direction, of_tangent), dot_of(direction, cross_of(normal, tangent)),
-                    dot_of(direction, cross_of(tangent, bitangent)), 0} *
-         turn;
-}
-
 TangentCode tangent_of(const ChartPlane& plane, const Vec3f& corner) {
   // A triangle that is seen more from the side has u along the plane.
   constexpr double kLeastSeen = 0.1;

@@ -22,8 +22,6 @@ struct VertexFrame {
   FourFloats mixed(FourFloats coefficients) const {
     return tangent * coefficients[0] + bitangent * coefficients[1] + normal * coefficients[2];
   }
-  /// The inverse, of any length.
-  FourFloats coefficients_of(FourFloats direction) const;
 };
 
 /// The tangent of a vertex: where on a surface with its normal the picture's u grows, as a
