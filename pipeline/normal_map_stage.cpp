@@ -67,10 +67,10 @@ class MapStage {
     const auto normals = corner_normals(node, mesh);
     const texture::NormalSurface tile{source.positions, source.triangles, normals, {}, nullptr};
     texture::NormalBaker baker(tile, surfaces, side_);
-    texture::BakedNormalMap baked = bake(baker, least_texels(node, source));
+    texture::BakedNormalMap baked = bake(baker, least_texels(node, source), degrees_of_texel(node));
     source.corners = baked.corners;
     source.directions = std::move(baked.texels);
-    const TexelSizes texels{baked.texel, 0, 0};
+    const TexelSizes texels{baked.texel, 0, 0, static_cast<float>(baked.map_degrees)};
     const Gain gain{baked.own_degrees, baked.map_degrees,
                     baked.vertices - std::min<std::size_t>(baked.vertices, mesh.vertices.size())};
     TileTexture texture;
@@ -108,17 +108,38 @@ class MapStage {
             texel_for(source, kMostTexelsAVertex * vertices)};
   }
 
-  /// Bakes a map of few texels, and with more if that is not good, as coarser tiles are made of its
-  /// directions. Differences shrink about as texels do.
-  texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least) const {
+  /// Returns how much the children's maps are off, for each unit of the size of their texels: about
+  /// as much as the node's, since both show the same original. 0 above partitions, which have none.
+  double degrees_of_texel(NodeId node) const {
+    double sum = 0, count = 0;
+    const Tree::Children children = forest_.tree().children(node);
+    for (const NodeId child : children.span()) {
+      const TexelSizes& texels = textures_.texels(forest_.tree().tile_node(child));
+      if (texels.own > 0)
+        sum += texels.degrees / texels.own, ++count;
+    }
+    return count > 0 ? sum / count : 0;
+  }
+
+  /// Bakes a map of few texels, or of more if that would not be good, as coarser tiles are made of
+  /// its directions. Differences shrink about as texels do; where no child tells how large they
+  /// are, a map of few texels does.
+  texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least,
+                               double degrees_of_texel) const {
     const double least_degrees =
         config_.storage.normals == config::Normals::map ? 0 : kLeastDegrees;
+    const auto wanted = [&](double degrees_of_few) {
+      return std::max(static_cast<float>(least.of_few * kGoodDegrees / degrees_of_few),
+                      least.of_most);
+    };
+    const double expected = degrees_of_texel * double{least.of_few};
+    if (expected > kGoodDegrees)
+      return baker.bake(wanted(expected), least_degrees);
     texture::BakedNormalMap baked = baker.bake(least.of_few, least_degrees);
     const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
-    if (is_largest || baked.map_degrees <= kGoodDegrees)
-      return baked;
-    const auto wanted = static_cast<float>(least.of_few * kGoodDegrees / baked.map_degrees);
-    return baker.bake(std::max(wanted, least.of_most), least_degrees);
+    return is_largest || baked.map_degrees <= kGoodDegrees
+               ? baked
+               : baker.bake(wanted(baked.map_degrees), least_degrees);
   }
 
   /// The effect of a map, and the splits that it takes.

@@ -45,13 +45,12 @@ class FinerNormals {
              lanes_of(normals[2]) * weights[2];
     }
     const CornerTexcoords& corners = surface.corners[t];
-    TexelPoint at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      at.x += double{corners[k].u} * double{weights[k]};
-      at.y += double{corners[k].v} * double{weights[k]};
-    }
+    const float u =
+        corners[0].u * weights[0] + corners[1].u * weights[1] + corners[2].u * weights[2];
+    const float v =
+        corners[0].v * weights[0] + corners[1].v * weights[1] + corners[2].v * weights[2];
     return surface.texels->direction_at(
-        {at.x * surface.texels->width(), at.y * surface.texels->height()});
+        {double{u} * surface.texels->width(), double{v} * surface.texels->height()});
   }
 
   std::span<const NormalSurface> surfaces_;

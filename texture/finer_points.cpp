@@ -48,6 +48,7 @@ class PointDrawing {
     for (std::size_t s = 0; s < finer_.shapes_.size(); ++s)
       draw(s);
     points_.resize(drawn_.size());
+    std::ranges::sort(several_);
     const std::vector<TexelPlace> left = take_drawn();
     for (const TexelPlace& texel : left)
       keep_around(texel);
@@ -115,22 +116,24 @@ class PointDrawing {
     raster.for_each_span(TexelSamples::range_of(plane),
                          [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
                            for (std::uint32_t x = begin; x < end; ++x)
-                             show(triangle, drawn_[index(x, y)]);
+                             show(triangle, index(x, y));
                          });
   }
 
-  void show(std::uint32_t triangle, std::uint32_t& texel) {
-    if (texel == FinerPoint::kNone) {
-      texel = triangle;
+  void show(std::uint32_t triangle, std::size_t texel) {
+    std::uint32_t& drawn = drawn_[texel];
+    if (drawn == FinerPoint::kNone) {
+      drawn = triangle;
       return;
     }
-    is_kept_[triangle] = 1;
-    if (is_one(texel))
-      is_kept_[texel] = 1;
-    texel = kSeveral;
+    if (is_one(drawn))
+      several_.emplace_back(static_cast<std::uint32_t>(texel), drawn);
+    several_.emplace_back(static_cast<std::uint32_t>(texel), triangle);
+    drawn = kSeveral;
   }
 
-  /// Gives the texels that show one triangle their points, and returns the others.
+  /// Gives the texels that triangles cover their points, as far as these tell them, and returns the
+  /// others.
   std::vector<TexelPlace> take_drawn() {
     std::vector<TexelPlace> left;
     for (const ChartPlane& plane : layout_.planes) {
@@ -149,9 +152,11 @@ class PointDrawing {
   /// texel beside it shows.
   bool takes_drawn(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) {
     const std::uint32_t triangle = drawn_[index(x, y)];
-    if (!is_one(triangle))
+    if (triangle == FinerPoint::kNone)
       return false;
     const Vec3d point = samples_.point(samples_.at(x, y));
+    if (triangle == kSeveral)
+      return takes_one_of_several(point, index(x, y));
     if (takes_foot(triangle, point, points_[index(x, y)]))
       return true;
     for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
@@ -163,6 +168,22 @@ class PointDrawing {
       }
     }
     return false;
+  }
+
+  /// The nearest of those that have the point's foot.
+  bool takes_one_of_several(const Vec3d& point, std::size_t texel) {
+    const auto number = static_cast<std::uint32_t>(texel);
+    having_.clear();
+    for (auto at = std::ranges::lower_bound(several_, std::pair(number, std::uint32_t{0}));
+         at != several_.end() && at->first == number; ++at) {
+      if (takes_foot(at->second, point, points_[texel]))
+        having_.push_back(at->second);
+      else
+        is_kept_[at->second] = 1;
+    }
+    if (having_.size() > 1)
+      points_[texel] = finer_.nearest_of(having_, point);
+    return !having_.empty();
   }
 
   bool takes_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& texel) const {
@@ -216,7 +237,9 @@ class PointDrawing {
   const FinerSurfaces& finer_;
   const TexelSamples& samples_;
   const ChartLayout& layout_;
-  std::vector<std::uint32_t> drawn_;   ///< of texels: the triangle that covers it
+  std::vector<std::uint32_t> drawn_;  ///< of texels: the triangle that covers it
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> several_;  ///< texels and their triangles
+  std::vector<std::uint32_t> having_;
   std::vector<std::uint8_t> is_kept_;  ///< of finer triangles: texels that are left may show them
   std::vector<FinerPoint> points_;     ///< of texels
 };

@@ -70,11 +70,11 @@ using SourceHead = std::array<std::uint64_t, 10>;
 
 std::vector<std::byte> encode(const BakeSource& source) {
   const texture::NormalTexels& directions = source.directions;
-  const SourceHead head{
-      source.positions.size(), source.triangles.size(), source.image.width,
-      source.image.height,     source.image.channels,   static_cast<std::uint64_t>(source.alpha),
-      directions.width(),      directions.height(),     directions.known().size(),
-      source.parents.size()};
+  const SourceHead head{source.positions.size(),   source.triangles.size(),
+                        source.image.width,        source.image.height,
+                        source.image.channels,     static_cast<std::uint64_t>(source.alpha),
+                        directions.width(),        directions.height(),
+                        directions.known().size(), source.parents.size()};
   storage::Packer packer(sizeof head + source.bytes());
   packer.put(std::span<const std::uint64_t>(head));
   packer.put(all_of(source.positions));
@@ -216,13 +216,13 @@ nlohmann::json TextureStore::stored(NodeId node) const {
   const TexelSizes& texels = level.texels[node.index];
   return {{"texture", to_json(level.textures.stored(node.index))},
           {"source", to_json(level.sources.stored(node.index))},
-          {"texels", {texels.own, texels.finest, texels.lost}}};
+          {"texels", {texels.own, texels.finest, texels.lost, texels.degrees}}};
 }
 
 bool TextureStore::restore(NodeId node, const nlohmann::json& stored) {
   LevelStore& level = levels_[raw(node.level)];
   const nlohmann::json& texels = stored.at("texels");
-  level.texels[node.index] = {texels.at(0), texels.at(1), texels.at(2)};
+  level.texels[node.index] = {texels.at(0), texels.at(1), texels.at(2), texels.at(3)};
   return pipeline::restore(level.textures, node.index, stored.at("texture")) &&
          pipeline::restore(level.sources, node.index, stored.at("source"));
 }

@@ -68,9 +68,10 @@ struct BakeSource {
 
 /// The sizes of texels on the surface, in input units.
 struct TexelSizes {
-  float own = 0;     ///< the tile's picture
-  float finest = 0;  ///< the finest of the pictures of the partitions below it
-  float lost = 0;    ///< pixels of this size hardly differ from the input's (see BakedTexture)
+  float own = 0;      ///< the tile's picture
+  float finest = 0;   ///< the finest of the pictures of the partitions below it
+  float lost = 0;     ///< pixels of this size hardly differ from the input's (see BakedTexture)
+  float degrees = 0;  ///< a normal map is off the original by so much
 };
 
 /// Holds the texture and the bake source of each tile node. Putting and loading are thread-safe for
