@@ -5,6 +5,7 @@
 #include "base/vec.h"
 
 #include <cmath>
+#include <limits>
 
 namespace meshhier {
 
@@ -31,7 +32,11 @@ inline FourFloats cross_of(FourFloats a, FourFloats b) {
 /// Of length 1; 0 if it has no length.
 inline FourFloats unit_of(FourFloats lanes) {
   const float squared = dot_of(lanes, lanes);
-  return squared > 0 ? lanes * (1 / std::sqrt(squared)) : FourFloats{};
+  if (squared >= std::numeric_limits<float>::min() && squared <= std::numeric_limits<float>::max())
+    return lanes * (1 / std::sqrt(squared));
+  const Vec3d wide = to_double(vector_of(lanes));
+  const double size = length(wide);
+  return size > 0 ? lanes_of(wide * (1 / size)) : FourFloats{};
 }
 
 }  // namespace meshhier

@@ -104,6 +104,7 @@ void HeadReader::read_levels(std::span<const std::byte> bytes) {
     add(head_.levels.back().offset, head_.levels.back().bytes);
   }
   add(u64(bytes, ktx2::kGlobalDataAt), u64(bytes, ktx2::kGlobalDataAt + 8));
+  add(u32(bytes, ktx2::kKeysAt), u32(bytes, ktx2::kKeysBytesAt));
 }
 
 }  // namespace

@@ -84,9 +84,11 @@ class UastcReader final : public Ktx2Reader {
   UastcReader(ByteSource source, std::string name, Ktx2Head head)
       : Ktx2Reader(std::move(source), std::move(name), std::move(head)) {
     constexpr std::uint64_t kUnpacking = std::uint64_t{1} << 18;
-    if (head_.levels[0].unpacked != block_bytes())
-      fail("its blocks are not those of its size");
-    info_.decoder_bytes = head_.levels[0].bytes + block_bytes() + kUnpacking +
+    for (std::size_t i = 0; i < head_.levels.size(); ++i) {
+      if (head_.levels[i].unpacked != block_bytes(i))
+        fail("its blocks are not those of its size");
+    }
+    info_.decoder_bytes = head_.levels[0].bytes + block_bytes(0) + kUnpacking +
                           kBlockSide * std::uint64_t{head_.width} * head_.channels;
   }
   void read_rows(std::uint8_t* rows, std::uint32_t count) override {
@@ -104,9 +106,11 @@ class UastcReader final : public Ktx2Reader {
 
  private:
   std::uint32_t columns() const { return (head_.width + kBlockSide - 1) / kBlockSide; }
-  std::uint64_t block_bytes() const {
-    const std::uint32_t rows = (head_.height + kBlockSide - 1) / kBlockSide;
-    return std::uint64_t{columns()} * rows * kUastcBlockBytes;
+  std::uint64_t block_bytes(std::size_t level) const {
+    const auto blocks = [level](std::uint32_t side) {
+      return (std::max(side >> level, 1U) + kBlockSide - 1) / kBlockSide;
+    };
+    return std::uint64_t{blocks(head_.width)} * blocks(head_.height) * kUastcBlockBytes;
   }
   void read_blocks();
   void decode_strip(std::uint32_t row);
@@ -118,7 +122,7 @@ class UastcReader final : public Ktx2Reader {
 
 void UastcReader::read_blocks() {
   std::vector<std::byte> level = read_part(head_.levels[0].offset, head_.levels[0].bytes);
-  const std::uint64_t wanted = block_bytes();
+  const std::uint64_t wanted = block_bytes(0);
   if (head_.scheme == ktx2::kPlain) {
     if (level.size() != wanted)
       fail("its blocks are not those of its size");

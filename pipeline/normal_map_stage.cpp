@@ -24,7 +24,7 @@ namespace {
 /// kGoodDegrees with fewer.
 constexpr double kFewTexelsAVertex = 3;
 constexpr double kMostTexelsAVertex = 12;
-constexpr double kGoodDegrees = 0.5;
+constexpr double kGoodDegrees = 0.48;
 /// With `auto` a map is made where the tile's own shading is off by at least so many degrees, and
 /// the map by no more than this part of what as many bytes of triangles would leave: with n times
 /// its triangles a tile is off by 1 / sqrt(n) as much, about.

@@ -86,14 +86,10 @@ class Painter {
         const FinerPoint& point = points_[number];
         if (samples_.at(x, y).triangle == kNoFace || point.triangle == FinerPoint::kNone)
           continue;
-        means.lights[number] = sampler_.around(found(point));
+        means.lights[number] = sampler_.around(point);
         means.is_known[number] = 1;
       }
     }
-  }
-
-  static NearestTriangle::Found found(const FinerPoint& point) {
-    return {point.triangle, point.on_b, point.on_c};
   }
 
   images::Image stored(const TexelMeans& means, std::uint32_t height) const {
@@ -117,7 +113,7 @@ class Painter {
       add_texel(shown, image.at(i, j), channels_, 0.25f);
     std::array<std::uint8_t, 4> own{}, finer{};
     store_texel(shown, own.data(), channels_);
-    store_texel(sampler_.pixel(found(amid->finer)), finer.data(), channels_);
+    store_texel(sampler_.pixel(amid->finer), finer.data(), channels_);
     difference.add(own.data(), finer.data());
   }
 
@@ -141,12 +137,6 @@ BakedTexture bake(const ChartedTile& tile, std::span<const TexturedSurface> fine
   baked.lost = static_cast<float>(painter.lost(baked.image));
   baked.charts = static_cast<std::uint32_t>(samples.layout().planes.size());
   return baked;
-}
-
-BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
-                  const BakeSize& size) {
-  return tile.triangles.empty() ? BakedTexture{}
-                                : bake(ChartedTile(tile, size, shapes_of(finer)), finer);
 }
 
 float texel_size(const TexturedSurface& surface, std::uint32_t width, std::uint32_t height) {

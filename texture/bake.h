@@ -49,16 +49,6 @@ struct BakedTexture {
   std::uint32_t charts = 0;
 };
 
-/// Makes the picture of a coarse tile. Pure, deterministic, single-threaded: call it for several
-/// tiles at once. `tile`: positions and triangles of the coarse tile, its `corners` and `image`
-/// unused. `finer`: what it was made of and what lies around it, in a fixed
-/// order: of equally near points that of the first surface counts. The picture has at most side *
-/// side texels, fewer if `least_texel` allows. No texel is empty: those between charts have colours
-/// of the nearest chart; all are black if no finer surface has triangles. Equal triangles get equal
-/// corners. O(t log t + texels log t) for surfaces that lie near each other.
-BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
-                  const BakeSize& size);
-
 /// The picture with 1 / factor of its width and height (multiples of it), for bake() on the next
 /// level: means in linear light of those texels that triangles show, so that charts do not mix.
 /// Requires charts aligned to `factor`, a power of two. Pure, single-threaded.

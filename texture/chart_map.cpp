@@ -15,14 +15,14 @@ Lanes of_length_one(const Lanes& v) {
   return v * (squared > 0.0f ? 1.0f / roots_of(squared) : none);
 }
 
-Lanes in_front(Lanes v) {
+Lanes in_front(const Lanes& coefficients) {
   constexpr float kLeast = 0.05f;
-  v = of_length_one(v);
+  const Lanes v = of_length_one(coefficients);
   const FourInts is_low = v.z < kLeast;
   if (!any_of(is_low))
     return v;
-  v.z = is_low ? FourFloats{} + kLeast : v.z;
-  return of_length_one(v);
+  const Lanes raised = of_length_one({v.x, v.y, FourFloats{} + kLeast});
+  return {is_low ? raised.x : v.x, is_low ? raised.y : v.y, is_low ? raised.z : v.z};
 }
 
 Lanes mixed(FourFloats a, FourFloats b, FourFloats c, const std::array<FourFloats, 3>& weights) {
@@ -120,7 +120,7 @@ void ChartMap::mix_rows() {
 /// Away from the mean of its surroundings by half of what it differs from that, a texel comes
 /// nearer to the surface.
 ChartMap::FourVectors ChartMap::sharpened(std::size_t place) const {
-  constexpr float kMore = 0.5f;
+  constexpr float kMore = 0.65f;
   const auto around = [&](std::size_t p) {
     const float* mixed = mixed_[p].data() + place;
     return load_four(mixed - stride_) + load_four(mixed) * kMiddle + load_four(mixed + stride_);

@@ -219,15 +219,11 @@ class Refiner {
       const RasterTriangle raster(
           std::array{places_[raw(corners[0])], places_[raw(corners[1])], places_[raw(corners[2])]});
       const auto each_row = [&](const auto& visit) {
-        raster.for_each_span(
-            range.right, {range.top, range.bottom},
-            [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
-              begin = std::max(begin, range.left);
-              if (begin < end)
-                visit(is_covered_.begin() +
-                          static_cast<std::ptrdiff_t>((y - range.top) * width + begin - range.left),
-                      end - begin);
-            });
+        raster.for_each_span(range, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+          visit(is_covered_.begin() +
+                    static_cast<std::ptrdiff_t>((y - range.top) * width + begin - range.left),
+                end - begin);
+        });
       };
       each_row([&](auto row, std::uint32_t count) {
         if (std::any_of(row, row + count, [](char is_covered) { return is_covered != 0; }))

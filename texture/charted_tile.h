@@ -34,8 +34,10 @@ struct ChartedTile {
   const std::vector<FinerPoint> points;  ///< of texels
 };
 
-/// Makes the picture, as bake() does that cuts the charts itself. `finer`: of the shapes, in their
-/// order.
+/// Makes the picture. `finer`: of the shapes, in their order, of which of equally near points that
+/// of the first counts. No texel is empty: those between charts have colours of the nearest chart;
+/// all are black if no finer surface has triangles. Equal triangles get equal corners. Pure,
+/// deterministic, single-threaded: call it for several tiles at once. O(texels).
 BakedTexture bake(const ChartedTile& tile, std::span<const TexturedSurface> finer);
 
 /// Makes the normal map on the picture's texels. `normals`: at the tile's corners, one entry a

@@ -65,7 +65,7 @@ class PointDrawing {
   std::size_t index(std::uint32_t x, std::uint32_t y) const {
     return std::size_t{y} * layout_.width + x;
   }
-  std::uint32_t chart_of(const Foot& foot) const { return samples_.chart_of(foot.triangle); }
+  std::uint32_t chart_of(const VertexFoot& foot) const { return samples_.chart_of(foot.triangle); }
 
   void draw(std::size_t surface) {
     const FinerShape& shape = finer_.shapes_[surface];
@@ -74,7 +74,7 @@ class PointDrawing {
       std::fill_n(is_kept_.begin() + first, shape.triangles.size(), std::uint8_t{1});
       return;
     }
-    const std::vector<Foot>& feet = finer_.feet_[surface];
+    const std::vector<VertexFoot>& feet = finer_.feet_[surface];
     std::vector<TexelPoint> places(feet.size());  // in their own charts
     for (std::size_t v = 0; v < feet.size(); ++v) {
       if (feet[v].triangle != kNoFace)
@@ -82,14 +82,14 @@ class PointDrawing {
     }
     for (std::uint32_t t = 0; t < shape.triangles.size(); ++t) {
       const auto [a, b, c] = shape.triangles[t];
-      const std::array<const Foot*, 3> on{&feet[raw(a)], &feet[raw(b)], &feet[raw(c)]};
+      const std::array<const VertexFoot*, 3> on{&feet[raw(a)], &feet[raw(b)], &feet[raw(c)]};
       if (on[0]->triangle == kNoFace || on[1]->triangle == kNoFace || on[2]->triangle == kNoFace)
         continue;
       draw(first + t, on, {places[raw(a)], places[raw(b)], places[raw(c)]});
     }
   }
 
-  void draw(std::uint32_t triangle, const std::array<const Foot*, 3>& feet,
+  void draw(std::uint32_t triangle, const std::array<const VertexFoot*, 3>& feet,
             const std::array<TexelPoint, 3>& places) {
     const std::array charts{chart_of(*feet[0]), chart_of(*feet[1]), chart_of(*feet[2])};
     if (charts[0] == charts[1] && charts[0] == charts[2]) {
@@ -152,9 +152,10 @@ class PointDrawing {
   /// texel beside it shows.
   bool takes_drawn(const ChartPlane& plane, std::uint32_t x, std::uint32_t y) {
     const std::uint32_t triangle = drawn_[index(x, y)];
-    if (triangle == FinerPoint::kNone)
+    const TexelSample& sample = samples_.at(x, y);
+    if (triangle == FinerPoint::kNone || !sample.is_inside())
       return false;
-    const Vec3d point = samples_.point(samples_.at(x, y));
+    const Vec3d point = samples_.point(sample);
     if (triangle == kSeveral)
       return takes_one_of_several(point, index(x, y));
     if (takes_foot(triangle, point, points_[index(x, y)]))
@@ -190,7 +191,7 @@ class PointDrawing {
     const FootShares& shares = finer_.shares_[triangle];
     const Vec3f to = to_float(point - shares.a);
     const float on_b = dot(to, shares.to_b), on_c = dot(to, shares.to_c);
-    constexpr float kBeside = 1.0f / 16;  // of the triangle: rounding, or the next one's
+    constexpr float kBeside = 1.0f / 64;  // of the triangle: rounding
     if (!(on_b >= -kBeside && on_c >= -kBeside && on_b + on_c <= 1 + kBeside))
       return false;
     const float b = std::max(on_b, 0.0f), c = std::max(on_c, 0.0f);

@@ -152,7 +152,7 @@ class MapMaker {
 
   /// Finds where the map is compared with the original: one in so many texels along each side.
   void find_amid() {
-    constexpr std::uint32_t kStep = 12;
+    constexpr std::uint32_t kStep = 8;
     for (const ChartPlane& plane : layout_.planes) {
       for (std::uint32_t y = plane.top + kBakeGutter; y + 1 < plane.bottom; y += kStep) {
         for (std::uint32_t x = plane.left + kBakeGutter; x + 1 < plane.right; x += kStep)

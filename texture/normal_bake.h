@@ -1,10 +1,11 @@
 // The normal map of a simplified tile: what its triangles are too few to show of the shading of the
 // original surface (Cohen, Olano & Manocha, Appearance-preserving simplification, 1998).
 //
-// Charts are those of a picture (bake.h). Each texel has the original's direction at the nearest
-// point that faces alike, found level by level: a tile passes on what its texels have, and the
-// lookup between them does not blur (normal_texels.h). Then the map is written for the tile's own
-// frame, a little sharper than it is, as viewers filter texels once more.
+// Charts are those of a picture (charted_tile.h). Each texel has the original's direction at its
+// point of the finer surfaces (finer_points.h), found level by level: a tile passes on what its
+// texels have, and the lookup between them does not blur (normal_texels.h). Then the map is written
+// for the tile's own frame, a little sharper than it is, as viewers filter texels once more
+// (chart_map.h).
 #pragma once
 
 #include "base/vec.h"
@@ -53,7 +54,7 @@ class NormalBaker {
  public:
   /// `tile`: the coarse tile with its normals at corners, and a triangle. `finer`: what it was made
   /// of and what lies around it, in a fixed order. All of them must outlive it. `side`: of a map,
-  /// texels at most, as BakeSize has it. O(t log t).
+  /// texels at most, as BakeSize has it. O(t) if triangles are in order.
   NormalBaker(const NormalSurface& tile, std::span<const NormalSurface> finer, std::uint32_t side);
   ~NormalBaker();
   NormalBaker(const NormalBaker&) = delete;
@@ -61,7 +62,7 @@ class NormalBaker {
 
   /// No texel is smaller than `least_texel`. A tile whose own shading is off by less than
   /// `least_degrees` wants no map. Equal triangles get equal corners. Does not depend on what was
-  /// baked before. O(t + texels log t).
+  /// baked before. O(t log t) the first time, for charts, and O(t + texels) then.
   BakedNormalMap bake(float least_texel, double least_degrees = 0);
 
  private:

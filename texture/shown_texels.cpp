@@ -21,7 +21,8 @@ TexelBits shown_texels(std::uint32_t width, std::uint32_t height,
     const std::array<TexelPoint, 3> points = in_texels(triangle, width, height);
     bool is_seen = false;
     RasterTriangle(points).for_each_span(
-        width, {0, height}, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+        TexelRange{0, 0, width, height},
+        [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
           is_seen = true;
           shown.set_run(y, begin, end);
         });

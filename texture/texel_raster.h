@@ -17,10 +17,6 @@ struct TexelRange {
   std::uint32_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
-struct RowRange {
-  std::uint32_t begin = 0, end = 0;
-};
-
 /// In 1/256 of a texel.
 struct FixedTexelPoint {
   static constexpr std::int64_t kOne = 256;
@@ -73,12 +69,6 @@ class RasterTriangle {
   template <class Visit>
   void for_each(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
     for_each(TexelRange{0, 0, width, height}, visit);
-  }
-
-  /// Calls visit(y, begin, end) for each of those rows that has texels, x in [begin, end).
-  template <class Visit>
-  void for_each_span(std::uint32_t width, const RowRange& rows, const Visit& visit) const {
-    for_each_span(TexelRange{0, rows.begin, width, rows.end}, visit);
   }
 
   /// Calls visit(y, begin, end) for each row of the range that has texels, x in [begin, end).
@@ -135,9 +125,8 @@ class RasterTriangle {
   std::array<std::int64_t, 2> range(std::uint32_t begin, std::uint32_t end,
                                     std::int64_t Fixed::*axis) const {
     const auto [low, high] = std::minmax({corners_[0].*axis, corners_[1].*axis, corners_[2].*axis});
-    return {
-        std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), begin),
-        std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{end} - 1)};
+    return {std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), begin),
+            std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{end} - 1)};
   }
 
   /// Middles on it belong to the triangle that it is the upper or the left edge of.

@@ -116,7 +116,7 @@ TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double tex
 }
 
 /// `part`: of what is asked for.
-TexelLight TexelSampler::mean(const NearestTriangle::Found& at, float part) const {
+TexelLight TexelSampler::mean(const FinerPoint& at, float part) const {
   const Spot& spot = spots_[at.triangle];
   const images::Image& picture = *pictures_[spot.picture];
   const auto b = static_cast<float>(at.on_b), c = static_cast<float>(at.on_c);

@@ -3,7 +3,7 @@
 
 #include "images/image.h"
 #include "texture/bake.h"
-#include "texture/nearest_triangle.h"
+#include "texture/finer_points.h"
 #include "texture/texel_light.h"
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class TexelSampler {
   TexelSampler(std::span<const TexturedSurface> surfaces, double texel);
 
   /// A mean around a point, weighted by a tent that ends a texel of the larger of both sizes away.
-  TexelLight around(const NearestTriangle::Found& at) const { return mean(at, 1); }
+  TexelLight around(const FinerPoint& at) const { return mean(at, 1); }
   /// The mean of a pixel around it that is as large as a texel: a tent of as much spread, about.
-  TexelLight pixel(const NearestTriangle::Found& at) const { return mean(at, 0.7f); }
+  TexelLight pixel(const FinerPoint& at) const { return mean(at, 0.7f); }
 
  private:
   struct Spot {
@@ -30,7 +30,7 @@ class TexelSampler {
     std::uint32_t picture;
   };
 
-  TexelLight mean(const NearestTriangle::Found& at, float part) const;
+  TexelLight mean(const FinerPoint& at, float part) const;
 
   std::vector<Spot> spots_;
   std::vector<images::Image> smaller_;

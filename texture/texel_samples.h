@@ -25,7 +25,8 @@ using CornerWeights = std::array<float, 3>;
 struct TexelSample {
   float on_b = 0, on_c = 0;
   std::uint32_t triangle = kNoFace;
-  float distance = 0;  ///< from the triangle, texels squared; its point is in its plane
+  /// From the triangle, texels squared; the point is in its plane. Of TexelSamples::beside(), 1.
+  float distance = 0;
 
   bool is_inside() const { return triangle != kNoFace && distance == 0; }
 };

@@ -54,8 +54,8 @@ FootFinder::FootFinder(std::span<const Vec3f> positions, std::span<const TileTri
   }
 }
 
-Foot FootFinder::operator()(const Vec3d& point, std::uint32_t vertex) const {
-  Foot foot;
+VertexFoot FootFinder::operator()(const Vec3d& point, std::uint32_t vertex) const {
+  VertexFoot foot;
   double least = kBeyondAll;
   for (const std::uint32_t t : around(vertex)) {
     const Perpendicular there(point, frames_[t]);
@@ -77,7 +77,7 @@ Foot FootFinder::operator()(const Vec3d& point, std::uint32_t vertex) const {
 }
 
 /// Goes on over edges as long as that comes nearer, so it ends.
-Foot FootFinder::walked(const Vec3d& point, std::uint32_t triangle) const {
+VertexFoot FootFinder::walked(const Vec3d& point, std::uint32_t triangle) const {
   ClosestPoint here = closest_point(point, frames_[triangle]);
   for (std::size_t edge = edge_of(here); edge < 3; edge = edge_of(here)) {
     const std::uint32_t next = faces_.across[triangle][edge];
@@ -92,10 +92,10 @@ Foot FootFinder::walked(const Vec3d& point, std::uint32_t triangle) const {
   return {triangle, here.point};
 }
 
-std::vector<Foot> feet_of(const FootFinder& tile, std::span<const Vec3f> positions,
-                          std::span<const TileTriangle> triangles,
-                          std::span<const std::uint32_t> beside) {
-  std::vector<Foot> feet(positions.size());
+std::vector<VertexFoot> feet_of(const FootFinder& tile, std::span<const Vec3f> positions,
+                                std::span<const TileTriangle> triangles,
+                                std::span<const std::uint32_t> beside) {
+  std::vector<VertexFoot> feet(positions.size());
   if (beside.empty())
     return feet;
   std::vector<std::uint32_t> from(beside.begin(), beside.end());

@@ -12,7 +12,7 @@
 //      \  /\v /\  /    as long as that comes nearer
 //       \/__\/__\/
 //
-// Cost. O(d) a vertex, d being the triangles around one of the tile's; 60 ns.
+// Cost. O(d + steps) a vertex, d being the triangles around one of the tile's; 60 ns.
 #pragma once
 
 #include "base/closest_point.h"
@@ -30,7 +30,7 @@ namespace meshhier::texture {
 /// Vertices of a finer surface that lie near no vertex of the tile, as far as is known.
 inline constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 
-struct Foot {
+struct VertexFoot {
   std::uint32_t triangle = kNoFace;  ///< of the tile
   Vec3d point;                       ///< in it
 };
@@ -42,15 +42,16 @@ class FootFinder {
   FootFinder(std::span<const Vec3f> positions, std::span<const TileTriangle> triangles,
              const Faces& faces);
 
-  /// Returns a foot of a point, from `vertex` of the tile on: the nearest around there. It has no
-  /// triangle if the vertex has none.
-  Foot operator()(const Vec3d& point, std::uint32_t vertex) const;
+  /// Returns a foot of a point, from `vertex` of the tile on: that of its perpendicular in a
+  /// triangle there, if one has it, else the nearest point that a walk over edges comes to. It has
+  /// no triangle if the vertex has none.
+  VertexFoot operator()(const Vec3d& point, std::uint32_t vertex) const;
 
  private:
   std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return std::span(around_).subspan(begins_[vertex], begins_[vertex + 1] - begins_[vertex]);
   }
-  Foot walked(const Vec3d& point, std::uint32_t triangle) const;
+  VertexFoot walked(const Vec3d& point, std::uint32_t triangle) const;
 
   const Faces& faces_;
   std::vector<TriangleFrame> frames_;  ///< of triangles
@@ -61,8 +62,8 @@ class FootFinder {
 /// Returns the feet of all vertices of a finer surface. `beside`: for each of them a vertex of the
 /// tile, or kNoVertex: it takes that of another corner of one of its triangles. Those without any
 /// have no foot; all, if `beside` is empty.
-std::vector<Foot> feet_of(const FootFinder& tile, std::span<const Vec3f> positions,
-                          std::span<const TileTriangle> triangles,
-                          std::span<const std::uint32_t> beside);
+std::vector<VertexFoot> feet_of(const FootFinder& tile, std::span<const Vec3f> positions,
+                                std::span<const TileTriangle> triangles,
+                                std::span<const std::uint32_t> beside);
 
 }  // namespace meshhier::texture

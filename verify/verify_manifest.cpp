@@ -111,8 +111,11 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
                      "\"storage.normal_map\" is not that of \"config.normal_map\"");
   }
   if (says("/texture/format")) {
-    problems.require(!manifest.textures || *manifest.textures == config.picture_format(),
-                     "\"storage.texture\" is not that of \"config.texture\"");
+    // Until version 12 pictures stayed as "texture" says, whatever "storage.normals" was.
+    const bool is_as_before = !manifest.has_relief() && manifest.textures == config.texture.format;
+    problems.require(
+        !manifest.textures || *manifest.textures == config.picture_format() || is_as_before,
+        "\"storage.texture\" is not that of \"config.texture\"");
     problems.require(!manifest.textures || config.texture.use,
                      "there are textures, but \"config\" asks for none");
   }

@@ -1,6 +1,7 @@
 // Checks the parts that only tiles with a picture or a normal map have: splits by texture
 // coordinates, and the pictures.
 #include "base/error.h"
+#include "images/formats.h"
 #include "images/image_codec.h"
 #include "storage/format/layout.h"
 #include "verify/verify_parts.h"
@@ -63,7 +64,8 @@ bool has_different_splits(const Shading& shading) {
 }
 
 /// Decodes all of it, a few rows at a time; nothing where this machine cannot.
-void read_picture(const TileImage& image, const std::string& name) {
+/// `is_coded_here`: no process of another program is needed.
+void read_picture(const TileImage& image, bool is_coded_here, const std::string& name) {
   const std::span<const std::byte> bytes = image.bytes;
   const auto read = [bytes](std::uint64_t offset, std::span<std::byte> into) {
     const auto rest = bytes.subspan(std::min<std::uint64_t>(offset, bytes.size()));
@@ -81,8 +83,11 @@ void read_picture(const TileImage& image, const std::string& name) {
   }
   if (image.alpha == AlphaMode::opaque && info.channels != 3)
     throw Error(ErrorCode::corrupt, name + " has alpha, but the material is opaque");
-  if (!reader->missing().empty())
+  if (!reader->missing().empty()) {
+    if (is_coded_here)
+      throw Error(ErrorCode::corrupt, name + " is ETC1S, expected UASTC");
     return;
+  }
   constexpr std::uint32_t kRows = 16;
   std::vector<std::uint8_t> rows(std::size_t{kRows} * info.width * info.channels);
   for (std::uint32_t y = 0; y < info.height; y += kRows)
@@ -98,10 +103,12 @@ void verify_texture(const VerifyJob& job, const PublishedTile& tile) {
   if (!has_different_splits(tile.shading))
     job.problems.add(path + ": a split is like its vertex, or like another split of that");
   try {
+    const auto& textures = job.reader.manifest().textures;
+    const bool is_coded_here = !textures || images::missing_coder(*textures).empty();
     if (!tile.image.empty())
-      read_picture(tile.image, path + ": the picture");
+      read_picture(tile.image, is_coded_here, path + ": the picture");
     if (!tile.normal_map.empty())
-      read_picture(tile.normal_map, path + ": the normal map");
+      read_picture(tile.normal_map, true, path + ": the normal map");
   } catch (const Error& error) {
     job.problems.add(error.what());
   }

@@ -150,22 +150,22 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
 }
 
 void check_coders(const JobSize& job) {
-  const auto check = [&](ImageFormat format, std::uint32_t side) {
+  const auto check = [&](const char* key, ImageFormat format, std::uint32_t side) {
     const std::uint32_t most = images::coders_of(format).most_side;
     if (side > most) {
       throw Error(ErrorCode::usage,
-                  fmt::format("{}.texels is {}: in {} there are at most {} a side",
+                  fmt::format("{}.texels is {}: in {} ({}.format) there are at most {} a side",
                               job.textured ? "texture" : "normal_map", side,
-                              row_of(format).file.title, most));
+                              row_of(format).file.title, key, most));
     }
   };
   if (job.textured) {
     if (const std::string missing = images::missing_coder(job.pictures); !missing.empty())
       throw Error(ErrorCode::usage, missing);
-    check(job.pictures.format, job.picture_side);
+    check("texture", job.pictures.format, job.picture_side);
   }
   if (job.normal_map_side > 0)
-    check(job.normal_map_format, job.normal_map_side);
+    check("normal_map", job.normal_map_format, job.normal_map_side);
 }
 
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,

@@ -48,7 +48,7 @@ TEST(VertexFeet, AreTheNearestPointsOfATile) {
   const Mesh tile = make_torus(30, 12, 0.01), finer = make_torus(90, 40, 0.01);
   const Faces faces = faces_of(tile.positions, tile.triangles);
   const FootFinder finder(tile.positions, tile.triangles, faces);
-  const std::vector<Foot> feet =
+  const std::vector<VertexFoot> feet =
       feet_of(finder, finer.positions, finer.triangles, beside(tile, finer));
   ASSERT_EQ(feet.size(), finer.positions.size());
   std::size_t farther = 0;
@@ -70,15 +70,15 @@ TEST(VertexFeet, ThoseWithoutAStartTakeACornersOrHaveNone) {
   std::vector<std::uint32_t> start(tile.positions.size(), kNoVertex);
   const TileTriangle first = tile.triangles.front();
   start[raw(first[0])] = raw(first[0]);
-  const std::vector<Foot> feet = feet_of(finder, tile.positions, tile.triangles, start);
+  const std::vector<VertexFoot> feet = feet_of(finder, tile.positions, tile.triangles, start);
   for (const TileVertex v : first) {
     ASSERT_NE(feet[raw(v)].triangle, kNoFace);
     EXPECT_NEAR(length(feet[raw(v)].point - to_double(tile.positions[raw(v)])), 0, 1e-6);
   }
   const auto none = static_cast<std::size_t>(
-      std::ranges::count(feet, kNoFace, [](const Foot& foot) { return foot.triangle; }));
+      std::ranges::count(feet, kNoFace, [](const VertexFoot& foot) { return foot.triangle; }));
   EXPECT_GT(none, feet.size() / 2);
-  for (const Foot& foot : feet_of(finder, tile.positions, tile.triangles, {}))
+  for (const VertexFoot& foot : feet_of(finder, tile.positions, tile.triangles, {}))
     EXPECT_EQ(foot.triangle, kNoFace);
 }
 

@@ -1,5 +1,6 @@
 #include "texture/normal_bake.h"
 
+#include "tests/texture/painted.h"
 #include "tests/texture/random_numbers.h"
 #include "texture/bake.h"
 #include "texture/chart_layout.h"
@@ -225,6 +226,19 @@ TEST(NormalBake, EqualTrianglesGetEqualCorners) {
   ASSERT_EQ(baked.corners.size(), tile.triangles.size());
   EXPECT_EQ(baked.corners.back(), baked.corners.front());
   EXPECT_EQ(baked.tangents.back(), baked.tangents.front());
+}
+
+TEST(NormalBake, HoweverLongTheNormalsOfTheOriginalAre) {
+  const Sheet original = make_sheet(40, 0.01), tile = make_sheet(4, 0);
+  const BakedNormalMap expected = map_of(tile, original.surface(), 64);
+  for (const float scale : {1e25F, 1e-25F}) {
+    Sheet scaled = original;
+    for (CornerNormals& corners : scaled.normals) {
+      for (Vec3f& normal : corners)
+        normal = normal * scale;
+    }
+    EXPECT_NEAR(map_of(tile, scaled.surface(), 64).map_degrees, expected.map_degrees, 0.01);
+  }
 }
 
 TEST(NormalBake, BetweenChartsTheMapIsFlat) {

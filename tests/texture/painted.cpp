@@ -1,7 +1,9 @@
 #include "tests/texture/painted.h"
 
 #include "tests/texture/random_numbers.h"
+#include "texture/charted_tile.h"
 #include "texture/fill.h"
+#include "texture/finer_points.h"
 #include "texture/texel_light.h"
 #include "texture/texel_raster.h"
 
@@ -19,6 +21,12 @@ TileTriangle corners_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 }
 
 }  // namespace
+
+BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
+                  const BakeSize& size) {
+  return tile.triangles.empty() ? BakedTexture{}
+                                : bake(ChartedTile(tile, size, shapes_of(finer)), finer);
+}
 
 Mesh make_torus(std::uint32_t around, std::uint32_t across, double noise) {
   Mesh mesh;

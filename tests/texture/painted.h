@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace meshhier::texture {
@@ -36,6 +37,10 @@ struct Painted {
 
   TexturedSurface surface() const { return {mesh.positions, mesh.triangles, corners, &image}; }
 };
+
+/// Cuts charts for a picture of that size, and makes it.
+BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
+                  const BakeSize& size);
 
 /// A picture of at most side * side, painted.
 Painted painted(const Mesh& mesh, std::uint32_t side, const Paint& paint);
