@@ -18,7 +18,8 @@
 // Invariant. Blocks depend on their texels and on those before, and are the same on every
 // processor.
 //
-// Cost. 0.1 s a megatexel of colours, 0.3 of directions; docs/decisions/046 has the curves of error, bytes and time.
+// Cost. 0.1 s a megatexel of colours, 0.3 of directions; docs/decisions/046 has the curves of
+// error, bytes and time.
 #pragma once
 
 #include "images/uastc_block.h"
