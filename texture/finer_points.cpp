@@ -158,46 +158,33 @@ class PointDrawing {
     const Vec3d point = samples_.point(sample);
     if (triangle == kSeveral)
       return takes_one_of_several(point, index(x, y));
-    if (takes_foot(triangle, point, points_[index(x, y)]))
+    if (finer_.has_foot(triangle, point, points_[index(x, y)]))
       return true;
     for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
       for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right);
            ++i) {
         const std::uint32_t other = drawn_[index(i, j)];
-        if (is_one(other) && other != triangle && takes_foot(other, point, points_[index(x, y)]))
+        if (is_one(other) && other != triangle &&
+            finer_.has_foot(other, point, points_[index(x, y)]))
           return true;
       }
     }
     return false;
   }
 
-  /// The nearest of those that have the point's foot.
   bool takes_one_of_several(const Vec3d& point, std::size_t texel) {
     const auto number = static_cast<std::uint32_t>(texel);
-    having_.clear();
+    candidates_.clear();
     for (auto at = std::ranges::lower_bound(several_, std::pair(number, std::uint32_t{0}));
-         at != several_.end() && at->first == number; ++at) {
-      if (takes_foot(at->second, point, points_[texel]))
-        having_.push_back(at->second);
-      else
-        is_kept_[at->second] = 1;
-    }
-    if (having_.size() > 1)
-      points_[texel] = finer_.nearest_of(having_, point);
-    return !having_.empty();
-  }
-
-  bool takes_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& texel) const {
-    const FootShares& shares = finer_.shares_[triangle];
-    const Vec3f to = to_float(point - shares.a);
-    const float on_b = dot(to, shares.to_b), on_c = dot(to, shares.to_c);
-    constexpr float kBeside = 1.0f / 64;  // of the triangle: rounding
-    if (!(on_b >= -kBeside && on_c >= -kBeside && on_b + on_c <= 1 + kBeside))
-      return false;
-    const float b = std::max(on_b, 0.0f), c = std::max(on_c, 0.0f);
-    const float scale = b + c > 1 ? 1 / (b + c) : 1;
-    texel = {triangle, b * scale, c * scale};
-    return true;
+         at != several_.end() && at->first == number; ++at)
+      candidates_.push_back(at->second);
+    const std::optional<FinerPoint> foot = finer_.foot_in(candidates_, point);
+    if (foot)
+      points_[texel] = *foot;
+    else
+      for (const std::uint32_t triangle : candidates_)
+        is_kept_[triangle] = 1;
+    return foot.has_value();
   }
 
   /// Keeps the triangles that texels around show.
@@ -240,7 +227,7 @@ class PointDrawing {
   const ChartLayout& layout_;
   std::vector<std::uint32_t> drawn_;  ///< of texels: the triangle that covers it
   std::vector<std::pair<std::uint32_t, std::uint32_t>> several_;  ///< texels and their triangles
-  std::vector<std::uint32_t> having_;
+  std::vector<std::uint32_t> candidates_;
   std::vector<std::uint8_t> is_kept_;  ///< of finer triangles: texels that are left may show them
   std::vector<FinerPoint> points_;     ///< of texels
 };
@@ -282,7 +269,35 @@ std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples
         around[count++] = triangle;
     }
   }
-  return Amid{middle, nearest_of(std::span(around).first(count), middle)};
+  const std::span<const std::uint32_t> triangles = std::span(around).first(count);
+  const std::optional<FinerPoint> foot = foot_in(triangles, middle);
+  return Amid{middle, foot ? *foot : nearest_of(triangles, middle)};
+}
+
+bool FinerSurfaces::has_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& foot) const {
+  const FootShares& shares = shares_[triangle];
+  const Vec3f to = to_float(point - shares.a);
+  const float on_b = dot(to, shares.to_b), on_c = dot(to, shares.to_c);
+  constexpr float kBeside = 1.0f / 64;  // of the triangle: rounding
+  if (!(on_b >= -kBeside && on_c >= -kBeside && on_b + on_c <= 1 + kBeside))
+    return false;
+  const float b = std::max(on_b, 0.0f), c = std::max(on_c, 0.0f);
+  const float scale = b + c > 1 ? 1 / (b + c) : 1;
+  foot = {triangle, b * scale, c * scale};
+  return true;
+}
+
+std::optional<FinerPoint> FinerSurfaces::foot_in(std::span<const std::uint32_t> triangles,
+                                                 const Vec3d& point) const {
+  std::vector<std::uint32_t> having;
+  FinerPoint foot;
+  for (const std::uint32_t t : triangles) {
+    if (has_foot(t, point, foot))
+      having.push_back(t);
+  }
+  if (having.size() > 1)
+    foot = nearest_of(having, point);
+  return having.empty() ? std::nullopt : std::optional(foot);
 }
 
 FinerPoint FinerSurfaces::nearest_of(std::span<const std::uint32_t> triangles,

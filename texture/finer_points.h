@@ -109,6 +109,11 @@ class FinerSurfaces {
   friend class PointDrawing;
   SurfaceTriangle corners(std::uint32_t triangle) const;
   static SurfaceTriangle corners(const FinerShape& shape, const TileTriangle& triangle);
+  /// Whether the triangle has the foot of a point, and sets it then.
+  bool has_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& foot) const;
+  /// Returns the foot of a point in one of these triangles, in the nearest if several have one.
+  std::optional<FinerPoint> foot_in(std::span<const std::uint32_t> triangles,
+                                    const Vec3d& point) const;
   FinerPoint nearest_of(std::span<const std::uint32_t> triangles, const Vec3d& point) const;
   NearestTriangle tree_of(std::span<const SurfaceTriangle> triangles) const;
 
