@@ -24,11 +24,6 @@ inline float dot_of(FourFloats a, FourFloats b) {
   return (product[0] + product[1]) + product[2];
 }
 
-inline FourFloats cross_of(FourFloats a, FourFloats b) {
-  const FourInts next{1, 2, 0, 3};
-  return __builtin_shuffle(a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b, next);
-}
-
 /// Of length 1; 0 if it has no length.
 inline FourFloats unit_of(FourFloats lanes) {
   const float squared = dot_of(lanes, lanes);

@@ -80,16 +80,14 @@ class Painter {
   };
 
   void measure(const ChartPlane& plane, TexelMeans& means) {
-    for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
-      for (std::uint32_t x = plane.left; x < plane.right; ++x) {
-        const std::size_t number = std::size_t{y} * means.width + x;
-        const FinerPoint& point = points_[number];
-        if (samples_.at(x, y).triangle == kNoFace || point.triangle == FinerPoint::kNone)
-          continue;
-        means.lights[number] = sampler_.around(point);
-        means.is_known[number] = 1;
-      }
-    }
+    for_each_texel(TexelSamples::range_of(plane), [&](std::uint32_t x, std::uint32_t y) {
+      const std::size_t number = samples_.index(x, y);
+      const FinerPoint& point = points_[number];
+      if (samples_.at(x, y).triangle == kNoFace || point.triangle == FinerPoint::kNone)
+        return;
+      means.lights[number] = sampler_.around(point);
+      means.is_known[number] = 1;
+    });
   }
 
   images::Image stored(const TexelMeans& means, std::uint32_t height) const {

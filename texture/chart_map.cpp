@@ -117,7 +117,7 @@ void ChartMap::mix_rows() {
   }
 }
 
-/// Away from the mean of its surroundings by half of what it differs from that, a texel comes
+/// Away from the mean of its surroundings by two thirds of what it differs from that, a texel comes
 /// nearer to the surface.
 ChartMap::FourVectors ChartMap::sharpened(std::size_t place) const {
   constexpr float kMore = 0.65f;

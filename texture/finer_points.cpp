@@ -62,9 +62,7 @@ class PointDrawing {
     std::uint32_t x, y;
   };
 
-  std::size_t index(std::uint32_t x, std::uint32_t y) const {
-    return std::size_t{y} * layout_.width + x;
-  }
+  std::size_t index(std::uint32_t x, std::uint32_t y) const { return samples_.index(x, y); }
   std::uint32_t chart_of(const VertexFoot& foot) const { return samples_.chart_of(foot.triangle); }
 
   void draw(std::size_t surface) {
@@ -137,12 +135,10 @@ class PointDrawing {
   std::vector<TexelPlace> take_drawn() {
     std::vector<TexelPlace> left;
     for (const ChartPlane& plane : layout_.planes) {
-      for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
-        for (std::uint32_t x = plane.left; x < plane.right; ++x) {
-          if (samples_.at(x, y).triangle != kNoFace && !takes_drawn(plane, x, y))
-            left.push_back({&plane, x, y});
-        }
-      }
+      for_each_texel(TexelSamples::range_of(plane), [&](std::uint32_t x, std::uint32_t y) {
+        if (samples_.at(x, y).triangle != kNoFace && !takes_drawn(plane, x, y))
+          left.push_back({&plane, x, y});
+      });
     }
     return left;
   }
@@ -158,18 +154,14 @@ class PointDrawing {
     const Vec3d point = samples_.point(sample);
     if (triangle == kSeveral)
       return takes_one_of_several(point, index(x, y));
-    if (finer_.has_foot(triangle, point, points_[index(x, y)]))
+    FinerPoint& foot = points_[index(x, y)];
+    if (finer_.has_foot(triangle, point, foot))
       return true;
-    for (std::uint32_t j = std::max(y, plane.top + 1) - 1; j < std::min(y + 2, plane.bottom); ++j) {
-      for (std::uint32_t i = std::max(x, plane.left + 1) - 1; i < std::min(x + 2, plane.right);
-           ++i) {
-        const std::uint32_t other = drawn_[index(i, j)];
-        if (is_one(other) && other != triangle &&
-            finer_.has_foot(other, point, points_[index(x, y)]))
-          return true;
-      }
-    }
-    return false;
+    return any_texel(texels_near(TexelSamples::range_of(plane), x, y, 1, 1), [&](std::uint32_t i,
+                                                                                 std::uint32_t j) {
+      const std::uint32_t other = drawn_[index(i, j)];
+      return is_one(other) && other != triangle && finer_.has_foot(other, point, foot);
+    });
   }
 
   bool takes_one_of_several(const Vec3d& point, std::size_t texel) {
@@ -178,27 +170,24 @@ class PointDrawing {
     for (auto at = std::ranges::lower_bound(several_, std::pair(number, std::uint32_t{0}));
          at != several_.end() && at->first == number; ++at)
       candidates_.push_back(at->second);
-    const std::optional<FinerPoint> foot = finer_.foot_in(candidates_, point);
-    if (foot)
+    if (const std::optional<FinerPoint> foot = finer_.foot_in(candidates_, point)) {
       points_[texel] = *foot;
-    else
-      for (const std::uint32_t triangle : candidates_)
-        is_kept_[triangle] = 1;
-    return foot.has_value();
+      return true;
+    }
+    for (const std::uint32_t triangle : candidates_)
+      is_kept_[triangle] = 1;
+    return false;
   }
 
   /// Keeps the triangles that texels around show.
   void keep_around(const TexelPlace& texel) {
     constexpr std::uint32_t kAround = 2;
     const auto& [plane, x, y] = texel;
-    for (std::uint32_t j = std::max(y, plane->top + kAround) - kAround;
-         j < std::min(y + kAround + 1, plane->bottom); ++j) {
-      for (std::uint32_t i = std::max(x, plane->left + kAround) - kAround;
-           i < std::min(x + kAround + 1, plane->right); ++i) {
-        if (const std::uint32_t other = drawn_[index(i, j)]; is_one(other))
-          is_kept_[other] = 1;
-      }
-    }
+    for_each_texel(texels_near(TexelSamples::range_of(*plane), x, y, kAround, kAround),
+                   [&](std::uint32_t i, std::uint32_t j) {
+                     if (const std::uint32_t other = drawn_[index(i, j)]; is_one(other))
+                       is_kept_[other] = 1;
+                   });
   }
 
   void search(std::span<const TexelPlace> texels) {
@@ -261,14 +250,12 @@ std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples
   }
   std::array<std::uint32_t, 16> around;
   std::size_t count = 0;
-  for (std::uint32_t j = std::max(y, chart.top + 1) - 1; j < std::min(y + 3, chart.bottom); ++j) {
-    for (std::uint32_t i = std::max(x, chart.left + 1) - 1; i < std::min(x + 3, chart.right); ++i) {
-      const std::uint32_t triangle = points[std::size_t{j} * samples.layout().width + i].triangle;
-      const auto end = around.begin() + static_cast<std::ptrdiff_t>(count);
-      if (triangle != FinerPoint::kNone && std::find(around.begin(), end, triangle) == end)
-        around[count++] = triangle;
-    }
-  }
+  for_each_texel(texels_near(chart, x, y, 1, 2), [&](std::uint32_t i, std::uint32_t j) {
+    const std::uint32_t triangle = points[samples.index(i, j)].triangle;
+    const auto end = around.begin() + static_cast<std::ptrdiff_t>(count);
+    if (triangle != FinerPoint::kNone && std::find(around.begin(), end, triangle) == end)
+      around[count++] = triangle;
+  });
   const std::span<const std::uint32_t> triangles = std::span(around).first(count);
   const std::optional<FinerPoint> foot = foot_in(triangles, middle);
   return Amid{middle, foot ? *foot : nearest_of(triangles, middle)};
@@ -289,15 +276,12 @@ bool FinerSurfaces::has_foot(std::uint32_t triangle, const Vec3d& point, FinerPo
 
 std::optional<FinerPoint> FinerSurfaces::foot_in(std::span<const std::uint32_t> triangles,
                                                  const Vec3d& point) const {
-  std::vector<std::uint32_t> having;
-  FinerPoint foot;
+  std::optional<FinerPoint> nearest;
   for (const std::uint32_t t : triangles) {
-    if (has_foot(t, point, foot))
-      having.push_back(t);
+    if (FinerPoint foot; has_foot(t, point, foot))
+      nearest = nearest ? nearest_of(std::array{nearest->triangle, t}, point) : foot;
   }
-  if (having.size() > 1)
-    foot = nearest_of(having, point);
-  return having.empty() ? std::nullopt : std::optional(foot);
+  return nearest;
 }
 
 FinerPoint FinerSurfaces::nearest_of(std::span<const std::uint32_t> triangles,

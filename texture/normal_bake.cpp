@@ -100,10 +100,11 @@ class MapMaker {
   void find_directions() {
     directions_.resize(points_.size());
     for (const ChartPlane& plane : layout_.planes) {
-      for_each_texel(plane, [&](std::uint32_t x, std::uint32_t y, const TexelSample& sample) {
-        NormalTexel& texel = directions_[index(x, y)];
-        if ((texel[0] | texel[1] | texel[2]) == 0)
-          texel = normal_texel(direction(plane, sample, points_[index(x, y)]));
+      for_each_texel(TexelSamples::range_of(plane), [&](std::uint32_t x, std::uint32_t y) {
+        const TexelSample& sample = samples_.at(x, y);
+        const std::size_t i = samples_.index(x, y);
+        if (sample.triangle != kNoFace && !shows(directions_[i]))
+          directions_[i] = normal_texel(direction(plane, sample, points_[i]));
       });
     }
   }
@@ -118,16 +119,6 @@ class MapMaker {
     return map;
   }
 
-  template <class Visit>
-  void for_each_texel(const ChartPlane& plane, const Visit& visit) const {
-    for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
-      for (std::uint32_t x = plane.left; x < plane.right; ++x) {
-        if (const TexelSample& sample = samples_.at(x, y); sample.triangle != kNoFace)
-          visit(x, y, sample);
-      }
-    }
-  }
-
   /// The finer surfaces' direction at one of their points; the tile's own where they have none.
   FourFloats direction(const ChartPlane& plane, const TexelSample& sample, const FinerPoint& at) {
     const FourFloats there = normals_.direction(at);
@@ -137,10 +128,6 @@ class MapMaker {
   VertexFrame frame_at(const TexelSample& sample) const {
     const std::uint32_t t = sample.triangle;
     return interpolated(frames_.at(t, 0), frames_.at(t, 1), frames_.at(t, 2), weights_of(sample));
-  }
-
-  std::size_t index(std::uint32_t x, std::uint32_t y) const {
-    return std::size_t{y} * layout_.width + x;
   }
 
   /// The middle of four texels, all of them within a chart.
@@ -242,10 +229,10 @@ struct NormalBaker::Work {
   /// Lays the charts out with other texels.
   void lay_out(const BakeSize& size) {
     if (samples) {
-      samples = std::make_unique<const TexelSamples>(*samples, size);
+      samples->lay_out_again(size);
       return;
     }
-    samples = std::make_unique<const TexelSamples>(bare, size);
+    samples.emplace(bare, size);
     shapes.emplace(shapes_of(surfaces), *samples);
     frames.emplace(frames_of(surface, *samples));
   }
@@ -256,7 +243,7 @@ struct NormalBaker::Work {
   const std::vector<CornerNormals> normals;
   NormalSurface surface;
   TexturedSurface bare;  ///< without its normals
-  std::unique_ptr<const TexelSamples> samples;
+  std::optional<TexelSamples> samples;
   std::optional<FinerSurfaces> shapes;
   std::optional<CornerFrames> frames;
 };

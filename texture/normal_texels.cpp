@@ -11,10 +11,6 @@ namespace {
 constexpr float kStepsOfUnit = 32767;
 constexpr std::size_t kWordBits = 64, kByteBits = 8;
 
-bool shows(const NormalTexel& texel) {
-  return (texel[0] | texel[1] | texel[2]) != 0;
-}
-
 /// The number of bits in each value of a byte.
 constexpr std::array<std::uint8_t, 256> kBits = [] {
   std::array<std::uint8_t, 256> bits{};

@@ -16,6 +16,10 @@ namespace meshhier::texture {
 /// 32767 times a direction of length 1, rounded; all 0 of a texel that shows nothing.
 using NormalTexel = std::array<std::int16_t, 3>;
 
+inline bool shows(const NormalTexel& texel) {
+  return (texel[0] | texel[1] | texel[2]) != 0;
+}
+
 /// The texel of a direction of length 1.
 NormalTexel normal_texel(FourFloats direction);
 /// A texel's direction, 32767 times as long.

@@ -17,6 +17,34 @@ struct TexelRange {
   std::uint32_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
+/// Returns the texels of a range from `before` ahead of (x, y) to `behind` it, along both axes.
+inline TexelRange texels_near(const TexelRange& range, std::uint32_t x, std::uint32_t y,
+                              std::uint32_t before, std::uint32_t behind) {
+  return {std::max(x, range.left + before) - before, std::max(y, range.top + before) - before,
+          std::min(x + behind + 1, range.right), std::min(y + behind + 1, range.bottom)};
+}
+
+/// Returns whether visit(x, y) is true for a texel of a range, and visits none after it.
+template <class Visit>
+bool any_texel(const TexelRange& range, const Visit& visit) {
+  for (std::uint32_t y = range.top; y < range.bottom; ++y) {
+    for (std::uint32_t x = range.left; x < range.right; ++x) {
+      if (visit(x, y))
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Calls visit(x, y) for all texels of a range, row by row.
+template <class Visit>
+void for_each_texel(const TexelRange& range, const Visit& visit) {
+  for (std::uint32_t y = range.top; y < range.bottom; ++y) {
+    for (std::uint32_t x = range.left; x < range.right; ++x)
+      visit(x, y);
+  }
+}
+
 /// In 1/256 of a texel.
 struct FixedTexelPoint {
   static constexpr std::int64_t kOne = 256;

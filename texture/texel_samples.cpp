@@ -24,16 +24,6 @@ TexelSamples::TexelSamples(const TexturedSurface& tile, const BakeSize& size)
   fill(size);
 }
 
-TexelSamples::TexelSamples(const TexelSamples& charts, const BakeSize& size)
-    : tile_(charts.tile_),
-      faces_(charts.faces_),
-      charts_(charts.charts_),
-      chart_of_(charts.chart_of_),
-      planes_(charts.planes_),
-      corners_(charts.corners_.size()) {
-  fill(size);
-}
-
 void TexelSamples::fill(const BakeSize& size) {
   layout_ = lay_out(planes_, size);
   for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) {
@@ -94,7 +84,7 @@ void TexelSamples::cover_beyond(const ChartPlane& plane, std::uint32_t t, std::s
   const auto is_outside = [&](std::uint32_t x, std::uint32_t y) {
     return !samples_[index(x, y)].is_inside();
   };
-  edge.for_each_near({plane.left, plane.top, plane.right, plane.bottom}, is_outside,
+  edge.for_each_near(range_of(plane), is_outside,
                      [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
                        TexelSample& texel = samples_[index(x, y)];
                        if (texel.triangle == kNoFace || foot.distance < texel.distance)

@@ -48,10 +48,17 @@ class TexelSamples {
  public:
   /// `tile` must outlive it: positions and triangles of it are used, no triangle is there twice.
   TexelSamples(const TexturedSurface& tile, const BakeSize& size);
+  TexelSamples(const TexelSamples&) = delete;
+  TexelSamples& operator=(const TexelSamples&) = delete;
+
   /// Samples the same charts with other texels; `size` has the same side.
-  TexelSamples(const TexelSamples& charts, const BakeSize& size);
+  void lay_out_again(const BakeSize& size) { fill(size); }
 
   const ChartLayout& layout() const { return layout_; }
+  /// Returns the number of a texel, row by row.
+  std::size_t index(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{y} * layout_.width + x;
+  }
   const TexelSample& at(std::uint32_t x, std::uint32_t y) const { return samples_[index(x, y)]; }
 
   /// Returns the point of a sample.
@@ -91,9 +98,6 @@ class TexelSamples {
   }
   Vec3d position(std::uint32_t triangle, std::size_t corner) const {
     return to_double(tile_.positions[raw(tile_.triangles[triangle][corner % 3])]);
-  }
-  std::size_t index(std::uint32_t x, std::uint32_t y) const {
-    return std::size_t{y} * layout_.width + x;
   }
 
   struct Shares {

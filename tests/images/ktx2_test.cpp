@@ -31,19 +31,6 @@ double rms(const Image& a, const Image& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
-/// Returns a picture that is like a photograph to a coder: every texel is near its neighbours.
-Image smooth(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
-  Image image(width, height, channels);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      for (std::uint32_t k = 0; k < channels; ++k)
-        image.at(x, y)[k] = static_cast<std::uint8_t>(128 + 100 * std::sin(0.05 * x * (k + 1)) *
-                                                                std::cos(0.04 * y + k));
-    }
-  }
-  return image;
-}
-
 /// ETC1S, which Node.js codes.
 class Ktx2Test : public testing::Test {
  protected:

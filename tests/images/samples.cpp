@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -63,6 +64,18 @@ Image waves(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
                                                 wave(3 * x + y + 7, 120), wave(x + y, 17)};
       for (std::uint32_t c = 0; c < channels; ++c)
         image.at(x, y)[c] = static_cast<std::uint8_t>(colour[c] + next_random(state) % 4);
+    }
+  }
+  return image;
+}
+
+Image smooth(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  Image image(width, height, channels);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      for (std::uint32_t k = 0; k < channels; ++k)
+        image.at(x, y)[k] = static_cast<std::uint8_t>(128 + 100 * std::sin(0.05 * x * (k + 1)) *
+                                                                std::cos(0.04 * y + k));
     }
   }
   return image;

@@ -17,6 +17,8 @@ using Bytes = std::vector<std::byte>;
 
 /// Soft waves with a little noise; every texel of a row differs from its neighbours.
 Image waves(std::uint32_t width, std::uint32_t height, std::uint32_t channels = 3);
+/// A picture that is like a photograph to a coder: every texel is near its neighbours.
+Image smooth(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 /// No texel tells of another.
 Image noise(std::uint32_t width, std::uint32_t height, std::uint32_t channels = 3,
             std::uint32_t seed = 1);

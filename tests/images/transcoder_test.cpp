@@ -78,22 +78,9 @@ class TranscoderTest : public testing::Test {
                             }};
 };
 
-/// Returns a picture that is like a photograph: every texel is near its neighbours.
-Image soft(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
-  Image image(width, height, channels);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      for (std::uint32_t c = 0; c < channels; ++c)
-        image.at(x, y)[c] = static_cast<std::uint8_t>(128 + 100 * std::sin(0.05 * x * (c + 1)) *
-                                                                std::cos(0.04 * y + c));
-    }
-  }
-  return image;
-}
-
 /// Returns one with edges and noise besides.
 Image painted(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
-  Image image = soft(width, height, channels);
+  Image image = smooth(width, height, channels);
   const Image grain = noise(width, height, channels);
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = width / 4; x < width; ++x) {
@@ -205,7 +192,7 @@ TEST_F(TranscoderTest, EncodedPicturesAreReadAlikeAndAreGoodBlocksOfAllKinds) {
     double uastc, etc1, bc1;
   };
   for (const auto& [image, uastc, etc1, bc1] :
-       {Least{soft(256, 192, 3), 42, 34, 36}, {painted(256, 192, 3), 34, 20, 27}}) {
+       {Least{smooth(256, 192, 3), 42, 34, 36}, {painted(256, 192, 3), 34, 20, 27}}) {
     const Bytes file = encode_uastc(image, Ktx2Meaning::colours);
     const Image own = decoded(file);
     ASSERT_EQ(own.channels, 3U);
@@ -235,7 +222,7 @@ TEST_F(TranscoderTest, AlphaIsKept) {
 
 TEST_F(TranscoderTest, EachLevelIsHalfOfTheLargerOne) {
   for (const TexelSize size : {TexelSize{128, 128}, TexelSize{108, 36}, TexelSize{4, 64}}) {
-    const Image image = soft(size.width, size.height, 3);
+    const Image image = smooth(size.width, size.height, 3);
     const Bytes file = encode_uastc(image, Ktx2Meaning::colours);
     Image larger = rgba(file, size);
     std::uint32_t level = 0;

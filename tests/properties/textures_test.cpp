@@ -114,6 +114,19 @@ class TexturesTest : public testing::Test {
     return build_hierarchy(config, options, {*files_, progress, execution::CancelToken()}).text;
   }
 
+  /// Builds with one thread and little memory, and with more of both.
+  void expect_equal_builds(const config::Config& job) {
+    build(job);
+    const auto expected = files_of(job.output);
+    for (const std::uint32_t threads : {1U, 3U}) {
+      config::Config other = job;
+      other.threads = threads;
+      other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
+      build(other);
+      EXPECT_EQ(files_of(job.output), expected) << threads;
+    }
+  }
+
   void stop(const config::Config& config, const std::string& stage) {
     execution::CancelToken cancel;
     tests::StageInterrupter progress(cancel, stage);
@@ -374,15 +387,7 @@ TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothing) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
   for (const ImageFormat format : {ImageFormat::png, ImageFormat::jpeg}) {
     job.texture.format.format = format;
-    build(job);
-    const auto expected = files_of(job.output);
-    for (const std::uint32_t threads : {1U, 3U}) {
-      config::Config other = job;
-      other.threads = threads;
-      other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
-      build(other);
-      EXPECT_EQ(files_of(job.output), expected) << threads;
-    }
+    expect_equal_builds(job);
   }
 }
 
@@ -506,16 +511,7 @@ TEST_F(TexturesTest, AutoMakesNoMapsUnderPictures) {
 }
 
 TEST_F(TexturesTest, SLOW_ThreadsAndBudgetDecideNothingOfRelief) {
-  const config::Config job = with_relief(config(write(tests::make_textured_torus(6, 3))));
-  build(job);
-  const auto expected = files_of(job.output);
-  for (const std::uint32_t threads : {1U, 3U}) {
-    config::Config other = job;
-    other.threads = threads;
-    other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
-    build(other);
-    EXPECT_EQ(files_of(job.output), expected) << threads;
-  }
+  expect_equal_builds(with_relief(config(write(tests::make_textured_torus(6, 3)))));
 }
 
 TEST_F(TexturesTest, ABuildWithReliefThatIsStoppedGoesOnToTheSameBytes) {

@@ -177,8 +177,8 @@ TEST(VertexFrame, HasAxesOfLengthOne) {
     for (const FourFloats axis : {frame.tangent, frame.bitangent, frame.normal})
       EXPECT_NEAR(dot_of(axis, axis), 1, 1e-6);
     EXPECT_GT(dot_of(frame.mixed(FourFloats{0, 0, 1, 0}), frame.normal), 0.999);
-    const FourFloats up = cross_of(frame.tangent, frame.bitangent);
-    EXPECT_GT(dot_of(up, frame.normal) * (i % 2 == 0 ? -1 : 1), 0.5);
+    const Vec3f up = cross(vector_of(frame.tangent), vector_of(frame.bitangent));
+    EXPECT_GT(dot(up, vector_of(frame.normal)) * (i % 2 == 0 ? -1 : 1), 0.5);
   }
 }
 
