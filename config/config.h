@@ -115,7 +115,7 @@ struct StorageConfig {
   Compression compression = Compression::none;
   std::optional<std::uint32_t> position_bits;  ///< bits of the lattice that positions are rounded
                                                ///< to, 8 to 24; not set: exact
-  Normals normals = Normals::smooth;
+  Normals normals = Normals::map_or_none;
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 

@@ -421,9 +421,10 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "storage.normals",
            .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
                       "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
-                      "they are. `map`: simplified tiles get a normal map of the original surface "
-                      "besides, and pictures are lit; `auto`: those where its bytes are worth "
-                      "more than triangles, none where there are pictures"},
+                      "they are. `auto`: `smooth`, and coarse tiles, all but three levels above "
+                      "the partitions, get a normal map of the original surface where its bytes "
+                      "are worth more than triangles; none where there are pictures. `map`: all "
+                      "simplified tiles get one, and pictures are lit"},
           kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
       deciding(number(
           {.path = "normal_map.texels",

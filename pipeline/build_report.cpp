@@ -201,16 +201,6 @@ bool has_area(const storage::HierarchyReader& made, const execution::CancelToken
   });
 }
 
-namespace {
-
-const char* why_no_maps(const SourceSummary& source, const config::Config& config) {
-  if (config.storage.normals == config::Normals::map)
-    return "none lies above the partitions, or none of these has triangles";
-  return source.textures ? "the mesh has pictures" : "none would pay";
-}
-
-}  // namespace
-
 std::string notes_text(const storage::HierarchyReader& made, const config::Config& config,
                        bool has_area) {
   const SourceSummary& source = made.manifest().source;
@@ -221,8 +211,8 @@ std::string notes_text(const storage::HierarchyReader& made, const config::Confi
     text += fmt::format("kept {} that no triangle uses\n",
                         counted(source.unreferenced_vertices, "vertices"));
   }
-  if (config::makes_maps(config.storage.normals) && !made.manifest().normal_maps)
-    text += std::string("no tile has a normal map: ") + why_no_maps(source, config) + '\n';
+  if (config.storage.normals == config::Normals::map && !made.manifest().normal_maps)
+    text += "no tile has a normal map: none with triangles lies above the partitions\n";
   return text + warning_text(source, has_area, made.manifest().quantization.has_value()) +
          placement_text(made.manifest(), config) +
          storage::forced_collapses_text(

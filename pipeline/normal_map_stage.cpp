@@ -41,13 +41,36 @@ float texel_for(const BakeSource& source, double texels) {
   return static_cast<float>(std::sqrt(area / texels));
 }
 
+/// Returns how many levels from the root on have maps. The root has one wherever there is a tile
+/// above the partitions.
+int mapped_levels(int depth, const JobSize& job) {
+  return std::max(depth - job.unmapped_levels, std::min(depth, 1));
+}
+
+/// Returns the memory of a map at work.
+std::uint64_t texel_bytes(std::uint32_t side) {
+  constexpr std::uint64_t kTexelBytes = 70;
+  return kTexelBytes * side * side;
+}
+
+/// Returns the memory of a map at work that is made from partitions, and of these.
+std::uint64_t first_map_bytes(const JobSize& job) {
+  constexpr std::uint64_t kTriangleBytes = 130;
+  const std::uint64_t below = std::uint64_t{2} << job.unmapped_levels;
+  return texel_bytes(job.normal_map_side) +
+         kTriangleBytes *
+             std::min(below * job.part_triangles(job.largest_tile), 2 * job.face_count);
+}
+
 class MapStage {
  public:
-  MapStage(const Forest& forest, TextureStore& textures, const StageContext& context)
+  /// `end`: levels from there on have no maps.
+  MapStage(const Forest& forest, TextureStore& textures, int end, const StageContext& context)
       : forest_(forest),
         textures_(textures),
         config_(context.config),
         job_(context.plan.job),
+        end_(end),
         side_(config_.normal_map.texels / texture::kBakeAlignment * texture::kBakeAlignment),
         gate_(picture_room_bytes(context.memory().work_bytes)) {}
 
@@ -58,16 +81,21 @@ class MapStage {
       textures_.put(node, {}, source, {});
       return;
     }
-    const execution::MemoryGate::Hold held = gate_.enter(map_bytes(side_));
+    const bool is_first = finer_level(node) != finer(node.level);
+    const execution::MemoryGate::Hold held =
+        gate_.enter(is_first ? first_map_bytes(job_) : map_bytes(side_));
     const std::vector<FinerSurface> finer =
-        finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
+        finer_surfaces(forest_, node, finer_level(node), mesh,
+                       [&](NodeId tile) { return finer_source(tile, node.level); });
     std::vector<texture::NormalSurface> surfaces;
     for (const FinerSurface& one : finer)
       surfaces.push_back(one.normal_surface());
     const auto normals = corner_normals(node, mesh);
     const texture::NormalSurface tile{source.positions, source.triangles, normals, {}, nullptr};
     texture::NormalBaker baker(tile, surfaces, side_);
-    texture::BakedNormalMap baked = bake(baker, least_texels(node, source), degrees_of_texel(node));
+    const LeastTexels least = least_texels(node, source);
+    texture::BakedNormalMap baked = is_first ? baker.bake(least.of_most, least_degrees())
+                                             : bake(baker, least, degrees_of_texel(node));
     source.corners = baked.corners;
     source.directions = std::move(baked.texels);
     const TexelSizes texels{baked.texel, 0, 0, static_cast<float>(baked.map_degrees)};
@@ -86,12 +114,18 @@ class MapStage {
                                     computed_shading(forest_, node, mesh));
   }
 
-  std::shared_ptr<const BakeSource> finer_source(NodeId tile) const {
+  /// The level that a node's map is made from: the next one, or the partitions if that has no maps.
+  /// So many partitions have vertices for as many texels as a map may have.
+  Level finer_level(NodeId node) const {
+    return raw(node.level) + 1 < end_ ? finer(node.level) : forest_.tree().depth();
+  }
+
+  std::shared_ptr<const BakeSource> finer_source(NodeId tile, Level level) const {
     if (!forest_.tree().is_partition(tile))
       return textures_.source(tile);
     return textures_.source(tile, [&] {
       const TileMesh mesh = forest_.load(tile).mesh;
-      BakeSource source = bare_source(mesh, forest_.published_parent_map(tile));
+      BakeSource source = bare_source(mesh, forest_.map_up(tile, level));
       source.normals = corner_normals(tile, mesh);
       return source;
     });
@@ -121,25 +155,27 @@ class MapStage {
     return count > 0 ? sum / count : 0;
   }
 
+  double least_degrees() const {
+    return config_.storage.normals == config::Normals::map ? 0 : kLeastDegrees;
+  }
+
   /// Bakes a map of few texels, or of more if that would not be good, as coarser tiles are made of
   /// its directions. Differences shrink about as texels do; where no child tells how large they
   /// are, a map of few texels does.
   texture::BakedNormalMap bake(texture::NormalBaker& baker, const LeastTexels& least,
                                double degrees_of_texel) const {
-    const double least_degrees =
-        config_.storage.normals == config::Normals::map ? 0 : kLeastDegrees;
     const auto wanted = [&](double degrees_of_few) {
       return std::max(static_cast<float>(least.of_few * kGoodDegrees / degrees_of_few),
                       least.of_most);
     };
     const double expected = degrees_of_texel * double{least.of_few};
     if (expected > kGoodDegrees)
-      return baker.bake(wanted(expected), least_degrees);
-    texture::BakedNormalMap baked = baker.bake(least.of_few, least_degrees);
+      return baker.bake(wanted(expected), least_degrees());
+    texture::BakedNormalMap baked = baker.bake(least.of_few, least_degrees());
     const bool is_largest = baked.texel > least.of_few;  // as many as a map may have
     return is_largest || baked.map_degrees <= kGoodDegrees
                ? baked
-               : baker.bake(wanted(baked.map_degrees), least_degrees);
+               : baker.bake(wanted(baked.map_degrees), least_degrees());
   }
 
   /// The effect of a map, and the splits that it takes.
@@ -187,9 +223,26 @@ class MapStage {
   TextureStore& textures_;
   const config::Config& config_;
   const JobSize& job_;
+  const int end_;
   const std::uint32_t side_;
   execution::MemoryGate gate_;
 };
+
+int depth_of(const TilePopulation& tiles) {
+  return tiles.levels - 1;
+}
+
+/// Returns how many tiles have maps, or are looked at for one.
+double mapped_tiles(const JobSize& job, const TilePopulation& tiles) {
+  const int mapped = mapped_levels(depth_of(tiles), job);
+  return mapped < depth_of(tiles) ? std::exp2(mapped) - 1
+                                  : tiles.simplified.count - tiles.early.count;
+}
+
+/// Returns them as a part of all simplified tiles.
+double mapped_part(const JobSize& job, const TilePopulation& tiles) {
+  return mapped_tiles(job, tiles) / std::max(1.0, tiles.simplified.count);
+}
 
 /// Returns the texels of all maps: three levels above the partitions have about as many as the
 /// original's vertices ask for, the others as many as a map may have, and those under pictures,
@@ -197,11 +250,12 @@ class MapStage {
 double map_texels(const JobSize& job, const TilePopulation& tiles) {
   const double side = job.normal_map_side;
   if (job.textured)
-    return (tiles.simplified.count - tiles.early.count) * side * side;
+    return mapped_tiles(job, tiles) * side * side;
   const double vertices = tiles.partitions.vertices / std::max(1.0, tiles.partitions.count);
   constexpr double kShown = 0.4, kUsualTexelsAVertex = kMostTexelsAVertex;
-  double texels = 0, left = tiles.simplified.count - tiles.early.count;
-  for (double below = 2; left > 0.5; below *= 2) {
+  double texels = 0, left = mapped_tiles(job, tiles);
+  const int unmapped = depth_of(tiles) - mapped_levels(depth_of(tiles), job);
+  for (double below = std::exp2(unmapped + 1); left > 0.5; below *= 2) {
     const double on_level = std::min(left, std::ceil(left / 2));
     texels += on_level * std::min(side * side, below * vertices * kUsualTexelsAVertex / kShown);
     left -= on_level;
@@ -222,24 +276,25 @@ TileImage encoded_map(const images::Image& map, const NormalMapFormat& format) {
 }
 
 std::uint64_t map_bytes(std::uint32_t side) {
-  constexpr double kTexelBytes = 70;
   constexpr double kSources = 16;
   constexpr double kShown = 0.45;  // so much of a picture's texels is covered
-  const std::uint64_t texels = std::uint64_t{side} * side;
-  constexpr double kBytes = kTexelBytes + kSources * kShown * sizeof(texture::NormalTexel);
-  return static_cast<std::uint64_t>(static_cast<double>(texels) * kBytes);
+  constexpr double kDirections = kSources * kShown * sizeof(texture::NormalTexel);
+  return texel_bytes(side) + static_cast<std::uint64_t>(kDirections * side * side);
 }
 
 void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal& journal,
                       const LevelRange& levels, const StageContext& context) {
-  const int end = std::min(levels.end, int{raw(context.tree().depth())});  // above the partitions
-  MapStage stage(forest, textures, context);
+  const int mapped = mapped_levels(raw(context.tree().depth()), context.plan.job);
+  const int end = std::min(levels.end, mapped);
+  MapStage stage(forest, textures, mapped, context);
   make_level_by_level("normal maps", {levels.top, end, levels.share}, textures, journal, context,
                       [&](NodeId node) { stage.make(node); });
 }
 
 StageMemory normal_map_memory(const JobSize& job) {
-  const std::uint64_t largest = map_bytes(job.normal_map_side);
+  std::uint64_t largest = map_bytes(job.normal_map_side);
+  if (job.unmapped_levels > 0)
+    largest = std::max(largest, first_map_bytes(job));
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kFramedTriangleBytes;
   return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
@@ -251,7 +306,8 @@ double published_map_bytes(const JobSize& job, const TilePopulation& tiles) {
     return 0;
   const double texel = images::coders_of(job.normal_map_format).directions.file_bytes;
   constexpr double kVertex = sizeof(TangentCode) + 2 * sizeof(std::uint16_t);
-  return map_texels(job, tiles) * texel + tiles.simplified.vertices * kVertex;
+  return map_texels(job, tiles) * texel +
+         mapped_part(job, tiles) * tiles.simplified.vertices * kVertex;
 }
 
 double map_seconds(const JobSize& job, const TilePopulation& tiles) {
@@ -260,12 +316,11 @@ double map_seconds(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kTileSeconds = 40e-3;
   constexpr double kBakedSeconds = 220e-9;
   const double texel = kBakedSeconds + images::coders_of(job.normal_map_format).directions.seconds;
-  return tiles.simplified.count * kTileSeconds + map_texels(job, tiles) * texel;
+  return mapped_tiles(job, tiles) * kTileSeconds + map_texels(job, tiles) * texel;
 }
 
 StageTimes normal_map_time(const JobSize& job, const TilePopulation& tiles) {
-  return {{"normal maps", "tiles",
-           static_cast<std::uint64_t>(tiles.simplified.count - tiles.early.count),
+  return {{"normal maps", "tiles", static_cast<std::uint64_t>(mapped_tiles(job, tiles)),
            map_seconds(job, tiles)}};
 }
 
@@ -276,8 +331,9 @@ double map_scratch_bytes(const JobSize& job, const TilePopulation& tiles) {
   const double directions = map_texels(job, tiles) * (kShown * sizeof(texture::NormalTexel) + 0.2);
   constexpr double kTriangle =
       sizeof(TileTriangle) + 2 * sizeof(texture::CornerTexcoords) + sizeof(texture::CornerTangents);
-  return directions + published_map_bytes(job, tiles) + tiles.simplified.triangles * kTriangle +
-         tiles.simplified.vertices * sizeof(Vec3f);
+  const double mesh =
+      tiles.simplified.triangles * kTriangle + tiles.simplified.vertices * sizeof(Vec3f);
+  return directions + published_map_bytes(job, tiles) + mapped_part(job, tiles) * mesh;
 }
 
 DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,

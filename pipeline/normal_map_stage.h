@@ -1,7 +1,8 @@
 // The stage `normal maps`: simplified tiles of a mesh without pictures are lit by normal maps.
 //
 // They are made level by level, from the tiles that a tile and its neighbours were made of;
-// partitions have their own normals. The stage takes the place of the stage `texture`, and the
+// partitions have their own normals. Where the finest simplified levels get none, the first level
+// with maps is made from the partitions. The stage takes the place of the stage `texture`, and the
 // store of its pictures. Where there are pictures, that stage makes both on the same charts.
 #pragma once
 
@@ -41,8 +42,8 @@ DiskVolumes normal_map_disk(const JobSize& job, const TilePopulation& tiles,
                             const MemoryPlan& memory);
 
 /// Makes the maps of simplified tiles that the journal does not have, level by level from the last
-/// on, and notes them. Requires all tiles of level `end`, and those of the whole levels between if
-/// there are any. Deterministic for any number of threads. Throws Error(io | interrupted | budget).
+/// on, and notes them. Requires all tiles of the forest, and the maps of level `end` if it has any.
+/// Deterministic for any number of threads. Throws Error(io | interrupted | budget).
 void make_normal_maps(const Forest& forest, TextureStore& textures, BuildJournal& journal,
                       const LevelRange& levels, const StageContext& context);
 

@@ -264,7 +264,8 @@ class TextureMaker {
     TileTexture texture;
     if (!source.triangles.empty()) {
       const std::vector<FinerSurface> finer =
-          finer_surfaces(forest_, node, mesh, [&](NodeId child) { return finer_source(child); });
+          finer_surfaces(forest_, node, meshhier::finer(node.level), mesh,
+                         [&](NodeId child) { return finer_source(child); });
       std::vector<texture::FinerShape> shapes;
       for (const FinerSurface& one : finer)
         shapes.push_back(one.shape());

@@ -56,6 +56,12 @@ std::uint32_t normal_map_side(const config::Config& config, const JobSize& job) 
   return normals == config::Normals::map ? job.picture_side : 0;
 }
 
+/// With `auto` three levels have none, seven eighths of the simplified tiles: they are nearer to the
+/// original's shading themselves.
+int unmapped_levels(const config::Config& config) {
+  return config.storage.normals == config::Normals::map_or_none ? 3 : 0;
+}
+
 TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree,
                                         const TexturePlan& textures) {
   if (config.simplify.vertices)
@@ -132,6 +138,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);
   job.normal_map_side = normal_map_side(config, job);
+  job.unmapped_levels = unmapped_levels(config);
   job.normal_map_format = config.normal_map.format.format;
   return job;
 }

@@ -38,6 +38,7 @@ struct JobSize {
   std::uint64_t adding_bytes = 0;       ///< memory to store the widest of them
   /// A simplified tile's, texels at most; 0: there are none. The picture's side if it has one.
   std::uint32_t normal_map_side = 0;
+  int unmapped_levels = 0;  ///< simplified ones next to the partitions that get no maps
   ImageFormat normal_map_format = ImageFormat::jpeg;
   bool draws_preview = false;
   std::uint32_t outline_sectors = 0;

@@ -93,6 +93,13 @@ class ParentVertices {
     }
   }
 
+  /// Whether any vertex of a finer tile has become one of the tile's.
+  bool has_any(std::span<const std::uint16_t> parents) const {
+    return is_own_ || std::ranges::any_of(parents, [&](std::uint16_t parent) {
+             return parent < ghosts_.size() && ghosts_[parent] != texture::kNoVertex;
+           });
+  }
+
   /// Returns the tile's vertices that a finer surface's have become.
   std::vector<std::uint32_t> beside(const BakeSource& source) const {
     std::vector<std::uint32_t> vertices(source.positions.size(), texture::kNoVertex);
@@ -142,6 +149,17 @@ FinerSurface near(const BorderCells& border, std::shared_ptr<const BakeSource> s
   return part;
 }
 
+/// Calls visit(tile) for the tiles of a finer level that are below a node: partitions, where these
+/// come before.
+template <class Visit>
+void for_each_tile(const Tree& tree, NodeId node, Level finer, const Visit& visit) {
+  if (node.level >= finer || tree.is_partition(node))
+    return visit(node);
+  const Tree::Children children = tree.children(node);
+  for (const NodeId child : children.span())
+    for_each_tile(tree, tree.tile_node(child), finer, visit);
+}
+
 }  // namespace
 
 BakeSource bare_source(const TileMesh& mesh, std::vector<std::uint16_t> parents) {
@@ -174,20 +192,20 @@ texture::NormalSurface FinerSurface::normal_surface() const {
 }
 
 std::vector<FinerSurface> finer_surfaces(
-    const Forest& forest, NodeId node, const TileMesh& mesh,
+    const Forest& forest, NodeId node, Level finer, const TileMesh& mesh,
     const std::function<std::shared_ptr<const BakeSource>(NodeId tile)>& source) {
   std::vector<FinerSurface> surfaces;
-  const Tree& tree = forest.tree();
   const auto add = [&](NodeId parent, const auto& choose) {
     const ParentVertices vertices(node, parent, mesh);
-    const Tree::Children children = tree.children(parent);
-    for (const NodeId child : children.span()) {
-      FinerSurface one = choose(source(tree.tile_node(child)));
+    for_each_tile(forest.tree(), parent, finer, [&](NodeId tile) {
+      if (!vertices.has_any(forest.map_up(tile, node.level)))
+        return;
+      FinerSurface one = choose(source(tile));
       if (!one.source || one.source->triangles.empty())
-        continue;
+        return;
       one.beside = vertices.beside(*one.source);
       surfaces.push_back(std::move(one));
-    }
+    });
   };
   add(node, [](auto whole) { return FinerSurface{std::move(whole)}; });
   const BorderCells border(mesh);

@@ -32,10 +32,11 @@ struct FinerSurface {
   texture::NormalSurface normal_surface() const;
 };
 
-/// Returns the node's children, then those of its neighbours, as far as they are near the border of
-/// its tile. `source(tile)`: returns that tile's surface. Those without triangles are left out.
+/// Returns the node's tiles of a finer level, then those of its neighbours, as far as they are near
+/// the border of its tile. `source(tile)`: returns that tile's surface, with parents in the node's
+/// level. Those without triangles are left out.
 std::vector<FinerSurface> finer_surfaces(
-    const Forest& forest, NodeId node, const TileMesh& mesh,
+    const Forest& forest, NodeId node, Level finer, const TileMesh& mesh,
     const std::function<std::shared_ptr<const BakeSource>(NodeId tile)>& source);
 
 }  // namespace meshhier::pipeline

@@ -256,6 +256,16 @@ std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   return parent_map(tree_.stands_for_parent(node) ? tree_.parent(node) : node);
 }
 
+std::vector<std::uint16_t> Forest::map_up(NodeId node, Level level) const {
+  std::vector<std::uint16_t> map = published_parent_map(node);
+  for (NodeId at = tree_.parent_tile(node); at.level > level; at = tree_.parent(at)) {
+    const std::vector<std::uint16_t> next = parent_map(at);
+    for (std::uint16_t& vertex : map)
+      vertex = next[vertex];
+  }
+  return map;
+}
+
 std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {
   std::vector<std::uint16_t> result;
   for_each_owner(ghosts, [&](std::size_t begin, std::size_t end) {

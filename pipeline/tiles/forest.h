@@ -104,6 +104,9 @@ class Forest {
   std::vector<std::uint16_t> parent_map(NodeId child) const;
   /// Returns the map from `node` to the nearest ancestor that is published; empty for the root.
   std::vector<std::uint16_t> published_parent_map(NodeId node) const;
+  /// Returns the map from the tile of `node`, which may stand for its parent, to that of its
+  /// ancestor of a level above, which is not early.
+  std::vector<std::uint16_t> map_up(NodeId node, Level level) const;
   /// Returns the GhostChain of each ghost of the node's tile, one after another.
   std::vector<std::uint16_t> chains(NodeId node, std::span<const GhostRef> ghosts) const;
 

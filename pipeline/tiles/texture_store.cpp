@@ -134,6 +134,8 @@ void TextureStore::put(NodeId node, const TileTexture& texture, const BakeSource
 }
 
 TileTexture TextureStore::texture(NodeId node) const {
+  if (levels_[raw(node.level)].textures.size(node.index) == 0)
+    return {};
   return decode_texture(levels_[raw(node.level)].textures.view(node.index).bytes());
 }
 

@@ -53,7 +53,8 @@ struct TileTexture {
 /// picture, perhaps reduced, or with its directions.
 struct BakeSource {
   std::vector<Vec3f> positions;        ///< one for each place
-  std::vector<std::uint16_t> parents;  ///< of own ones: the vertex of the tile above they become
+  std::vector<std::uint16_t> parents;  ///< of own ones: the vertex that they become of the tile
+                                       ///< above which is made of this source
   std::vector<TileTriangle> triangles;
   std::vector<texture::CornerTexcoords> corners;
   images::Image image;
@@ -85,6 +86,7 @@ class TextureStore {
   void set_cache_bytes(std::uint64_t bytes) { cache_bytes_ = bytes; }
   void put(NodeId node, const TileTexture& texture, const BakeSource& source,
            const TexelSizes& texels);
+  /// Returns an empty one if none was put.
   TileTexture texture(NodeId node) const;
   std::shared_ptr<const BakeSource> source(NodeId node) const;
   /// Returns the same as it was put, past those in memory.

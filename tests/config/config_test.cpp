@@ -634,7 +634,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
-      "storage": {"compression": "none", "normals": "smooth"},
+      "storage": {"compression": "none", "normals": "auto"},
       "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y", "tileset": {"pixels": 16}})"));
@@ -643,7 +643,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
-      "storage": {"compression": "none", "normals": "smooth"},
+      "storage": {"compression": "none", "normals": "auto"},
       "normal_map": {"texels": 896, "format": "jpeg", "quality": 85},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y", "tileset": {"pixels": 16}})"));

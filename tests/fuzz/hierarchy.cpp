@@ -25,6 +25,7 @@
 #include "storage/format/manifest.h"
 #include "storage/io/hash.h"
 #include "support/memory_files.h"
+#include "tests/support/quick_config.h"
 #include "verify/verify.h"
 
 #include <array>
@@ -57,7 +58,7 @@ Contents make_sound(config::SimplifyMethod method) {
   surface.colours = true;
   surface.double_coordinates = true;
   surface.offset = {500123.4567, 5812345.6789, 100.125};
-  config::Config config;
+  config::Config config = tests::smooth_config();
   config.input = "a.ply";
   config.output = kHierarchy;
   config.threads = 1;

@@ -5,6 +5,7 @@
 #include "storage/io/file.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
@@ -119,7 +120,7 @@ class GoldenTest : public testing::TestWithParam<Golden> {
  protected:
   std::uint64_t build(std::uint32_t threads, std::uint64_t budget) {
     const Golden& golden = GetParam();
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = directory_.path() / "terrain.ply";
     config.output = directory_.path() / "terrain.hier";
     config.threads = threads;

@@ -11,6 +11,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "verify/verify.h"
 
 #include <algorithm>
@@ -147,7 +148,7 @@ class ImportTest : public testing::Test {
     return paths;
   }
   static config::Config config(const std::vector<std::string>& names, bool weld = false) {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = inputs(names);
     config.output = "w/out/a.hier";
     config.weld = weld;

@@ -5,6 +5,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <cstddef>
@@ -38,7 +39,7 @@ class PictureTest : public testing::Test {
 
   void build(const tests::TestMesh& mesh, const char* ending = ".hier") {
     tests::write_ply(mesh, directory_.path() / "mesh.ply");
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = directory_.path() / "mesh.ply";
     config.output = hierarchy(ending);
     if (std::string(ending) == ".3tz")

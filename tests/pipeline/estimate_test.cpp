@@ -4,6 +4,7 @@
 #include "pipeline/build.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
@@ -27,7 +28,7 @@ using testing::HasSubstr;
 class EstimateTest : public testing::Test {
  protected:
   config::Config config(std::uint32_t partition_vertices = 200) const {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "deep" / "mesh.hier";
     config.threads = 2;

@@ -11,6 +11,7 @@
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 #include "verify/verify.h"
@@ -43,7 +44,7 @@ class PreviewTest : public testing::Test {
   fs::path preview() const { return storage::preview_path(hierarchy()); }
 
   config::Config config() const {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = directory_.path() / "mesh.ply";
     config.output = hierarchy();
     config.partition.vertices = 200;

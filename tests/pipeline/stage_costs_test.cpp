@@ -12,6 +12,7 @@
 #include "pipeline/simplify_stage.h"
 #include "storage/io/file.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <cstdint>
@@ -43,7 +44,7 @@ class StageCostsTest : public testing::Test {
   std::filesystem::path mesh_path() const { return directory_.path() / "mesh.ply"; }
 
   config::Config config(std::uint32_t partition_vertices) const {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = mesh_path();
     config.output = directory_.path() / "mesh.hier";
     config.threads = 2;

@@ -7,6 +7,7 @@
 #include "storage/format/archive_files.h"
 #include "storage/io/hash.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/share.h"
 #include "verify/verify.h"
 #include "verify/verify_error.h"
@@ -80,7 +81,7 @@ class PackedTest : public testing::Test {
   tests::MemoryFiles files_;
   execution::NoProgress progress_;
   execution::CancelToken cancel_;
-  config::Config config_;
+  config::Config config_ = tests::smooth_config();
 };
 
 TEST_F(PackedTest, HasTheFilesOfTheDirectory) {

@@ -9,6 +9,7 @@
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
 #include "verify/verify.h"
@@ -108,7 +109,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   void TearDown() override { RecordProperty("damages", std::to_string(damages_)); }
 
   void build(const bench::SurfaceOptions& surface, const fs::path& to) {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = "/models/mesh.ply";
     config.output = to;
     config.threads = 1;

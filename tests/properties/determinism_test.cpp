@@ -11,6 +11,7 @@
 #include "storage/io/hash.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
@@ -173,7 +174,7 @@ class DeterminismTest : public testing::Test {
   }
 
   config::Config config() const {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = mesh_path();
     config.output = directory_.path() / "mesh.hier";
     return config;

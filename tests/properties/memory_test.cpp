@@ -11,6 +11,7 @@
 #include "pipeline/stages.h"
 #include "storage/io/file.h"
 #include "tests/support/loaded_mesh.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
@@ -121,9 +122,15 @@ class MemoryTest : public testing::Test {
   Outcome build(const std::string& budget, const std::vector<std::string>& settings = {},
                 const fs::path& stats = {}) {
     std::ofstream(path("config.json")) << R"({"input": "mesh.ply", "output": "mesh.hier"})";
-    std::vector<std::string> words = {
-        MESHHIER_BINARY, "build", path("config.json").string(), "--force", "--progress",
-        "none",          "--set", "memory_budget=" + budget};
+    std::vector<std::string> words = {MESHHIER_BINARY,
+                                      "build",
+                                      path("config.json").string(),
+                                      "--force",
+                                      "--progress",
+                                      "none",
+                                      "--set",
+                                      "memory_budget=" + budget,
+                                      "storage.normals=smooth"};
     for (const std::string& setting : settings)
       words.insert(words.end(), {"--set", setting});
     if (!stats.empty())
@@ -211,7 +218,7 @@ class MemoryTest : public testing::Test {
   /// and what all tell is not far beyond the peak.
   void expect_told(std::uint32_t partition_vertices) {
     const auto files = storage::make_posix_file_system();
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.input = path("mesh.ply");
     config.output = path("none.hier");
     config.partition.vertices = partition_vertices;
@@ -250,6 +257,7 @@ class MemoryTest : public testing::Test {
                                      "--force",
                                      "--set",
                                      "memory_budget=" + budget,
+                                     "storage.normals=smooth",
                                      setting};
     ASSERT_EQ(run(plan).code, 0) << run(plan).messages;
     for (const std::string stage :

@@ -167,9 +167,25 @@ TEST_F(NormalMapsTest, WhereTheyDoNotPayThereAreNone) {
   EXPECT_THAT(problems(job), testing::IsEmpty());
 }
 
-/// A sheet of 6 x 6 bumps, each triangle twice, once reversed.
+TEST_F(NormalMapsTest, ByDefaultCoarseTilesAloneHaveThem) {
+  EXPECT_EQ(config::Config().storage.normals, Normals::map_or_none);
+  build(config(rough_torus(), Normals::map));
+  const auto all = shading(config(rough_torus(), Normals::map));
+  const config::Config job = config(rough_torus(), Normals::map_or_none);
+  build(job);
+  const storage::HierarchyReader reader(*files_, job.output);
+  const Tree& tree = reader.tree();
+  for (const TileRecord& record : reader.records())
+    EXPECT_EQ(record.has_normal_map, raw(record.node.level) + 3 < raw(tree.depth()));
+  const auto coarse = shading(job);
+  for (std::size_t l = 0; l < 2; ++l)  // made from the partitions, not from the level between
+    EXPECT_LT(coarse[l].own.degrees, all[l].own.degrees * 1.05) << l;
+  EXPECT_THAT(problems(job), testing::IsEmpty());
+}
+
+/// A sheet of 16 x 16 bumps, each triangle twice, once reversed.
 bench::LoadedMesh two_sided_bumps(std::uint64_t seed) {
-  constexpr std::uint32_t kSide = 6;
+  constexpr std::uint32_t kSide = 16;
   bench::LoadedMesh mesh;
   for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
     const double height = 0.5 * double{tests::hash_noise(seed, i)};

@@ -4,6 +4,7 @@
 #include "progressive/stream.h"
 #include "storage/format/archive.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 
 #include <fstream>
 #include <iterator>
@@ -19,7 +20,7 @@ void build(const fs::path& mesh, const fs::path& output, storage::Compression co
            std::size_t triangles) {
   write_ply(sphere(triangles), mesh);
   const auto files = storage::make_posix_file_system();
-  config::Config config;
+  config::Config config = tests::smooth_config();
   config.input = mesh;
   config.output = output;
   config.threads = 1;

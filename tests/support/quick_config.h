@@ -5,10 +5,16 @@
 
 namespace meshhier::tests {
 
-/// The defaults without a preview: to draw and to look at one takes longer than all else of so
-/// small a build.
-inline config::Config quick_config() {
+/// The defaults without normal maps: to bake one takes longer than all else of so small a build.
+inline config::Config smooth_config() {
   config::Config config;
+  config.storage.normals = config::Normals::smooth;
+  return config;
+}
+
+/// The same without a preview, for the same reason.
+inline config::Config quick_config() {
+  config::Config config = smooth_config();
   config.preview = false;
   return config;
 }

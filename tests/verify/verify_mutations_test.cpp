@@ -9,6 +9,7 @@
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
 #include "verify/verify.h"
@@ -205,7 +206,7 @@ class VerifyMutationsTest : public testing::Test {
   }
 
   static config::Config small() {
-    config::Config config;
+    config::Config config = tests::smooth_config();
     config.partition.vertices = 300;
     return config;
   }

@@ -224,7 +224,7 @@ class TasksTest : public testing::Test {
   tests::TemporaryDirectory directory_{tests::TemporaryDirectory::Place::memory};
   FaultyFileSystem files_;
   execution::CancelToken cancel_;
-  config::Config config_;
+  config::Config config_ = tests::smooth_config();
   fs::path scratch_;
   std::string message_;
 };

@@ -7,6 +7,7 @@
 #include "pipeline/simplify_stage.h"
 #include "storage/io/spool.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
@@ -92,7 +93,7 @@ class Grove {
     BuildPlan plan{.tree = tree_, .target_vertex_counts = 60};
     plan.memory.work_bytes = 1 << 20;
     plan.memory.tiles_in_flight = setting.in_flight;
-    const config::Config config;
+    const config::Config config = tests::smooth_config();
     execution::NoProgress progress;
     const execution::CancelToken cancel;
     simplify(forest_, journal_, numbering(), {0, raw(tree_.depth())},
@@ -304,6 +305,21 @@ TEST(ForestTest, AnEarlyNodeShowsItsPartition) {
               grove.forest().published_parent_map(node));
   });
   EXPECT_EQ(early, 3);  // 5 partitions under 4 nodes
+}
+
+TEST(ForestTest, MapsGoUpSeveralLevels) {
+  const Grove grove(tests::sphere(1000, 0.01F), {5, 0, 0, 1});
+  const Level last = grove.tree().depth();
+  for (std::size_t v = 0; v < 1000; ++v) {
+    const Place& place = grove.places()[raw(last)][v];
+    const NodeId partition{last, place.tile};
+    for (NodeId at = grove.tree().parent_tile(partition);; at = grove.tree().parent(at)) {
+      ASSERT_EQ(grove.forest().map_up(partition, at.level).at(place.index),
+                grove.places()[raw(at.level)][v].index);
+      if (at == grove.tree().root())
+        break;
+    }
+  }
 }
 
 TEST(ForestTest, ErrorsAndBoundsStrictlyDecreaseFromParentToChild) {
