@@ -255,6 +255,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"jpeglib.h", in({"images"})},
       {"jerror.h", in({"images"})},
       {"webp/", in({"images"})},
+      {"tiff", in({"images"})},
       {"stb/", in({"texture"})},
       {"draco/", in({"mesh_io"})},
       {"zstd.h", in({"images"})},

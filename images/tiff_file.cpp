@@ -1,0 +1,218 @@
+#include "images/tiff_file.h"
+
+#include "base/plain_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+#include <new>
+#include <utility>
+
+namespace meshhier::images {
+namespace {
+
+constexpr std::size_t kMostMessage = 200;
+/// What writing asks for at once: a block and its tables.
+constexpr std::uint64_t kMostWritten = 1U << 30U;
+
+TIFFFieldInfo geo_field(GeoTag tag, TIFFDataType type, const char* name) {
+  const bool is_text = type == TIFF_ASCII;
+  const short count = is_text ? TIFF_VARIABLE : TIFF_VARIABLE2;
+  return {.field_tag = static_cast<std::uint32_t>(tag),
+          .field_readcount = count,
+          .field_writecount = count,
+          .field_type = type,
+          .field_bit = FIELD_CUSTOM,
+          .field_oktochange = 1,
+          .field_passcount = static_cast<unsigned char>(is_text ? 0 : 1),
+          .field_name = const_cast<char*>(name)};
+}
+
+/// Makes the geo tags known to a file that is written; of one that is read the library keeps tags
+/// that it does not know, with their types.
+bool know_geo_tags(TIFF* tiff) {
+  static const std::array fields = {
+      geo_field(GeoTag::pixel_scale, TIFF_DOUBLE, "ModelPixelScale"),
+      geo_field(GeoTag::tie_points, TIFF_DOUBLE, "ModelTiepoint"),
+      geo_field(GeoTag::transformation, TIFF_DOUBLE, "ModelTransformation"),
+      geo_field(GeoTag::key_directory, TIFF_SHORT, "GeoKeyDirectory"),
+      geo_field(GeoTag::double_params, TIFF_DOUBLE, "GeoDoubleParams"),
+      geo_field(GeoTag::ascii_params, TIFF_ASCII, "GeoASCIIParams"),
+      geo_field(GeoTag::gdal_metadata, TIFF_ASCII, "GDALMetadata"),
+      geo_field(GeoTag::gdal_nodata, TIFF_ASCII, "GDALNoDataValue")};
+  return TIFFMergeFieldInfo(tiff, fields.data(), fields.size()) == 0;
+}
+
+}  // namespace
+
+/// What the library calls. No exception passes through its frames: it waits in the TiffFile.
+struct TiffFile::Calls {
+  static TiffFile& of(void* self) { return *static_cast<TiffFile*>(self); }
+
+  template <class Work>
+  static tmsize_t kept(TiffFile& tiff, const Work& work) noexcept {
+    try {
+      return static_cast<tmsize_t>(work());
+    } catch (...) {
+      if (!tiff.caught_)
+        tiff.caught_ = std::current_exception();
+      return -1;
+    }
+  }
+
+  static tmsize_t read(void* self, void* into, tmsize_t bytes) {
+    TiffFile& tiff = of(self);
+    return kept(tiff, [&] {
+      const std::span to(static_cast<std::byte*>(into), static_cast<std::size_t>(bytes));
+      const std::size_t count = tiff.file_.read_at(tiff.position_, to);
+      tiff.position_ += count;
+      return count;
+    });
+  }
+
+  static tmsize_t write(void* self, void* from, tmsize_t bytes) {
+    TiffFile& tiff = of(self);
+    return kept(tiff, [&] {
+      if (tiff.written_ == nullptr)
+        return tmsize_t{-1};
+      tiff.written_->write_at(
+          tiff.position_, {static_cast<const std::byte*>(from), static_cast<std::size_t>(bytes)});
+      tiff.position_ += static_cast<std::uint64_t>(bytes);
+      return bytes;
+    });
+  }
+
+  static toff_t seek(void* self, toff_t offset, int whence) {
+    TiffFile& tiff = of(self);
+    const std::uint64_t from = whence == SEEK_CUR   ? tiff.position_
+                               : whence == SEEK_END ? size(self)
+                                                    : 0;
+    return tiff.position_ = from + offset;
+  }
+
+  static toff_t size(void* self) {
+    TiffFile& tiff = of(self);
+    return static_cast<toff_t>(
+        std::max<tmsize_t>(0, kept(tiff, [&] { return tiff.file_.size(); })));
+  }
+
+  static int close(void* /*self*/) { return 0; }
+
+  static int say(TIFF* /*tiff*/, void* self, const char* /*where*/, const char* format,
+                 va_list arguments) {
+    TiffFile& tiff = of(self);
+    std::array<char, kMostMessage> text{};
+    std::vsnprintf(text.data(), text.size(), format, arguments);
+    if (tiff.message_.empty())  // the first one is the cause
+      kept(tiff, [&] { return tiff.message_ = plain_text(text.data(), kMostMessage), 0; });
+    return 1;
+  }
+
+  static int ignore(TIFF* /*tiff*/, void* /*self*/, const char* /*where*/, const char* /*format*/,
+                    va_list /*arguments*/) {
+    return 1;
+  }
+};
+
+void TiffFile::Close::operator()(TIFF* tiff) const {
+  TIFFCleanup(tiff);  // unlike TIFFClose() it writes nothing
+}
+
+TiffFile::TiffFile(const storage::File& file, std::uint64_t most_bytes) : file_(file) {
+  open("rmO", most_bytes);  // not mapped; tables of blocks as far as they are needed
+}
+
+TiffFile::TiffFile(storage::File& file, Form form) : file_(file), written_(&file) {
+  open(form == Form::big ? "w8" : "w", kMostWritten);
+  check(know_geo_tags(tiff_.get()));
+}
+
+TiffFile::~TiffFile() = default;
+
+void TiffFile::open(const char* mode, std::uint64_t most_bytes) {
+  struct Free {
+    void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
+  };
+  const std::unique_ptr<TIFFOpenOptions, Free> options(TIFFOpenOptionsAlloc());
+  if (options == nullptr)
+    throw std::bad_alloc();
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(),
+                                      static_cast<tmsize_t>(std::min<std::uint64_t>(
+                                          most_bytes, std::numeric_limits<tmsize_t>::max())));
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Calls::say, this);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Calls::ignore, this);
+  tiff_.reset(TIFFClientOpenExt("", mode, this, Calls::read, Calls::write, Calls::seek,
+                                Calls::close, Calls::size, nullptr, nullptr, options.get()));
+  check(tiff_ != nullptr);
+}
+
+void TiffFile::fail(std::string_view message) const {
+  throw Error(written_ == nullptr ? ErrorCode::input : ErrorCode::io,
+              file_.path().string() + ": " + std::string(message));
+}
+
+void TiffFile::check(bool succeeded) {
+  const std::string message = std::exchange(message_, {});
+  if (caught_)
+    std::rethrow_exception(std::exchange(caught_, nullptr));
+  if (!succeeded)
+    fail(message.empty() ? "libtiff cannot go on" : "libtiff says: " + message);
+}
+
+template <class Value>
+std::vector<Value> TiffFile::values(GeoTag tag, TIFFDataType type) {
+  const TIFFField* field = TIFFFindField(tiff_.get(), static_cast<std::uint32_t>(tag), type);
+  std::uint32_t count = 0;
+  const Value* first = nullptr;
+  const bool found =
+      field != nullptr && TIFFFieldDataType(field) == type && TIFFFieldPassCount(field) != 0 &&
+      TIFFFieldReadCount(field) == TIFF_VARIABLE2 &&
+      TIFFGetField(tiff_.get(), static_cast<std::uint32_t>(tag), &count, &first) == 1;
+  check(true);
+  return found && first != nullptr ? std::vector<Value>(first, first + count)
+                                   : std::vector<Value>();
+}
+
+std::vector<double> TiffFile::doubles(GeoTag tag) {
+  return values<double>(tag, TIFF_DOUBLE);
+}
+
+std::vector<std::uint16_t> TiffFile::shorts(GeoTag tag) {
+  return values<std::uint16_t>(tag, TIFF_SHORT);
+}
+
+std::string TiffFile::text(GeoTag tag) {
+  const std::vector<char> characters = values<char>(tag, TIFF_ASCII);
+  return {characters.begin(), std::ranges::find(characters, '\0')};
+}
+
+void TiffFile::check_block(std::uint32_t index) {
+  int failed = 0;
+  const std::uint64_t offset = TIFFGetStrileOffsetWithErr(tiff_.get(), index, &failed);
+  check(failed == 0);
+  const std::uint64_t bytes = TIFFGetStrileByteCountWithErr(tiff_.get(), index, &failed);
+  check(failed == 0);
+  const std::uint64_t size = file_.size();
+  if (offset > size || bytes > size - offset) {
+    fail("block " + std::to_string(index) + " would lie at byte " + std::to_string(offset) +
+         ", with " + std::to_string(bytes) + " bytes, but the file has " + std::to_string(size) +
+         "; it may have been cut off");
+  }
+}
+
+void TiffFile::read_block(std::uint32_t index, std::span<std::byte> into) {
+  check_block(index);
+  const auto room = static_cast<tmsize_t>(into.size());
+  const tmsize_t read = TIFFIsTiled(tiff_.get()) != 0
+                            ? TIFFReadEncodedTile(tiff_.get(), index, into.data(), room)
+                            : TIFFReadEncodedStrip(tiff_.get(), index, into.data(), room);
+  check(read >= 0);
+  if (read != room) {
+    fail("block " + std::to_string(index) + " has " + std::to_string(read) + " bytes, expected " +
+         std::to_string(room));
+  }
+}
+
+}  // namespace meshhier::images
