@@ -1,14 +1,20 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
+#include "app/number_text.h"
 #include "app/options.h"
 #include "export/export.h"
+#include "export/orthophoto.h"
 #include "export/piece_mesh.h"
 #include "pipeline/build.h"
+#include "storage/io/output_file.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -26,13 +32,16 @@ struct ExportArguments {
   bool outline = false;
   exporting::RegionRequest region;
   bool clip = false;
+  std::optional<double> pixel;
+  std::optional<exporting::PlanPoint> corner;
+  std::string heights;
   std::string output;
   bool force = false;
   std::uint64_t memory_budget = exporting::ExportOptions{}.memory_budget;
 };
 
-/// Requires that exactly one of them was given.
-exporting::ExportSelection selection(const ExportArguments& arguments) {
+/// Requires that at most one of them was given.
+std::optional<exporting::ExportSelection> selection(const ExportArguments& arguments) {
   if (arguments.level)
     return *arguments.level;
   if (arguments.node)
@@ -41,7 +50,23 @@ exporting::ExportSelection selection(const ExportArguments& arguments) {
     return std::filesystem::path(arguments.cut);
   if (arguments.error)
     return exporting::LargestError{*arguments.error};
-  return exporting::OutlineSelection{};
+  if (arguments.outline)
+    return exporting::OutlineSelection{};
+  return std::nullopt;
+}
+
+/// Whether a raster is asked for, and not a mesh.
+bool is_raster(const ExportArguments& arguments) {
+  return !arguments.heights.empty() || arguments.pixel || arguments.corner ||
+         exporting::is_raster_name(arguments.output);
+}
+
+/// Throws CLI::RequiredError as the parser does.
+void require_complete(const ExportArguments& arguments) {
+  if (arguments.output.empty() && arguments.heights.empty())
+    throw CLI::RequiredError("--output");
+  if (!is_raster(arguments) && !selection(arguments))
+    throw CLI::RequiredError::Option(1, 1, 0, "--level,--node,--cut,--error,--outline");
 }
 
 /// Builds a hierarchy of the piece and returns a text for people.
@@ -56,24 +81,53 @@ std::string make_hierarchy(const HierarchyPlace& place, const exporting::ExportO
   return report.text + "its simplified levels are new: a piece has another tree than the whole";
 }
 
+/// Writes a mesh or a hierarchy and returns a text for people.
+std::string make_mesh(const HierarchyPlace& place, const ExportArguments& arguments,
+                      execution::Progress& progress, Environment& environment) {
+  const exporting::ExportOptions options{selection(arguments).value(),
+                                         arguments.output,
+                                         arguments.memory_budget,
+                                         arguments.force,
+                                         arguments.region,
+                                         arguments.clip};
+  return exporting::is_hierarchy_name(arguments.output)
+             ? make_hierarchy(place, options, progress, environment)
+             : exporting::export_mesh(place.files(), place.path(), options, progress,
+                                      environment.cancel);
+}
+
+std::string make_rasters(const HierarchyPlace& place, const ExportArguments& arguments,
+                         execution::Progress& progress, Environment& environment) {
+  const exporting::RasterOptions options{
+      .picture = arguments.output,
+      .heights = arguments.heights,
+      .pixel = arguments.pixel,
+      .corner = arguments.corner.value_or(exporting::PlanPoint{}),
+      .selection = selection(arguments),
+      .memory_budget = arguments.memory_budget,
+      .replace = arguments.force,
+      .region = arguments.region};
+  return exporting::export_rasters(place.files(), place.path(), options, progress,
+                                   environment.cancel);
+}
+
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  const exporting::ExportOptions options{selection(arguments),    arguments.output,
-                                         arguments.memory_budget, arguments.force,
-                                         arguments.region,        arguments.clip};
   if (arguments.clip)
     require_region(arguments.region, "--clip");
   if (!arguments.region.crs.empty())
     require_region(arguments.region, "--crs");
   require_no_terminal(environment, arguments.output);
-  std::ostream& account = account_stream(environment, arguments.output);
+  require_no_terminal(environment, arguments.heights);
+  const bool is_streamed = storage::is_standard_output(environment.files, arguments.output) ||
+                           storage::is_standard_output(environment.files, arguments.heights);
+  std::ostream& account = is_streamed ? environment.messages : environment.out;
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line = exporting::is_hierarchy_name(arguments.output)
-                               ? make_hierarchy(place, options, *progress, environment)
-                               : exporting::export_mesh(place.files(), place.path(), options,
-                                                        *progress, environment.cancel);
-  progress->finish(arguments.output);
+  const std::string line = is_raster(arguments)
+                               ? make_rasters(place, arguments, *progress, environment)
+                               : make_mesh(place, arguments, *progress, environment);
+  progress->finish(arguments.output.empty() ? arguments.heights : arguments.output);
   account << line << '\n' << place.account();
   return 0;
 }
@@ -82,6 +136,13 @@ constexpr const char* kExportFooter =
     R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together
 they must cover every partition once. The pieces are joined without seams. A NAME.hier or NAME.3tz is
 a hierarchy of its own, built as the whole was: its simplified levels are made anew.
+
+A NAME.tif is an orthophoto, --dsm FILE the heights of the highest surface (float, -9999 where there
+is none): GeoTIFFs of the model seen from above, on its map, on the globe's plane where it stands, or in
+its own coordinates. Both may be made in one run, and end where box or polygon do. They show tiles
+that are at most half a pixel off, unless --level, --cut or --error asks for others; without pictures,
+and for heights, vertices are as dense as pixels, too. What has neither pictures nor colours is shown
+as a relief in grey.
 
 Examples:
   meshhier export david.hier --level 0 -o whole.ply
@@ -93,18 +154,54 @@ Examples:
   meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
   meshhier export town.hier --level 6 --polygon parcel.geojson --crs EPSG:4326 --clip -o parcel.ply
   meshhier export town.3tz --error 0 --box 0,0,-10 200,100,90 -o quarter.3tz
+  meshhier export town.hier --gsd 0.02 -o ortho.tif --dsm dsm.tif
+  meshhier export hills.hier --gsd 30 --align 15,15 --dsm heights.tif
   meshhier export https://example.org/town.3tz --level 4 -o town.ply
 )";
+
+/// Adds --gsd, --align and --dsm.
+void add_raster_options(CLI::App& command, ExportArguments& arguments) {
+  CLI::App* group = add_group(command, "Rasters", "The model seen from above, as GeoTIFFs");
+  group
+      ->add_option_function<std::string>(
+          "--gsd",
+          [&arguments](const std::string& text) {
+            arguments.pixel = parse_number<double>(text);
+            if (!arguments.pixel || !(*arguments.pixel > 0) || !std::isfinite(*arguments.pixel))
+              throw CLI::ValidationError("--gsd", "expected a length above 0, found " + text);
+          },
+          "A pixel's side: in units of the map, metres on the globe, else units of the input; if "
+          "not "
+          "given, about as fine as the input")
+      ->type_name("LENGTH");
+  group
+      ->add_option_function<std::string>(
+          "--align",
+          [&arguments](const std::string& text) {
+            const std::size_t comma = std::min(text.find(','), text.size());
+            const auto x = parse_number<double>(std::string_view(text).substr(0, comma));
+            const auto y = parse_number<double>(
+                std::string_view(text).substr(std::min(comma + 1, text.size())));
+            if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y))
+              throw CLI::ValidationError("--align", "expected two numbers, X,Y, found " + text);
+            arguments.corner = exporting::PlanPoint{*x, *y};
+          },
+          "A place where pixels have a corner [0,0]")
+      ->type_name("X,Y");
+  group->add_option("--dsm", arguments.heights, "Write the heights of the highest surface, too")
+      ->type_name("FILE")
+      ->check(name_fault);
+}
 
 }  // namespace
 
 void add_export_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command =
-      parser.add_subcommand("export", "Write part of a hierarchy as a PLY, GLB or OBJ file");
+  CLI::App* command = parser.add_subcommand(
+      "export", "Write part of a hierarchy as a PLY, GLB or OBJ file, or as an orthophoto");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
 
-  CLI::App* what = add_group(*command, "What", "Exactly one of these");
+  CLI::App* what = add_group(*command, "What", "Exactly one of these; of rasters at most one");
   add_place_options(*what, arguments->level, arguments->node);
   what->add_option("--cut", arguments->cut, "The cut that this file lists")
       ->type_name("FILE")
@@ -113,17 +210,20 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
       });
   add_error_option(*what, [arguments](double error) { arguments->error = error; });
   what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
-  what->require_option(1);
+  what->require_option(0, 1);
   add_region_options(*command, arguments->region);
+  add_raster_options(*command, *arguments);
   command->add_flag("--clip", arguments->clip, "Cut triangles where box or polygon end");
 
-  add_file_output_options(
-      *command, "What to write: .glb or .obj, with textures, .hier or .3tz, or else a PLY",
-      arguments->output, arguments->force);
+  add_file_output_options(*command,
+                          "What to write: .glb or .obj, with textures, .hier or .3tz, .tif (an "
+                          "orthophoto), or else a PLY",
+                          arguments->output, arguments->force, Given::not_always);
   add_memory_budget_option(*command, arguments->memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kExportFooter);
   command->callback([arguments, &invocation] {
+    require_complete(*arguments);
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_export(*arguments, invocation.progress, environment);
     };

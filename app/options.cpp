@@ -133,11 +133,11 @@ std::string name_fault(const std::string& text) {
 }
 
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
-                             bool& replace) {
+                             bool& replace, Given given) {
   command.add_option("-o,--output", output, help + "; \"-\" is standard output")
       ->type_name("FILE")
       ->check(name_fault)
-      ->required();
+      ->required(given == Given::always);
   command.add_flag("--force", replace, "Replace an existing file");
 }
 

@@ -29,9 +29,12 @@ void add_progress_option(CLI::App& command, execution::ProgressMode& mode);
 /// Returns the fault of a name of a file or directory, for CLI::Option::check(): that it is empty.
 std::string name_fault(const std::string& text);
 
+/// Whether a command line has no meaning without an option.
+enum class Given { always, not_always };
+
 /// Adds -o FILE and --force, for commands that make one file.
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
-                             bool& replace);
+                             bool& replace, Given given = Given::always);
 
 /// Returns the stream on which a command that writes `output` tells what it did: not standard
 /// output if that is the output.

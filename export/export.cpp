@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
-#include "export/cut_file.h"
 #include "export/cut_mesh.h"
 #include "export/cut_vertices.h"
 #include "export/export_parts.h"
+#include "export/named_cut.h"
 #include "export/piece.h"
 #include "export/ply_vertices.h"
 #include "export/tile_vertices.h"
@@ -179,7 +179,7 @@ void require_own_ending(const fs::path& output) {
       output.string(), {".ply", ".glb", ".obj"},
       storage::lower_extension(output) == ".gz"
           ? "export packs nothing; pack it yourself: -o - | gzip"
-          : "export writes .ply, .glb, .obj, .hier and .3tz; choose one of these");
+          : "export writes .ply, .glb, .obj, .hier, .3tz and .tif; choose one of these");
 }
 
 VertexArray first_vertices(const VertexArray& from, std::size_t count) {
@@ -291,25 +291,6 @@ Piece piece_of(const Job& job, Cut cut, const ExportOptions& options) {
   return {job.reader, std::move(cut), region_of(job.files, job.reader, options.region, job.cancel),
           options.clip ? Clipping::at_border : Clipping::whole_triangles,
           options.memory_budget / 4};
-}
-
-/// A cut, and what it is called; nothing of what is none.
-struct NamedCut {
-  Cut cut;
-  std::string name;
-};
-std::optional<NamedCut> cut_of(storage::FileSystem& files, const storage::HierarchyReader& reader,
-                               const ExportSelection& selection) {
-  const Tree& tree = reader.tree();
-  if (const auto* level = std::get_if<Level>(&selection)) {
-    require_level(tree, *level);
-    return NamedCut{Cut::of_level(tree, *level), fmt::format("level {}", raw(*level))};
-  }
-  if (const auto* path = std::get_if<fs::path>(&selection))
-    return NamedCut{read_cut(files, tree, *path), "cut"};
-  if (const auto* largest = std::get_if<LargestError>(&selection))
-    return NamedCut{cut_by_error(reader, *largest), fmt::format("error {}", largest->error)};
-  return std::nullopt;
 }
 
 /// Writes a GLB or OBJ and publishes it.

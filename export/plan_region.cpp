@@ -361,6 +361,11 @@ bool PlanRegion::may_meet(const BoundsD& box) const {
          parts_->contains(a);
 }
 
+std::array<PlanPoint, 2> PlanRegion::corners() const {
+  const auto low = parts_->tree.bounds().min_corner(), high = parts_->tree.bounds().max_corner();
+  return {PlanPoint{low.get<0>(), low.get<1>()}, PlanPoint{high.get<0>(), high.get<1>()}};
+}
+
 TriangleCut PlanRegion::cut(const std::array<Vec3d, 3>& corners) const {
   parts_->check();
   std::array<PlanPoint, 3> places;

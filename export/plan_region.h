@@ -94,6 +94,9 @@ class PlanRegion {
   /// Returns false only if no point of the box lies in it.
   bool may_meet(const BoundsD& box) const;
   bool contains(Vec3d p) const;
+  /// Returns the least and the greatest corner of the box around all polygons; the first one is
+  /// beyond the second one if there are none.
+  std::array<PlanPoint, 2> corners() const;
   /// Cuts a triangle where borders of polygons run over it, seen from above. Two triangles that
   /// share an edge are cut at the same places of it, and edges only where a border crosses them: no
   /// gap opens. A vertical triangle is cut into strips. O(n + k log k) for k borders in its box, as

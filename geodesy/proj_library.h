@@ -10,6 +10,7 @@
 
 /// The functions that are used, without the `proj_` before them.
 #define MESHHIER_PROJ_FUNCTIONS(FUNCTION)              \
+  FUNCTION(as_wkt)                                     \
   FUNCTION(clone)                                      \
   FUNCTION(context_create)                             \
   FUNCTION(context_destroy)                            \
@@ -28,10 +29,17 @@
   FUNCTION(destroy)                                    \
   FUNCTION(errno_reset)                                \
   FUNCTION(get_area_of_use)                            \
+  FUNCTION(get_id_auth_name)                           \
+  FUNCTION(get_id_code)                                \
   FUNCTION(get_name)                                   \
   FUNCTION(get_source_crs)                             \
   FUNCTION(get_type)                                   \
+  FUNCTION(identify)                                   \
+  FUNCTION(int_list_destroy)                           \
   FUNCTION(is_crs)                                     \
+  FUNCTION(list_destroy)                               \
+  FUNCTION(list_get)                                   \
+  FUNCTION(list_get_count)                             \
   FUNCTION(log_level)                                  \
   FUNCTION(normalize_for_visualization)                \
   FUNCTION(pj_info)                                    \

@@ -90,6 +90,12 @@ struct EdgeFunction {
   constexpr std::int64_t least() const { return b.y < a.y || (b.y == a.y && b.x > a.x) ? 0 : 1; }
 };
 
+/// Which samples on its edges a triangle covers.
+enum class EdgeRule {
+  one_owner,  ///< as above: none belongs to two triangles
+  closed      ///< all, its corners too
+};
+
 /// Turned so that its inside is to the right of its edges.
 class GridTriangle {
  public:
@@ -107,7 +113,8 @@ class GridTriangle {
   /// of which is_wanted(run, row) is false; it is asked of runs that the triangle may cover only.
   /// `box`: box_of() its corners.
   template <class IsWanted, class Visit>
-  void visit(const SampleBox& box, const IsWanted& is_wanted, const Visit& visit) const {
+  void visit(const SampleBox& box, const IsWanted& is_wanted, const Visit& visit,
+             EdgeRule rule = EdgeRule::one_owner) const {
     if (area_ == 0)
       return;
     // Each edge is that opposite to a corner, and its value that corner's share of the area.
@@ -118,7 +125,9 @@ class GridTriangle {
     Values values{edges[0](start), edges[1](start), edges[2](start)};
     const Values right{edges[0].step_right(), edges[1].step_right(), edges[2].step_right()};
     const Values down{edges[0].step_down(), edges[1].step_down(), edges[2].step_down()};
-    const Values least{edges[0].least(), edges[1].least(), edges[2].least()};
+    const Values least = rule == EdgeRule::closed
+                             ? Values{}
+                             : Values{edges[0].least(), edges[1].least(), edges[2].least()};
     for (std::int64_t row = box.down.begin; row < box.down.end; ++row) {
       visit_row(row, box.across, values, right, least, is_wanted, visit);
       for (std::size_t i = 0; i < 3; ++i)

@@ -3,6 +3,7 @@
 #include "render/distinct_places.h"
 #include "render/mip_texture.h"
 #include "render/space.h"
+#include "render/texel_level.h"
 
 #include <algorithm>
 #include <array>
@@ -31,21 +32,6 @@ Vec3f flat_normal(const Places& places) {
   return to_float(Vec3d{across.x, -across.y, -across.z} * (1 / size));
 }
 
-/// Twice that of the triangle (a, b, c).
-double area(double ab_x, double ab_y, double ac_x, double ac_y) {
-  return std::abs(ab_x * ac_y - ab_y * ac_x);
-}
-
-/// The camera's lines are parallel: it is the same all over a facet.
-double level_of(const Skin& skin, const MipTexture& texture, const Places& places) {
-  const auto& [a, b, c] = places;
-  const auto& [s, t, r] = skin.texcoords;
-  const double texels =
-      double{1} * texture.width() * texture.height() *
-      area(double{t.u} - s.u, double{t.v} - s.v, double{r.u} - s.u, double{r.v} - s.v);
-  return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
-}
-
 /// A sample's threshold, from 0 to 1: those of a pixel are all different, and evenly spread.
 double threshold_at(std::int64_t column, std::int64_t row, std::uint32_t samples) {
   // Neighbours in a row or column are far from each other in the order.
@@ -60,7 +46,7 @@ class MapFrames {
  public:
   MapFrames(const Camera& camera, const Skin& skin, const Three& normals, const Places& places,
             bool is_behind)
-      : skin_(skin), level_(level_of(skin, *skin.normal_map, places)) {
+      : skin_(skin), level_(level_of(*skin.normal_map, skin.texcoords, places)) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3d tangent = to_double(camera.turned(unit_or_zero(skin.tangents[i])));
       bitangents_[i] = cross(normals[i], tangent) * (skin.is_mirrored ? -1.0 : 1.0);
@@ -99,7 +85,7 @@ class SeenSurface {
     colour_ = facet[0].colour;
     is_one_colour_ = facet[1].colour == colour_ && facet[2].colour == colour_;
     if (skin.texture != nullptr)
-      level_ = level_of(skin, *skin.texture, places);
+      level_ = level_of(*skin.texture, skin.texcoords, places);
     if (skin.normal_map != nullptr)
       frames_.emplace(camera, skin, normals_, places, is_behind);
   }

@@ -1,29 +1,13 @@
 #include "render/tile_facets.h"
 
-#include "base/srgb.h"
 #include "hierarchy/shown_corners.h"
+#include "render/vertex_light.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace meshhier::render {
 namespace {
-
-/// The light of a number; `full` stands for 1.
-double light(float number, double full, ColourSpace space) {
-  if (space == ColourSpace::linear)
-    return number > 0 ? std::min(number / full, 1.0) : 0;
-  static const std::array<double, 256> bytes = [] {
-    std::array<double, 256> lights{};
-    for (std::size_t i = 0; i < lights.size(); ++i)
-      lights[i] = light_of(static_cast<double>(i) / 255);
-    return lights;
-  }();
-  const bool is_byte = full == 255 && number >= 0 && number <= 255 && number == std::floor(number);
-  return is_byte ? bytes[static_cast<std::size_t>(number)] : light_of(number / full);
-}
 
 /// The corners that a tile's vertices are, each by its number in the file.
 class TileCorners {
@@ -31,9 +15,7 @@ class TileCorners {
   TileCorners(const PublishedTile& tile, const AttributeLayout& layout, NormalKind normals)
       : tile_(tile),
         given_normals_(layout.part(AttributeKind::normals)),
-        colours_(layout.part(AttributeKind::colours)),
-        full_(full_number(layout.colour)),
-        space_(layout.space),
+        light_(layout),
         normals_(normals) {}
 
   Facet facet(const TileTriangle& t) const { return {corner(t[0]), corner(t[1]), corner(t[2])}; }
@@ -60,7 +42,8 @@ class TileCorners {
         raw(number) < n ? raw(number) : tile_.shading.split_of[raw(number) - n];
     const Source from = source(vertex);
     const auto attributes = from.array.attributes_of(from.index);
-    return {from.array.positions[from.index], normal(raw(number), attributes), colour(attributes)};
+    return {from.array.positions[from.index], normal(raw(number), attributes),
+            light_.of(attributes)};
   }
 
   Vec3f normal(std::size_t number, std::span<const float> attributes) const {
@@ -71,23 +54,14 @@ class TileCorners {
     return given_normals_.count > 0 ? channels(attributes, given_normals_) : Vec3f{};
   }
 
-  Vec3f colour(std::span<const float> attributes) const {
-    if (colours_.count == 0)
-      return kPlainColour;
-    const Vec3f rgb = channels(attributes, colours_);
-    const auto of = [&](float number) { return light(number, full_, space_); };
-    return to_float({of(rgb.x), of(rgb.y), of(rgb.z)});
-  }
-
   static Vec3f channels(std::span<const float> attributes, const AttributePart& part) {
     const auto three = part.of(attributes);
     return {three[0], three[1], three[2]};
   }
 
   const PublishedTile& tile_;
-  AttributePart given_normals_, colours_;
-  double full_;
-  ColourSpace space_;
+  AttributePart given_normals_;
+  VertexLight light_;
   NormalKind normals_;
 };
 

@@ -38,6 +38,7 @@ const std::set<std::string> kOtherTypes{"",
                                         "L",
                                         "L/I",
                                         "LENGTH",
+                                        "X,Y",
                                         "X,Y,Z",
                                         "CRS",
                                         "KEY=VALUE",
@@ -52,7 +53,7 @@ const std::set<std::string> kOtherTypes{"",
                                         "png|webp",
                                         "viridis|cividis|turbo|coolwarm",
                                         "auto|bar|json|none"};
-const std::set<std::string> kWritten{"--output", "--stats", "--input-note", "--work"};
+const std::set<std::string> kWritten{"--output", "--dsm", "--stats", "--input-note", "--work"};
 
 std::string without_roff(std::string text) {
   for (const std::string mark : {"\\fB", "\\fR", "\\fI", "\\"}) {
