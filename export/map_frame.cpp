@@ -76,24 +76,28 @@ GroundPoint point_at(double longitude, double latitude) {
   return level;
 }
 
-/// Rounded to a centimetre, so that the last bits of an arc tangent do not count.
+/// Rounded to a centimetre: whole numbers for the file.
 double rounded_degrees(double radians) {
   constexpr double kParts = 1e7;
   return std::round(radians * 180 / std::numbers::pi * kParts) / kParts;
 }
 
+/// The angle of a direction, -pi to pi.
+double signed_angle(double x, double y) {
+  return y < 0 ? -angle_of(x, -y) : angle_of(x, y);
+}
+
 /// Returns the point below or above a geocentric place (Bowring 1976, near the ground exact to less
 /// than the rounding).
 GroundPoint point_below(Vec3d place) {
-  const double across = std::hypot(place.x, place.y);
-  constexpr double kRatio = wgs84::kPole / wgs84::kEquator;
   constexpr double kSecond = wgs84::kEccentricity2 / (1 - wgs84::kEccentricity2);
-  const double theta = std::atan2(place.z, kRatio * across);
-  const double sine = std::sin(theta), cosine = std::cos(theta);
+  const double across = std::sqrt(place.x * place.x + place.y * place.y);
+  const double x = across * wgs84::kPole, y = place.z * wgs84::kEquator;
+  const double size = std::sqrt(x * x + y * y), cosine = x / size, sine = y / size;
   const double latitude =
-      std::atan2(place.z + kSecond * wgs84::kPole * sine * sine * sine,
-                 across - wgs84::kEccentricity2 * wgs84::kEquator * cosine * cosine * cosine);
-  return point_at(rounded_degrees(std::atan2(place.y, place.x)), rounded_degrees(latitude));
+      signed_angle(across - wgs84::kEccentricity2 * wgs84::kEquator * cosine * cosine * cosine,
+                   place.z + kSecond * wgs84::kPole * sine * sine * sine);
+  return point_at(rounded_degrees(signed_angle(place.x, place.y)), rounded_degrees(latitude));
 }
 
 /// A transform from z-up coordinates of the input to geocentric ones.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -30,23 +29,17 @@ Spread spread_of(const MapFrame& frame, const TileRecord& record) {
   return {(box.max.x - box.min.x) * (box.max.y - box.min.y), double(record.own_count)};
 }
 
-double power_of_ten(int exponent, double times) {
-  const double power = std::pow(10.0, std::abs(exponent));
-  return exponent < 0 ? times / power : times * power;
-}
-
 /// Returns the number 1, 2 or 5 times a power of 10 that is nearest to a length, as ratios go.
 double round_length(double length) {
-  if (!(length > 0) || !std::isfinite(length))
-    return 1;
-  const int exponent = static_cast<int>(std::floor(std::log10(length)));
+  constexpr double kLargest = 1e15;
   const auto ratio = [&](double round) { return std::max(round / length, length / round); };
-  double best = std::numeric_limits<double>::infinity();
-  for (int e = exponent - 1; e <= exponent + 1; ++e) {
+  double best = 1;
+  for (double power = 1; length > 0 && power <= kLargest; power *= 10) {
     for (const double digit : {1.0, 2.0, 5.0}) {
-      const double round = power_of_ten(e, digit);
-      if (!std::isfinite(best) || ratio(round) < ratio(best))
-        best = round;
+      for (const double round : {digit * power, digit / power}) {
+        if (ratio(round) < ratio(best))
+          best = round;
+      }
     }
   }
   return best;

@@ -66,39 +66,39 @@ RasterPyramid::RasterPyramid(images::TiffPixel kind, images::TexelSize size,
   for (;;) {
     const std::size_t tiles =
         std::size_t{images::tiff_tiles(size.width)} * images::tiff_tiles(size.height);
-    levels_.push_back({size, storage::BlobStore(scratch, tiles)});
+    layers_.push_back({size, storage::BlobStore(scratch, tiles)});
     if (tiles == 1)
       break;
     size = images::level_size(size, 1);
   }
 }
 
-std::vector<std::byte> RasterPyramid::tile_of(const Level& level, std::size_t index) const {
+std::vector<std::byte> RasterPyramid::tile_of(const Layer& layer, std::size_t index) const {
   std::vector<std::byte> pixels(kTiffTileBytes);
-  images::unpack_tile(kind_, level.tiles.view(index).bytes(), pixels, "the scratch file");
+  images::unpack_tile(kind_, layer.tiles.view(index).bytes(), pixels, "the scratch file");
   return pixels;
 }
 
 void RasterPyramid::put(std::uint32_t column, std::uint32_t row, std::vector<std::byte> pixels) {
-  put(levels_.front(), column, row, std::move(pixels));
+  put(layers_.front(), column, row, std::move(pixels));
 }
 
-void RasterPyramid::put(Level& level, std::uint32_t column, std::uint32_t row,
+void RasterPyramid::put(Layer& layer, std::uint32_t column, std::uint32_t row,
                         std::vector<std::byte> pixels) {
-  extend(pixels, std::min(kTiffTileSide, level.size.width - column * kTiffTileSide),
-         std::min(kTiffTileSide, level.size.height - row * kTiffTileSide));
-  level.tiles.put(std::size_t{row} * level.columns() + column, images::pack_tile(kind_, pixels));
+  extend(pixels, std::min(kTiffTileSide, layer.size.width - column * kTiffTileSide),
+         std::min(kTiffTileSide, layer.size.height - row * kTiffTileSide));
+  layer.tiles.put(std::size_t{row} * layer.columns() + column, images::pack_tile(kind_, pixels));
 }
 
 std::size_t RasterPyramid::overview_tiles() const {
   std::size_t tiles = 0;
-  for (const Level& level : std::span(levels_).subspan(1))
-    tiles += level.tiles.count();
+  for (const Layer& layer : std::span(layers_).subspan(1))
+    tiles += layer.tiles.count();
   return tiles;
 }
 
 /// Returns the tile of the next level that four tiles make.
-std::vector<std::byte> RasterPyramid::halved(const Level& finer, std::uint32_t column,
+std::vector<std::byte> RasterPyramid::halved(const Layer& finer, std::uint32_t column,
                                              std::uint32_t row) const {
   std::vector<std::byte> pixels(kTiffTileBytes);
   for (const auto& [right, down] : {std::pair{0U, 0U}, {1U, 0U}, {0U, 1U}, {1U, 1U}}) {
@@ -117,13 +117,13 @@ std::vector<std::byte> RasterPyramid::halved(const Level& finer, std::uint32_t c
 
 void RasterPyramid::make_overviews(const execution::CancelToken& cancel,
                                    const std::function<void()>& step) {
-  for (std::size_t i = 1; i < levels_.size(); ++i) {
-    Level& level = levels_[i];
-    execution::parallel_for(level.tiles.count(), [&](std::size_t index) {
+  for (std::size_t i = 1; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    execution::parallel_for(layer.tiles.count(), [&](std::size_t index) {
       cancel.check();
-      const auto column = static_cast<std::uint32_t>(index % level.columns());
-      const auto row = static_cast<std::uint32_t>(index / level.columns());
-      put(level, column, row, halved(levels_[i - 1], column, row));
+      const auto column = static_cast<std::uint32_t>(index % layer.columns());
+      const auto row = static_cast<std::uint32_t>(index / layer.columns());
+      put(layer, column, row, halved(layers_[i - 1], column, row));
       step();
     });
   }
@@ -132,19 +132,19 @@ void RasterPyramid::make_overviews(const execution::CancelToken& cancel,
 void RasterPyramid::write(storage::File& file, std::span<const images::TiffField> fields,
                           const execution::CancelToken& cancel) const {
   std::vector<images::TiffRaster> rasters;
-  for (const Level& level : levels_) {
-    images::TiffRaster raster{level.size.width, level.size.height, {}};
-    for (std::size_t i = 0; i < level.tiles.count(); ++i)
-      raster.tile_bytes.push_back(level.tiles.size(i));
+  for (const Layer& layer : layers_) {
+    images::TiffRaster raster{layer.size.width, layer.size.height, {}};
+    for (std::size_t i = 0; i < layer.tiles.count(); ++i)
+      raster.tile_bytes.push_back(layer.tiles.size(i));
     rasters.push_back(std::move(raster));
   }
   const std::vector<std::byte> head = images::tiff_head(kind_, rasters, fields);
   file.write_at(0, head);
   std::uint64_t at = head.size();
-  for (std::size_t level = levels_.size(); level-- > 0;) {
-    for (std::size_t i = 0; i < levels_[level].tiles.count(); ++i) {
+  for (std::size_t level = layers_.size(); level-- > 0;) {
+    for (std::size_t i = 0; i < layers_[level].tiles.count(); ++i) {
       cancel.check();
-      const storage::BlobView tile = levels_[level].tiles.view(i);
+      const storage::BlobView tile = layers_[level].tiles.view(i);
       file.write_at(at, tile.bytes());
       at += tile.bytes().size();
     }

@@ -45,19 +45,19 @@ class RasterPyramid {
              const execution::CancelToken& cancel) const;
 
  private:
-  struct Level {
+  struct Layer {
     images::TexelSize size;
     storage::BlobStore tiles;
 
     std::uint32_t columns() const { return images::tiff_tiles(size.width); }
     std::uint32_t rows() const { return images::tiff_tiles(size.height); }
   };
-  void put(Level& level, std::uint32_t column, std::uint32_t row, std::vector<std::byte> pixels);
-  std::vector<std::byte> tile_of(const Level& level, std::size_t index) const;
-  std::vector<std::byte> halved(const Level& finer, std::uint32_t column, std::uint32_t row) const;
+  void put(Layer& layer, std::uint32_t column, std::uint32_t row, std::vector<std::byte> pixels);
+  std::vector<std::byte> tile_of(const Layer& layer, std::size_t index) const;
+  std::vector<std::byte> halved(const Layer& finer, std::uint32_t column, std::uint32_t row) const;
 
   images::TiffPixel kind_;
-  std::vector<Level> levels_;  ///< the raster, then its overviews
+  std::vector<Layer> layers_;  ///< the raster, then its overviews
 };
 
 }  // namespace meshhier::exporting

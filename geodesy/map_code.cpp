@@ -28,7 +28,7 @@ std::uint16_t own_code(const PJ* part) {
 
 /// Returns the code of the object in PROJ's database that is the same but perhaps for its name.
 std::uint16_t found_code(PJ_CONTEXT* context, const PJ* part) {
-  constexpr int kSameButForName = 90;  // percent, as PROJ's documentation has it
+  constexpr int kSameButForName = 70;  // percent, as PROJ's documentation has it
   int* confidence = nullptr;
   PJ_OBJ_LIST* const list = library().identify(context, part, "EPSG", nullptr, &confidence);
   std::uint16_t code = 0;

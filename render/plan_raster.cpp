@@ -83,7 +83,9 @@ PlanRaster::PlanRaster(const PlanWindow& window, bool has_colours)
 
 GridPoint PlanRaster::in_window(Vec3d place) const {
   const auto steps = [](double pixels) {
-    const double within = pixels > -1 ? std::min(pixels, kMostPlanSide + 1.0) : -1;
+    constexpr double kLeast = -double{kMostPlanMargin};
+    constexpr double kMost = double{kMostPlanSide} + kMostPlanMargin;
+    const double within = pixels > kLeast ? std::min(pixels, kMost) : kLeast;
     return static_cast<std::int64_t>(std::floor(within * kSteps + 0.5));
   };
   return {steps(place.x) - std::int64_t{window_.column} * kSteps,

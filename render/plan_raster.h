@@ -35,8 +35,10 @@
 
 namespace meshhier::render {
 
-/// The most pixels along a side of a raster: products of distances stay below 2^61.
-inline constexpr std::uint32_t kMostPlanSide = std::uint32_t{1} << 22;
+/// The most pixels along a side of a raster, and how far beyond it a corner may lie: products of
+/// distances, in steps, stay below 2^61.
+inline constexpr std::uint32_t kMostPlanSide = std::uint32_t{1} << 21;
+inline constexpr std::uint32_t kMostPlanMargin = std::uint32_t{1} << 20;
 
 /// Triangles over the pixels of a raster.
 struct PlanMesh {

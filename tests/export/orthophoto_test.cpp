@@ -253,7 +253,7 @@ TEST_F(OrthophotoTest, TilesOfMixedLevelsHaveNoGap) {
 
 TEST_F(OrthophotoTest, WhatMakesNoSenseIsRefused) {
   build_terrain();
-  EXPECT_THAT(refusal(heights(1e-5), ErrorCode::usage), HasSubstr("give --gsd 0.0003"));
+  EXPECT_THAT(refusal(heights(1e-5), ErrorCode::usage), HasSubstr("give --gsd 0.0006"));
   RasterOptions options = heights(1);
   options.selection = OutlineSelection{};
   EXPECT_THAT(refusal(options, ErrorCode::usage), HasSubstr("no outline"));
