@@ -68,17 +68,27 @@ BoundsD column_over(const PlanRegion& plan, UpAxis up) {
   return {{least.x, -any, -most.y}, {most.x, any, -least.y}};  // the north is -z
 }
 
-/// Returns the box of what may be drawn, in the hierarchy's positions.
-BoundsD drawn_box(const HierarchyReader& reader, const RasterOptions& options,
-                  const std::optional<Region>& region) {
-  const Vec3d origin = reader.manifest().origin;
-  const BoundsD& all = reader.manifest().source.bounds;
-  BoundsD box{all.min - origin, all.max - origin};
+/// Returns the box on the map of what may be drawn. On axes of its own a box around small boxes is
+/// closer than one around all.
+BoundsD drawn_box(const HierarchyReader& reader, const MapFrame& frame,
+                  const RasterOptions& options, const std::optional<Region>& region) {
+  const storage::Manifest& manifest = reader.manifest();
+  const double any = std::numeric_limits<double>::infinity();
+  BoundsD limits{{-any, -any, -any}, {any, any, any}};
   if (options.region.box && options.region.crs.empty())
-    box = common_part(box, {options.region.box->min - origin, options.region.box->max - origin});
-  if (region && region->plan && !box.empty())
-    box = common_part(box, column_over(*region->plan, reader.manifest().up));
-  return box;
+    limits = {options.region.box->min - manifest.origin, options.region.box->max - manifest.origin};
+  if (region && region->plan)
+    limits = common_part(limits, column_over(*region->plan, manifest.up));
+  BoundsD all;
+  for (const TileRecord& record : reader.records()) {
+    if (!is_of_input(reader, record) || record.bounds.empty())
+      continue;
+    const BoundsD box =
+        common_part({to_double(record.bounds.min), to_double(record.bounds.max)}, limits);
+    if (!box.empty())
+      all.add(frame.around(box));
+  }
+  return all;
 }
 
 // ---- drawing ------------------------------------------------------------------------------------
@@ -298,14 +308,20 @@ RasterOutputs open_outputs(storage::FileSystem& files, const fs::path& hierarchy
   return {open(options.picture, options.heights), open(options.heights, options.picture)};
 }
 
-void write_rasters(const Pyramids& pyramids, const PlanView& view, const RasterOutputs& outputs,
-                   const execution::CancelToken& cancel) {
+void write_rasters(const Pyramids& pyramids, const PlanView& view, const std::string& licence,
+                   const RasterOutputs& outputs, const execution::CancelToken& cancel) {
+  const auto fields_of = [&](const geodesy::GeoKeys& keys) {
+    std::vector<images::TiffField> fields = geo_fields(view.grid, keys);
+    if (!licence.empty())
+      fields.push_back(images::tiff_text(TIFFTAG_COPYRIGHT, licence));
+    return fields;
+  };
   if (outputs.picture) {
-    pyramids.picture->write(*outputs.picture->file.file(),
-                            geo_fields(view.grid, view.frame.picture_keys), cancel);
+    pyramids.picture->write(*outputs.picture->file.file(), fields_of(view.frame.picture_keys),
+                            cancel);
   }
   if (outputs.heights) {
-    std::vector<images::TiffField> fields = geo_fields(view.grid, view.frame.height_keys);
+    std::vector<images::TiffField> fields = fields_of(view.frame.height_keys);
     fields.push_back(
         images::tiff_text(tag(images::GeoTag::gdal_nodata), fmt::format("{}", kNoHeight)));
     pyramids.heights->write(*outputs.heights->file.file(), fields, cancel);
@@ -401,10 +417,10 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
   std::optional<Region> region;
   if (options.region.is_any())
     region = region_of(files, reader, options.region, cancel);
-  const BoundsD box = drawn_box(reader, options, region);
+  const BoundsD box = drawn_box(reader, view.frame, options, region);
   if (box.empty())
     fail_empty(reader, options.region);
-  view.grid = grid_over(view.frame.around(box), pixel, options.corner);
+  view.grid = grid_over(box, pixel, options.corner);
 
   Pyramids pyramids;
   const images::TexelSize size{view.grid.width, view.grid.height};
@@ -417,7 +433,7 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
   if (drawn.covered == 0 && drawing.region)
     fail_empty(reader, options.region);
   make_overviews(pyramids, progress, cancel);
-  write_rasters(pyramids, view, outputs, cancel);
+  write_rasters(pyramids, view, reader.manifest().licence, outputs, cancel);
   return raster_text(options, view, cut.name, drawn);
 }
 

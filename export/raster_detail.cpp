@@ -12,11 +12,6 @@ namespace {
 
 using storage::HierarchyReader;
 
-/// Whether its vertices are all of the input's there.
-bool is_of_input(const HierarchyReader& reader, const TileRecord& record) {
-  return reader.tree().is_partition(record.node) || reader.tree().is_early(record.node);
-}
-
 /// The area that vertices take, seen from above.
 struct Spread {
   double area = 0, vertices = 0;
@@ -46,6 +41,10 @@ double round_length(double length) {
 }
 
 }  // namespace
+
+bool is_of_input(const HierarchyReader& reader, const TileRecord& record) {
+  return reader.tree().is_partition(record.node) || reader.tree().is_early(record.node);
+}
 
 double finest_detail(const HierarchyReader& reader, const MapFrame& frame) {
   double texels = 0, textured = 0;

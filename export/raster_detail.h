@@ -7,6 +7,9 @@
 
 namespace meshhier::exporting {
 
+/// Returns whether a tile has the input's own vertices.
+bool is_of_input(const storage::HierarchyReader& reader, const TileRecord& record);
+
 /// Returns a pixel's side, in units of the frame: about as large as the texels of the input, or
 /// else as its vertices are apart, seen from above; 1, 2 or 5 times a power of 10. O(tiles).
 double finest_detail(const storage::HierarchyReader& reader, const MapFrame& frame);

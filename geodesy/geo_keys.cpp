@@ -1,6 +1,7 @@
 #include "geodesy/geo_keys.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -13,28 +14,64 @@ enum : std::uint16_t {
   kRasterType = 1025,
   kCitation = 1026,
   kGeodeticCrs = 2048,
+  kDatum = 2050,
   kAngularUnits = 2054,
+  kOwnEllipsoid = 2056,
+  kSemiMajorAxis = 2057,
+  kInverseFlattening = 2059,
   kProjectedCrs = 3072,
-  kProjectedCitation = 3073,
   kProjection = 3074,
   kProjectionMethod = 3075,
   kLinearUnits = 3076,
-  kNaturalOriginLongitude = 3080,
-  kNaturalOriginLatitude = 3081,
-  kFalseEasting = 3082,
-  kFalseNorthing = 3083,
-  kScaleAtNaturalOrigin = 3092,
+  kLinearUnitSize = 3077,
   kVerticalCrs = 4096
 };
 enum : std::uint16_t {
   kProjected = 1,
   kPixelIsArea = 1,
-  kTransverseMercator = 1,
   kWgs84 = 4326,
   kMetre = 9001,
   kDegree = 9102,
   kUserDefined = 32767
 };
+
+/// What EPSG's code is in GeoTIFF: of methods the value, of parameters the key.
+struct CodePair {
+  int epsg = 0;
+  std::uint16_t geotiff = 0;
+};
+constexpr int kTransverseMercator = 9807, kLatitudeOfOrigin = 8801, kLongitudeOfOrigin = 8802,
+              kScaleAtOrigin = 8805, kFalseEasting = 8806, kFalseNorthing = 8807;
+constexpr auto kMethods = std::to_array<CodePair>({
+    {kTransverseMercator, 1},
+    {9804, 7},   // Mercator (variant A)
+    {9802, 8},   // Lambert Conic Conformal (2SP)
+    {9801, 9},   // Lambert Conic Conformal (1SP)
+    {9820, 10},  // Lambert Azimuthal Equal Area
+    {9822, 11},  // Albers Equal Area
+    {9810, 15},  // Polar Stereographic (variant A)
+    {9809, 16},  // Oblique Stereographic
+});
+constexpr auto kParameters = std::to_array<CodePair>({
+    {8823, 3078},  // latitude of the first standard parallel
+    {8824, 3079},  // of the second one
+    {kLongitudeOfOrigin, 3080},
+    {kLatitudeOfOrigin, 3081},
+    {kFalseEasting, 3082},
+    {kFalseNorthing, 3083},
+    {8822, 3084},  // longitude of the false origin
+    {8821, 3085},  // its latitude
+    {8826, 3086},  // easting there
+    {8827, 3087},  // northing
+    {kScaleAtOrigin, 3092},
+});
+static_assert(std::ranges::is_sorted(kParameters, {}, &CodePair::geotiff));
+
+/// Returns 0 if there is none.
+std::uint16_t geotiff_method(int epsg) {
+  const auto* const found = std::ranges::find(kMethods, epsg, &CodePair::epsg);
+  return found == kMethods.end() ? std::uint16_t{0} : found->geotiff;
+}
 
 /// Collects keys; they must come ascending.
 class KeyWriter {
@@ -69,40 +106,66 @@ class KeyWriter {
   GeoKeys keys_;
 };
 
-/// The length of a text that readers take; a longer WKT would be cut off.
-constexpr std::size_t kLongestText = 2000;
+void add_geodetic(KeyWriter& keys, const MapMethod& map) {
+  keys.add(kGeodeticCrs, map.geodetic == 0 ? std::uint16_t{kUserDefined} : map.geodetic);
+  if (map.geodetic == 0)
+    keys.add(kDatum, kUserDefined);
+  keys.add(kAngularUnits, kDegree);
+  if (map.geodetic != 0)
+    return;
+  keys.add(kOwnEllipsoid, kUserDefined);
+  keys.add(kSemiMajorAxis, map.equator);
+  keys.add(kInverseFlattening, map.inverse_flattening);
+}
+
+/// Adds a map by its method; requires that GeoTIFF knows that.
+void add_method(KeyWriter& keys, const MapMethod& map) {
+  add_geodetic(keys, map);
+  keys.add(kProjectedCrs, kUserDefined);
+  keys.add(kProjection, kUserDefined);
+  keys.add(kProjectionMethod, geotiff_method(map.method));
+  keys.add(kLinearUnits, map.unit_metres == 1 ? kMetre : kUserDefined);
+  if (map.unit_metres != 1)
+    keys.add(kLinearUnitSize, map.unit_metres);
+  for (const CodePair& row : kParameters) {
+    const auto found = std::ranges::find(map.parameters, row.epsg, &MapMethod::Parameter::code);
+    if (found != map.parameters.end())
+      keys.add(row.geotiff, found->value);
+  }
+}
+
+KeyWriter begun(const std::string& name) {
+  KeyWriter keys;
+  keys.add(kModelType, kProjected);
+  keys.add(kRasterType, kPixelIsArea);
+  keys.add(kCitation, name);
+  return keys;
+}
 
 }  // namespace
 
 GeoKeys keys_of_map(const MapCode& code, bool has_heights) {
-  KeyWriter keys;
-  keys.add(kModelType, kProjected);
-  keys.add(kRasterType, kPixelIsArea);
-  keys.add(kCitation, code.name);
-  keys.add(kProjectedCrs, code.horizontal == 0 ? std::uint16_t{kUserDefined} : code.horizontal);
-  if (code.horizontal == 0 && code.wkt.size() <= kLongestText)
-    keys.add(kProjectedCitation, "ESRI PE String = " + code.wkt);
+  KeyWriter keys = begun(code.name);
+  if (code.horizontal != 0)
+    keys.add(kProjectedCrs, code.horizontal);
+  else if (geotiff_method(code.method.method) != 0)
+    add_method(keys, code.method);
+  else
+    return {};
   if (has_heights && code.vertical != 0)
     keys.add(kVerticalCrs, code.vertical);
   return keys.finish();
 }
 
 GeoKeys keys_of_plane(const LevelPlane& plane) {
-  KeyWriter keys;
-  keys.add(kModelType, kProjected);
-  keys.add(kRasterType, kPixelIsArea);
-  keys.add(kCitation, std::string("local plane"));
-  keys.add(kGeodeticCrs, kWgs84);
-  keys.add(kAngularUnits, kDegree);
-  keys.add(kProjectedCrs, kUserDefined);
-  keys.add(kProjection, kUserDefined);
-  keys.add(kProjectionMethod, kTransverseMercator);
-  keys.add(kLinearUnits, kMetre);
-  keys.add(kNaturalOriginLongitude, plane.longitude);
-  keys.add(kNaturalOriginLatitude, plane.latitude);
-  keys.add(kFalseEasting, 0.0);
-  keys.add(kFalseNorthing, 0.0);
-  keys.add(kScaleAtNaturalOrigin, plane.scale);
+  KeyWriter keys = begun("local plane");
+  add_method(keys, {.method = kTransverseMercator,
+                    .parameters = {{kLongitudeOfOrigin, plane.longitude},
+                                   {kLatitudeOfOrigin, plane.latitude},
+                                   {kFalseEasting, 0},
+                                   {kFalseNorthing, 0},
+                                   {kScaleAtOrigin, plane.scale}},
+                    .geodetic = kWgs84});
   return keys.finish();
 }
 

@@ -1,8 +1,8 @@
 // The keys by which a GeoTIFF names its map (OGC 19-008r4).
 //
-// A map with a code of EPSG has that. Of others, ESRI's WKT stands in the citation, as ArcGIS and
-// GDAL write it and GDAL reads it. A plane that touches the globe is a transverse Mercator map
-// around the point where it does.
+// A map with a code of EPSG has that. Others have their method and its parameters, as far as
+// GeoTIFF knows the method. A plane that touches the globe is a transverse Mercator map around the
+// point where it does.
 #pragma once
 
 #include "geodesy/map_code.h"
@@ -20,7 +20,8 @@ struct GeoKeys {
   std::string text{};                      ///< GeoAsciiParamsTag, 34737; may be empty
 };
 
-/// Returns the keys of a projected map. `has_heights`: the raster's numbers are the map's heights.
+/// Returns the keys of a projected map; none if it has no code and a method that GeoTIFF does not
+/// know. `has_heights`: the raster's numbers are the map's heights.
 GeoKeys keys_of_map(const MapCode& code, bool has_heights);
 
 /// A plane above WGS 84 that is level at one point of it.

@@ -4,6 +4,7 @@
 #include "geodesy/proj_objects.h"
 
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <string_view>
 
@@ -45,6 +46,44 @@ std::uint16_t code_of(PJ_CONTEXT* context, const PJ* part) {
   return own != 0 ? own : found_code(context, part);
 }
 
+/// Returns a parameter in degrees, in the map's unit, or as it is.
+MapMethod::Parameter parameter_of(PJ_CONTEXT* context, const PJ* operation, int index,
+                                  double unit_metres) {
+  constexpr double kDegree = 0.017453292519943295;  // radians, PROJ's unit of angles
+  const char *code = nullptr, *category = nullptr;
+  double value = 0, factor = 1;
+  library().coordoperation_get_param(context, operation, index, nullptr, nullptr, &code, &value,
+                                     nullptr, &factor, nullptr, nullptr, nullptr, &category);
+  const std::string_view kind = category == nullptr ? "" : category;
+  const double scale = kind == "angular"  ? factor / kDegree
+                       : kind == "linear" ? factor / unit_metres
+                                          : 1;
+  return {code == nullptr ? 0 : std::atoi(code), scale == 1 ? value : value * scale};
+}
+
+MapMethod method_of(PJ_CONTEXT* context, const PJ* crs) {
+  MapMethod method;
+  const proj::Object operation(library().crs_get_coordoperation(context, crs));
+  const proj::Object geodetic(library().crs_get_geodetic_crs(context, crs));
+  const proj::Object axes(library().crs_get_coordinate_system(context, crs));
+  if (!operation || !geodetic || !axes)
+    return method;
+  library().cs_get_axis_info(context, axes.get(), 0, nullptr, nullptr, nullptr, &method.unit_metres,
+                             nullptr, nullptr, nullptr);
+  const char* code = nullptr;
+  library().coordoperation_get_method_info(context, operation.get(), nullptr, nullptr, &code);
+  method.method = code == nullptr ? 0 : std::atoi(code);
+  const int count = library().coordoperation_get_param_count(context, operation.get());
+  for (int i = 0; i < count; ++i)
+    method.parameters.push_back(parameter_of(context, operation.get(), i, method.unit_metres));
+  method.geodetic = code_of(context, geodetic.get());
+  if (const proj::Object ellipsoid{library().get_ellipsoid(context, geodetic.get())}) {
+    library().ellipsoid_get_parameters(context, ellipsoid.get(), &method.equator, nullptr, nullptr,
+                                       &method.inverse_flattening);
+  }
+  return method;
+}
+
 }  // namespace
 
 MapCode map_code(const std::string& crs) {
@@ -56,11 +95,8 @@ MapCode map_code(const std::string& crs) {
   code.horizontal = code_of(context.get(), horizontal.get());
   if (vertical)
     code.vertical = code_of(context.get(), vertical.get());
-  if (code.horizontal == 0) {
-    const char* const wkt =
-        library().as_wkt(context.get(), horizontal.get(), PJ_WKT1_ESRI, nullptr);
-    code.wkt = wkt == nullptr ? "" : wkt;
-  }
+  if (code.horizontal == 0)
+    code.method = method_of(context.get(), horizontal.get());
   return code;
 }
 

@@ -10,25 +10,31 @@
 
 /// The functions that are used, without the `proj_` before them.
 #define MESHHIER_PROJ_FUNCTIONS(FUNCTION)              \
-  FUNCTION(as_wkt)                                     \
   FUNCTION(clone)                                      \
   FUNCTION(context_create)                             \
   FUNCTION(context_destroy)                            \
   FUNCTION(context_get_database_path)                  \
   FUNCTION(context_set_enable_network)                 \
   FUNCTION(coord)                                      \
+  FUNCTION(coordoperation_get_method_info)             \
+  FUNCTION(coordoperation_get_param)                   \
+  FUNCTION(coordoperation_get_param_count)             \
   FUNCTION(coordoperation_has_ballpark_transformation) \
   FUNCTION(create)                                     \
   FUNCTION(create_crs_to_crs)                          \
   FUNCTION(create_crs_to_crs_from_pj)                  \
   FUNCTION(crs_get_coordinate_system)                  \
+  FUNCTION(crs_get_coordoperation)                     \
+  FUNCTION(crs_get_geodetic_crs)                       \
   FUNCTION(crs_get_sub_crs)                            \
   FUNCTION(cs_get_axis_count)                          \
   FUNCTION(cs_get_axis_info)                           \
   FUNCTION(cs_get_type)                                \
   FUNCTION(destroy)                                    \
+  FUNCTION(ellipsoid_get_parameters)                   \
   FUNCTION(errno_reset)                                \
   FUNCTION(get_area_of_use)                            \
+  FUNCTION(get_ellipsoid)                              \
   FUNCTION(get_id_auth_name)                           \
   FUNCTION(get_id_code)                                \
   FUNCTION(get_name)                                   \
