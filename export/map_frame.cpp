@@ -37,7 +37,8 @@ MapFrame frame_of_input(const Manifest& manifest) {
 std::string name_of(const geodesy::MapCode& code) {
   if (code.horizontal == 0) {
     const bool is_told = !keys_of_map(code, false).directory.empty();
-    return code.name + (is_told ? "" : " (GeoTIFF cannot name it, so the files have no map)");
+    return (code.name == "unknown" ? "the map of its \"placement\"" : code.name) +
+           (is_told ? "" : " (GeoTIFF cannot name it, so the files have no map)");
   }
   const std::string heights = code.vertical == 0 ? "" : fmt::format("+{}", code.vertical);
   return fmt::format("EPSG:{}{} ({})", code.horizontal, heights, code.name);

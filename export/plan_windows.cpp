@@ -62,9 +62,10 @@ WindowPlan plan_windows(const PixelGrid& grid, std::uint64_t tile_bytes,
   const auto block = [&](std::uint32_t side) { return window_bytes(side) + tile_bytes; };
   std::uint32_t side = kTiffTileSide;
   if (block(side) > memory) {
+    constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
     throw Error(ErrorCode::budget,
                 fmt::format("a raster of these tiles needs --memory-budget {} or more",
-                            execution::rounded_size_text(2 * block(side) + (1U << 20U))));
+                            execution::exact_size_text((2 * block(side) / kMiB + 1) * kMiB)));
   }
   const auto keeps_all_at_work = [&](std::uint32_t larger) {
     const std::uint64_t windows =

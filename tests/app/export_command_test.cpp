@@ -104,6 +104,32 @@ TEST_F(CommandLine, ExportWritesToStandardOutput) {
   }
 }
 
+TEST_F(CommandLine, ExportDrawsRasters) {
+  build();
+  const std::string picture = (work() / "o.tif").string(), heights = (work() / "d.tif").string();
+  const Outcome both =
+      run({"export", hierarchy(), "--gsd", "0.05", "-o", picture, "--dsm", heights});
+  EXPECT_EQ(both.code, 0) << both.messages;
+  EXPECT_THAT(both.out, HasSubstr("o.tif and "));
+  EXPECT_THAT(both.out, HasSubstr("pixels of 0.05"));
+  EXPECT_THAT(text_of(picture), StartsWith("II*"));
+  EXPECT_THAT(text_of(heights), StartsWith("II*"));
+  const Outcome streamed = run({"export", hierarchy(), "--gsd", "0.05", "--dsm", "-"});
+  EXPECT_TRUE(streamed.out == text_of(heights)) << "with a picture or without";
+  EXPECT_THAT(streamed.messages, HasSubstr("pixels of 0.05"));
+  EXPECT_EQ(run({"export", hierarchy(), "-o", picture}).code, kExists);
+  for (const Arguments& wrong : {Arguments{"--gsd", "0", "-o", "x.tif"},
+                                 {"--gsd", "1", "-o", "x.ply"},
+                                 {"--align", "1", "-o", "x.tif"},
+                                 {"--outline", "-o", "x.tif"},
+                                 {"-o", "-", "--dsm", "-"},
+                                 {"--dsm", "x.png"}}) {
+    Arguments all{"export", hierarchy()};
+    all.insert(all.end(), wrong.begin(), wrong.end());
+    EXPECT_EQ(run(all).code, kUsage) << wrong[0] << ' ' << wrong[1];
+  }
+}
+
 TEST_F(CommandLine, ExportRefusesWhatIsNoCut) {
   build();
   write_text(work() / "cut.txt", "1/0\n");
