@@ -82,10 +82,11 @@ class Painter {
   void measure(const ChartPlane& plane, TexelMeans& means) {
     for_each_texel(TexelSamples::range_of(plane), [&](std::uint32_t x, std::uint32_t y) {
       const std::size_t number = samples_.index(x, y);
-      const FinerPoint& point = points_[number];
-      if (samples_.at(x, y).triangle == kNoFace || point.triangle == FinerPoint::kNone)
+      if (number + kAhead < points_.size())
+        sampler_.prefetch(points_[number + kAhead]);
+      if (points_[number].triangle == FinerPoint::kNone)
         return;
-      means.lights[number] = sampler_.around(point);
+      means.lights[number] = sampler_.around(points_[number]);
       means.is_known[number] = 1;
     });
   }

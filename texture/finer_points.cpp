@@ -24,8 +24,8 @@ bool is_one(std::uint32_t triangle) {
 
 }  // namespace
 
-FootShares::FootShares(const SurfaceTriangle& t) : a(to_double(t[0])) {
-  const Vec3d b = to_double(t[1]) - a, c = to_double(t[2]) - a;
+FootShares::FootShares(const SurfaceTriangle& t) : a(t[0]) {
+  const Vec3d b = to_double(t[1]) - to_double(a), c = to_double(t[2]) - to_double(a);
   const double bb = dot(b, b), bc = dot(b, c), cc = dot(c, c);
   const double area = bb * cc - bc * bc;
   if (!(area > 0))
@@ -136,11 +136,18 @@ class PointDrawing {
     std::vector<TexelPlace> left;
     for (const ChartPlane& plane : layout_.planes) {
       for_each_texel(TexelSamples::range_of(plane), [&](std::uint32_t x, std::uint32_t y) {
+        prefetch_drawn(index(x, y) + kAhead);
         if (samples_.at(x, y).triangle != kNoFace && !takes_drawn(plane, x, y))
           left.push_back({&plane, x, y});
       });
     }
     return left;
+  }
+
+  /// Triangles are more than a cache holds: that of a texel which comes soon is asked for early.
+  void prefetch_drawn(std::size_t texel) const {
+    if (texel < drawn_.size() && is_one(drawn_[texel]))
+      __builtin_prefetch(&finer_.shares_[drawn_[texel]]);
   }
 
   /// The foot of the texel's own point counts, as far as it is within the triangle: places in the
@@ -151,7 +158,7 @@ class PointDrawing {
     const TexelSample& sample = samples_.at(x, y);
     if (triangle == FinerPoint::kNone || !sample.is_inside())
       return false;
-    const Vec3d point = samples_.point(sample);
+    const Vec3d point = point_of(sample);
     if (triangle == kSeveral)
       return takes_one_of_several(point, index(x, y));
     FinerPoint& foot = points_[index(x, y)];
@@ -162,6 +169,15 @@ class PointDrawing {
       const std::uint32_t other = drawn_[index(i, j)];
       return is_one(other) && other != triangle && finer_.has_foot(other, point, foot);
     });
+  }
+
+  /// Returns a sample's point. Texels side by side have the same triangle more often than not.
+  Vec3d point_of(const TexelSample& sample) {
+    if (sample.triangle != plane_of_) {
+      plane_of_ = sample.triangle;
+      plane_ = samples_.plane_of(plane_of_);
+    }
+    return plane_.point(sample);
   }
 
   bool takes_one_of_several(const Vec3d& point, std::size_t texel) {
@@ -219,6 +235,8 @@ class PointDrawing {
   std::vector<std::uint32_t> candidates_;
   std::vector<std::uint8_t> is_kept_;  ///< of finer triangles: texels that are left may show them
   std::vector<FinerPoint> points_;     ///< of texels
+  std::uint32_t plane_of_ = kNoFace;   ///< the triangle that plane_ is of
+  TexelSamples::Plane plane_;
 };
 
 FinerSurfaces::FinerSurfaces(std::vector<FinerShape> shapes, const TexelSamples& charts)
@@ -241,13 +259,15 @@ std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples
                                                               std::span<const FinerPoint> points,
                                                               std::uint32_t x,
                                                               std::uint32_t y) const {
+  const auto four = four_texels(x, y);
+  const auto is_inside = [&](const auto& at) {
+    return samples.at(at.first, at.second).is_inside();
+  };
+  if (!std::ranges::all_of(four, is_inside))
+    return std::nullopt;
   Vec3d middle;
-  for (const auto& [i, j] : four_texels(x, y)) {
-    const TexelSample& sample = samples.at(i, j);
-    if (!sample.is_inside())
-      return std::nullopt;
-    middle = middle + samples.point(sample) * 0.25;
-  }
+  for (const auto& [i, j] : four)
+    middle = middle + samples.point(samples.at(i, j)) * 0.25;
   std::array<std::uint32_t, 16> around;
   std::size_t count = 0;
   for_each_texel(texels_near(chart, x, y, 1, 2), [&](std::uint32_t i, std::uint32_t j) {
@@ -263,7 +283,7 @@ std::optional<FinerSurfaces::Amid> FinerSurfaces::amid_texels(const TexelSamples
 
 bool FinerSurfaces::has_foot(std::uint32_t triangle, const Vec3d& point, FinerPoint& foot) const {
   const FootShares& shares = shares_[triangle];
-  const Vec3f to = to_float(point - shares.a);
+  const Vec3f to = to_float(point - to_double(shares.a));
   const float on_b = dot(to, shares.to_b), on_c = dot(to, shares.to_c);
   constexpr float kBeside = 1.0f / 64;  // of the triangle: rounding
   if (!(on_b >= -kBeside && on_c >= -kBeside && on_b + on_c <= 1 + kBeside))

@@ -69,8 +69,7 @@ std::vector<FinerShape> shapes_of(std::span<const Surface> surfaces) {
 /// The foot of a point's perpendicular on a triangle is a + on_b * (b - a) + on_c * (c - a), on_b
 /// being the product of the way from a to the point with `to_b`. A triangle without area has none.
 struct FootShares {
-  Vec3d a;
-  Vec3f to_b, to_c;
+  Vec3f a, to_b, to_c;
 
   explicit FootShares(const SurfaceTriangle& triangle);
 };

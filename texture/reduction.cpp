@@ -92,17 +92,32 @@ void Reduction::add(const images::Image& band) {
 
 /// Takes the mean of what is shown of a square of texels.
 void Reduction::average(const images::Image& band, std::uint32_t x, std::uint32_t y) {
-  TexelBits::Word shown = is_shown_.square(x * factor_, y * factor_, factor_);
-  const auto count = static_cast<float>(std::popcount(shown));
+  const TexelBits::Word shown = is_shown_.square(x * factor_, y * factor_, factor_);
+  const auto count = static_cast<std::uint32_t>(std::popcount(shown));
   FourFloats sum{};
+  if (count == factor_ * factor_) {
+    for_each_of_square(band, x, y, [&](const std::uint8_t* texel) {
+      sum += weighted_light(texel, band.channels, 1);
+    });
+  } else {
+    TexelBits::Word left = shown;
+    for_each_of_square(band, x, y, [&](const std::uint8_t* texel) {
+      if ((left & 1) != 0)
+        sum += weighted_light(texel, band.channels, 1);
+      left >>= 1;
+    });
+  }
+  store_texel(sum / static_cast<float>(count), result_.at(x, y), band.channels);
+}
+
+template <class Visit>
+void Reduction::for_each_of_square(const images::Image& band, std::uint32_t x, std::uint32_t y,
+                                   const Visit& visit) const {
   for (std::uint32_t j = 0; j < factor_; ++j) {
     const std::uint8_t* texel = band.at(x * factor_, y * factor_ + j - row_);
-    for (std::uint32_t i = 0; i < factor_; ++i, texel += band.channels, shown >>= 1) {
-      if ((shown & 1) != 0)
-        sum += weighted_light(texel, band.channels, 1);
-    }
+    for (std::uint32_t i = 0; i < factor_; ++i, texel += band.channels)
+      visit(texel);
   }
-  store_texel(sum / count, result_.at(x, y), band.channels);
 }
 
 images::Image Reduction::operator()() && {

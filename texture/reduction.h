@@ -38,6 +38,9 @@ class Reduction {
   std::vector<std::uint32_t> nearest_texels(std::span<const CornerTexcoords> corners) const;
   void take_copies(const std::vector<std::uint32_t>& nearest);
   void average(const images::Image& band, std::uint32_t x, std::uint32_t y);
+  template <class Visit>
+  void for_each_of_square(const images::Image& band, std::uint32_t x, std::uint32_t y,
+                          const Visit& visit) const;
 
   std::uint32_t width_, height_, factor_;
   TexelBits is_shown_;

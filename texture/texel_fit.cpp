@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 namespace meshhier::texture {
 namespace {
@@ -11,85 +10,98 @@ namespace {
 /// around that of a texel beside it.
 constexpr float kOwn = 4.0f / 6, kBeside = 1.0f / 6;
 
-/// More iterations come nearer to least squares, but make noise of the finer pictures stronger from
-/// level to level.
-constexpr int kIterations = 2;
+/// Those of Richardson's iteration. More of them come nearer to least squares, but make noise of
+/// the finer pictures stronger from level to level.
+constexpr std::size_t kIterations = 2;
 
 FourFloats weighted(FourFloats before, FourFloats own, FourFloats behind) {
   return kOwn * own + kBeside * (before + behind);
 }
 
+/// Rows of a chart pass through all iterations one after the other:
+///
+///     row y       comes in, is filtered along itself for the first iteration
+///     row y - 1   is corrected by it and those above and below: comes in for the second
+///     row y - 2   is corrected by the second, and is done
+///
+/// So a few rows are held, and none of the picture twice.
 class Fitting {
  public:
-  Fitting(TexelMeans& all, const TexelRange& range)
-      : all_(all),
+  Fitting(TexelMeans& means, const TexelRange& range)
+      : means_(means),
         range_(range),
         width_(range.right - range.left),
         height_(range.bottom - range.top),
-        is_known_(width_ * height_),
-        means_(width_ * height_) {
-    for_each([&](std::size_t here, std::size_t in_all) {
-      is_known_[here] = all_.is_known[in_all];
-      means_[here] = load_four(&all_.lights[in_all]);
-    });
-    texels_ = across_ = means_;
-  }
+        rows_(width_ * kIterations * (kTexelRows + kAcrossRows)) {}
 
-  /// Richardson's iteration.
   void operator()() {
-    for (int i = 0; i < kIterations; ++i) {
-      filter_rows();
-      correct();
+    for (std::size_t come = 0; come < height_ + kIterations; ++come) {
+      for (std::size_t step = 0; step < std::min(come + 1, kIterations); ++step) {
+        const std::size_t y = come - step;
+        if (y < height_)
+          filter(step, y);
+        if (y > 0 && y <= height_)
+          correct(step, y - 1);
+      }
     }
-    for_each([&](std::size_t here, std::size_t in_all) {
-      store_four(&all_.lights[in_all], texels_[here]);
-    });
   }
 
  private:
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (std::size_t y = 0; y < height_; ++y) {
-      const std::size_t in_all = (range_.top + y) * all_.width + range_.left;
-      for (std::size_t x = 0; x < width_; ++x)
-        visit(y * width_ + x, in_all + x);
-    }
-  }
-  /// A texel beside a texel, or that one itself if there is none.
-  std::size_t beside(std::size_t texel, bool is_inside, std::size_t other) const {
-    return is_inside && is_known_[other] != 0 ? other : texel;
-  }
+  static constexpr std::size_t kTexelRows = 2, kAcrossRows = 3;
 
-  void filter_rows() {
-    for (std::size_t y = 0, at = 0; y < height_; ++y) {
-      for (std::size_t x = 0; x < width_; ++x, ++at) {
-        if (is_known_[at] != 0)
-          across_[at] = weighted(texels_[beside(at, x > 0, at - 1)], texels_[at],
-                                 texels_[beside(at, x + 1 < width_, at + 1)]);
-      }
+  std::size_t begin_of(std::size_t y) const {
+    return (range_.top + y) * means_.width + range_.left;
+  }
+  const std::uint8_t* known(std::size_t y) const { return &means_.is_known[begin_of(y)]; }
+  /// A row before a step, or after all of them: the first and the last one are in place.
+  TexelLight* texels(std::size_t step, std::size_t y) {
+    return step % kIterations == 0 ? &means_.lights[begin_of(y)]
+                                   : kept(step * kTexelRows + y % kTexelRows);
+  }
+  /// A row that a step has filtered along itself.
+  TexelLight* across(std::size_t step, std::size_t y) {
+    return kept(kIterations * kTexelRows + step * kAcrossRows + y % kAcrossRows);
+  }
+  TexelLight* kept(std::size_t row) { return &rows_[row * width_]; }
+
+  void filter(std::size_t step, std::size_t y) {
+    const std::uint8_t* is_known = known(y);
+    const TexelLight* from = texels(step, y);
+    TexelLight* to = across(step, y);
+    for (std::size_t x = 0; x < width_; ++x) {
+      if (is_known[x] == 0)
+        continue;
+      const std::size_t before = x > 0 && is_known[x - 1] != 0 ? x - 1 : x;
+      const std::size_t behind = x + 1 < width_ && is_known[x + 1] != 0 ? x + 1 : x;
+      store_four(&to[x],
+                 weighted(load_four(&from[before]), load_four(&from[x]), load_four(&from[behind])));
     }
   }
 
   /// Adds to the texels what their filtered ones lack of the means.
-  void correct() {
-    for (std::size_t y = 0, at = 0; y < height_; ++y) {
-      for (std::size_t x = 0; x < width_; ++x, ++at) {
-        if (is_known_[at] == 0)
-          continue;
-        const FourFloats filtered = weighted(across_[beside(at, y > 0, at - width_)], across_[at],
-                                             across_[beside(at, y + 1 < height_, at + width_)]);
-        const FourFloats texel = texels_[at] + means_[at] - filtered;
-        const FourFloats least{}, most = least + 1;
-        texels_[at] = texel < least ? least : texel > most ? most : texel;
-      }
+  void correct(std::size_t step, std::size_t y) {
+    const std::size_t above = y > 0 ? y - 1 : y, below = y + 1 < height_ ? y + 1 : y;
+    const std::uint8_t *is_known = known(y), *is_above = known(above), *is_below = known(below);
+    const TexelLight *own = across(step, y), *over = across(step, above),
+                     *under = across(step, below);
+    const TexelLight *from = texels(step, y), *means = texels(0, y);
+    TexelLight* to = texels(step + 1, y);
+    for (std::size_t x = 0; x < width_; ++x) {
+      if (is_known[x] == 0)
+        continue;
+      const FourFloats filtered =
+          weighted(load_four(is_above[x] != 0 ? &over[x] : &own[x]), load_four(&own[x]),
+                   load_four(is_below[x] != 0 ? &under[x] : &own[x]));
+      const FourFloats texel = load_four(&from[x]) + load_four(&means[x]) - filtered;
+      const FourFloats least{}, most = least + 1;
+      store_four(&to[x], texel < least ? least : texel > most ? most : texel);
     }
   }
 
-  TexelMeans& all_;
+  TexelMeans& means_;
   const TexelRange& range_;
   std::size_t width_, height_;
-  std::vector<std::uint8_t> is_known_;
-  std::vector<FourFloats> means_, texels_, across_;
+  std::vector<TexelLight> rows_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace meshhier::texture {
@@ -12,6 +13,9 @@ namespace meshhier::texture {
 struct TexelPoint {
   double x = 0, y = 0;
 };
+
+/// Loops over texels ask for memory that they need so many texels later.
+inline constexpr std::size_t kAhead = 8;
 
 struct TexelRange {
   std::uint32_t left = 0, top = 0, right = 0, bottom = 0;
@@ -56,7 +60,9 @@ struct FixedTexelPoint {
   }
   static std::int64_t rounded(double at) {
     constexpr double kMost = 1 << 16;
-    return static_cast<std::int64_t>(std::floor(std::clamp(at, -kMost, kMost) * kOne + 0.5));
+    const double rounded = std::clamp(at, -kMost, kMost) * kOne + 0.5;
+    const auto whole = static_cast<std::int64_t>(rounded);
+    return whole - (static_cast<double>(whole) > rounded ? 1 : 0);
   }
 };
 
@@ -83,13 +89,13 @@ class RasterTriangle {
     for_each_span(range, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
       const double scale = 1 / static_cast<double>(std::abs(twice_area_));
       const Edge to_b = edge(2, 0), to_c = edge(0, 1);
-      std::int64_t b = to_b.at(middle(begin), middle(y));
-      std::int64_t c = to_c.at(middle(begin), middle(y));
-      for (std::uint32_t x = begin; x < end; ++x) {
-        visit(x, y, static_cast<double>(b) * scale, static_cast<double>(c) * scale);
-        b += to_b.dx * kOne;
-        c += to_c.dx * kOne;
-      }
+      // Whole numbers still, far below 2^53.
+      auto b = static_cast<double>(to_b.at(middle(begin), middle(y)));
+      auto c = static_cast<double>(to_c.at(middle(begin), middle(y)));
+      const auto step_b = static_cast<double>(to_b.dx * kOne);
+      const auto step_c = static_cast<double>(to_c.dx * kOne);
+      for (std::uint32_t x = begin; x < end; ++x, b += step_b, c += step_c)
+        visit(x, y, b * scale, c * scale);
     });
   }
 
@@ -102,10 +108,10 @@ class RasterTriangle {
   /// Calls visit(y, begin, end) for each row of the range that has texels, x in [begin, end).
   template <class Visit>
   void for_each_span(const TexelRange& all, const Visit& visit) const {
-    if (twice_area_ == 0)
-      return;
     const std::array<std::int64_t, 2> columns = range(all.left, all.right, &Fixed::x);
     const std::array<std::int64_t, 2> lines = range(all.top, all.bottom, &Fixed::y);
+    if (twice_area_ == 0 || columns[0] > columns[1] || lines[0] > lines[1])
+      return;
     const std::array<Edge, 3> edges = {edge(1, 2), edge(2, 0), edge(0, 1)};
     for (std::int64_t y = lines[0]; y <= lines[1]; ++y) {
       std::array<std::int64_t, 2> inside = columns;

@@ -19,18 +19,23 @@ class TexelSampler {
   TexelSampler(std::span<const TexturedSurface> surfaces, double texel);
 
   /// A mean around a point, weighted by a tent that ends a texel of the larger of both sizes away.
-  TexelLight around(const FinerPoint& at) const { return mean(at, 1); }
+  TexelLight around(const FinerPoint& at) const { return mean(at, &Spot::radius); }
   /// The mean of a pixel around it that is as large as a texel: a tent of as much spread, about.
-  TexelLight pixel(const FinerPoint& at) const { return mean(at, 0.7f); }
+  TexelLight pixel(const FinerPoint& at) const { return mean(at, &Spot::pixel_radius); }
+  /// Says that a point will be asked about after a few others, or none.
+  void prefetch(const FinerPoint& at) const {
+    if (at.triangle < spots_.size())
+      __builtin_prefetch(&spots_[at.triangle]);
+  }
 
  private:
   struct Spot {
     float x, y, bx, by, cx, cy;  ///< texels of corner a, and from it to b and c
-    float size;                  ///< of what is asked for, texels; at least 1
+    float radius, pixel_radius;  ///< of what is asked for, texels
     std::uint32_t picture;
   };
 
-  TexelLight mean(const FinerPoint& at, float part) const;
+  TexelLight mean(const FinerPoint& at, float Spot::*radius) const;
 
   std::vector<Spot> spots_;
   std::vector<images::Image> smaller_;

@@ -61,12 +61,19 @@ class TexelSamples {
   }
   const TexelSample& at(std::uint32_t x, std::uint32_t y) const { return samples_[index(x, y)]; }
 
-  /// Returns the point of a sample.
-  Vec3d point(const TexelSample& sample) const {
-    const Vec3d a = position(sample.triangle, 0);
-    return a + (position(sample.triangle, 1) - a) * double{sample.on_b} +
-           (position(sample.triangle, 2) - a) * double{sample.on_c};
+  /// Where a triangle's samples are.
+  struct Plane {
+    Vec3d a, to_b, to_c;
+    Vec3d point(const TexelSample& sample) const {
+      return a + to_b * double{sample.on_b} + to_c * double{sample.on_c};
+    }
+  };
+  Plane plane_of(std::uint32_t triangle) const {
+    const Vec3d a = position(triangle, 0);
+    return {a, position(triangle, 1) - a, position(triangle, 2) - a};
   }
+  /// Returns the point of a sample.
+  Vec3d point(const TexelSample& sample) const { return plane_of(sample.triangle).point(sample); }
   /// Returns the sample of a point in a triangle's plane, perhaps beside the triangle.
   TexelSample beside(std::uint32_t triangle, const Vec3d& point) const;
   /// Returns where the surface looks to at a sample of a chart.
