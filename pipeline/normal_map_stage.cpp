@@ -105,7 +105,7 @@ class MapStage {
     if (!baked.map.texels.empty())
       texture = encoded(std::move(baked));
     const bool is_kept = !texture.normal_map.empty() && pays(gain, mesh, texture);
-    textures_.put(node, is_kept ? texture : TileTexture{}, source, texels);
+    textures_.put(node, is_kept ? texture : TileTexture{}, std::move(source), texels);
   }
 
  private:

@@ -212,7 +212,7 @@ class TextureMaker {
     BakeSource source = bare_source(mesh, std::move(parents));
     source.corners = std::move(atlas.corners);
     if (atlas.pieces.empty()) {
-      textures_.put(node, {}, source, {});
+      textures_.put(node, {}, std::move(source), {});
       return;
     }
     const LeafPicture picture(atlas, source.corners, input_);
@@ -222,7 +222,7 @@ class TextureMaker {
     const execution::MemoryGate::Hold held = gate_.enter(cut_bytes(written, side_));
     const TileTexture texture = painted(picture, written, source);
     const float texel = texture::texel_size(source.surface(), atlas.width, atlas.height);
-    textures_.put(node, texture, source, {texel, texel, 0});
+    textures_.put(node, texture, std::move(source), {texel, texel, 0});
   }
 
   void note_reduced(const texture::LeafAtlas& atlas) {
@@ -278,7 +278,7 @@ class TextureMaker {
         add_normal_map(charts, finer, normals_of(node, mesh), source, texture);
     }
     texels.own = texel_of(source);
-    textures_.put(node, texture, source, texels);
+    textures_.put(node, texture, std::move(source), texels);
   }
 
   std::vector<texture::CornerNormals> normals_of(NodeId node, const TileMesh& mesh) const {

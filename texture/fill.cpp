@@ -1,7 +1,9 @@
 #include "texture/fill.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 namespace meshhier::texture {
@@ -100,10 +102,110 @@ class Filler {
   std::vector<Gap> gaps_;
 };
 
+/// Looks at blocks of a picture, and fills them one by one.
+class BlockFiller {
+ public:
+  BlockFiller(images::Image& image, std::span<const std::uint8_t> is_known)
+      : image_(image),
+        is_known_(is_known),
+        block_(kSide, kSide, image.channels),
+        blocks_(image.width / kSide, image.height / kSide, image.channels),
+        is_block_known_(std::size_t{blocks_.width} * blocks_.height) {}
+
+  void operator()() {
+    for_each_block([&](std::uint32_t x, std::uint32_t y) {
+      const std::uint32_t known = known_of(x, y);
+      if (known == 0)
+        return;
+      is_block_known_[index(x, y)] = 1;
+      if (known < kSide * kSide)
+        fill_rest(x, y);
+      take_colour(x, y);
+    });
+    fill_unknown(blocks_, is_block_known_);
+    for_each_block([&](std::uint32_t x, std::uint32_t y) {
+      if (is_block_known_[index(x, y)] == 0)
+        paint(x, y);
+    });
+  }
+
+ private:
+  static constexpr std::uint32_t kSide = 8;
+
+  std::size_t index(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{y} * blocks_.width + x;
+  }
+  template <class Visit>
+  void for_each_block(const Visit& visit) const {
+    for (std::uint32_t y = 0; y < blocks_.height; ++y) {
+      for (std::uint32_t x = 0; x < blocks_.width; ++x)
+        visit(x, y);
+    }
+  }
+  const std::uint8_t* known_row(std::uint32_t x, std::uint32_t y, std::uint32_t row) const {
+    return &is_known_[(std::size_t{y} * kSide + row) * image_.width + std::size_t{x} * kSide];
+  }
+
+  /// Returns how many texels of a block are known.
+  std::uint32_t known_of(std::uint32_t x, std::uint32_t y) const {
+    std::uint64_t counts = 0;  // a byte for each column
+    for (std::uint32_t row = 0; row < kSide; ++row) {
+      std::uint64_t known = 0;
+      std::memcpy(&known, known_row(x, y, row), sizeof known);
+      counts += known;
+    }
+    constexpr std::uint64_t kOnes = 0x0101010101010101;
+    return static_cast<std::uint32_t>(counts * kOnes >> 56);
+  }
+
+  void fill_rest(std::uint32_t x, std::uint32_t y) {
+    const std::size_t row_bytes = std::size_t{kSide} * image_.channels;
+    std::array<std::uint8_t, std::size_t{kSide} * kSide> known;
+    for (std::uint32_t row = 0; row < kSide; ++row) {
+      std::memcpy(&known[std::size_t{row} * kSide], known_row(x, y, row), kSide);
+      std::memcpy(block_.at(0, row), image_.at(x * kSide, y * kSide + row), row_bytes);
+    }
+    fill_unknown(block_, known);
+    for (std::uint32_t row = 0; row < kSide; ++row)
+      std::memcpy(image_.at(x * kSide, y * kSide + row), block_.at(0, row), row_bytes);
+  }
+
+  /// Takes the mean of four texels as the colour of a block.
+  void take_colour(std::uint32_t x, std::uint32_t y) {
+    const std::uint32_t low = kSide / 4, high = kSide - 1 - low;
+    const auto at = [&](std::uint32_t i, std::uint32_t j) {
+      return image_.at(x * kSide + i, y * kSide + j);
+    };
+    const std::array four{at(low, low), at(high, low), at(low, high), at(high, high)};
+    for (std::uint32_t c = 0; c < image_.channels; ++c) {
+      const int sum = four[0][c] + four[1][c] + four[2][c] + four[3][c];
+      blocks_.at(x, y)[c] = static_cast<std::uint8_t>((sum + 2) / 4);
+    }
+  }
+
+  void paint(std::uint32_t x, std::uint32_t y) {
+    for (std::uint32_t row = 0; row < kSide; ++row) {
+      std::uint8_t* texel = image_.at(x * kSide, y * kSide + row);
+      for (std::uint32_t i = 0; i < kSide; ++i, texel += image_.channels)
+        images::copy_texel(blocks_.at(x, y), texel, image_.channels);
+    }
+  }
+
+  images::Image& image_;
+  std::span<const std::uint8_t> is_known_;
+  images::Image block_;   ///< one at work
+  images::Image blocks_;  ///< a texel for each
+  std::vector<std::uint8_t> is_block_known_;
+};
+
 }  // namespace
 
 void fill_unknown(images::Image& image, std::span<const std::uint8_t> is_known) {
   Filler(image, is_known)();
+}
+
+void fill_blocks(images::Image& image, std::span<const std::uint8_t> is_known) {
+  BlockFiller(image, is_known)();
 }
 
 }  // namespace meshhier::texture

@@ -47,6 +47,7 @@ struct NormalTexels::CubicTaps {
 NormalTexels::NormalTexels(std::uint32_t width, std::uint32_t height,
                            std::span<const NormalTexel> all)
     : width_(width), height_(height), words_(word_count(width, height)) {
+  known_.reserve(static_cast<std::size_t>(std::ranges::count_if(all, shows)));
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!shows(all[i]))
       continue;

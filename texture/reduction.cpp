@@ -20,7 +20,13 @@ constexpr float kUnknown = 1e9f;
 
 TexelBits any_of_squares(TexelBits bits, std::uint32_t side) {
   for (; side > 1; side /= 2)
-    bits = bits.halved();
+    bits = bits.any_of_four();
+  return bits;
+}
+
+TexelBits all_of_squares(TexelBits bits, std::uint32_t side) {
+  for (; side > 1; side /= 2)
+    bits = bits.all_of_four();
   return bits;
 }
 
@@ -33,6 +39,7 @@ Reduction::Reduction(std::uint32_t width, std::uint32_t height, std::uint32_t ch
       factor_(factor),
       is_shown_(shown_texels(width, height, corners)),
       is_mean_(any_of_squares(is_shown_, factor)),
+      is_full_(all_of_squares(is_shown_, factor)),
       result_(width / factor, height / factor, channels) {
   take_copies(nearest_texels(corners));
 }
@@ -80,8 +87,12 @@ void Reduction::take_copies(const std::vector<std::uint32_t>& nearest) {
 }
 
 void Reduction::add(const images::Image& band) {
-  for (std::uint32_t y = row_ / factor_; y < (row_ + band.height) / factor_; ++y)
-    is_mean_.for_each_in(y, [&](std::uint32_t x) { average(band, x, y); });
+  for (std::uint32_t y = row_ / factor_; y < (row_ + band.height) / factor_; ++y) {
+    if (band.channels == 4)
+      is_mean_.for_each_in(y, [&](std::uint32_t x) { average<4>(band, x, y); });
+    else
+      is_mean_.for_each_in(y, [&](std::uint32_t x) { average<3>(band, x, y); });
+  }
   const std::size_t first = std::size_t{row_} * width_;
   row_ += band.height;
   for (; copied_ < copies_.size() && copies_[copied_].from < std::size_t{row_} * width_; ++copied_)
@@ -91,33 +102,29 @@ void Reduction::add(const images::Image& band) {
 }
 
 /// Takes the mean of what is shown of a square of texels.
+template <std::uint32_t kChannels>
 void Reduction::average(const images::Image& band, std::uint32_t x, std::uint32_t y) {
-  const TexelBits::Word shown = is_shown_.square(x * factor_, y * factor_, factor_);
-  const auto count = static_cast<std::uint32_t>(std::popcount(shown));
   FourFloats sum{};
-  if (count == factor_ * factor_) {
-    for_each_of_square(band, x, y, [&](const std::uint8_t* texel) {
-      sum += weighted_light(texel, band.channels, 1);
-    });
+  std::uint32_t count = factor_ * factor_;
+  const auto for_each = [&](const auto& visit) {
+    for (std::uint32_t j = 0; j < factor_; ++j) {
+      const std::uint8_t* texel = band.at(x * factor_, y * factor_ + j - row_);
+      for (std::uint32_t i = 0; i < factor_; ++i, texel += kChannels)
+        visit(texel);
+    }
+  };
+  if (is_full_(x, y)) {
+    for_each([&](const std::uint8_t* texel) { sum += weighted_light(texel, kChannels, 1); });
   } else {
-    TexelBits::Word left = shown;
-    for_each_of_square(band, x, y, [&](const std::uint8_t* texel) {
-      if ((left & 1) != 0)
-        sum += weighted_light(texel, band.channels, 1);
-      left >>= 1;
+    TexelBits::Word shown = is_shown_.square(x * factor_, y * factor_, factor_);
+    count = static_cast<std::uint32_t>(std::popcount(shown));
+    for_each([&](const std::uint8_t* texel) {
+      if ((shown & 1) != 0)
+        sum += weighted_light(texel, kChannels, 1);
+      shown >>= 1;
     });
   }
-  store_texel(sum / static_cast<float>(count), result_.at(x, y), band.channels);
-}
-
-template <class Visit>
-void Reduction::for_each_of_square(const images::Image& band, std::uint32_t x, std::uint32_t y,
-                                   const Visit& visit) const {
-  for (std::uint32_t j = 0; j < factor_; ++j) {
-    const std::uint8_t* texel = band.at(x * factor_, y * factor_ + j - row_);
-    for (std::uint32_t i = 0; i < factor_; ++i, texel += band.channels)
-      visit(texel);
-  }
+  store_texel(sum / static_cast<float>(count), result_.at(x, y), kChannels);
 }
 
 images::Image Reduction::operator()() && {

@@ -37,14 +37,13 @@ class Reduction {
 
   std::vector<std::uint32_t> nearest_texels(std::span<const CornerTexcoords> corners) const;
   void take_copies(const std::vector<std::uint32_t>& nearest);
+  template <std::uint32_t kChannels>
   void average(const images::Image& band, std::uint32_t x, std::uint32_t y);
-  template <class Visit>
-  void for_each_of_square(const images::Image& band, std::uint32_t x, std::uint32_t y,
-                          const Visit& visit) const;
 
   std::uint32_t width_, height_, factor_;
   TexelBits is_shown_;
   TexelBits is_mean_;  ///< of the result's texels: a part of them is shown
+  TexelBits is_full_;  ///< all of them are
   images::Image result_;
   std::vector<Copy> copies_;  ///< in the order of the rows that they are from
   std::size_t copied_ = 0;

@@ -60,15 +60,18 @@ class TexelBits {
     }
   }
   /// Returns the bits of a picture of half the size: set where one of four is. Requires even sides.
-  TexelBits halved() const {
-    TexelBits half(width_ / 2, height_ / 2);
-    for (std::uint32_t y = 0; y < half.height_; ++y) {
-      for (std::uint32_t i = 0; i < row_words_; ++i) {
-        const Word pairs = any_of_pairs(words_[row(2 * y) + i] | words_[row(2 * y + 1) + i]);
-        half.words_[half.row(y) + i / 2] |= pairs << i % 2 * (kWordBits / 2);
-      }
-    }
-    return half;
+  TexelBits any_of_four() const {
+    return halved([](Word a, Word b) {
+      const Word both = a | b;
+      return both | both >> 1;
+    });
+  }
+  /// Returns the same, set where all four are.
+  TexelBits all_of_four() const {
+    return halved([](Word a, Word b) {
+      const Word both = a & b;
+      return both & both >> 1;
+    });
   }
 
  private:
@@ -88,9 +91,21 @@ class TexelBits {
     }
     return visit(last, mask & ~Word{0} >> (kWordBits - 1 - (end - 1) % kWordBits));
   }
-  /// Moves the bits at even places, joined with those behind them, to the lower half.
-  static Word any_of_pairs(Word bits) {
-    bits = (bits | bits >> 1) & 0x5555555555555555;
+  /// `join` makes of two words, one above the other, one whose bits at even places count.
+  template <class Join>
+  TexelBits halved(const Join& join) const {
+    TexelBits half(width_ / 2, height_ / 2);
+    for (std::uint32_t y = 0; y < half.height_; ++y) {
+      for (std::uint32_t i = 0; i < row_words_; ++i) {
+        const Word pairs = even_bits(join(words_[row(2 * y) + i], words_[row(2 * y + 1) + i]));
+        half.words_[half.row(y) + i / 2] |= pairs << i % 2 * (kWordBits / 2);
+      }
+    }
+    return half;
+  }
+  /// Moves the bits at even places to the lower half.
+  static Word even_bits(Word bits) {
+    bits &= 0x5555555555555555;
     bits = (bits | bits >> 1) & 0x3333333333333333;
     bits = (bits | bits >> 2) & 0x0f0f0f0f0f0f0f0f;
     bits = (bits | bits >> 4) & 0x00ff00ff00ff00ff;

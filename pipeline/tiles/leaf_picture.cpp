@@ -19,7 +19,8 @@ using images::Image;
 using texture::AtlasPiece;
 using texture::kLeafAlignment;
 
-constexpr std::uint32_t kBandTexels = std::uint32_t{1} << 20;
+/// Bands that fit in a cache are still there when they are encoded.
+constexpr std::uint32_t kBandTexels = std::uint32_t{1} << 17;
 
 /// Returns the rows of a band: as many rows of blocks as it may have, at least one.
 std::uint32_t band_rows(std::uint32_t width) {

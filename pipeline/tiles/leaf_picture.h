@@ -35,7 +35,7 @@ class LeafPicture {
   /// The strongest alpha among the materials that are shown.
   AlphaMode alpha() const { return alpha_; }
   std::uint32_t channels() const { return background_.channels; }
-  /// Returns rows from `top` on, a multiple of kLeafAlignment of them: about a million texels.
+  /// Returns rows from `top` on, a multiple of kLeafAlignment of them: about 130,000 texels.
   images::Image band(std::uint32_t top) const;
 
   /// Returns the memory that it holds, a band included.

@@ -112,25 +112,29 @@ BakeSource decode_source(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::uint64_t BakeSource::bytes() const {
-  return positions.size() * sizeof(Vec3f) + parents.size() * sizeof(std::uint16_t) +
-         triangles.size() * sizeof(TileTriangle) +
-         corners.size() * sizeof(texture::CornerTexcoords) + image.texels.size() +
-         directions.bytes() + normals.size() * sizeof(texture::CornerNormals);
+  const auto taken = [](const auto& array) { return array.capacity() * sizeof(array[0]); };
+  return taken(positions) + taken(parents) + taken(triangles) + taken(corners) +
+         taken(image.texels) + directions.bytes() + taken(normals);
 }
 
-TextureStore::TextureStore(const Tree& tree, storage::ScratchFile& scratch) {
+TextureStore::TextureStore(const Tree& tree, storage::ScratchFile& scratch) : scratch_(scratch) {
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     const std::uint32_t count = tree.node_count(static_cast<Level>(level));
-    levels_.push_back({{scratch, count}, {scratch, count}, std::vector<TexelSizes>(count)});
+    levels_.push_back({{scratch, count},
+                       {scratch, count},
+                       std::vector<TexelSizes>(count),
+                       std::vector<std::shared_ptr<const BakeSource>>(count)});
   }
 }
 
-void TextureStore::put(NodeId node, const TileTexture& texture, const BakeSource& source,
+void TextureStore::put(NodeId node, const TileTexture& texture, BakeSource source,
                        const TexelSizes& texels) {
   LevelStore& level = levels_[raw(node.level)];
   level.textures.put(node.index, encode(texture));
-  level.sources.put(node.index, encode(source));
+  level.sources.put_on_disk(node.index, encode(source));
   level.texels[node.index] = texels;
+  if (scratch_.pool().try_take(source.bytes()))
+    level.held[node.index] = std::make_shared<const BakeSource>(std::move(source));
 }
 
 TileTexture TextureStore::texture(NodeId node) const {
@@ -140,10 +144,14 @@ TileTexture TextureStore::texture(NodeId node) const {
 }
 
 std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
+  if (const auto& held = levels_[raw(node.level)].held[node.index])
+    return held;
   return source(node, [&] { return read_source(node); });
 }
 
 BakeSource TextureStore::read_source(NodeId node) const {
+  if (const auto& held = levels_[raw(node.level)].held[node.index])
+    return *held;
   return decode_source(levels_[raw(node.level)].sources.view(node.index).bytes());
 }
 
@@ -233,7 +241,11 @@ void TextureStore::drop_copies() {
   const std::lock_guard lock(mutex_);
   for (LevelStore& level : levels_) {
     level.textures.drop_copies();
-    level.sources.drop_copies();
+    for (std::shared_ptr<const BakeSource>& held : level.held) {
+      if (held)
+        scratch_.pool().give_back(held->bytes());
+      held.reset();
+    }
   }
   cached_.clear();
   found_.clear();

@@ -64,6 +64,7 @@ struct BakeSource {
       normals{};  ///< partitions have these, no `directions`; not stored
 
   texture::TexturedSurface surface() const { return {positions, triangles, corners, &image}; }
+  /// Returns the memory that its arrays take.
   std::uint64_t bytes() const;
 };
 
@@ -81,11 +82,14 @@ struct TexelSizes {
 class TextureStore {
  public:
   TextureStore(const Tree& tree, storage::ScratchFile& scratch);
+  TextureStore(const TextureStore&) = delete;
+  TextureStore& operator=(const TextureStore&) = delete;
+  ~TextureStore() { drop_copies(); }
 
   /// Sets how many bytes of recently read sources stay in memory, at most.
   void set_cache_bytes(std::uint64_t bytes) { cache_bytes_ = bytes; }
-  void put(NodeId node, const TileTexture& texture, const BakeSource& source,
-           const TexelSizes& texels);
+  /// Writes both to disk. The source stays in memory as it is while the budget lasts.
+  void put(NodeId node, const TileTexture& texture, BakeSource source, const TexelSizes& texels);
   /// Returns an empty one if none was put.
   TileTexture texture(NodeId node) const;
   std::shared_ptr<const BakeSource> source(NodeId node) const;
@@ -113,6 +117,7 @@ class TextureStore {
   struct LevelStore {
     storage::BlobStore textures, sources;
     std::vector<TexelSizes> texels;
+    std::vector<std::shared_ptr<const BakeSource>> held;  ///< sources, while the pool has room
   };
   using Key = std::pair<Level, std::uint32_t>;
   struct Cached {
@@ -124,6 +129,7 @@ class TextureStore {
   template <class Visit>
   void for_each_size(const Visit& visit) const;
 
+  storage::ScratchFile& scratch_;
   std::vector<LevelStore> levels_;
   std::uint64_t cache_bytes_ = 0;
   mutable std::mutex mutex_;

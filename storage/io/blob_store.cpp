@@ -11,16 +11,19 @@
 namespace meshhier::storage {
 
 void BlobStore::put(std::size_t index, std::span<const std::byte> bytes) {
+  put_on_disk(index, bytes);
+  if (bytes.empty() || !scratch_->pool().try_take(bytes.size()))
+    return;
+  Blob& blob = blobs_[index];
+  blob.memory = std::make_unique_for_overwrite<std::byte[]>(bytes.size());
+  std::memcpy(blob.memory.get(), bytes.data(), bytes.size());
+}
+
+void BlobStore::put_on_disk(std::size_t index, std::span<const std::byte> bytes) {
   Blob& blob = blobs_[index];
   assert(blob.stored.bytes == 0);
-  if (bytes.empty())
-    return;
-  const std::uint64_t offset = scratch_->append(bytes);
-  if (scratch_->pool().try_take(bytes.size())) {
-    blob.memory = std::make_unique_for_overwrite<std::byte[]>(bytes.size());
-    std::memcpy(blob.memory.get(), bytes.data(), bytes.size());
-  }
-  blob.stored = {offset, bytes.size(), checksum(bytes)};
+  if (!bytes.empty())
+    blob.stored = {scratch_->append(bytes), bytes.size(), checksum(bytes)};
 }
 
 bool BlobStore::restore(std::size_t index, const StoredBlob& stored) {

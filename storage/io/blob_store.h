@@ -48,6 +48,8 @@ class BlobStore {
   std::size_t count() const { return blobs_.size(); }
   /// Writes a blob to disk, and keeps a copy in memory if the pool has room for it.
   void put(std::size_t index, std::span<const std::byte> bytes);
+  /// Writes a blob to disk alone.
+  void put_on_disk(std::size_t index, std::span<const std::byte> bytes);
   std::uint64_t size(std::size_t index) const { return blobs_[index].stored.bytes; }
 
   /// The place of a blob: for restore(), in another process even.
