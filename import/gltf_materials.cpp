@@ -1,6 +1,7 @@
 #include "import/gltf_materials.h"
 
 #include "base/srgb.h"
+#include "import/gltf_picture_forms.h"
 
 #include <algorithm>
 #include <span>
@@ -86,8 +87,8 @@ GltfMaterials::Use GltfMaterials::look_up(const GltfLook& look) {
   if (look.texture == nullptr)
     return use;
   const mesh_io::GltfTexture& texture = file_.document().textures[look.texture->texture];
-  if (texture.image) {
-    use.picture = file_.picture(*texture.image);
+  if (!texture.forms.empty()) {
+    use.picture = best_picture(file_, texture);
     return use;
   }
   std::string unknown = "a picture";
@@ -126,9 +127,7 @@ images::Material GltfMaterials::material(std::int64_t key, Use& use, MaterialTab
                                               : std::max(look.factor[c], 0.0));
   for (std::size_t c = 0; c < to.light.size() && !look.has_own_light; ++c)
     to.light[c] = static_cast<float>(std::max(look.light[c], 0.0));
-  to.image =
-      table.add_picture({use.picture->name, use.picture->file.value_or(""), use.picture->offset,
-                         use.picture->bytes, std::move(use.picture->data), use.picture->is_packed});
+  to.image = table.add_picture(source_of(*std::move(use.picture)));
   const auto sampler = document.textures[look.texture->texture].sampler;
   if (sampler) {
     to.wrap_u = document.samplers[*sampler].wrap_u;

@@ -73,7 +73,7 @@ class GltfMaterials {
 
   struct Use {
     std::optional<mesh_io::GltfPicture> picture;  ///< its texture's, if it has one
-    bool has_picture() const { return picture && (picture->file || !picture->data.empty()); }
+    bool has_picture() const { return picture && picture->is_there(); }
     std::uint32_t number = 0;
   };
 

@@ -24,8 +24,8 @@ constexpr std::uint64_t kMostStride = 256;
 constexpr std::size_t kLongestGltfName = 255;
 
 /// Whoever shows such a picture finds that it cannot be read.
-constexpr std::array<GltfPictureFormat, 3> kUnreadFormats{
-    {{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_avif", "AVIF"}, {"MSFT_texture_dds", "DDS"}}};
+constexpr std::array<GltfPictureFormat, 2> kUnreadFormats{
+    {{"EXT_texture_avif", "AVIF"}, {"MSFT_texture_dds", "DDS"}}};
 
 /// The value of a table that `text` names.
 template <class Table>
@@ -212,19 +212,31 @@ class DocumentReader {
     root_.for_each("samplers", [&](const GltfObject& o) {
       document_.samplers.push_back({read_wrap(o, "wrapS"), read_wrap(o, "wrapT")});
     });
-    root_.for_each("textures", [&](const GltfObject& o) {
-      GltfTexture texture{o.index("source", document_.images.size()),
-                          o.index("sampler", document_.samplers.size())};
-      for (const ImageFormatRow& row : kImageFormats) {
-        if (row.gltf_extension == nullptr || !row.in_browsers)
-          continue;
-        if (const auto read = o.extension(row.gltf_extension))
-          texture.image = read->require_index("source", document_.images.size());
-      }
-      for (const GltfPictureFormat& format : kUnreadFormats)
-        texture.unread = o.extension(format.extension) ? &format : texture.unread;
-      document_.textures.push_back(texture);
-    });
+    root_.for_each("textures", [&](const GltfObject& o) { read_texture(o); });
+  }
+
+  void read_texture(const GltfObject& o) {
+    GltfTexture texture;
+    add_forms(o, true, texture);
+    if (const auto source = o.index("source", document_.images.size()))
+      texture.forms.push_back(*source);
+    texture.has_ktx2 = add_forms(o, false, texture);
+    texture.sampler = o.index("sampler", document_.samplers.size());
+    for (const GltfPictureFormat& format : kUnreadFormats)
+      texture.unread = o.extension(format.extension) ? &format : texture.unread;
+    document_.textures.push_back(std::move(texture));
+  }
+
+  /// Adds the pictures that extensions name; returns whether there is one.
+  bool add_forms(const GltfObject& o, bool in_browsers, GltfTexture& to) const {
+    const std::size_t before = to.forms.size();
+    for (const ImageFormatRow& row : kImageFormats) {
+      if (row.gltf_extension == nullptr || row.in_browsers != in_browsers)
+        continue;
+      if (const auto form = o.extension(row.gltf_extension))
+        to.forms.push_back(form->require_index("source", document_.images.size()));
+    }
+    return to.forms.size() > before;
   }
 
   GltfTextureUse read_texture_use(const GltfObject& o) const {

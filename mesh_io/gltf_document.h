@@ -160,8 +160,11 @@ struct GltfPictureFormat {
 };
 
 struct GltfTexture {
-  std::optional<std::uint32_t> image;  ///< none: its picture is of a format that is not read
-  std::optional<std::uint32_t> sampler;
+  /// The forms of its picture, each an image: WebP, what "source" names, KTX2. None: it is of a
+  /// format that is not read.
+  std::vector<std::uint32_t> forms;
+  bool has_ktx2 = false;  ///< the last one is KTX2
+  std::optional<std::uint32_t> sampler{};
   const GltfPictureFormat* unread = nullptr;  ///< an extension has a picture for it
 };
 

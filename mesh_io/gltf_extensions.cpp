@@ -20,7 +20,7 @@ constexpr auto kUsed = std::to_array<GltfExtension>({
     {"KHR_mesh_quantization", "types of numbers"},
     {"KHR_node_visibility", "leaves nodes out"},
     {"KHR_techniques_webgl", "colours and pictures"},
-    {"KHR_texture_basisu", "pictures; refused where one is shown"},
+    {"KHR_texture_basisu", "pictures"},
     {"KHR_texture_transform", "places pictures"},
     {"MSFT_texture_dds", "pictures; refused where one is shown"},
 });

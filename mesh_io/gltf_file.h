@@ -42,6 +42,8 @@ struct GltfPicture {
   bool is_packed = false;  ///< the file is in gzip: offset and bytes count in its content
   /// Places where a file that is missing was looked for.
   std::vector<std::filesystem::path> sought{};
+
+  bool is_there() const { return file || !data.empty(); }
 };
 
 /// An open glTF. Reading goes through it: buffers are opened when they are first needed, compressed

@@ -63,7 +63,10 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
   plan.materials.materials = std::move(materials.materials);
   for (std::uint32_t i = 0; i < materials.images.size(); ++i) {
     try {
-      plan.heads.push_back(importing::open_picture(materials.images[i], files.input())->info());
+      const auto picture = importing::open_picture(materials.images[i], files.input());
+      if (const std::string why = picture->missing(); !why.empty())
+        throw Error(ErrorCode::io, materials.images[i].name + ": " + why);
+      plan.heads.push_back(picture->info());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)
         throw;

@@ -1,5 +1,7 @@
 // glTF and GLB files: what they become.
 #include "base/error.h"
+#include "images/image_codec.h"
+#include "images/ktx2_coder.h"
 #include "import/imported.h"
 #include "mesh_io/gltf_extensions.h"
 #include "storage/format/tile_glb.h"
@@ -626,21 +628,21 @@ TEST_F(GltfImportTest, BesideABaseColoursPictureTheEmissiveOneIsCounted) {
   EXPECT_EQ(import(gltf).materials.materials[0].light, (std::array<float, 3>{0, 0, 1}));
 }
 
-TEST_F(GltfImportTest, APictureInKtx2IsToldToBeUnreadable) {
+TEST_F(GltfImportTest, APictureOfAFormatThatIsNotReadIsTold) {
   GltfBuilder gltf;
-  const std::size_t number = gltf.textured_material({{"uri", "b.ktx2"}});
+  const std::size_t number = gltf.textured_material({{"uri", "b.avif"}});
   gltf.json["textures"][0].erase("source");
-  gltf.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
+  gltf.json["textures"][0]["extensions"]["EXT_texture_avif"]["source"] = 0;
   gltf.show(textured_square(gltf, number));
   const Imported mesh = import(gltf);
   ASSERT_EQ(mesh.warnings.size(), 1U);
-  EXPECT_THAT(mesh.warnings[0], HasSubstr("KTX2, which cannot be read"));
+  EXPECT_THAT(mesh.warnings[0], HasSubstr("AVIF, which cannot be read"));
 
   gltf.json["textures"][0]["extensions"]["MSFT_texture_dds"]["source"] = 0;
   EXPECT_THAT(import(gltf).warnings[0], HasSubstr("DDS, which cannot be read"));
   gltf.json["textures"][0]["extensions"].erase("MSFT_texture_dds");
 
-  gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
+  gltf.json["extensionsRequired"] = {"EXT_texture_avif"};
   EXPECT_THAT(failure(gltf), HasSubstr("leave them out with \"texture\": {\"use\": false}"));
   EXPECT_EQ(import(gltf, {.textures = Textures::ignore}).positions.size(), 4U);
   gltf.json["textures"][0]["source"] = 0;  // another picture is there
@@ -648,6 +650,69 @@ TEST_F(GltfImportTest, APictureInKtx2IsToldToBeUnreadable) {
   gltf.json["textures"][0].erase("source");
   gltf.json["meshes"][0]["primitives"][0].erase("material");  // nobody shows it
   EXPECT_EQ(failure(gltf), "");
+}
+
+/// A file of a picture of that many texels a side.
+std::string picture_file(ImageFormat format, std::uint32_t side, int quality = 100) {
+  images::Image image(side, side, 3);
+  std::ranges::fill(image.texels, std::uint8_t{128});
+  const auto bytes = images::encode_image(image, format, quality);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+class PictureFormsTest : public GltfImportTest {
+ protected:
+  PictureFormsTest() {
+    const std::size_t number = gltf_.textured_material({{"uri", "b.png"}});
+    gltf_.add("images", {{"uri", "b.ktx2"}});
+    gltf_.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
+    gltf_.json["extensionsRequired"] = {"KHR_texture_basisu"};
+    gltf_.show(textured_square(gltf_, number));
+  }
+  fs::path shown() {
+    const Imported mesh = import(gltf_);
+    return mesh.materials.images.empty() ? "" : mesh.materials.images[0].file.filename();
+  }
+
+  GltfBuilder gltf_;
+};
+
+TEST_F(PictureFormsTest, AFileOfKtx2AloneIsRead) {
+  gltf_.json["textures"][0].erase("source");
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 8));
+  EXPECT_EQ(shown(), "b.ktx2");
+}
+
+TEST_F(PictureFormsTest, TheOneWithMoreTexelsIsTaken) {
+  put("b.png", picture_file(ImageFormat::png, 8));
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 16));
+  EXPECT_EQ(shown(), "b.ktx2");
+  put("b.png", picture_file(ImageFormat::png, 16));
+  EXPECT_EQ(shown(), "b.png") << "of equal ones that which loses less";
+}
+
+TEST_F(PictureFormsTest, WhatIsMissingOrBrokenYieldsToTheOther) {
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 8));
+  EXPECT_EQ(shown(), "b.ktx2") << "b.png is not there";
+  put("b.png", "x");
+  EXPECT_EQ(shown(), "b.ktx2");
+  put("b.png", picture_file(ImageFormat::png, 4));
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 8).substr(0, 60));
+  EXPECT_EQ(shown(), "b.png");
+}
+
+TEST_F(PictureFormsTest, WithoutTheProgramForItsBlocksTheFileIsRefused) {
+  if (!images::missing_for_ktx2().empty())
+    GTEST_SKIP() << images::missing_for_ktx2();
+  put("b.png", picture_file(ImageFormat::png, 4));
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 8, 50));
+  EXPECT_EQ(shown(), "b.ktx2");
+  ASSERT_EQ(::setenv("MESHHIER_KTX2", "/nowhere", 1), 0);
+  EXPECT_THAT(failure(gltf_, ErrorCode::io),
+              HasSubstr("b.ktx2: pictures in KTX2 as ETC1S are coded by Node.js"));
+  put("b.ktx2", picture_file(ImageFormat::ktx2, 8));
+  EXPECT_EQ(shown(), "b.ktx2") << "UASTC needs none";
+  ASSERT_EQ(::unsetenv("MESHHIER_KTX2"), 0);
 }
 
 TEST_F(GltfImportTest, MaterialsHaveWrapsAlphaAndOtherCoordinates) {
