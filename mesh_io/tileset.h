@@ -42,7 +42,7 @@ struct TilesetMesh {
 
 struct Tileset {
   std::vector<TilesetMesh> meshes;               ///< in the order of the document
-  std::vector<std::filesystem::path> documents;  ///< JSONs of external tilesets, each once
+  std::vector<std::filesystem::path> documents;  ///< of external tilesets and subtrees
   std::optional<GlobeFrame> frame;               ///< none: coordinates are those of the tileset
   bool is_hierarchy = false;                     ///< a build made it
   std::uint64_t coarser = 0;                     ///< contents that finer ones replace
@@ -54,9 +54,9 @@ struct Tileset {
 /// external tileset, that says nothing refines as its parent. Contents are files below the folder
 /// of `path`, packed by gzip or not, or data URIs. `frame`: that of another tileset, so that both
 /// stand in one; null: its own, as globe_frame() returns it. `most_bytes`: memory for a JSON.
-/// Throws Error(input) naming file and place if a document is no tileset, if tiles are implicit, if
-/// a content is on the web, not there or no tile, if tilesets hold each other, or if they have more
-/// than kMostTiles tiles; Error(budget), Error(io).
+/// Throws Error(input) naming file and place if a document is no tileset, if a subtree
+/// of implicit tiles is missing or broken, if a content is on the web, not there or no tile, if
+/// tilesets hold each other, or if they have more than kMostTiles tiles; Error(budget), Error(io).
 Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
                      const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes);
 

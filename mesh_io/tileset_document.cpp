@@ -1,8 +1,6 @@
 #include "mesh_io/tileset_document.h"
 
-#include "base/angle.h"
 #include "base/error.h"
-#include "base/wgs84.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_stream.h"
 
@@ -10,7 +8,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -23,6 +20,8 @@ namespace {
 
 /// A tile takes two levels of JSON below its parent.
 constexpr int kDeepestTilesetJson = 512;
+/// Numbers of cells are exact in doubles.
+constexpr std::uint64_t kMostImplicitLevels = 52;
 
 nlohmann::json parsed_content(const storage::File& file, std::uint64_t most_bytes) {
   const auto stream = open_stream({file, file.size()}, {});
@@ -48,61 +47,11 @@ GltfTransform transform_of(const GltfObject& tile) {
   return gltf_matrix(columns);
 }
 
-/// Returns the radius of the longest parallel between two latitudes.
-double longest_parallel(double south, double north) {
-  if (south * north <= 0)
-    return wgs84::kEquator;
-  return wgs84::kEquator * std::max(turn_by(south).cosine, turn_by(north).cosine);
-}
-
-/// Returns the volume of west, south, east, north in radians, least and largest height; nothing if
-/// there is no such region.
-std::optional<TileVolume> volume_of_region(const std::vector<double>& region) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  if (!std::ranges::all_of(std::span(region).first(4),
-                           [](double angle) { return std::abs(angle) <= std::numbers::pi; }))
-    return std::nullopt;
-  const double east = region[2] + (region[2] < region[0] ? kTurn : 0);
-  const double width = (east - region[0]) * longest_parallel(region[1], region[3]);
-  const double height = std::abs(region[3] - region[1]) * wgs84::kEquator;
-  const UnitTurn longitude = turn_by((region[0] + east) / 2);
-  const UnitTurn latitude = turn_by((region[1] + region[3]) / 2);
-  return TileVolume{.middle = wgs84::geocentric(longitude, latitude, (region[4] + region[5]) / 2),
-                    .radius = (width + height + std::abs(region[5] - region[4])) / 2,
-                    .is_geocentric = true};
-}
-
-TileVolume volume_of_box(const std::vector<double>& box) {
-  double square = 0;
-  for (std::size_t i = 3; i < box.size(); ++i)
-    square += box[i] * box[i];
-  return {.middle = {box[0], box[1], box[2]}, .radius = std::sqrt(square)};
-}
-
-/// Returns the root's volume; refuses one whose numbers are no volume.
-std::optional<TileVolume> volume_of_root(const GltfObject& root) {
-  const auto volume = root.object("boundingVolume");
-  if (!volume)
-    return std::nullopt;
-  if (const auto region = volume->numbers("region", 6)) {
-    const auto found = volume_of_region(*region);
-    if (!found)
-      volume->fail("has a region beyond half a turn");
-    return found;
-  }
-  if (const auto box = volume->numbers("box", 12))
-    return volume_of_box(*box);
-  if (const auto ball = volume->numbers("sphere", 4))
-    return TileVolume{.middle = {(*ball)[0], (*ball)[1], (*ball)[2]},
-                      .radius = std::abs((*ball)[3])};
-  return std::nullopt;
-}
-
 /// Returns a tile's volume. Only the root's is refused: volumes of other tiles only serve to place
 /// a tileset of the whole globe.
-std::optional<TileVolume> volume_of(const GltfObject& tile, bool is_root) {
+std::optional<VolumeNumbers> volume_of(const GltfObject& tile, bool is_root) {
   try {
-    return volume_of_root(tile);
+    return VolumeNumbers::of(tile);
   } catch (const Error&) {
     if (is_root)
       throw;
@@ -144,14 +93,55 @@ TileContentName name_of_content(const GltfObject& content, const GltfObject& til
   return {std::move(uri), number, content.place().substr(tile.place().size())};
 }
 
+std::optional<GltfObject> implicit_of(const GltfObject& tile) {
+  auto implicit = tile.object("implicitTiling");
+  return implicit ? implicit : tile.extension("3DTILES_implicit_tiling");
+}
+
+SubtreeShape shape_of(const GltfObject& implicit) {
+  const std::string scheme = implicit.text("subdivisionScheme").value_or("");
+  if (scheme != "QUADTREE" && scheme != "OCTREE")
+    implicit.fail("has no subdivisionScheme \"QUADTREE\" or \"OCTREE\"");
+  SubtreeShape shape{.is_octree = scheme == "OCTREE"};
+  std::uint32_t most = 1;
+  while (shape.tiles_of(most + 1) <= kMostAvailabilityBits)
+    ++most;
+  shape.levels = static_cast<std::uint32_t>(implicit.require_count("subtreeLevels", most));
+  if (shape.levels == 0)
+    implicit.fail("has subtrees of no levels");
+  return shape;
+}
+
+/// Returns the count of levels, which the draft before 1.0 says as the number of the last one.
+std::uint32_t levels_of(const GltfObject& implicit) {
+  const auto last = implicit.count("maximumLevel", kMostImplicitLevels - 1);
+  const std::uint64_t levels = last && !implicit.has("availableLevels")
+                                   ? *last + 1
+                                   : implicit.require_count("availableLevels", kMostImplicitLevels);
+  if (levels == 0)
+    implicit.fail("has tiles on no level");
+  return static_cast<std::uint32_t>(levels);
+}
+
+/// `number`: of the tile.
+ImplicitTiling read_implicit(const GltfObject& implicit, std::uint32_t number,
+                             const std::optional<VolumeNumbers>& volume) {
+  const auto subtrees = implicit.require_object("subtrees").text("uri");
+  if (!subtrees)
+    implicit.fail("has no subtrees.uri");
+  return {number, shape_of(implicit), levels_of(implicit), *subtrees, volume};
+}
+
 void add_tile(const GltfObject& tile, std::optional<std::uint32_t> parent, std::uint32_t child,
               TilesetDocument& to) {
-  if (tile.has("implicitTiling") || tile.extension("3DTILES_implicit_tiling"))
-    tile.fail(
-        "has implicit tiles, which are not read; write the tileset with explicit ones, or give "
-        "the mesh that it was made of");
   const auto number = static_cast<std::uint32_t>(to.tiles.size());
   const auto first = static_cast<std::uint32_t>(to.contents.size());
+  const std::optional<VolumeNumbers> volume = volume_of(tile, !parent);
+  if (const auto implicit = implicit_of(tile)) {
+    if (tile.item_count("children") > 0)
+      tile.fail("has implicit tiles beside \"children\"");
+    to.implicit.push_back(read_implicit(*implicit, number, volume));
+  }
   for_each_content(tile, [&](const GltfObject& content) {
     to.contents.push_back(name_of_content(content, tile, number));
   });
@@ -160,7 +150,7 @@ void add_tile(const GltfObject& tile, std::optional<std::uint32_t> parent, std::
                       .refine = refine_of(tile),
                       .is_leaf = tile.item_count("children") == 0,
                       .transform = transform_of(tile),
-                      .volume = volume_of(tile, !parent),
+                      .volume = volume ? volume->ball() : std::nullopt,
                       .first_content = first,
                       .end_content = static_cast<std::uint32_t>(to.contents.size())});
   std::uint32_t next = 0;

@@ -3,6 +3,8 @@
 
 #include "base/vec.h"
 #include "mesh_io/gltf_transform.h"
+#include "mesh_io/subtree.h"
+#include "mesh_io/tile_volume.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -16,14 +18,6 @@ namespace meshhier::mesh_io {
 /// The children of a tile take its place, or are shown beside it.
 enum class Refine : std::uint8_t { inherited, replace, add };
 
-/// A ball around what a tile holds: all of its bounding volume lies in it.
-struct TileVolume {
-  Vec3d middle;
-  double radius = 0;
-  bool is_geocentric = false;  ///< it is in geocentric coordinates, whatever the tile's transform;
-                               ///< else in the tile's
-};
-
 /// A content that a tile names.
 struct TileContentName {
   std::optional<std::string> uri;  ///< none: an error, if it is looked for
@@ -36,14 +30,24 @@ struct TilesetTile {
   std::uint32_t number = 0;               ///< among the children of its parent
   Refine refine = Refine::inherited;
   bool is_leaf = true;
-  GltfTransform transform;  ///< to the parent's coordinates
+  GltfTransform transform{};  ///< to the parent's coordinates
   std::optional<TileVolume> volume{};
   std::uint32_t first_content = 0, end_content = 0;  ///< range of TilesetDocument::contents
+};
+
+/// A tile that stands for a tree of tiles (implicit_tiles.h).
+struct ImplicitTiling {
+  std::uint32_t tile = 0;  ///< number of the tile, whose contents are templates of names
+  SubtreeShape shape;
+  std::uint32_t levels = 1;  ///< levels that there may be tiles on
+  std::string subtrees;      ///< template of the names of subtrees
+  std::optional<VolumeNumbers> volume{};
 };
 
 struct TilesetDocument {
   std::filesystem::path path;
   std::vector<TilesetTile> tiles{};  ///< parents first, in the order of the document
+  std::vector<ImplicitTiling> implicit{};
   std::vector<TileContentName> contents{};
   GltfTransform axes{};       ///< from the axes of a glTF to those of 3D Tiles
   bool is_hierarchy = false;  ///< a build made it
@@ -57,8 +61,8 @@ GltfTransform from_input(const TilesetDocument& document);
 std::string place_of(const TilesetDocument& document, const TileContentName& content);
 
 /// Reads a document, packed by gzip or not. `most_bytes`: memory for its JSON. Throws Error(input)
-/// naming file and place if it is no tileset, if its values are not as the specification says, or
-/// if tiles are implicit; Error(budget), Error(io).
+/// naming file and place if it is no tileset or if its values are not as the specification says;
+/// Error(budget), Error(io).
 TilesetDocument read_tileset_document(const storage::File& file, std::uint64_t most_bytes);
 
 }  // namespace meshhier::mesh_io

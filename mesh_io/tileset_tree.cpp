@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "mesh_io/gltf_uri.h"
+#include "mesh_io/implicit_tiles.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
@@ -65,6 +66,7 @@ TilesetTree::TilesetTree(storage::FileSystem& files, const fs::path& path, std::
 
 std::uint32_t TilesetTree::add_document(const storage::File& file) {
   Part part{read_tileset_document(file, most_bytes_), {}};
+  add_implicit_tiles(part.document);
   read_ += std::max(part.document.tiles.size(), part.document.contents.size());
   if (read_ > kMostTiles) {
     fail_file(file.path(),
@@ -73,6 +75,15 @@ std::uint32_t TilesetTree::add_document(const storage::File& file) {
   part.contents.resize(part.document.contents.size());
   documents_.push_back(std::move(part));
   return static_cast<std::uint32_t>(documents_.size() - 1);
+}
+
+void TilesetTree::add_implicit_tiles(TilesetDocument& document) {
+  expand_implicit_tiles(
+      document, kMostTiles, most_bytes_,
+      [&](const fs::path& folder, const std::string& uri, const std::string& place) {
+        external_.push_back(file_of(document.path, folder, uri, place));
+        return files_.open(external_.back());
+      });
 }
 
 /// Counts the tiles that a document shows with all that it names. They depend on the document and
@@ -130,7 +141,8 @@ std::uint32_t TilesetTree::content_of(std::uint32_t document, std::uint32_t numb
     const auto file = file_of_bytes(content.file, content.data);
     found = add_content(std::move(content), *file);
   } else {
-    const fs::path path = file_of(part, name);
+    const fs::path path = file_of(part.document.path, part.document.path.parent_path(), *name.uri,
+                                  place_of(part.document, name));
     const auto known = known_.find(path);
     found = known != known_.end() ? known->second
                                   : add_content({.file = path, .tile = {}}, *files_.open(path));
@@ -171,15 +183,12 @@ TileContent TilesetTree::data_content(const Part& part, const TileContentName& n
           .tile = {}};
 }
 
-fs::path TilesetTree::file_of(const Part& part, const TileContentName& content) const {
-  const std::string& uri = *content.uri;
+fs::path TilesetTree::file_of(const fs::path& document, const fs::path& folder,
+                              const std::string& uri, const std::string& place) const {
   const std::string shown = plain_text(uri, kLongestContent);
-  const auto fail = [&](const std::string& message) {
-    fail_file(part.document.path, place_of(part.document, content) + " " + message);
-  };
+  const auto fail = [&](const std::string& message) { fail_file(document, place + " " + message); };
   if (uri.find("://") != std::string::npos || uri.starts_with("//"))
     fail("is on the web (" + shown + "); fetch the whole tileset first");
-  const fs::path folder = part.document.path.parent_path();
   for (std::string name : names_of_uri(uri)) {
     for (int i = 0; i < 2; ++i) {
       const fs::path path = (folder / name).lexically_normal();

@@ -51,7 +51,7 @@ class TilesetTree {
               std::uint64_t most_bytes);
 
   const TilesetDocument& root() const { return documents_[0].document; }
-  /// Returns the files of external tilesets, each once, but for those that are data.
+  /// Returns the files of external tilesets, but for those that are data, and of subtrees.
   const std::vector<std::filesystem::path>& external() const { return external_; }
 
   using Visit = std::function<void(const ShownContent&)>;
@@ -85,7 +85,11 @@ class TilesetTree {
   std::uint32_t content_of(std::uint32_t document, std::uint32_t content);
   std::uint32_t add_content(TileContent content, const storage::File& file);
   TileContent data_content(const Part& part, const TileContentName& name, std::string_view base64);
-  std::filesystem::path file_of(const Part& part, const TileContentName& content) const;
+  void add_implicit_tiles(TilesetDocument& document);
+  /// Returns the file that a URI names from a folder; `document` and `place`: where it stands.
+  std::filesystem::path file_of(const std::filesystem::path& document,
+                                const std::filesystem::path& folder, const std::string& uri,
+                                const std::string& place) const;
   bool is_below_place(const std::filesystem::path& path) const;
   static Stand stand_of(const TilesetDocument& document, const TilesetTile& tile,
                         const Stand& parent, const std::optional<GlobeFrame>& frame);

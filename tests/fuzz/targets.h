@@ -25,6 +25,8 @@ void mtl(std::span<const std::byte> input);
 void gltf(std::span<const std::byte> input);
 /// A tileset of 3D Tiles, or a tile of one: a bit, then the file.
 void tileset(std::span<const std::byte> input);
+/// A byte, then a subtree of implicit tiles.
+void subtree(std::span<const std::byte> input);
 /// Lines that begin with "--set " are overrides, the others the config.
 void config(std::span<const std::byte> input);
 /// A file for placement.metadata.
@@ -64,13 +66,14 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 23> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 24> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
                                                   {"mtl", mtl},
                                                   {"gltf", gltf},
                                                   {"tileset", tileset},
+                                                  {"subtree", subtree},
                                                   {"config", config},
                                                   {"map_file", map_file},
                                                   {"cut", cut},

@@ -364,7 +364,7 @@ TEST_F(TilesetImportTest, WhatCannotBeReadIsRefusedWithItsPlace) {
   put("../outside.glb", triangle().glb());
   GltfJson implicit = tile_of("a.glb");
   implicit["implicitTiling"] = {{"subdivisionScheme", "QUADTREE"}};
-  EXPECT_THAT(failure(implicit), HasSubstr("root has implicit tiles, which are not read"));
+  EXPECT_THAT(failure(implicit), HasSubstr("root.implicitTiling has no \"subtrees\""));
   EXPECT_THAT(failure(tile_of("https://host/a.b3dm")), HasSubstr("fetch the whole tileset first"));
   EXPECT_THAT(failure(tile_of("b.glb")),
               HasSubstr("root.content is b.glb, which is no file below the folder"));
