@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 
 namespace meshhier::execution {
@@ -33,6 +34,10 @@ class MemoryGate {
     freed_.wait(lock, [&] { return held_ == 0 || held_ + bytes <= limit_; });
     held_ += bytes;
     return {*this, bytes};
+  }
+  /// Does the same for an owner that hands it on.
+  [[nodiscard]] std::shared_ptr<const void> share(std::uint64_t bytes) {
+    return std::shared_ptr<const Hold>(new Hold(enter(bytes)));
   }
 
  private:

@@ -2,6 +2,9 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "execution/memory_gate.h"
+#include "execution/parallel.h"
+#include "import/append_mesh.h"
 #include "import/crop_mesh.h"
 #include "import/gltf_import.h"
 #include "import/obj_import.h"
@@ -41,7 +44,8 @@ class FileReader::Impl {
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
         named_(input.system()),
-        mesh_(mesh) {}
+        mesh_(mesh),
+        decoding_(decoding_bytes()) {}
 
   /// Requires a kind that files have: the tiles of a tileset are files of their own.
   AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room) {
@@ -118,6 +122,9 @@ class FileReader::Impl {
     });
     return added;
   }
+
+  /// While a reader of glTF decodes no sort runs.
+  std::uint64_t decoding_bytes() const { return std::max(2 * room_.sort_bytes, 4 * kMiB); }
 
   std::uint32_t checked_base(const std::filesystem::path& path, std::uint64_t more) const {
     const std::uint64_t base = mesh_.vertex_count();
@@ -266,25 +273,61 @@ class FileReader::Impl {
 
   AddedFile add_plain_gltf(const InputFileFacts& facts,
                            std::shared_ptr<const storage::File> content) {
-    // While the reader decodes no sort runs.
-    constexpr std::uint64_t kLeast = 4 * kMiB;
+    return note_gltf(import_plain_gltf(facts, std::move(content), mesh_));
+  }
+
+  /// Thread-safe for different meshes.
+  GltfImport import_plain_gltf(const InputFileFacts& facts,
+                               std::shared_ptr<const storage::File> content, RawMesh& mesh) {
     const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
     if (facts.tile && tile.offset + tile.bytes > content->size())
       mesh_io::fail_file(facts.path, "ends within a tile (truncated?)");
     if (facts.tile)
       content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
-    mesh_io::GltfFile file(
-        std::move(content), facts.path.parent_path(),
-        {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast), content_of(facts),
-         facts.path, [this] { env_.cancel.check(); }, tile.offset});
-    const GltfImport import =
-        import_gltf(file, tile.placement, mesh_, input_.textures(), input_.attributes(), room_);
+    mesh_io::GltfFile file(std::move(content), facts.path.parent_path(),
+                           {input_.system(), env_.scratch, decoding_bytes(), content_of(facts),
+                            facts.path, [this] { env_.cancel.check(); }, tile.offset,
+                            [this](std::uint64_t bytes) { return decoding_.share(bytes); }});
+    return import_gltf(file, tile.placement, mesh, input_.textures(), input_.attributes(), room_);
+  }
+
+  AddedFile note_gltf(const GltfImport& import) {
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
     count(import.zeroed);
     return {import.layout,           import.fits_float,
             import.triangles,        import.degenerate_triangles,
             import.material_colours, import.is_painted};
+  }
+
+  /// A file of glTF that was read apart.
+  struct Apart {
+    explicit Apart(storage::ScratchFile& scratch) : mesh(scratch) {}
+    RawMesh mesh;
+    GltfImport import;
+  };
+
+  std::unique_ptr<Apart> read_apart(const InputFileFacts& facts) {
+    auto apart = std::make_unique<Apart>(env_.scratch);
+    apart->import = import_plain_gltf(facts, facts.content(input_.system()), apart->mesh);
+    apart->mesh.layout = apart->import.layout;
+    return apart;
+  }
+
+  void read_run(std::span<const InputFileFacts> files,
+                const std::function<void(const AddedFile&)>& added) {
+    // Blocks of spools, windows, the buffers of a decoder.
+    constexpr std::uint64_t kItemBytes = 4 * kMiB;
+    execution::ordered_for(
+        files.size(), execution::useful_blocks(decoding_bytes(), kItemBytes), env_.cancel,
+        [&](std::size_t i) { return read_apart(files[i]); },
+        [&](std::size_t i, const std::unique_ptr<Apart>& apart) {
+          checked_base(files[i].path, apart->mesh.vertex_count());
+          append_mesh(std::move(apart->mesh), mesh_, env_.cancel);
+          checksums_.push_back(checksum_of(files[i].path));
+          env_.progress.advance(files[i].identity.bytes);
+          added(note_gltf(apart->import));
+        });
   }
 
   AddedFile add_obj(InputStream& stream, const std::filesystem::path& path) {
@@ -364,6 +407,7 @@ class FileReader::Impl {
   ImportRoom room_;
   mesh_io::NamedFiles named_;
   RawMesh& mesh_;
+  execution::MemoryGate decoding_;  ///< what files of glTF decode at once
   std::uint64_t near_apart_ = 0;
   std::vector<SourceCount> counts_;
   std::vector<std::uint64_t> checksums_;
@@ -391,6 +435,18 @@ FileReader::~FileReader() = default;
 
 AddedFile FileReader::read(const InputFileFacts& facts, const std::filesystem::path& room) {
   return impl_->read(facts, room);
+}
+
+std::size_t FileReader::run_of(std::span<const InputFileFacts> files) {
+  const auto is_apart = [](const InputFileFacts& file) {
+    return file.format.row().names_features && !file.format.is_gzip;
+  };
+  return static_cast<std::size_t>(std::ranges::find_if_not(files, is_apart) - files.begin());
+}
+
+void FileReader::read_run(std::span<const InputFileFacts> files,
+                          const std::function<void(const AddedFile&)>& added) {
+  impl_->read_run(files, added);
 }
 
 void FileReader::unpack(const InputFileFacts& facts, TemporaryFile& to) {

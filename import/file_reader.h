@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace meshhier::importing {
@@ -24,7 +26,7 @@ struct AddedFile {
 };
 
 /// Reads files of any format one behind the other; each comes behind the vertices of the files
-/// before. For one thread; blocks of texts are parsed on all threads.
+/// before. For one thread; blocks of texts and files of glTF are read on all threads.
 class FileReader {
  public:
   /// All must outlive this.
@@ -38,6 +40,13 @@ class FileReader {
   /// meanwhile. Throws as the reader of its format; Error(input) if the mesh gets 2^32 vertices or
   /// more; Error(io), Error(interrupted).
   AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room);
+  /// Returns how many files from the first one on read_run() can read: 0 or 1 if it is none.
+  static std::size_t run_of(std::span<const InputFileFacts> files);
+  /// Does what read() does for each of the files, and calls `added` for each in order. The files
+  /// are read in parallel, each to a mesh of its own, which then moves behind those before.
+  /// Requires as many as run_of() says.
+  void read_run(std::span<const InputFileFacts> files,
+                const std::function<void(const AddedFile&)>& added);
   /// Writes the content of a packed file to `to`.
   void unpack(const InputFileFacts& facts, TemporaryFile& to);
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -37,11 +38,12 @@ class Import {
     if (input_.is_unpacked_only()) {
       reader_.unpack(input_.all()[0], ply);
     } else {
-      for (const InputFileFacts& file : input_.all())
-        add(file, ply);
+      add_all(ply);
       for (const SourceCount& one : reader_.counts())
         count(one.name, one.count);
       facts_.faces = faces_;
+      if (input_.weld() || input_.crop() || unplaced_.count > 0 || !are_tiles_)
+        facts_.tile_ends.clear();
       require_triangles();
       join();
       RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
@@ -133,9 +135,29 @@ class Import {
                        .missing_images = table.missing()};
   }
 
-  void add(const InputFileFacts& facts, TemporaryFile& ply) {
-    const std::uint64_t vertices = mesh_.vertex_count();
-    const AddedFile added = reader_.read(facts, ply.path());
+  void add_all(TemporaryFile& ply) {
+    std::span<const InputFileFacts> left = input_.all();
+    are_tiles_ = left.size() > 1 && std::ranges::all_of(left, [](const InputFileFacts& file) {
+                   return file.tile.has_value();
+                 });
+    while (!left.empty()) {
+      const std::size_t run = FileReader::run_of(left);
+      std::uint64_t vertices = mesh_.vertex_count();
+      const auto note = [&](const AddedFile& added) {
+        note_added(added, vertices);
+        vertices = mesh_.vertex_count();
+        facts_.tile_ends.push_back(vertices);
+      };
+      if (run > 1)
+        reader_.read_run(left.first(run), note);
+      else
+        note(reader_.read(left[0], ply.path()));
+      left = left.subspan(std::max<std::size_t>(run, 1));
+    }
+  }
+
+  /// `vertices`: those before the file.
+  void note_added(const AddedFile& added, std::uint64_t vertices) {
     count(kMaterialColours, added.material_colours);
     joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.is_painted});
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
@@ -220,6 +242,7 @@ class Import {
   std::optional<RawMesh> placed_, cropped_, welded_;
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
+  bool are_tiles_ = false;  ///< all files are, and there are several
   std::vector<JoinedFile> joined_;
   ImportFacts facts_;
 };

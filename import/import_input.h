@@ -64,6 +64,9 @@ struct ImportFacts {
   /// unless the mesh is textured.
   images::MaterialList materials;
   AllLabelNames label_names;
+  /// The count of vertices up to the end of each tile, if the mesh is several tiles of tilesets as
+  /// they are; else none.
+  std::vector<std::uint64_t> tile_ends;
   /// The textures of a textured mesh. Texels are not counted: nothing is decoded here.
   std::optional<SourceTextures> textures;
 

@@ -49,6 +49,23 @@ std::uint32_t MaterialTable::add(images::Material material) {
   return static_cast<std::uint32_t>(list_.materials.size() - 1);
 }
 
+std::uint32_t MaterialTable::append(MaterialTable&& other) {
+  std::vector<std::uint32_t> numbers;
+  for (images::ImageSource& picture : other.list_.images)
+    numbers.push_back(add_picture(std::move(picture)));
+  const auto first = static_cast<std::uint32_t>(list_.materials.size());
+  for (images::Material& material : other.list_.materials) {
+    if (material.image)
+      material.image = numbers[*material.image];
+    add(std::move(material));
+  }
+  if (missing_.empty())
+    first_missing_ = std::move(other.first_missing_);
+  missing_.merge(std::move(other.missing_));
+  companions_.await(other.companions_.awaited());
+  return first;
+}
+
 std::uint64_t MaterialTable::mask_mixed() {
   const auto blends = [](const images::Material& m) { return m.alpha == AlphaMode::blend; };
   if (std::ranges::all_of(list_.materials, blends))

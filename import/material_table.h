@@ -26,6 +26,8 @@ class MaterialTable {
   std::uint32_t add_picture(images::ImageSource picture);
   /// Returns the material's number. Throws Error(input) beyond kMost.
   std::uint32_t add(images::Material material);
+  /// Adds all that another table has, and returns the number of its first material here.
+  std::uint32_t append(MaterialTable&& other);
   /// Makes masks of materials that blend if there are others: a tile has one material, and a viewer
   /// that blends all of it draws it in the wrong order. Texels with at least half of their
   /// material's alpha are visible then. Returns how many became masks. Called once, when all

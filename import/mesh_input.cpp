@@ -10,6 +10,23 @@
 #include <utility>
 
 namespace meshhier::importing {
+namespace {
+
+std::uint64_t count_between(const std::vector<std::uint64_t>& tile_ends, const CopyList& copies,
+                            const execution::CancelToken& cancel) {
+  if (tile_ends.empty())
+    return 0;
+  const auto tile_of = [&](std::uint32_t vertex) {
+    return std::ranges::upper_bound(tile_ends, vertex) - tile_ends.begin();
+  };
+  std::uint64_t count = 0;
+  copies.for_each(
+      [&] { cancel.check(); },
+      [&](const CopyVertex& copy) { count += tile_of(copy.first) != tile_of(copy.id) ? 1 : 0; });
+  return count;
+}
+
+}  // namespace
 
 MeshInput::MeshInput(const mesh_io::InputPaths& paths, storage::FileSystem& files,
                      const InputUse& use)
@@ -60,6 +77,7 @@ void MeshInput::look_for_copies(const Place& place) {
       {scratch, memory, execution::useful_blocks(memory, look_block_bytes(description_)),
        place.progress, place.cancel});
   description_.place_count = description_.vertex_count - copies_.count();
+  copies_between_tiles_ = count_between(facts_.tile_ends, copies_, place.cancel);
 }
 
 void MeshInput::recall(const mesh_io::MeshDescription& found) {

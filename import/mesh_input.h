@@ -46,6 +46,9 @@ class MeshInput {
   void find_copies(const Place& place);
   /// Returns the copies; none unless find_copies() has found any.
   const CopyList& copies() const { return copies_; }
+  /// Returns how many copies lie where a vertex of another tile of a tileset does; 0 if that is not
+  /// known.
+  std::uint64_t copies_between_tiles() const { return copies_between_tiles_; }
   /// Returns whether find_copies() was called.
   bool was_looked_at() const { return copy_scratch_.has_value(); }
 
@@ -88,6 +91,7 @@ class MeshInput {
   mesh_io::MeshDescription description_;
   std::optional<storage::ScratchFile> copy_scratch_;
   CopyList copies_;
+  std::uint64_t copies_between_tiles_ = 0;
 };
 
 }  // namespace meshhier::importing

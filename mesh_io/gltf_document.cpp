@@ -110,7 +110,7 @@ class DocumentReader {
     const auto asset = root_.object("asset");
     if (!asset || !asset->has_text("version", "2."))
       root_.fail(
-          "is no glTF 2.0, which has an asset.version \"2.0\"; convert the file to glTF 2.0");
+          fmt::format("is no glTF 2.0, which has an asset.version \"2.0\"; {}", kUpgradeGltf));
   }
 
   void check_extensions() {

@@ -109,7 +109,7 @@ class Decoding {
       most_points_ = std::max(most_points_, file_.document().accessors[*position].count);
     if (counts->triangles > file_.room().memory_bytes || most_points_ > file_.room().memory_bytes)
       file_.require_memory(std::max(counts->triangles, most_points_), name_);
-    file_.require_memory(
+    taken_ = file_.take_memory(
         stream.size() + counts->triangles * kTriangleBytes + most_points_ * point_bytes(), name_);
   }
 
@@ -234,6 +234,7 @@ class Decoding {
   const GltfPrimitive& primitive_;
   std::string name_;
   std::uint64_t most_points_ = 0;
+  std::shared_ptr<const void> taken_;  ///< memory, until all is taken out of the mesh
   std::unique_ptr<draco::Mesh> mesh_;
   GltfDracoMesh result_;
 };

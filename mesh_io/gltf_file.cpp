@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "mesh_io/gltf_extensions.h"
 #include "mesh_io/gltf_meshopt.h"
 #include "mesh_io/gltf_uri.h"
 #include "mesh_io/input_error.h"
@@ -65,7 +66,10 @@ std::string buffer_name(std::size_t index) {
 GltfFile::GltfFile(std::shared_ptr<const storage::File> file, std::filesystem::path folder,
                    GltfRoom room)
     : file_(std::move(file)), folder_(std::move(folder)), room_(std::move(room)) {
-  document_ = read_gltf_document(read_container(), path(), room_.memory_bytes);
+  std::string json = read_container();
+  constexpr std::uint64_t kParsed = 30;  // bytes for one of the text, at most
+  const auto taken = take_memory(std::min(kParsed * json.size(), room_.memory_bytes), "its JSON");
+  document_ = read_gltf_document(std::move(json), path(), room_.memory_bytes);
   buffers_.resize(document_.buffers.size());
   decoded_.resize(document_.views.size());
 }
@@ -81,6 +85,12 @@ void GltfFile::require_memory(std::uint64_t bytes, const std::string& what) cons
                             "larger memory_budget",
                             path().string(), what, bytes, room_.memory_bytes));
   }
+}
+
+std::shared_ptr<const void> GltfFile::take_memory(std::uint64_t bytes,
+                                                  const std::string& what) const {
+  require_memory(bytes, what);
+  return room_.take_memory ? room_.take_memory(bytes) : nullptr;
 }
 
 std::string GltfFile::read_text(std::uint64_t offset, std::uint64_t bytes) const {
@@ -99,8 +109,7 @@ std::string GltfFile::read_container() {
   if (got < kGlbHeaderBytes)
     fail("the GLB ends within its header (truncated?)");
   if (word(header, 1) != kGlbVersion) {
-    fail(fmt::format("is a GLB of version {}, expected 2; convert the file to glTF 2.0",
-                     word(header, 1)));
+    fail(fmt::format("is a GLB of version {}, expected 2; {}", word(header, 1), kUpgradeGltf));
   }
   const std::uint64_t end = word(header, 2);
   if (end > size)
@@ -195,7 +204,7 @@ std::unique_ptr<GltfBytes> GltfFile::decode_view(const GltfMeshopt& packed,
   if (!fault.empty())
     fail(name + ": " + fault);
   const GltfRange range = this->range(packed.buffer, packed.offset, packed.bytes, name);
-  require_memory(range.size + packed.count * packed.stride, name);
+  const auto taken = take_memory(range.size + packed.count * packed.stride, name);
   room_.check();
   std::vector<std::byte> stream(range.size);
   range.read(0, stream);

@@ -31,6 +31,9 @@ struct GltfRoom {
   std::filesystem::path stored_in{};  ///< the file that `content` speaks of
   std::function<void()> check;        ///< called often; may throw
   std::uint64_t begin = 0;            ///< offset of the glTF in that file, or in its content
+  /// Waits until files that are read at once have so many bytes left of `memory_bytes`, which are
+  /// taken as long as what it returns is there; null: no others are read.
+  std::function<std::shared_ptr<const void>(std::uint64_t)> take_memory{};
 };
 
 /// A picture of the document and the place where its bytes lie.
@@ -71,6 +74,9 @@ class GltfFile {
   [[noreturn]] void fail(const std::string& message) const;
   /// Throws Error(budget) if `bytes` are more than room().memory_bytes.
   void require_memory(std::uint64_t bytes, const std::string& what) const;
+  /// Does the same, and takes them until what it returns is gone. A thread may take some only when
+  /// it has none.
+  std::shared_ptr<const void> take_memory(std::uint64_t bytes, const std::string& what) const;
 
  private:
   struct Buffer {

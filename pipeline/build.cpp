@@ -123,7 +123,8 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
                        .output_bytes = bytes_of(made, files),
                        .has_area = has_area(made, context.cancel),
                        .predicted = predicted,
-                       .input = workshop.journal.source()->input};
+                       .input = workshop.journal.source()->input,
+                       .copies_between_tiles = input.copies_between_tiles()};
   context.cancel.check();
   if (context.config.storage.container == storage::Container::archive) {
     use.add_written(written_for_good(files, use) - before);

@@ -237,6 +237,12 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
                             execution::rounded_size_text(memory_budget(context.config)));
   if (!outcome.found.empty())
     report.text += outcome.found + '\n';
+  if (outcome.copies_between_tiles > 0)
+    report.text += fmt::format(
+        "{} of tiles lie exactly where those of other tiles do: their borders agree there, and are "
+        "simplified as one surface; \"weld\" makes one vertex of those that are alike in all "
+        "else\n",
+        counted(outcome.copies_between_tiles, "vertices"));
   report.text += notes_text(made, context.config, outcome.has_area);
   report.account = account_text(source, report.stats);
   report.input = note_of(outcome.input, source.checksum);

@@ -29,6 +29,7 @@ struct BuildOutcome {
   std::uint64_t peak_temporary_bytes = 0;
   DiskNeed predicted;  ///< from the header, or from the partitions if it was far off
   importing::InputRecord input;
+  std::uint64_t copies_between_tiles = 0;  ///< as importing::MeshInput's
 };
 
 /// Returns the bytes of all files of a hierarchy.

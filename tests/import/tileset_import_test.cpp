@@ -605,5 +605,57 @@ TEST_F(TilesetImportTest, DeepTilesetsAreReadAndDeeperOnesRefused) {
   EXPECT_THAT(failure(nested(300)), HasSubstr("nested deeper than 512 levels"));
 }
 
+/// Tiles are read at once, each to a mesh of its own.
+TEST_F(TilesetImportTest, ManyTilesAreOneMeshInTheirOrderWithTheirPictures) {
+  const std::vector<float> uv{0, 1, 1, 1, 0, 0};
+  constexpr int kTiles = 40;
+  GltfJson root = tile_of("0.glb");
+  root["refine"] = "ADD";
+  root["children"] = GltfJson::array();
+  for (int i = 0; i < kTiles; ++i) {
+    GltfBuilder gltf = triangle(static_cast<float>(2 * i));
+    GltfJson& primitive = gltf.json["meshes"][0]["primitives"][0];
+    const std::string picture = std::to_string(i % 7) + ".png";
+    if (i % 7 != 6)  // that one is missing
+      put(picture, "x");
+    primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(uv, "VEC2");
+    primitive["material"] = gltf.textured_material({{"uri", picture}});
+    put(std::to_string(i) + ".glb", gltf.glb());
+    if (i > 0)
+      root["children"].push_back(tile_of(std::to_string(i) + ".glb"));
+  }
+  put("tileset.json", tileset_of(root));
+  for (const importing::ImportMemory& memory : {tests::kRoomy, tests::kTight}) {
+    const Imported mesh =
+        tests::import_files(files_, fs::path("w/tileset.json"), {.memory = memory});
+    ASSERT_EQ(mesh.triangles.size(), kTiles);
+    EXPECT_EQ(mesh.materials.materials.size(), 36) << "one for tiles without a picture";
+    EXPECT_EQ(mesh.materials.images.size(), 6);
+    EXPECT_EQ(mesh.count("missing_images"), 5) << "each in its own file";
+    for (int i = 0; i < kTiles; ++i) {
+      const auto number = static_cast<std::size_t>(i);
+      EXPECT_EQ(mesh.positions[mesh.triangles[number][0]].x, 2 * i);
+      EXPECT_THAT(mesh.shown(number),
+                  testing::StartsWith(i % 7 == 6 ? "#" : std::to_string(i % 7) + ".png"));
+    }
+  }
+}
+
+TEST_F(TilesetImportTest, TheFirstOfSeveralBrokenTilesIsTold) {
+  GltfJson root = tile_of("0.glb");
+  root["refine"] = "ADD";
+  root["children"] = GltfJson::array();
+  for (int i = 0; i < 20; ++i) {
+    GltfBuilder gltf = triangle();
+    if (i == 7 || i == 8 || i == 15)
+      gltf.json["meshes"][0]["primitives"][0]["indices"] = 99;
+    put(std::to_string(i) + ".glb", gltf.glb());
+    if (i > 0)
+      root["children"].push_back(tile_of(std::to_string(i) + ".glb"));
+  }
+  for (int i = 0; i < 5; ++i)
+    EXPECT_THAT(failure(root), HasSubstr("w/7.glb"));
+}
+
 }  // namespace
 }  // namespace meshhier::importing
