@@ -233,7 +233,7 @@ std::string (*reference_of(const BuildArguments& arguments))() {
 
 std::string footer() {
   return "FILE is a mesh: a " + mesh_io::format_names() +
-         R"(, perhaps in gzip, or a tileset.json. The hierarchy of scan.ply is made beside
+         R"(, perhaps in gzip, or a tileset.json or .3tz. The hierarchy of scan.ply is made beside
 it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
 config; `meshhier build --help-config` says what they mean.
 

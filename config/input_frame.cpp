@@ -12,7 +12,8 @@ namespace {
 
 /// Whether the file is a tileset. One that is not there is told when it is read; one with the name
 /// of a mesh is not looked into.
-bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
+bool is_tileset(storage::FileSystem& files, const std::filesystem::path& named) {
+  const std::filesystem::path path = mesh_io::tileset_of(files, named);
   if (mesh_io::is_mesh_name(path.filename().string()) ||
       files.kind(path) != storage::FileKind::regular)
     return false;
@@ -34,7 +35,8 @@ Config with_input_frame(storage::FileSystem& files, Config config) {
   if (!config.up)
     config.up = has_tileset ? UpAxis::z : UpAxis::y;
   if (has_tileset && !is_placed(config.placement)) {
-    if (const auto frame = mesh_io::globe_frame(input, *tileset, mesh_io::kTilesetBytes))
+    if (const auto frame = mesh_io::globe_frame(input, mesh_io::tileset_of(input, *tileset),
+                                                mesh_io::kTilesetBytes))
       config.placement.transform = frame->matrix();
   }
   return config;

@@ -6,6 +6,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/other_formats.h"
+#include "mesh_io/tileset.h"
 
 #include <algorithm>
 #include <string>
@@ -47,6 +48,8 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
   const bool is_json = path.extension() == ".json";
   if (files.is_directory(path))
     return is_json;
+  if (mesh_io::tileset_of(files, path) != path)
+    return false;  // in a 3D Tiles archive
   const auto file = files.open(path);
   const auto format = mesh_io::find_format(*file);
   if (is_json) {

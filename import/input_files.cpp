@@ -63,10 +63,11 @@ void InputFiles::add_mesh(const std::filesystem::path& path) {
                 fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json)",
                             path.string(), mesh_io::format_names()));
   }
-  const auto file = files_.open(path);
+  const std::filesystem::path mesh = mesh_io::tileset_of(files_, path);
+  const auto file = files_.open(mesh);
   const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
   if (format.kind == mesh_io::MeshKind::tileset)
-    return add_tileset(path);
+    return add_tileset(mesh);
   add_file({path, format, files_.identity(path)});
 }
 

@@ -102,7 +102,9 @@ std::vector<FormatRow> make_rows() {
        .name = "3D Tiles",
        .format = "3D Tiles",
        .look = [](MeshContent& c) { return sure_if(c.kind_of_json() == MeshKind::tileset); },
-       .kept = "1.0 and 1.1: the finest tiles of a `tileset.json`, listed or implicit, where they stand",
+       .kept = "1.0 and 1.1: the finest tiles of a `tileset.json` or in a `.3tz`, listed or "
+               "implicit, where "
+               "they stand",
        .left_out = "instances, points"},
       {.kind = MeshKind::b3dm,
        .name = "b3dm",

@@ -45,10 +45,16 @@ constexpr std::string_view kPicture =
 /// A file is of the first row with a mark in its bytes, else of the first one with a word in it.
 std::vector<OtherFormat> make_others() {
   return {
-      {"a zip archive (perhaps 3MF, USDZ, KMZ or 3TZ)",
+      {"a zip archive (perhaps 3MF, USDZ or KMZ; a tileset in one is read if its name ends in "
+       ".3tz)",
        kUnpack,
        {".zip", ".3mf", ".usdz"},
        {{"PK\x03\x04"sv}}},
+      {"a database of SQLite (perhaps a tileset, .3dtiles)",
+       "unpack that by `npx 3d-tiles-tools convert -i NAME.3dtiles -o FOLDER`, and build its "
+       "tileset.json",
+       {".3dtiles"},
+       {{"SQLite format 3\0"sv}}},
       {"a zip archive without files", "nothing is in it", {}, {{"PK\x05\x06"sv}}},
       {"a 7z archive", kUnpack, {".7z"}, {{"7z\xBC\xAF\x27\x1C"sv}}},
       {"a RAR archive", kUnpack, {".rar"}, {{"Rar!\x1A\x07"sv}}},

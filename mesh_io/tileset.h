@@ -21,6 +21,10 @@ namespace meshhier::mesh_io {
 /// Memory that the JSON of a tileset may take: 30 MB of text, a hundred thousand tiles.
 inline constexpr std::uint64_t kTilesetBytes = std::uint64_t{256} << 20;
 
+/// Returns the tileset.json of a 3D Tiles archive, which FileSystem::input() shows as a folder; of
+/// any other file itself.
+std::filesystem::path tileset_of(storage::FileSystem& files, const std::filesystem::path& path);
+
 /// Returns the local frame of a tileset: the transform of the root, if it is such a frame; else the
 /// frame at the middle of the root's bounding volume, rounded to metres. A volume as large as the
 /// globe or a continent says little: then the tiles that are shown decide, by the transform of all,

@@ -7,8 +7,11 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
+#include "mesh_io/tileset.h"
+#include "storage/io/zip_files.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
@@ -48,7 +51,20 @@ std::vector<std::byte> unpacked_bytes(const fs::path& path, std::vector<std::byt
   return content;
 }
 
+/// Returns whether it has the name and the beginning of a 3D Tiles archive.
+bool is_3tz(storage::FileSystem& files, const fs::path& path) {
+  if (!storage::is_3tz_name(path) || files.kind(path) != storage::FileKind::regular)
+    return false;
+  std::array<std::byte, 2> start{};
+  files.open(path)->read_at(0, start);
+  return start == std::array{std::byte{'P'}, std::byte{'K'}};
+}
+
 }  // namespace
+
+fs::path tileset_of(storage::FileSystem& files, const fs::path& path) {
+  return is_3tz(files, path) ? path / "tileset.json" : path;
+}
 
 TilesetTree::TilesetTree(storage::FileSystem& files, const fs::path& path, std::uint64_t most_bytes)
     : files_(files), place_(path.parent_path().lexically_normal()), most_bytes_(most_bytes) {
@@ -141,8 +157,9 @@ std::uint32_t TilesetTree::content_of(std::uint32_t document, std::uint32_t numb
     const auto file = file_of_bytes(content.file, content.data);
     found = add_content(std::move(content), *file);
   } else {
-    const fs::path path = file_of(part.document.path, part.document.path.parent_path(), *name.uri,
-                                  place_of(part.document, name));
+    const fs::path path =
+        tileset_of(files_, file_of(part.document.path, part.document.path.parent_path(), *name.uri,
+                                   place_of(part.document, name)));
     const auto known = known_.find(path);
     found = known != known_.end() ? known->second
                                   : add_content({.file = path, .tile = {}}, *files_.open(path));

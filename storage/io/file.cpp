@@ -5,6 +5,7 @@
 #include "storage/io/posix_file.h"
 #include "storage/io/stream.h"
 #include "storage/io/system_failure.h"
+#include "storage/io/zip_files.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -90,6 +91,8 @@ FileIdentity identity_of(const struct stat& status) {
 
 class PosixFileSystem : public FileSystem {
  public:
+  FileSystem& input() override { return with_archives_; }
+
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
     Descriptor file(::open(path.c_str(), kReading));
     if (!file.is_open())
@@ -297,6 +300,8 @@ class PosixFileSystem : public FileSystem {
   }
 
  private:
+  ZipFiles with_archives_{*this};
+
   static void sync_by(int (*call)(int), const std::filesystem::path& directory) {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0)
@@ -361,7 +366,7 @@ class GuardedFileSystem final : public PosixFileSystem {
  public:
   explicit GuardedFileSystem(const std::optional<std::filesystem::path>& within)
       : input_(within, counters_) {}
-  FileSystem& input() override { return input_; }
+  FileSystem& input() override { return input_.input(); }
 
  private:
   LinkFreeFileSystem input_;

@@ -258,9 +258,12 @@ const std::vector<ThirdParty>& third_parties() {
       {"tiff", in({"images"})},
       {"stb/", in({"texture"})},
       {"draco/", in({"mesh_io"})},
-      {"zstd.h", in({"images"})},
-      {"zlib.h",
-       of({"images/tiff_tile.cpp", "mesh_io/gzip_stream.cpp", "storage/format/gzip.cpp"})},
+      {"zstd.h",
+       [](const Source& s) {
+         return s.path == "storage/io/zip_directory.cpp" || s.is_in({"images"});
+       }},
+      {"zlib.h", of({"images/tiff_tile.cpp", "mesh_io/gzip_stream.cpp", "storage/format/gzip.cpp",
+                     "storage/io/zip_directory.cpp"})},
       {"meshoptimizer.h",
        [](const Source& s) {
          return s.path == "storage/format/meshopt_codec.cpp" || s.is_in({"mesh_io"});
