@@ -4,10 +4,12 @@
 #include "import/imported.h"
 #include "import/open_picture.h"
 #include "mesh_io/tileset.h"
+#include "storage/io/zip_files.h"
 #include "support/gltf_builder.h"
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/sample_texture.h"
+#include "tests/support/zip_archive.h"
 
 #include <cmath>
 #include <filesystem>
@@ -655,6 +657,34 @@ TEST_F(TilesetImportTest, TheFirstOfSeveralBrokenTilesIsTold) {
   }
   for (int i = 0; i < 5; ++i)
     EXPECT_THAT(failure(root), HasSubstr("w/7.glb"));
+}
+
+/// A tile of the tileset in an archive is another archive.
+TEST_F(TilesetImportTest, ArchivesAreReadAsTheFoldersThatWerePacked) {
+  GltfJson root = tile_of("a/0.glb");
+  root["refine"] = "ADD";
+  root["children"] = {tile_of("a/1.glb"), tile_of("part.3tz")};
+  const std::string inner = tests::zip_of(
+      {{"tileset.json", tileset_of(tile_of("2.glb")), 8}, {"2.glb", triangle(4).glb()}});
+  put("town.3tz", tests::zip_of({{"a/0.glb", triangle(0).glb()},
+                                 {"tileset.json", tileset_of(root)},
+                                 {"a/1.glb", triangle(2).glb(), 8}}));
+  storage::ZipFiles zip(files_);
+  EXPECT_THROW(tests::import_files(zip, fs::path("w/town.3tz")), Error) << "part.3tz is not there";
+  root["children"].erase(1);
+  put("town.3tz", tests::zip_of({{"a/0.glb", triangle(0).glb()},
+                                 {"tileset.json", tileset_of(root)},
+                                 {"a/1.glb", triangle(2).glb(), 8}}));
+  const Imported mesh = tests::import_files(zip, fs::path("w/town.3tz"));
+  ASSERT_EQ(mesh.positions.size(), 6);
+  EXPECT_EQ(mesh.positions[3].x, 2);
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/town.3tz/tileset.json"));
+
+  put("part.3tz", inner);
+  put("tileset.json", tileset_of(tile_of("part.3tz")));
+  EXPECT_EQ(tests::import_files(zip, fs::path("w/tileset.json")).positions[0].x, 4);
+  put("other.3tz", "a mesh of another format");
+  EXPECT_THROW(tests::import_files(zip, fs::path("w/other.3tz")), Error);
 }
 
 }  // namespace
