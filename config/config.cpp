@@ -10,6 +10,7 @@
 #include "mesh_io/output_name.h"
 #include "storage/io/json_text.h"
 #include "storage/io/paths.h"
+#include "storage/io/zip_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -175,10 +176,11 @@ void put_meshes(Draft& draft, const CommandLine& words) {
   draft.put("input", std::move(paths), kMeshWords);
 }
 
-/// Returns "models/scan.hier" for "models/scan.ply.gz".
+/// Returns "models/scan.hier" for "models/scan.ply.gz" and for "models/scan.3tz".
 std::filesystem::path beside(const std::filesystem::path& mesh, const std::string& ending) {
   const std::string name = mesh.filename().string();
-  const std::string stem = mesh_io::mesh_stem(name);
+  const std::string stem =
+      storage::is_3tz_name(mesh) ? mesh.stem().string() : mesh_io::mesh_stem(name);
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
 }
 

@@ -231,8 +231,8 @@ std::span<const ZipEntry> ZipDirectory::starting_with(std::string_view start) co
   const auto head = [&](const ZipEntry& entry) {
     return std::string_view(entry.name).substr(0, start.size());
   };
-  const auto found = std::ranges::equal_range(entries_, start, {}, head);
-  return {found.begin(), found.end()};
+  return {std::ranges::lower_bound(entries_, start, {}, head),
+          std::ranges::upper_bound(entries_, start, {}, head)};
 }
 
 std::unique_ptr<File> ZipDirectory::open(const ZipEntry& entry,
