@@ -176,9 +176,12 @@ void put_meshes(Draft& draft, const CommandLine& words) {
   draft.put("input", std::move(paths), kMeshWords);
 }
 
-/// Returns "models/scan.hier" for "models/scan.ply.gz" and for "models/scan.3tz".
-std::filesystem::path beside(const std::filesystem::path& mesh, const std::string& ending) {
+/// Returns "models/scan.hier" for "models/scan.ply.gz", "models/scan.3tz" and "models/scan/".
+std::filesystem::path beside(const std::filesystem::path& input, const std::string& ending) {
+  const std::filesystem::path mesh = storage::without_last_slash(input.lexically_normal());
   const std::string name = mesh.filename().string();
+  if (name.empty() || name == "." || name == "..")
+    refuse("output is missing", "the folder has no name here; name the output by -o");
   const std::string stem =
       storage::is_3tz_name(mesh) ? mesh.stem().string() : mesh_io::mesh_stem(name);
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);

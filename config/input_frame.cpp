@@ -2,18 +2,20 @@
 
 #include "config/placement.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/input_folder.h"
 #include "mesh_io/tileset.h"
 
-#include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace meshhier::config {
 namespace {
 
 /// Whether the file is a tileset. One that is not there is told when it is read; one with the name
 /// of a mesh is not looked into.
-bool is_tileset(storage::FileSystem& files, const std::filesystem::path& named) {
-  const std::filesystem::path path = mesh_io::tileset_of(files, named);
+bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
   if (mesh_io::is_mesh_name(path.filename().string()) ||
       files.kind(path) != storage::FileKind::regular)
     return false;
@@ -25,18 +27,51 @@ bool is_placed(const PlacementConfig& place) {
   return place.longitude || place.crs || !place.metadata.empty() || place.transform;
 }
 
+/// What the inputs say of their place together.
+struct Sources {
+  bool is_z_up = false;                          ///< one of them is
+  std::optional<std::filesystem::path> tileset;  ///< the first one
+  std::vector<std::filesystem::path> maps;       ///< of the first folder that has any
+};
+
+void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path, Sources& found) {
+  if (!is_tileset(files, path))
+    return;
+  found.is_z_up = true;
+  if (!found.tileset)
+    found.tileset = path;
+}
+
+Sources look_at(storage::FileSystem& files, const mesh_io::InputPaths& paths) {
+  Sources found;
+  for (const std::filesystem::path& named : paths) {
+    const std::filesystem::path path = mesh_io::tileset_of(files, named);
+    const auto folder = mesh_io::find_folder_mesh(files, path);
+    if (!folder) {
+      look_at_mesh(files, path, found);
+      continue;
+    }
+    found.is_z_up = found.is_z_up || folder->is_z_up;
+    if (found.maps.empty())
+      found.maps = folder->maps;
+    look_at_mesh(files, folder->meshes[0], found);
+  }
+  return found;
+}
+
 }  // namespace
 
 Config with_input_frame(storage::FileSystem& files, Config config) {
-  storage::FileSystem& input = files.input();
-  const auto tileset = std::ranges::find_if(
-      config.input, [&](const std::filesystem::path& path) { return is_tileset(input, path); });
-  const bool has_tileset = tileset != config.input.end();
+  const Sources sources = look_at(files.input(), config.input);
   if (!config.up)
-    config.up = has_tileset ? UpAxis::z : UpAxis::y;
-  if (has_tileset && !is_placed(config.placement)) {
-    if (const auto frame = mesh_io::globe_frame(input, mesh_io::tileset_of(input, *tileset),
-                                                mesh_io::kTilesetBytes))
+    config.up = sources.is_z_up ? UpAxis::z : UpAxis::y;
+  if (is_placed(config.placement))
+    return config;
+  if (!sources.maps.empty())
+    return with_maps(files.input(), std::move(config), sources.maps);
+  if (sources.tileset) {
+    if (const auto frame =
+            mesh_io::globe_frame(files.input(), *sources.tileset, mesh_io::kTilesetBytes))
       config.placement.transform = frame->matrix();
   }
   return config;

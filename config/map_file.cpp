@@ -99,13 +99,27 @@ std::string without_entities(std::string_view text) {
   return plain;
 }
 
+/// Parses "ENU:latitude,longitude"; nothing if it is a CRS.
+std::optional<MapPlace> find_place(std::string_view text) {
+  constexpr std::string_view kMark = "ENU:";
+  if (!text.starts_with(kMark))
+    return std::nullopt;
+  const std::optional<Numbers> numbers = find_numbers(text.substr(kMark.size()));
+  if (!numbers || !(std::abs((*numbers)[0]) <= 90) || !(std::abs((*numbers)[1]) <= 180))
+    refuse("expected a latitude and a longitude in degrees, found " + mesh_io::in_quotes(text));
+  return MapPlace{(*numbers)[0], (*numbers)[1]};
+}
+
 MapFile parse_xml(std::string_view xml) {
   MapFile file;
-  if (const auto crs = find_element(xml, "SRS"))
-    file.crs = without_entities(*crs);
+  if (const auto crs = find_element(xml, "SRS")) {
+    file.place = find_place(*crs);
+    if (!file.place)
+      file.crs = without_entities(*crs);
+  }
   if (const auto origin = find_element(xml, "SRSOrigin"))
     file.offset = numbers_of(*origin, "in <SRSOrigin>");
-  if (!file.crs && !file.offset)
+  if (!file.crs && !file.offset && !file.place)
     refuse("expected XML with <SRS> and <SRSOrigin>, found neither");
   return file;
 }

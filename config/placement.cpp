@@ -41,16 +41,39 @@ MapFile read_map_file(storage::FileSystem& files, const std::filesystem::path& p
   return about(path.c_str(), [&] { return parse_map_file(text); });
 }
 
-void take_map_file(storage::FileSystem& files, PlacementConfig& place) {
-  MapFile file = read_map_file(files, place.metadata);
-  if (!place.crs)
+/// Takes from a file what is not known yet.
+void take_map_file(storage::FileSystem& files, const std::filesystem::path& path,
+                   PlacementConfig& place) {
+  MapFile file = read_map_file(files, path);
+  if (!place.crs && !place.longitude) {
     place.crs = std::move(file.crs);
+    if (file.place) {
+      place.longitude = file.place->longitude;
+      place.latitude = file.place->latitude;
+    }
+  }
   if (!place.offset)
     place.offset = file.offset;
-  if (!place.crs) {
+}
+
+void require_crs(const std::filesystem::path& file, const PlacementConfig& place) {
+  if (!place.crs && !place.longitude) {
     throw Error(ErrorCode::usage,
-                place.metadata.string() + ": has an offset, but no CRS; give it by \"crs\"");
+                file.string() + ": has an offset, but no CRS; give it by \"crs\"");
   }
+}
+
+/// Makes of a place with an offset from there a place alone: of the point that stands there.
+void settle_place(PlacementConfig& place, UpAxis up) {
+  if (!place.longitude)
+    return;
+  const std::array<double, 3> from = place.offset.value_or(std::array<double, 3>{});
+  if (up == UpAxis::z)
+    place.anchor = {-from[0], -from[1], -from[2]};
+  else
+    place.anchor = {-from[0], -from[2], from[1]};
+  place.offset.reset();
+  place.metadata.clear();
 }
 
 geodesy::MapProjection projection_of(const PlacementConfig& place) {
@@ -170,10 +193,24 @@ geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
 
 Config with_map(storage::FileSystem& files, Config config) {
   PlacementConfig& place = config.placement;
-  if (!place.metadata.empty())
-    about("placement.metadata", [&] { take_map_file(files, place); });
+  if (!place.metadata.empty()) {
+    about("placement.metadata", [&] {
+      take_map_file(files, place.metadata, place);
+      require_crs(place.metadata, place);
+    });
+    settle_place(place, config.up_axis());
+  }
   if (place.crs)
     projection_of(place);
+  return config;
+}
+
+Config with_maps(storage::FileSystem& files, Config config,
+                 const std::vector<std::filesystem::path>& maps) {
+  for (const std::filesystem::path& map : maps)
+    take_map_file(files, map, config.placement);
+  require_crs(maps.front(), config.placement);
+  settle_place(config.placement, config.up_axis());
   return config;
 }
 

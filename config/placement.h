@@ -9,8 +9,10 @@
 #include "storage/io/file.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshhier::config {
 
@@ -22,6 +24,11 @@ inline constexpr std::uint64_t kMapMemoryBytes = std::uint64_t{18} << 20;
 /// need; those that the config says itself win. Looks whether PROJ knows the crs. Throws
 /// Error(usage), and Error(io) if a file or PROJ's database cannot be read.
 Config with_map(storage::FileSystem& files, Config config);
+
+/// Returns the config, which has no place, with that of the files that lie with its input; each
+/// says what those before it do not. `maps`: one at least. Throws as with_map().
+Config with_maps(storage::FileSystem& files, Config config,
+                 const std::vector<std::filesystem::path>& maps);
 
 /// Places a model with a crs, whose projection is given. `bounds`: the input's.
 geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,

@@ -4,12 +4,14 @@
 #include "base/plain_text.h"
 #include "hierarchy/image_format.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/input_folder.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
 #include "mesh_io/ply_header.h"
 #include "mesh_io/ply_source.h"
 #include "storage/io/file_checksum.h"
 #include "storage/io/hash.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -58,10 +60,9 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
 }
 
 void InputFiles::add_mesh(const std::filesystem::path& path) {
-  if (files_.is_directory(path)) {
-    throw Error(ErrorCode::io,
-                fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json)",
-                            path.string(), mesh_io::format_names()));
+  if (const auto folder = mesh_io::find_folder_mesh(files_, path)) {
+    std::ranges::for_each(folder->meshes, [&](const auto& mesh) { add_mesh(mesh); });
+    return;
   }
   const std::filesystem::path mesh = mesh_io::tileset_of(files_, path);
   const auto file = files_.open(mesh);
@@ -197,7 +198,7 @@ std::string InputFiles::name() const {
   const std::size_t listed = count <= kMostListedMeshes ? count : kMostListedMeshes - 1;
   for (std::size_t i = 0; i < listed; ++i) {
     name += name.empty() ? "" : ", ";
-    name += named_[i].filename().string();
+    name += storage::without_last_slash(named_[i]).filename().string();
   }
   if (listed < count)
     name += fmt::format(" and {} more", count - listed);

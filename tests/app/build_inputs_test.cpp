@@ -224,10 +224,65 @@ TEST_F(CommandLine, WhatIsNeitherAMeshNorAConfigIsToldSo) {
   EXPECT_THAT(ply.messages, HasSubstr("expected a mesh"));
   const Outcome folder = run({"build", work().string()});
   EXPECT_EQ(folder.code, kIo);
-  EXPECT_THAT(folder.messages, HasSubstr("is a folder; name the mesh in it"));
+  EXPECT_THAT(folder.messages, AllOf(HasSubstr("is a folder; name the mesh in it"),
+                                     HasSubstr("odm_texturing/odm_textured_model_geo.obj (an ODM "
+                                               "project) or tileset.json (3D Tiles)")));
   write_text(work() / "a.json", "{");
   EXPECT_THAT(run({"build", (work() / "a.json").string()}).messages,
               AllOf(HasSubstr("line 1, column"), Not(HasSubstr("json.exception"))));
+}
+
+class OdmProject : public WithCompanions {
+ protected:
+  OdmProject() {
+    for (const char* folder : {"odm/odm_texturing", "odm/odm_georeferencing"})
+      std::filesystem::create_directories(work() / folder);
+    for (const char* name : {"a.mtl", "a.png"})
+      std::filesystem::rename(work() / name, work() / "odm/odm_texturing" / name);
+    std::filesystem::rename(obj(), model());
+  }
+  Path model() const { return work() / "odm/odm_texturing/odm_textured_model_geo.obj"; }
+  void write_map(const std::string& name, const std::string& text) const {
+    write_text(work() / "odm/odm_georeferencing" / name, text);
+  }
+  /// Builds a folder; returns the account.
+  std::string built(const std::string& folder = "odm/") const {
+    const Outcome outcome =
+        run({"build", (work() / folder).string(), "-o", hierarchy(), "--force"});
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    return outcome.out;
+  }
+};
+
+TEST_F(OdmProject, StandsWhereItsCoordinatesSay) {
+  write_map("coords.txt", "WGS84 UTM 32N\n512345 5401234\n1.5 2.5 3.5\n");
+  EXPECT_THAT(built(), HasSubstr("placed by WGS 84 / UTM zone 32N at longitude 9.16"));
+  EXPECT_EQ(texels(), 1U);
+  EXPECT_EQ(json::parse(text_of(Path(hierarchy()) / "hierarchy.json"))["up"], "z");
+  EXPECT_EQ(run({"verify", hierarchy(), "--input", (work() / "odm").string()}).code, 0);
+  EXPECT_THAT(built("odm/odm_texturing"), HasSubstr("UTM zone 32N at longitude 9.16"));
+  EXPECT_EQ(run({"build", (work() / "odm/").string()}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(work() / "odm.hier"));
+}
+
+TEST_F(OdmProject, TakesTheProjectionAndTheOffsetFromTwoFiles) {
+  write_map("odm_georeferencing_model_geo.txt", "512345 5401234\n");
+  EXPECT_THAT(run({"build", (work() / "odm").string(), "--dry-run"}).messages,
+              HasSubstr("has an offset, but no CRS"));
+  write_map("proj.txt", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs\n");
+  EXPECT_THAT(built(), HasSubstr("at longitude 9.16"));
+}
+
+TEST_F(OdmProject, WithoutCoordinatesIsNowhere) {
+  EXPECT_THAT(built(), Not(HasSubstr("placed")));
+  write_map("coords.txt", "WGS84 UTM 32N\n512345 5401234\n");
+  std::filesystem::rename(model(), work() / "odm/odm_texturing/odm_textured_model.obj");
+  EXPECT_THAT(built(), Not(HasSubstr("placed"))) << "its coordinates are of no map";
+}
+
+TEST_F(CommandLine, AFolderWithoutANameNeedsAnOutput) {
+  for (const char* folder : {".", "./", "..", "/"})
+    EXPECT_THAT(run({"build", folder}).messages, HasSubstr("name the output by -o")) << folder;
 }
 
 TEST_F(CommandLine, ADamagedManifestIsToldWithoutTheParsersName) {

@@ -48,6 +48,17 @@ TEST(MapFile, ReadsMetadataXml) {
              "PROJCS[\"a <&> b'\"]", std::nullopt);
 }
 
+TEST(MapFile, ReadsAPlaceInMetadataXml) {
+  const MapFile file =
+      parse_map_file("<M><SRS>ENU:48.5,-11.25</SRS><SRSOrigin>1,2,3</SRSOrigin></M>");
+  EXPECT_EQ(file.crs, std::nullopt);
+  EXPECT_EQ(file.place, (MapPlace{48.5, -11.25}));
+  EXPECT_EQ(file.offset, (Numbers{1, 2, 3}));
+  for (const char* place : {"ENU:", "ENU:48.5", "ENU:91,0", "ENU:0,-180.5", "ENU:nan,0", "ENU:a,b"})
+    EXPECT_THAT(map_refusal("<SRS>" + std::string(place) + "</SRS>"),
+                HasSubstr("expected a latitude and a longitude"));
+}
+
 TEST(MapFile, ReadsTheCoordinatesOfOpenDroneMap) {
   expect_map("WGS84 UTM 32N\n512345 5401234\n1.5 2.5 3.5\n4 5 6\n", "EPSG:32632",
              Numbers{512345, 5401234, 0});

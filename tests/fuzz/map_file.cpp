@@ -19,7 +19,7 @@ void map_file(Bytes input) {
       refusal({ErrorCode::usage}, "", [&] { file = config::parse_map_file(text_of(input)); });
   if (!refused.empty())
     return;
-  require(file.crs || file.offset, "something is found");
+  require(file.crs || file.offset || file.place, "something is found");
   require(file.crs.value_or("").size() <= std::max<std::size_t>(input.size(), 10),
           "a crs is no longer than its file");
   if (!file.offset)

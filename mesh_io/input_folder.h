@@ -1,0 +1,32 @@
+// Folders that stand for a mesh, as programs of photogrammetry leave them: a row each.
+//
+//   project/odm_texturing/odm_textured_model_geo.obj     the mesh
+//          /odm_georeferencing/coords.txt                the map that its coordinates belong to
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// The meshes that a folder stands for.
+struct FolderMesh {
+  std::vector<std::filesystem::path> meshes;  ///< joined in this order; at least one
+  /// Files with the map's CRS and the offset to it: a file says what those before it do not.
+  std::vector<std::filesystem::path> maps{};
+  bool is_z_up = true;  ///< its coordinates are those of a map
+};
+
+/// Returns the meshes of a folder; nothing if the path is no folder. Throws Error(io) if the folder
+/// is of no kind that is known, or cannot be read.
+std::optional<FolderMesh> find_folder_mesh(storage::FileSystem& files,
+                                           const std::filesystem::path& path);
+
+/// Returns the kinds of folders, for sentences: "odm_texturing/… (an ODM project) or …".
+std::string folder_kinds();
+
+}  // namespace meshhier::mesh_io
