@@ -8,6 +8,7 @@
 #include "config/named_files.h"
 #include "execution/size_text.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/input_folder.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
 #include "pipeline/plan/build_plan.h"
@@ -233,9 +234,11 @@ std::string (*reference_of(const BuildArguments& arguments))() {
 
 std::string footer() {
   return "FILE is a mesh: a " + mesh_io::format_names() +
-         R"(, perhaps in gzip, or a tileset.json or .3tz. The hierarchy of scan.ply is made beside
-it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
-config; `meshhier build --help-config` says what they mean.
+         R"(, perhaps in gzip, a tileset.json or .3tz, or a folder with
+)" + mesh_io::folder_names() +
+         R"(. The hierarchy of scan.ply is made beside it, as scan.hier,
+unless -o names another. Several meshes are joined. --set changes the keys of a config;
+`meshhier build --help-config` says what they mean.
 
 FILE may be a config instead, for jobs to be repeated: JSON with // comments. It needs "input" (a
 mesh, or a list of meshes) and "output", both relative to the config. With all defaults:
@@ -249,6 +252,7 @@ Examples:
   meshhier build david.obj.gz -o david.3tz --set memory_budget=256MiB
   meshhier build left.obj.gz right.obj.gz -o both.hier --set weld=true
   meshhier build david.ply --set storage.compression=meshopt_zlib storage.positions.bits=16
+  meshhier build project/ -o project.hier
   meshhier build david.json
   meshhier build david.json --set partition.count=128 -o coarse.hier --stats coarse.json
 )";

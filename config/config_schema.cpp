@@ -2,6 +2,7 @@
 
 #include "execution/size_text.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/input_folder.h"
 #include "storage/format/manifest.h"
 
 #include <algorithm>
@@ -289,9 +290,9 @@ std::vector<ConfigKey> make_config_keys() {
       required_paths(
           {.path = "input",
            .meaning =
-               fmt::format("the mesh: a {} file, perhaps in gzip, or a tileset of 3D Tiles; the "
-                           "files of a list are joined in its order",
-                           mesh_io::format_names()),
+               fmt::format("the mesh: a {} file, perhaps in gzip, a tileset of 3D Tiles, or a "
+                           "folder with {}; the files of a list are joined in its order",
+                           mesh_io::format_names(), mesh_io::folder_names()),
            .decides_result = true},
           kMostInputs, [](auto& c) -> auto& { return c.input; }),
       path(

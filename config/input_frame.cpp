@@ -4,6 +4,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/input_folder.h"
 #include "mesh_io/tileset.h"
+#include "storage/io/paths.h"
 
 #include <filesystem>
 #include <optional>
@@ -13,14 +14,17 @@
 namespace meshhier::config {
 namespace {
 
-/// Whether the file is a tileset. One that is not there is told when it is read; one with the name
-/// of a mesh is not looked into.
-bool is_tileset(storage::FileSystem& files, const std::filesystem::path& path) {
-  if (mesh_io::is_mesh_name(path.filename().string()) ||
-      files.kind(path) != storage::FileKind::regular)
-    return false;
+/// Returns the kind of a file that has a place of its own. One that is not there is told when it is
+/// read; one with the name of another kind of mesh is not looked into.
+std::optional<mesh_io::MeshKind> placing_kind(storage::FileSystem& files,
+                                              const std::filesystem::path& path) {
+  const bool is_other =
+      mesh_io::is_mesh_name(path.filename().string()) &&
+      storage::lower_extension(path) != mesh_io::row_of(mesh_io::MeshKind::osgb).ending;
+  if (is_other || files.kind(path) != storage::FileKind::regular)
+    return std::nullopt;
   const auto format = mesh_io::find_format(*files.open(path));
-  return format && format->kind == mesh_io::MeshKind::tileset;
+  return format ? std::optional(format->kind) : std::nullopt;
 }
 
 bool is_placed(const PlacementConfig& place) {
@@ -35,11 +39,16 @@ struct Sources {
 };
 
 void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path, Sources& found) {
-  if (!is_tileset(files, path))
-    return;
-  found.is_z_up = true;
-  if (!found.tileset)
-    found.tileset = path;
+  const auto kind = placing_kind(files, path);
+  if (kind == mesh_io::MeshKind::osgb) {
+    found.is_z_up = true;
+    if (found.maps.empty())
+      found.maps = mesh_io::osgb_maps(files, path);
+  } else if (kind == mesh_io::MeshKind::tileset) {
+    found.is_z_up = true;
+    if (!found.tileset)
+      found.tileset = path;
+  }
 }
 
 Sources look_at(storage::FileSystem& files, const mesh_io::InputPaths& paths) {

@@ -5,6 +5,7 @@
 #include "config/input_frame.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/input_folder.h"
 #include "mesh_io/other_formats.h"
 #include "mesh_io/tileset.h"
 
@@ -50,6 +51,8 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
     return is_json;
   if (mesh_io::tileset_of(files, path) != path)
     return false;  // in a 3D Tiles archive
+  if (mesh_io::is_model_metadata(path))
+    return false;
   const auto file = files.open(path);
   const auto format = mesh_io::find_format(*file);
   if (is_json) {

@@ -9,6 +9,7 @@
 #include "import/gltf_import.h"
 #include "import/obj_import.h"
 #include "import/off_import.h"
+#include "import/osgb_import.h"
 #include "import/ply_import.h"
 #include "import/stl_import.h"
 #include "import/text_blocks.h"
@@ -48,10 +49,16 @@ class FileReader::Impl {
         decoding_(decoding_bytes()) {}
 
   /// Requires a kind that files have: the tiles of a tileset are files of their own.
-  AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room) {
+  std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room) {
+    if (facts.format.kind == MeshKind::osgb)
+      return read_osgb(facts);
+    const std::uint64_t before = mesh_.vertex_count();
     for (const Reader& reader : readers()) {
-      if (reader.kind == facts.format.kind)
-        return (this->*reader.read)(facts, room);
+      if (reader.kind != facts.format.kind)
+        continue;
+      AddedFile added = (this->*reader.read)(facts, room);
+      added.vertices = mesh_.vertex_count() - before;
+      return {std::move(added)};
     }
     throw Error(ErrorCode::internal, facts.path.string() + " is of a format without a reader");
   }
@@ -271,6 +278,9 @@ class FileReader::Impl {
     return facts.format.is_gzip ? mesh_io::GltfContent::packed : mesh_io::GltfContent::stored;
   }
 
+  /// Returns the memory of a reader that decodes: no sort runs meanwhile.
+  std::uint64_t decoding_bytes() const { return std::max(2 * room_.sort_bytes, 4 * kMiB); }
+
   AddedFile add_plain_gltf(const InputFileFacts& facts,
                            std::shared_ptr<const storage::File> content) {
     return note_gltf(import_plain_gltf(facts, std::move(content), mesh_));
@@ -289,6 +299,11 @@ class FileReader::Impl {
                             facts.path, [this] { env_.cancel.check(); }, tile.offset,
                             [this](std::uint64_t bytes) { return decoding_.share(bytes); }});
     return import_gltf(file, tile.placement, mesh, input_.textures(), input_.attributes(), room_);
+  }
+
+  AddedFile add_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement) {
+    return note_gltf(
+        import_gltf(file, placement, mesh_, input_.textures(), input_.attributes(), room_));
   }
 
   AddedFile note_gltf(const GltfImport& import) {
@@ -322,12 +337,52 @@ class FileReader::Impl {
         files.size(), execution::useful_blocks(decoding_bytes(), kItemBytes), env_.cancel,
         [&](std::size_t i) { return read_apart(files[i]); },
         [&](std::size_t i, const std::unique_ptr<Apart>& apart) {
-          checked_base(files[i].path, apart->mesh.vertex_count());
+          const std::uint64_t vertices = apart->mesh.vertex_count();
+          checked_base(files[i].path, vertices);
           append_mesh(std::move(apart->mesh), mesh_, env_.cancel);
           checksums_.push_back(checksum_of(files[i].path));
           env_.progress.advance(files[i].identity.bytes);
-          added(note_gltf(apart->import));
+          AddedFile one = note_gltf(apart->import);
+          one.vertices = vertices;
+          added(one);
         });
+  }
+
+  /// Reads a tile with the finer ones that it names. Runs of equal layout are one.
+  std::vector<AddedFile> read_osgb(const InputFileFacts& facts) {
+    std::vector<AddedFile> all;
+    const OsgbImport import = import_osgb(
+        facts.path,
+        {input_.system(), env_.scratch, decoding_bytes(), mesh_io::GltfContent::packed, facts.path,
+         [this] { env_.cancel.check(); }},
+        [&](mesh_io::GltfFile& file, const mesh_io::GltfTransform& place) {
+          const std::uint64_t before = mesh_.vertex_count();
+          AddedFile added = add_gltf(file, place);
+          added.vertices = mesh_.vertex_count() - before;
+          append_run(all, std::move(added));
+        },
+        [this](std::uint64_t bytes) { env_.progress.advance(bytes); });
+    checksums_.push_back(checksum_of(facts.path));
+    tiles_.add_all(import.tiles);
+    for (const SourceCount& one : import.counts)
+      count(one.name, one.count);
+    for (const std::string& warning : import.warnings)
+      env_.progress.warn(warning);
+    return all;
+  }
+
+  static void append_run(std::vector<AddedFile>& all, AddedFile added) {
+    if (all.empty() || all.back().layout != added.layout ||
+        all.back().is_painted != added.is_painted) {
+      all.push_back(std::move(added));
+      return;
+    }
+    AddedFile& last = all.back();
+    last.vertices += added.vertices;
+    last.faces += added.faces;
+    last.degenerate_triangles += added.degenerate_triangles;
+    last.material_colours += added.material_colours;
+    last.fits_float = last.fits_float && added.fits_float;
   }
 
   AddedFile add_obj(InputStream& stream, const std::filesystem::path& path) {
@@ -411,7 +466,8 @@ class FileReader::Impl {
   std::uint64_t near_apart_ = 0;
   std::vector<SourceCount> counts_;
   std::vector<std::uint64_t> checksums_;
-  std::map<Path, std::uint64_t> checked_;  ///< files of glTF
+  std::map<Path, std::uint64_t> checked_;  ///< files of glTF and OSGB
+  CompanionFiles tiles_;
 };
 
 std::span<const FileReader::Impl::Reader> FileReader::Impl::readers() {
@@ -433,7 +489,8 @@ FileReader::FileReader(InputFiles& input, const ImportEnvironment& environment, 
 
 FileReader::~FileReader() = default;
 
-AddedFile FileReader::read(const InputFileFacts& facts, const std::filesystem::path& room) {
+std::vector<AddedFile> FileReader::read(const InputFileFacts& facts,
+                                        const std::filesystem::path& room) {
   return impl_->read(facts, room);
 }
 
@@ -459,6 +516,10 @@ const std::vector<std::uint64_t>& FileReader::checksums() const {
 
 const std::vector<SourceCount>& FileReader::counts() const {
   return impl_->counts_;
+}
+
+const CompanionFiles& FileReader::tiles() const {
+  return impl_->tiles_;
 }
 
 std::uint64_t FileReader::near_apart() const {

@@ -14,7 +14,7 @@
 
 namespace meshhier::importing {
 
-/// Facts of a file that was added to the mesh, besides its vertices and triangles.
+/// Facts of a run of vertices that was added to the mesh, and of their triangles.
 struct AddedFile {
   AttributeLayout layout{};
   bool fits_float = true;
@@ -23,6 +23,7 @@ struct AddedFile {
   std::uint64_t material_colours = 0;  ///< materials' colours that vertices have
   bool is_painted = false;             ///< vertices have no other colours
   mesh_io::UnplacedVertices unplaced{};
+  std::uint64_t vertices = 0;
 };
 
 /// Reads files of any format one behind the other; each comes behind the vertices of the files
@@ -35,11 +36,11 @@ class FileReader {
   FileReader& operator=(const FileReader&) = delete;
   ~FileReader();
 
-  /// Appends the mesh of a file to that of all, but for its layout, which it returns:
-  /// join_layouts() brings the layouts together. `room`: a path where the file may lie unpacked
-  /// meanwhile. Throws as the reader of its format; Error(input) if the mesh gets 2^32 vertices or
-  /// more; Error(io), Error(interrupted).
-  AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room);
+  /// Appends the mesh of a file to that of all, but for its layouts, which it returns, of all its
+  /// vertices in their order: join_layouts() brings them together. `room`: a path where the file
+  /// may lie unpacked meanwhile. Throws as the reader of its format; Error(input) if the mesh gets
+  /// 2^32 vertices or more; Error(io), Error(interrupted).
+  std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room);
   /// Returns how many files from the first one on read_run() can read: 0 or 1 if it is none.
   static std::size_t run_of(std::span<const InputFileFacts> files);
   /// Does what read() does for each of the files, and calls `added` for each in order. The files
@@ -54,6 +55,8 @@ class FileReader {
   const std::vector<std::uint64_t>& checksums() const;
   /// Returns the counts of all files together, by name.
   const std::vector<SourceCount>& counts() const;
+  /// Returns the files of finer tiles that were read.
+  const CompanionFiles& tiles() const;
   /// Returns how many triangles were passed over, as they are not near the crop.
   std::uint64_t near_apart() const;
 

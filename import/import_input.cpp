@@ -98,7 +98,8 @@ class Import {
   /// Notes the files when all is read. Pictures are read for their checksums, which is little
   /// beside decoding them.
   void note_files() {
-    CompanionFiles all = input_.companions();
+    CompanionFiles all = reader_.tiles();
+    add_others(all);
     for (const CompanionFile& library : mesh_.materials.companions().files())
       all.add(library);
     for (const images::ImageSource& picture : mesh_.materials.list().images) {
@@ -115,6 +116,27 @@ class Import {
         });
     facts_.files = input_.describe(facts_.record);
     input_.check_unchanged();
+  }
+
+  /// Adds the companions that were known before the import, but for tiles that it did not read: no
+  /// file names them.
+  void add_others(CompanionFiles& all) {
+    std::uint64_t unnamed = 0;
+    std::string first;
+    for (const CompanionFile& file : input_.companions().files()) {
+      if (file.part != InputPart::tile) {
+        all.add(file);
+      } else if (!all.has(file.path)) {
+        first = unnamed++ == 0 ? file.path.string() : first;
+      }
+    }
+    all.await(input_.companions().awaited());
+    count("unnamed_tiles", unnamed);
+    if (unnamed > 0) {
+      env_.progress.warn(fmt::format("{} (the first is {}) {} named by no tile, and left out",
+                                     counted(unnamed, "files"), first,
+                                     unnamed == 1 ? "is" : "are"));
+    }
   }
 
   void note_textures() {
@@ -142,24 +164,20 @@ class Import {
                  });
     while (!left.empty()) {
       const std::size_t run = FileReader::run_of(left);
-      std::uint64_t vertices = mesh_.vertex_count();
-      const auto note = [&](const AddedFile& added) {
-        note_added(added, vertices);
-        vertices = mesh_.vertex_count();
-        facts_.tile_ends.push_back(vertices);
-      };
       if (run > 1)
-        reader_.read_run(left.first(run), note);
+        reader_.read_run(left.first(run), [&](const AddedFile& added) { note(added); });
       else
-        note(reader_.read(left[0], ply.path()));
+        std::ranges::for_each(reader_.read(left[0], ply.path()),
+                              [&](const AddedFile& added) { note(added); });
       left = left.subspan(std::max<std::size_t>(run, 1));
     }
   }
 
-  /// `vertices`: those before the file.
-  void note_added(const AddedFile& added, std::uint64_t vertices) {
+  void note(const AddedFile& added) {
+    const std::uint64_t before = facts_.tile_ends.empty() ? 0 : facts_.tile_ends.back();
+    facts_.tile_ends.push_back(before + added.vertices);
     count(kMaterialColours, added.material_colours);
-    joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.is_painted});
+    joined_.push_back({added.layout, added.vertices, added.is_painted});
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;

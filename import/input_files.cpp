@@ -6,6 +6,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_folder.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/osgb_tiles.h"
 #include "mesh_io/part_of_file.h"
 #include "mesh_io/ply_header.h"
 #include "mesh_io/ply_source.h"
@@ -69,7 +70,19 @@ void InputFiles::add_mesh(const std::filesystem::path& path) {
   const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
   if (format.kind == mesh_io::MeshKind::tileset)
     return add_tileset(mesh);
+  if (format.kind == mesh_io::MeshKind::osgb)
+    return add_osgb(path, format);
   add_file({path, format, files_.identity(path)});
+}
+
+/// Adds a tile, and the files beside it that look like finer ones: an import tells which of them
+/// it reads.
+void InputFiles::add_osgb(const std::filesystem::path& path, const mesh_io::MeshFormat& format) {
+  if (const std::string missing = mesh_io::missing_for_osgb(); !missing.empty())
+    throw Error(ErrorCode::io, mesh_io::file_message(path, missing));
+  add_file({path, format, files_.identity(path)});
+  for (const std::filesystem::path& tile : mesh_io::osgb_family(files_, path))
+    companions_.add({tile, InputPart::tile, files_.identity(tile)});
 }
 
 void InputFiles::add_file(InputFileFacts facts) {
@@ -234,7 +247,7 @@ std::uint64_t InputFiles::bytes() const {
 std::uint64_t InputFiles::geometry_bytes() const {
   std::uint64_t bytes = 0;
   for_each_file([&](const auto&, InputPart part, const auto& file) {
-    bytes += part <= InputPart::buffer ? file.bytes : 0;
+    bytes += part <= InputPart::buffer || part == InputPart::tile ? file.bytes : 0;
   });
   return bytes;
 }

@@ -132,6 +132,7 @@ class InputFiles {
   /// Returns whether the mesh is another one than that of the files.
   bool is_changed() const { return use_.weld || use_.crop || has_unplaced_; }
   void add_mesh(const std::filesystem::path& path);
+  void add_osgb(const std::filesystem::path& path, const mesh_io::MeshFormat& format);
   void add_tileset(const std::filesystem::path& path);
   void add_file(InputFileFacts facts);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);

@@ -13,10 +13,12 @@
 namespace meshhier::importing {
 namespace {
 
-constexpr std::array kParts{
-    NamedValue{"mesh", InputPart::mesh}, NamedValue{"buffer", InputPart::buffer},
-    NamedValue{"material library", InputPart::library}, NamedValue{"picture", InputPart::picture},
-    NamedValue{"tileset", InputPart::tileset}};
+constexpr std::array kParts{NamedValue{"mesh", InputPart::mesh},
+                            NamedValue{"buffer", InputPart::buffer},
+                            NamedValue{"material library", InputPart::library},
+                            NamedValue{"picture", InputPart::picture},
+                            NamedValue{"tileset", InputPart::tileset},
+                            NamedValue{"tile", InputPart::tile}};
 
 /// Joins the files of a part, one or more.
 SourceFile joined(std::span<const ReadFile> files) {
@@ -46,6 +48,12 @@ void CompanionFiles::await(const std::vector<std::filesystem::path>& places) {
     if (known_places_.insert(place).second)
       awaited_.push_back(place);
   }
+}
+
+void CompanionFiles::add_all(const CompanionFiles& others) {
+  for (const CompanionFile& file : others.files_)
+    add(file);
+  await(others.awaited_);
 }
 
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,

@@ -17,7 +17,7 @@
 namespace meshhier::importing {
 
 /// The part of a file in the input, in the order in which checksums are joined.
-enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset };
+enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset, tile };
 
 /// A file that meshes are not whole without.
 struct CompanionFile {
@@ -33,8 +33,11 @@ class CompanionFiles {
   /// Notes where a missing file would have been: one that appears at any of these places belongs to
   /// the input.
   void await(const std::vector<std::filesystem::path>& places);
+  /// Adds all of another list, and awaits what it does.
+  void add_all(const CompanionFiles& others);
 
   const std::vector<CompanionFile>& files() const { return files_; }
+  bool has(const std::filesystem::path& file) const { return known_.contains(file); }
   const std::vector<std::filesystem::path>& awaited() const { return awaited_; }
 
  private:

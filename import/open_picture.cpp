@@ -1,7 +1,9 @@
 #include "import/open_picture.h"
 
+#include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/osgb_tiles.h"
 #include "mesh_io/part_of_file.h"
 
 #include <algorithm>
@@ -34,9 +36,21 @@ ByteSource bytes_of(std::span<const std::byte> data, std::shared_ptr<const void>
   };
 }
 
+/// A picture within what is made of an OSGB file to read it.
+ByteSource of_osgb(const images::ImageSource& source, storage::FileSystem& files) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 31;  // the import has read it with less
+  const auto glb = mesh_io::OsgbTiles(files, kMost).tile(source.file).glb;
+  if (source.offset > glb->size() || source.bytes > glb->size() - source.offset)
+    mesh_io::fail_file(source.file, "does not have its picture any more");
+  return bytes_of(std::span(*glb).subspan(source.offset, source.bytes), glb);
+}
+
 /// A picture within a file in gzip, as it is coded.
 ByteSource unpacked(const images::ImageSource& source, storage::FileSystem& files) {
   const auto file = files.open(source.file);
+  if (const auto format = mesh_io::find_format(*file);
+      format && format->kind == mesh_io::MeshKind::osgb)
+    return of_osgb(source, files);
   const auto stream = mesh_io::open_stream({*file, file->size()}, {});
   const auto bytes = std::make_shared<std::vector<std::byte>>(source.bytes);
   if (mesh_io::skip(*stream, source.offset) < source.offset || stream->read(*bytes) < bytes->size())

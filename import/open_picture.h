@@ -9,8 +9,9 @@
 
 namespace meshhier::importing {
 
-/// Opens a picture as images::open_image(); one within a file in gzip is held in memory, still
-/// coded. Throws Error(input) if that file is damaged or does not have it.
+/// Opens a picture as images::open_image(); one within a file in gzip, or that is made of an
+/// OSGB, is held in memory, still coded. Throws Error(input) if that file is damaged or does not
+/// have it.
 std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& source,
                                                   storage::FileSystem& files);
 

@@ -5,6 +5,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
+#include "mesh_io/osgb_file.h"
 #include "mesh_io/other_formats.h"
 #include "mesh_io/recognition.h"
 #include "mesh_io/stl_reader.h"
@@ -111,6 +112,14 @@ std::vector<FormatRow> make_rows() {
        .format = "3D Tiles",
        .in_metres = true,
        .names_features = true},
+      {.kind = MeshKind::osgb,
+       .name = "OSGB",
+       .format = "OSGB",
+       .ending = ".osgb",
+       .look = [](MeshContent& c) { return sure_if(begins_as_osgb(c.start())); },
+       .kept = "the finest tiles of a PagedLOD, and of the files that it names; normals, vertex "
+               "colours, pictures (JPEG, PNG, DXT) of the first texture",
+       .left_out = "points, lines, shapes, other textures"},
   };
 }
 

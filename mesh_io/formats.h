@@ -23,7 +23,8 @@ enum class MeshKind : std::uint8_t {
   stl_text,
   off,
   tileset,
-  b3dm
+  b3dm,
+  osgb
 };
 
 class MeshContent;  // recognition.h

@@ -261,6 +261,12 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
       picture.offset = buffer.offset + range.offset + (is_own ? room_.begin : 0);
       picture.bytes = range.size;
       picture.is_packed = is_own && room_.content == GltfContent::packed;
+      if (picture.is_packed && room_.find_plain) {
+        if (const auto plain = room_.find_plain(picture.offset, picture.bytes)) {
+          picture.offset = *plain;
+          picture.is_packed = false;
+        }
+      }
       if (picture.is_packed)
         require_memory(range.size, name);  // it is held as a whole
     } else {

@@ -34,6 +34,9 @@ struct GltfRoom {
   /// Waits until files that are read at once have so many bytes left of `memory_bytes`, which are
   /// taken as long as what it returns is there; null: no others are read.
   std::function<std::shared_ptr<const void>(std::uint64_t)> take_memory{};
+  /// Of packed content: returns where in the file itself a range of it lies as it is, if it does.
+  std::function<std::optional<std::uint64_t>(std::uint64_t offset, std::uint64_t bytes)>
+      find_plain{};
 };
 
 /// A picture of the document and the place where its bytes lie.

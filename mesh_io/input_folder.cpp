@@ -1,9 +1,12 @@
 #include "mesh_io/input_folder.h"
 
 #include "base/error.h"
+#include "base/small_letters.h"
 #include "mesh_io/formats.h"
+#include "storage/io/paths.h"
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -12,6 +15,9 @@ namespace meshhier::mesh_io {
 namespace {
 
 using Path = std::filesystem::path;
+
+constexpr const char* kMetadata = "metadata.xml";
+constexpr const char* kOsgbEnding = ".osgb";
 
 /// A folder that is looked at.
 struct Place {
@@ -67,14 +73,84 @@ std::optional<FolderMesh> look_for_tileset(const Place& place) {
   return FolderMesh{.meshes = {place.folder / "tileset.json"}};
 }
 
+/// Returns the tiles of a folder of OSGB: NAME/NAME.osgb each, or the one of its own name.
+std::vector<Path> osgb_tiles(const Place& place) {
+  if (const Path own = storage::without_last_slash(place.folder.lexically_normal()).filename();
+      place.has(own.string() + kOsgbEnding))
+    return {place.folder / (own.string() + kOsgbEnding)};
+  std::vector<Path> tiles;
+  for (const Path& child : place.files.children(place.folder)) {
+    const Path name = child.filename() / (child.filename().string() + kOsgbEnding);
+    if (place.has(name))
+      tiles.push_back(place.folder / name);
+  }
+  return tiles;
+}
+
+/// The folder Data of ContextCapture, DJI Terra and Smart3D, or the one around it, or a tile's.
+std::optional<FolderMesh> look_for_osgb(const Place& place) {
+  for (const char* inner : {"Data", ""}) {
+    const Path folder = *inner == '\0' ? place.folder : place.folder / inner;
+    if (!place.files.is_directory(folder) || !place.files.can_list(folder))
+      continue;
+    FolderMesh found{.meshes = osgb_tiles({place.files, folder})};
+    if (found.meshes.empty())
+      continue;
+    found.maps = osgb_maps(place.files, found.meshes.front());
+    return found;
+  }
+  return std::nullopt;
+}
+
 constexpr auto kRows = std::to_array<FolderRow>({
+    {"Data/NAME/NAME.osgb", "OSGB tiles", look_for_osgb},
     {"odm_texturing/odm_textured_model_geo.obj", "an ODM project", look_for_odm},
     {"tileset.json", "3D Tiles", look_for_tileset},
 });
 
+/// Returns a text of each row: "a, b or c".
+template <class Text>
+std::string listed(const Text& text_of) {
+  std::string text;
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    text += i == 0 ? "" : i + 1 < kRows.size() ? ", " : " or ";
+    text += text_of(kRows[i]);
+  }
+  return text;
+}
+
+/// Returns the meshes that lie with a metadata.xml, which places them.
+FolderMesh meshes_of_metadata(storage::FileSystem& files, const Path& path) {
+  const Path folder = path.parent_path().empty() ? Path(".") : path.parent_path();
+  auto found = look_for_osgb({files, folder});
+  if (!found) {
+    throw Error(ErrorCode::input,
+                fmt::format("{} places a model, and no tiles lie with it (Data/NAME/NAME.osgb); "
+                            "build the mesh, and give this file as placement.metadata",
+                            path.string()));
+  }
+  found->maps = {path};
+  return *found;
+}
+
 }  // namespace
 
+bool is_model_metadata(const Path& path) {
+  return small_letters(path.filename().string()) == kMetadata;
+}
+
+std::vector<Path> osgb_maps(storage::FileSystem& files, const Path& tile) {
+  for (const char* around : {".", "..", "../.."}) {
+    const Path map = (tile.parent_path() / around / kMetadata).lexically_normal();
+    if (files.kind(map) == storage::FileKind::regular)
+      return {map};
+  }
+  return {};
+}
+
 std::optional<FolderMesh> find_folder_mesh(storage::FileSystem& files, const Path& path) {
+  if (is_model_metadata(path) && files.kind(path) == storage::FileKind::regular)
+    return meshes_of_metadata(files, path);
   if (!files.is_directory(path))
     return std::nullopt;
   for (const FolderRow& row : kRows) {
@@ -84,16 +160,13 @@ std::optional<FolderMesh> find_folder_mesh(storage::FileSystem& files, const Pat
   throw Error(ErrorCode::io,
               fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json), or give a "
                           "folder that has {}",
-                          path.string(), format_names(), folder_kinds()));
+                          path.string(), format_names(), listed([](const FolderRow& row) {
+                            return fmt::format("{} ({})", row.sign, row.name);
+                          })));
 }
 
-std::string folder_kinds() {
-  std::string text;
-  for (std::size_t i = 0; i < kRows.size(); ++i) {
-    text += i == 0 ? "" : i + 1 < kRows.size() ? ", " : " or ";
-    text += fmt::format("{} ({})", kRows[i].sign, kRows[i].name);
-  }
-  return text;
+std::string folder_names() {
+  return listed([](const FolderRow& row) { return std::string(row.name); });
 }
 
 }  // namespace meshhier::mesh_io

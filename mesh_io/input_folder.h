@@ -2,6 +2,9 @@
 //
 //   project/odm_texturing/odm_textured_model_geo.obj     the mesh
 //          /odm_georeferencing/coords.txt                the map that its coordinates belong to
+//
+//   site/Data/Tile_+000_+001/Tile_+000_+001.osgb         a tile, which names finer ones beside it
+//       /metadata.xml                                    the map
 #pragma once
 
 #include "storage/io/file.h"
@@ -21,12 +24,21 @@ struct FolderMesh {
   bool is_z_up = true;  ///< its coordinates are those of a map
 };
 
-/// Returns the meshes of a folder; nothing if the path is no folder. Throws Error(io) if the folder
+/// Returns whether a file has the name of those that place tiles: metadata.xml.
+bool is_model_metadata(const std::filesystem::path& path);
+
+/// Returns the file that places an OSGB tile: a metadata.xml beside it, or in one of the two
+/// folders above; none if there is none.
+std::vector<std::filesystem::path> osgb_maps(storage::FileSystem& files,
+                                             const std::filesystem::path& tile);
+
+/// Returns the meshes of a folder, or of a metadata.xml that lies with them; nothing if the path is
+/// neither. Throws Error(io) if the folder
 /// is of no kind that is known, or cannot be read.
 std::optional<FolderMesh> find_folder_mesh(storage::FileSystem& files,
                                            const std::filesystem::path& path);
 
-/// Returns the kinds of folders, for sentences: "odm_texturing/… (an ODM project) or …".
-std::string folder_kinds();
+/// Returns the kinds of folders, for sentences: "OSGB tiles, an ODM project or …".
+std::string folder_names();
 
 }  // namespace meshhier::mesh_io

@@ -7,6 +7,12 @@ function(compress file)
   execute_process(COMMAND gzip -9nf "${file}" COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
+if(CPACK_DEBIAN_PACKAGE_NAME STREQUAL "meshhier-osgb")  # it takes the other package, whose documents are its own
+  file(MAKE_DIRECTORY "${share}/doc")
+  file(CREATE_LINK meshhier "${share}/doc/meshhier-osgb" SYMBOLIC)
+  return()
+endif()
+
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH, if that is set
 file(WRITE "${documents}/changelog.Debian"
 "meshhier (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium

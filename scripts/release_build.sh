@@ -10,6 +10,11 @@ build_program() {
   cmake --build "$release" --target "$@"
 }
 
+# Prints the name of what reads OSGB, if it can be built.
+osgb_program() {
+  [[ ! -f $release/CMakeCache.txt ]] || ! grep -q '^OSG_FOUND:INTERNAL=1' "$release/CMakeCache.txt" || echo meshhier_osgb
+}
+
 # Whether nothing in viewer/ is newer than what its build makes last.
 page_is_new() {
   local last=$page/meshhier-ktx2.js.gz

@@ -4,6 +4,7 @@
 #include "storage/io/child_process.h"
 
 #include <array>
+#include <string>
 #include <utility>
 
 namespace meshhier::storage {
@@ -21,11 +22,17 @@ class WorkerPool::Worker {
 
   /// Returns nothing if the process has ended.
   std::optional<Answer> ask(std::span<const std::uint32_t> numbers,
-                            std::span<const std::byte> bytes) {
+                            std::span<const std::byte> bytes, std::uint64_t most_bytes) {
     std::array<std::uint32_t, 2> head{};  // status, bytes
     if (!process_.send(std::as_bytes(numbers)) || !process_.send(bytes) ||
         !process_.receive(std::as_writable_bytes(std::span(head))))
       return std::nullopt;
+    if (head[1] > most_bytes) {
+      throw Error(ErrorCode::budget, "what is read takes " + std::to_string(head[1]) +
+                                         " bytes of memory, and there are " +
+                                         std::to_string(most_bytes) +
+                                         "; give a larger memory_budget");
+    }
     Answer answer{head[0] == 0, std::vector<std::byte>(head[1])};
     if (!process_.receive(answer.bytes))
       return std::nullopt;
@@ -43,7 +50,8 @@ WorkerPool::WorkerPool(std::string name, std::uint32_t protocol,
 WorkerPool::~WorkerPool() = default;
 
 std::optional<WorkerPool::Answer> WorkerPool::ask(std::span<const std::uint32_t> numbers,
-                                                  std::span<const std::byte> bytes) {
+                                                  std::span<const std::byte> bytes,
+                                                  std::uint64_t most_bytes) {
   constexpr int kNewOnes = 2;  // somebody may have killed the others, and the first of these
   for (int tried = 0; tried < kNewOnes;) {
     std::unique_ptr<Worker> worker = take_idle();
@@ -51,7 +59,7 @@ std::optional<WorkerPool::Answer> WorkerPool::ask(std::span<const std::uint32_t>
       worker = start();
       ++tried;
     }
-    if (std::optional<Answer> answer = worker->ask(numbers, bytes)) {
+    if (std::optional<Answer> answer = worker->ask(numbers, bytes, most_bytes)) {
       if (answer->is_good) {
         const std::lock_guard lock(mutex_);
         idle_.push_back(std::move(worker));

@@ -40,10 +40,12 @@ class WorkerPool {
   ~WorkerPool();
 
   /// Asks a process that waits, else a new one, and waits for the answer. Returns nothing if two
-  /// new ones have ended at this question. Throws Error(io) if none can be started, and what
-  /// `words` throws. `numbers`: the last one is bytes.size().
+  /// new ones have ended at this question. Throws Error(io) if none can be started, Error(budget)
+  /// if the answer has more than `most_bytes`, and what `words` throws. `numbers`: the last one is
+  /// bytes.size().
   std::optional<Answer> ask(std::span<const std::uint32_t> numbers,
-                            std::span<const std::byte> bytes);
+                            std::span<const std::byte> bytes,
+                            std::uint64_t most_bytes = UINT32_MAX);
   /// Ends the processes that wait.
   void end_idle();
 

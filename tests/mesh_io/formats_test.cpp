@@ -92,7 +92,7 @@ TEST(MeshFormat, IsKnownInGzip) {
 TEST(MeshFormat, WhatIsNoMeshIsRefused) {
   EXPECT_EQ(
       format_refusal(""),
-      "mesh: expected a mesh (PLY, OBJ, glTF, STL or OFF, or one of them packed by gzip), found an "
+      "mesh: expected a mesh (PLY, OBJ, glTF, STL, OFF or OSGB, or one of them packed by gzip), found an "
       "empty file");
   EXPECT_THAT(format_refusal("hello world"), HasSubstr("found 'hello world'"));
   EXPECT_THAT(format_refusal("plyx"), HasSubstr("found 'plyx'"));

@@ -7,7 +7,8 @@ export const FORMATS = {
     ".gltf",
     ".glb",
     ".stl",
-    ".off"
+    ".off",
+    ".osgb"
   ],
   "namesOthers": [
     ".obj",
