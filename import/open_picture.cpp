@@ -42,7 +42,9 @@ ByteSource of_osgb(const images::ImageSource& source, storage::FileSystem& files
   const auto glb = mesh_io::OsgbTiles(files, kMost).tile(source.file).glb;
   if (source.offset > glb->size() || source.bytes > glb->size() - source.offset)
     mesh_io::fail_file(source.file, "does not have its picture any more");
-  return bytes_of(std::span(*glb).subspan(source.offset, source.bytes), glb);
+  const std::span part = std::span(*glb).subspan(source.offset, source.bytes);
+  const auto bytes = std::make_shared<std::vector<std::byte>>(part.begin(), part.end());
+  return bytes_of(*bytes, bytes);
 }
 
 /// A picture within a file in gzip, as it is coded.

@@ -89,11 +89,18 @@ TEST(MeshFormat, IsKnownInGzip) {
   EXPECT_EQ(format_of(gzip("OFF\n0 0 0\n")), "OFF (gzip)");
 }
 
+TEST(MeshFormat, OsgbIsKnownByItsFirstBytes) {
+  const std::string osgb = "\xA1\x0E\x91\x6C\x45\x45\xFB\x1A and more";
+  EXPECT_EQ(format_of(osgb), "OSGB");
+  EXPECT_EQ(format_of(gzip(osgb)), "OSGB (gzip)");
+  EXPECT_NE(format_refusal(osgb.substr(0, 7)), "");
+}
+
 TEST(MeshFormat, WhatIsNoMeshIsRefused) {
-  EXPECT_EQ(
-      format_refusal(""),
-      "mesh: expected a mesh (PLY, OBJ, glTF, STL, OFF or OSGB, or one of them packed by gzip), found an "
-      "empty file");
+  EXPECT_EQ(format_refusal(""),
+            "mesh: expected a mesh (PLY, OBJ, glTF, STL, OFF or OSGB, or one of them packed by "
+            "gzip), found an "
+            "empty file");
   EXPECT_THAT(format_refusal("hello world"), HasSubstr("found 'hello world'"));
   EXPECT_THAT(format_refusal("plyx"), HasSubstr("found 'plyx'"));
   EXPECT_THAT(format_refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
