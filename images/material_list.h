@@ -20,7 +20,7 @@ struct ImageSource {
   std::uint64_t offset = 0;       ///< its first byte in that file
   std::uint64_t bytes = 0;        ///< 0: to the end of the file
   std::vector<std::byte> data{};  ///< the encoded picture, decoded from a data URI
-  bool is_packed = false;         ///< the file is in gzip: offset and bytes count in its content
+  bool is_packed = false;         ///< the file is in gzip or OSGB: they count in its content
   friend bool operator==(const ImageSource&, const ImageSource&) = default;
 };
 
