@@ -276,6 +276,14 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "are relative to the "
                    "current directory")
       ->type_name("KEY=VALUE");
+  command
+      ->add_option_function<std::string>(
+          "--drape",
+          [arguments](const std::string& picture) {
+            arguments->settings.push_back("texture.drape=" + picture);
+          },
+          "The orthophoto (GeoTIFF) that heights of a raster show")
+      ->type_name("FILE");
   command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");

@@ -240,6 +240,8 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
   config.output = resolved_path(draft, "output", config.output, origin.directory);
   if (std::filesystem::path& file = config.placement.metadata; !file.empty())
     file = resolved_path(draft, "placement.metadata", file, origin.directory);
+  if (std::filesystem::path& file = config.texture.drape; !file.empty())
+    file = resolved_path(draft, "texture.drape", file, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);
   check_crop(config, draft);
@@ -257,6 +259,8 @@ std::vector<std::filesystem::path> read_by(const Config& config) {
   std::vector<std::filesystem::path> files = config.input;
   if (!config.placement.metadata.empty())
     files.push_back(config.placement.metadata);
+  if (!config.texture.drape.empty())
+    files.push_back(config.texture.drape);
   return files;
 }
 

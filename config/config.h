@@ -135,6 +135,7 @@ struct TextureConfig {
   std::uint32_t texels =
       512;               ///< a simplified tile's picture has at most so many squared, 64 to 4096
   TextureFormat format;  ///< the tiles' pictures
+  std::filesystem::path drape{};  ///< an orthophoto that lies on heights; empty: none
   friend bool operator==(const TextureConfig&, const TextureConfig&) = default;
 };
 

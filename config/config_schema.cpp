@@ -447,6 +447,11 @@ std::vector<ConfigKey> make_config_keys() {
                "tiles show the pictures or colours of the mesh's materials; `false` leaves both "
                "out and keeps texture coordinates as they are"},
           [](auto& c) -> auto& { return c.texture.use; })),
+      deciding(path(
+          {.path = "texture.drape",
+           .meaning = "an orthophoto (GeoTIFF) that heights of a raster show, by its own place and "
+                      "resolution; `--drape` of `build` sets it"},
+          [](auto& c) -> auto& { return c.texture.drape; })),
       deciding(number(
           {.path = "texture.texels",
            .meaning = "side of the picture of a simplified tile, at most; partitions have the "

@@ -1,27 +1,41 @@
 #include "config/input_frame.h"
 
+#include "base/error.h"
 #include "config/placement.h"
+#include "geodesy/map_change.h"
+#include "geodesy/map_projection.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_folder.h"
+#include "mesh_io/mosaic.h"
+#include "mesh_io/terrain_frame.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/paths.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace meshhier::config {
 namespace {
 
-/// Returns the kind of a file that has a place of its own. One that is not there is told when it is
-/// read; one with the name of another kind of mesh is not looked into.
+/// Whether a file of that name may have a place of its own: it is named so, or as no mesh.
+bool may_have_place(const std::filesystem::path& path) {
+  return !mesh_io::is_mesh_name(path.filename().string()) ||
+         std::ranges::any_of(mesh_io::format_rows(), [&](const mesh_io::FormatRow& row) {
+           return row.ending == storage::lower_extension(path) &&
+                  (row.kind == mesh_io::MeshKind::osgb || mesh_io::row_of(row.kind).is_raster);
+         });
+}
+
+/// Returns the kind of a file that may have a place of its own. One that is not there is told when
+/// it is read; one with the name of another kind of mesh is not looked into.
 std::optional<mesh_io::MeshKind> placing_kind(storage::FileSystem& files,
                                               const std::filesystem::path& path) {
-  const bool is_other =
-      mesh_io::is_mesh_name(path.filename().string()) &&
-      storage::lower_extension(path) != mesh_io::row_of(mesh_io::MeshKind::osgb).ending;
-  if (is_other || files.kind(path) != storage::FileKind::regular)
+  if (!may_have_place(path) || files.kind(path) != storage::FileKind::regular)
     return std::nullopt;
   const auto format = mesh_io::find_format(*files.open(path));
   return format ? std::optional(format->kind) : std::nullopt;
@@ -36,6 +50,7 @@ struct Sources {
   bool is_z_up = false;                          ///< one of them is
   std::optional<std::filesystem::path> tileset;  ///< the first one
   std::vector<std::filesystem::path> maps;       ///< of the first folder that has any
+  std::vector<std::filesystem::path> rasters;    ///< all
 };
 
 void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path, Sources& found) {
@@ -48,6 +63,9 @@ void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path,
     found.is_z_up = true;
     if (!found.tileset)
       found.tileset = path;
+  } else if (kind && mesh_io::row_of(*kind).is_raster) {
+    found.is_z_up = true;
+    found.rasters.push_back(path);
   }
 }
 
@@ -68,12 +86,60 @@ Sources look_at(storage::FileSystem& files, const mesh_io::InputPaths& paths) {
   return found;
 }
 
+/// Does `work` with the CRS of a raster; tells if PROJ knows none of that name.
+template <class Work>
+auto about_crs(const std::filesystem::path& raster, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw error.within(raster.string() + ": its CRS (\"placement\" in the config says another)");
+  }
+}
+
+/// Returns a place on WGS 84, as PROJ changes the datum of a map in degrees.
+mesh_io::GlobePlace on_wgs84(mesh_io::GlobePlace place, const std::string& crs) {
+  constexpr std::string_view kWgs84 = "EPSG:4326";
+  if (crs.empty() || crs.starts_with(kWgs84))
+    return place;
+  const Vec3d there =
+      geodesy::MapChange(crs, std::string(kWgs84))({place.longitude, place.latitude, 0});
+  return mesh_io::rounded({there.x, there.y});
+}
+
+/// Takes the place from rasters: their map, or the middle of a grid in degrees.
+void place_terrain(storage::FileSystem& files, const std::vector<std::filesystem::path>& rasters,
+                   Config& config) {
+  const mesh_io::Mosaic mosaic(files, rasters);
+  const std::string& crs = mosaic.keys().crs;
+  PlacementConfig& place = config.placement;
+  if (mosaic.is_in_metres() && !config.units)
+    config.units = Unit::m;
+  const auto middle = mesh_io::middle_of(mosaic);
+  if (middle && (place.crs || !place.metadata.empty())) {
+    throw Error(ErrorCode::usage, rasters[0].string() +
+                                      " lies in degrees: it stands on the globe by itself, and on "
+                                      "the map of placement.crs after `gdalwarp -t_srs`");
+  }
+  if (is_placed(place))
+    return;
+  if (middle) {
+    const auto there = about_crs(rasters[0], [&] { return on_wgs84(*middle, crs); });
+    place.longitude = there.longitude;
+    place.latitude = there.latitude;
+  } else if (!crs.empty()) {
+    about_crs(rasters[0], [&] { return geodesy::MapProjection(crs).unit_metres(); });
+    place.crs = crs;
+  }
+}
+
 }  // namespace
 
 Config with_input_frame(storage::FileSystem& files, Config config) {
   const Sources sources = look_at(files.input(), config.input);
   if (!config.up)
     config.up = sources.is_z_up ? UpAxis::z : UpAxis::y;
+  if (!sources.rasters.empty())
+    place_terrain(files.input(), sources.rasters, config);
   if (is_placed(config.placement))
     return config;
   if (!sources.maps.empty())

@@ -1,5 +1,7 @@
 #include "geodesy/geo_keys.h"
 
+#include "geodesy/geo_key_numbers.h"
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -8,32 +10,9 @@
 namespace meshhier::geodesy {
 namespace {
 
-// Keys (GeoTIFF 1.1, annex B) and their values.
-enum : std::uint16_t {
-  kModelType = 1024,
-  kRasterType = 1025,
-  kCitation = 1026,
-  kGeodeticCrs = 2048,
-  kDatum = 2050,
-  kAngularUnits = 2054,
-  kOwnEllipsoid = 2056,
-  kSemiMajorAxis = 2057,
-  kInverseFlattening = 2059,
-  kProjectedCrs = 3072,
-  kProjection = 3074,
-  kProjectionMethod = 3075,
-  kLinearUnits = 3076,
-  kLinearUnitSize = 3077,
-  kVerticalCrs = 4096
-};
-enum : std::uint16_t {
-  kProjected = 1,
-  kPixelIsArea = 1,
-  kWgs84 = 4326,
-  kMetre = 9001,
-  kDegree = 9102,
-  kUserDefined = 32767
-};
+// Values of keys.
+constexpr std::uint16_t kProjected = 1, kPixelIsArea = 1, kWgs84 = 4326, kMetre = 9001,
+                        kDegree = 9102;
 
 /// What EPSG's code is in GeoTIFF: of methods the value, of parameters the key.
 struct CodePair {
@@ -78,15 +57,13 @@ class KeyWriter {
  public:
   void add(std::uint16_t key, std::uint16_t value) { add(key, 0, 1, value); }
   void add(std::uint16_t key, double value) {
-    constexpr std::uint16_t kDoubles = 34736;
-    add(key, kDoubles, 1, static_cast<std::uint16_t>(keys_.doubles.size()));
+    add(key, kGeoDoublesTag, 1, static_cast<std::uint16_t>(keys_.doubles.size()));
     keys_.doubles.push_back(value);
   }
   /// Texts end with "|", which none may hold.
   void add(std::uint16_t key, std::string text) {
-    constexpr std::uint16_t kText = 34737;
     std::ranges::replace(text, '|', ' ');
-    add(key, kText, static_cast<std::uint16_t>(text.size() + 1),
+    add(key, kGeoTextTag, static_cast<std::uint16_t>(text.size() + 1),
         static_cast<std::uint16_t>(keys_.text.size()));
     keys_.text += text + '|';
   }
@@ -110,7 +87,7 @@ void add_geodetic(KeyWriter& keys, const MapMethod& map) {
   keys.add(kGeodeticCrs, map.geodetic == 0 ? std::uint16_t{kUserDefined} : map.geodetic);
   if (map.geodetic == 0)
     keys.add(kDatum, kUserDefined);
-  keys.add(kAngularUnits, kDegree);
+  keys.add(kAngularUnit, kDegree);
   if (map.geodetic != 0)
     return;
   keys.add(kOwnEllipsoid, kUserDefined);
@@ -124,7 +101,7 @@ void add_method(KeyWriter& keys, const MapMethod& map) {
   keys.add(kProjectedCrs, kUserDefined);
   keys.add(kProjection, kUserDefined);
   keys.add(kProjectionMethod, geotiff_method(map.method));
-  keys.add(kLinearUnits, map.unit_metres == 1 ? kMetre : kUserDefined);
+  keys.add(kLinearUnit, map.unit_metres == 1 ? kMetre : kUserDefined);
   if (map.unit_metres != 1)
     keys.add(kLinearUnitSize, map.unit_metres);
   for (const CodePair& row : kParameters) {

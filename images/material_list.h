@@ -21,6 +21,7 @@ struct ImageSource {
   std::uint64_t bytes = 0;        ///< 0: to the end of the file
   std::vector<std::byte> data{};  ///< the encoded picture, decoded from a data URI
   bool is_packed = false;         ///< the file is in gzip or OSGB: they count in its content
+  bool is_drape = false;          ///< a TIFF on a map, with a frame (tiff_picture.h)
   friend bool operator==(const ImageSource&, const ImageSource&) = default;
 };
 

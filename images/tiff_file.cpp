@@ -105,8 +105,11 @@ struct TiffFile::Calls {
     TiffFile& tiff = of(self);
     std::array<char, kMostMessage> text{};
     std::vsnprintf(text.data(), text.size(), format, arguments);
+    std::string_view said(text.data());
+    if (said.starts_with(": "))  // it begins with the file's name, which is not the library's
+      said.remove_prefix(2);
     if (tiff.message_.empty())  // the first one is the cause
-      kept(tiff, [&] { return tiff.message_ = plain_text(text.data(), kMostMessage), 0; });
+      kept(tiff, [&] { return tiff.message_ = plain_text(said, kMostMessage), 0; });
     return 1;
   }
 
@@ -188,7 +191,12 @@ std::string TiffFile::text(GeoTag tag) {
   return {characters.begin(), std::ranges::find(characters, '\0')};
 }
 
-void TiffFile::check_block(std::uint32_t index) {
+void TiffFile::select(std::uint64_t directory) {
+  if (TIFFCurrentDirOffset(tiff_.get()) != directory)
+    check(TIFFSetSubDirectory(tiff_.get(), directory) == 1);
+}
+
+storage::File::Range TiffFile::place_of(std::uint32_t index) {
   int failed = 0;
   const std::uint64_t offset = TIFFGetStrileOffsetWithErr(tiff_.get(), index, &failed);
   check(failed == 0);
@@ -200,10 +208,11 @@ void TiffFile::check_block(std::uint32_t index) {
          ", with " + std::to_string(bytes) + " bytes, but the file has " + std::to_string(size) +
          "; it may have been cut off");
   }
+  return {offset, bytes};
 }
 
 void TiffFile::read_block(std::uint32_t index, std::span<std::byte> into) {
-  check_block(index);
+  place_of(index);
   const auto room = static_cast<tmsize_t>(into.size());
   const tmsize_t read = TIFFIsTiled(tiff_.get()) != 0
                             ? TIFFReadEncodedTile(tiff_.get(), index, into.data(), room)

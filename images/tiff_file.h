@@ -75,6 +75,11 @@ class TiffFile {
   std::vector<std::uint16_t> shorts(GeoTag tag);
   std::string text(GeoTag tag);
 
+  /// Goes to the directory at that byte.
+  void select(std::uint64_t directory);
+  /// Returns where the bytes of block `index` lie; none if the file leaves it out. Fails if they do
+  /// not lie within the file.
+  storage::File::Range place_of(std::uint32_t index);
   /// Reads and decodes block `index`, a strip or a tile, into `into`: all of its bytes, in this
   /// machine's order. Fails if it does not lie within the file, or gives fewer bytes.
   void read_block(std::uint32_t index, std::span<std::byte> into);
@@ -86,7 +91,6 @@ class TiffFile {
   struct Calls;
 
   void open(const char* mode, std::uint64_t most_bytes);
-  void check_block(std::uint32_t index);
   /// Returns the tag's values if it has them in elements of `bytes` and of `type`.
   template <class Value>
   std::vector<Value> values(GeoTag tag, TIFFDataType type);

@@ -12,6 +12,7 @@
 #include "import/osgb_import.h"
 #include "import/ply_import.h"
 #include "import/stl_import.h"
+#include "import/terrain_drape.h"
 #include "import/text_blocks.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/named_files.h"
@@ -278,9 +279,6 @@ class FileReader::Impl {
     return facts.format.is_gzip ? mesh_io::GltfContent::packed : mesh_io::GltfContent::stored;
   }
 
-  /// Returns the memory of a reader that decodes: no sort runs meanwhile.
-  std::uint64_t decoding_bytes() const { return std::max(2 * room_.sort_bytes, 4 * kMiB); }
-
   AddedFile add_plain_gltf(const InputFileFacts& facts,
                            std::shared_ptr<const storage::File> content) {
     return note_gltf(import_plain_gltf(facts, std::move(content), mesh_));
@@ -385,6 +383,63 @@ class FileReader::Impl {
     last.fits_float = last.fits_float && added.fits_float;
   }
 
+  Terrain read_terrain() {
+    for (const InputFileFacts& file : input_.all())
+      checksums_.push_back(checksum_of(file.path));
+    std::optional<TerrainDrape> drape;
+    if (!input_.drape().empty())
+      drape = open_drape(input_.system(), input_.drape(), *input_.mosaic());
+    Terrain terrain = count_terrain(input_.mosaic(), input_.bytes());
+    if (drape) {
+      terrain.drape = drape->texcoords;
+      terrain.materials = std::move(drape->materials);
+    }
+    return terrain;
+  }
+
+  /// Counts the cells; `bytes`: of the files, by which progress advances.
+  Terrain count_terrain(std::shared_ptr<const mesh_io::Mosaic> mosaic, std::uint64_t bytes) {
+    double done = 0;
+    const auto advance = [&](double part) {
+      const auto before = static_cast<std::uint64_t>(done * static_cast<double>(bytes));
+      done = std::min(1.0, done + part);
+      env_.progress.advance(static_cast<std::uint64_t>(done * static_cast<double>(bytes)) - before);
+    };
+    const auto cells = std::make_shared<const TerrainCells>(*mosaic, advance, env_.cancel);
+    count("cells_without_height", mosaic->cells() - cells->vertices());
+    const mesh_io::SharedCells& shared = cells->shared();
+    count("cells_in_several_files", shared.equal + shared.different);
+    count("cells_with_different_heights", shared.different);
+    if (shared.different > 0) {
+      env_.progress.warn(fmt::format(
+          "{} that several files have differ, by up to {:.3g}: the files that come first count",
+          counted(shared.different, "heights"), shared.most));
+    }
+    return {.mosaic = std::move(mosaic), .cells = cells};
+  }
+
+  /// Reads all rasters with the first of them.
+  AddedFile read_raster(const InputFileFacts& facts, const Path& /*room*/) {
+    checksums_.push_back(checksum_of(facts.path));
+    const auto is_raster = [](const InputFileFacts& file) { return file.format.row().is_raster; };
+    if (&facts != &*std::ranges::find_if(input_.all(), is_raster))
+      return {};
+    const auto source = open_terrain(count_terrain(input_.mosaic(), facts.identity.bytes));
+    const std::uint32_t base = checked_base(facts.path, source->description().vertex_count);
+    AddedFile added;
+    source->read_vertices([&](const mesh_io::VertexBlock& block) {
+      env_.cancel.check();
+      mesh_.positions.append(block.exact);
+      added.fits_float = added.fits_float && block.fits_float();
+    });
+    added.faces = source
+                      ->read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
+                        append(triangles, base);
+                      })
+                      .faces;
+    return added;
+  }
+
   AddedFile add_obj(InputStream& stream, const std::filesystem::path& path) {
     const ObjImport import =
         import_obj(stream, path, mesh_, named_, input_.textures(), input_.attributes(), room_);
@@ -480,6 +535,9 @@ std::span<const FileReader::Impl::Reader> FileReader::Impl::readers() {
       {MeshKind::stl_binary, &Impl::read_bytes<&Impl::add_stl<StlForm::binary>>},
       {MeshKind::stl_text, &Impl::read_text<&Impl::add_stl<StlForm::text>>},
       {MeshKind::off, &Impl::read_text<&Impl::add_off>},
+      {MeshKind::geotiff, &Impl::read_raster},
+      {MeshKind::hgt, &Impl::read_raster},
+      {MeshKind::asc, &Impl::read_raster},
   });
   return kReaders;
 }
@@ -504,6 +562,10 @@ std::size_t FileReader::run_of(std::span<const InputFileFacts> files) {
 void FileReader::read_run(std::span<const InputFileFacts> files,
                           const std::function<void(const AddedFile&)>& added) {
   impl_->read_run(files, added);
+}
+
+Terrain FileReader::read_terrain() {
+  return impl_->read_terrain();
 }
 
 void FileReader::unpack(const InputFileFacts& facts, TemporaryFile& to) {

@@ -4,6 +4,7 @@
 #include "import/import_input.h"
 #include "import/place_vertices.h"
 #include "import/raw_mesh.h"
+#include "import/terrain_source.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -48,6 +49,9 @@ class FileReader {
   /// Requires as many as run_of() says.
   void read_run(std::span<const InputFileFacts> files,
                 const std::function<void(const AddedFile&)>& added);
+  /// Reads the rasters of an input that has nothing else, and counts their cells. Their picture, if
+  /// there is one, becomes the mesh's material.
+  Terrain read_terrain();
   /// Writes the content of a packed file to `to`.
   void unpack(const InputFileFacts& facts, TemporaryFile& to);
 

@@ -37,6 +37,10 @@ class Import {
     env_.progress.stage("import", input_.bytes(), "bytes");
     if (input_.is_unpacked_only()) {
       reader_.unpack(input_.all()[0], ply);
+    } else if (input_.is_terrain()) {
+      facts_.terrain = reader_.read_terrain();
+      for (const SourceCount& one : reader_.counts())
+        count(one.name, one.count);
     } else {
       add_all(ply);
       for (const SourceCount& one : reader_.counts())
@@ -53,7 +57,7 @@ class Import {
     for (const SourceCount& one : input_.tileset_counts())
       count(one.name, one.count);
     note_files();
-    note_textures();
+    facts_.terrain ? note_drape() : note_textures();
     facts_.label_names = std::move(mesh_.label_names);
     std::ranges::sort(facts_.counts, {}, &SourceCount::name);
     return std::move(facts_);
@@ -102,7 +106,9 @@ class Import {
     add_others(all);
     for (const CompanionFile& library : mesh_.materials.companions().files())
       all.add(library);
-    for (const images::ImageSource& picture : mesh_.materials.list().images) {
+    const images::MaterialList& materials =
+        facts_.terrain ? facts_.terrain->materials : mesh_.materials.list();
+    for (const images::ImageSource& picture : materials.images) {
       if (!picture.file.empty() && picture.bytes == 0)
         all.add({picture.file, InputPart::picture, input_.system().identity(picture.file)});
     }
@@ -137,6 +143,12 @@ class Import {
                                      counted(unnamed, "files"), first,
                                      unnamed == 1 ? "is" : "are"));
     }
+  }
+
+  void note_drape() {
+    facts_.materials = facts_.terrain->materials;
+    if (!facts_.materials.empty())
+      facts_.textures = {.materials = 1, .images = 1};
   }
 
   void note_textures() {
@@ -351,6 +363,12 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   constexpr std::uint64_t kLeastVertexBytes = 12;
   std::uint64_t content = input.geometry_bytes();
   std::uint64_t cornered = 0;  // bytes that such files take beyond kSpools times their size
+  if (input.is_terrain())
+    return 0;
+  if (input.mosaic()) {
+    constexpr std::uint64_t kCellBytes = 50;  // as text a vertex and two triangles would have
+    content += kCellBytes * input.mosaic()->cells();
+  }
   for (const InputFileFacts& file : input.all()) {
     if (input.crop() && file.is_plain_ply() && !file.has_corner_attributes) {
       // A byte a vertex, of 12 bytes at least; how large the piece is shows when it is read.

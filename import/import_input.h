@@ -1,6 +1,7 @@
 // The stage `import`: input that cannot be read where it lies becomes one PLY that can.
 //
-// A PLY that is packed and nothing else is unpacked. All other input (other formats, several
+// A PLY that is packed and nothing else is unpacked. Of rasters the cells are counted, and nothing
+// is written: terrain_source.h makes the mesh of them. All other input (other formats, several
 // files, vertices to be welded) is read once as a stream into spools and written from there as a
 // binary little endian PLY: coordinates as float, or as double if one of them does not fit;
 // attributes in the types they have inside (hierarchy/attributes.h).
@@ -15,6 +16,7 @@
 #include "images/material_list.h"
 #include "import/input_files.h"
 #include "import/label_names.h"
+#include "import/terrain_source.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_plan.h"
 #include "storage/io/file.h"
@@ -67,6 +69,8 @@ struct ImportFacts {
   /// The count of vertices up to the end of each tile, if the mesh is several tiles of tilesets as
   /// they are; else none.
   std::vector<std::uint64_t> tile_ends;
+  /// The mesh, if it is one of rasters, in the place of a PLY.
+  std::optional<Terrain> terrain;
   /// The textures of a textured mesh. Texels are not counted: nothing is decoded here.
   std::optional<SourceTextures> textures;
 
@@ -96,10 +100,10 @@ struct ImportEnvironment {
   const execution::CancelToken& cancel;
 };
 
-/// Writes the PLY, and tells `input` which companions it has. Parallel only within sorts; the
-/// result depends on the files alone, but for the order of triangles if they are welded. Throws
-/// Error(input) naming file and line or byte, also if files that are joined have not the same
-/// attributes, Error(io), Error(interrupted).
+/// Writes the PLY, or counts the cells of rasters, and tells `input` which companions it has.
+/// Parallel only within sorts; the result depends on the files alone, but for the order of
+/// triangles if they are welded. Throws Error(input) naming file and line or byte, also if files
+/// that are joined have not the same attributes, Error(io), Error(interrupted).
 ImportFacts import_input(InputFiles& input, TemporaryFile& ply,
                          const ImportEnvironment& environment);
 

@@ -57,6 +57,7 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
     : files_(files.input()), named_(paths), use_(use) {
   for (const std::filesystem::path& path : paths)
     add_mesh(path);
+  join_rasters();
   std::ranges::sort(tileset_counts_, {}, &SourceCount::name);
 }
 
@@ -83,6 +84,30 @@ void InputFiles::add_osgb(const std::filesystem::path& path, const mesh_io::Mesh
   add_file({path, format, files_.identity(path)});
   for (const std::filesystem::path& tile : mesh_io::osgb_family(files_, path))
     companions_.add({tile, InputPart::tile, files_.identity(tile)});
+}
+
+void InputFiles::join_rasters() {
+  std::vector<std::filesystem::path> rasters;
+  for (const InputFileFacts& file : all_) {
+    if (file.format.row().is_raster)
+      rasters.push_back(file.path);
+  }
+  if (!use_.drape.empty() && (rasters.size() != all_.size() || is_changed())) {
+    throw Error(ErrorCode::usage,
+                "texture.drape: an orthophoto lies on rasters of heights alone, "
+                "without other meshes, \"crop\" and \"weld\"");
+  }
+  if (rasters.empty())
+    return;
+  mosaic_ = std::make_shared<const mesh_io::Mosaic>(files_, rasters);
+  for (std::string& warning : mosaic_->warnings())
+    warnings_.push_back(std::move(warning));
+}
+
+bool InputFiles::is_terrain() const {
+  return !is_changed() && std::ranges::all_of(all_, [](const InputFileFacts& file) {
+    return file.format.row().is_raster;
+  });
 }
 
 void InputFiles::add_file(InputFileFacts facts) {
@@ -162,8 +187,9 @@ void InputFiles::look_for_picture(const InputFileFacts& facts) {
 }
 
 std::optional<Unit> InputFiles::units() const {
-  const bool in_metres = std::ranges::all_of(
-      all_, [](const InputFileFacts& file) { return file.format.row().in_metres; });
+  const bool in_metres = std::ranges::all_of(all_, [this](const InputFileFacts& file) {
+    return file.format.row().is_raster ? mosaic_->is_in_metres() : file.format.row().in_metres;
+  });
   return in_metres ? std::optional(Unit::m) : std::nullopt;
 }
 
@@ -191,6 +217,14 @@ bool InputFiles::recall(const InputRecord& earlier) {
     return files_.kind(path) == storage::FileKind::regular;
   };
   if (std::ranges::any_of(earlier.awaited, is_there))
+    return false;
+  // The picture of heights is named by the config, not by the files.
+  const auto is_other = [this](const ReadFile& file) {
+    return file.part == InputPart::picture && file.path != drape();
+  };
+  const bool has_drape =
+      std::ranges::find(earlier.files, drape(), &ReadFile::path) != earlier.files.end();
+  if (mosaic_ && (has_drape == drape().empty() || std::ranges::any_of(earlier.files, is_other)))
     return false;
   CompanionFiles now;
   now.await(earlier.awaited);

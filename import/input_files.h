@@ -9,6 +9,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/input_paths.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/mosaic.h"
 #include "mesh_io/ply_plan.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/file.h"
@@ -34,6 +35,7 @@ struct InputUse {
   Textures textures = Textures::use;
   std::optional<BoundsD> crop{};  ///< only triangles that touch it; in the input's coordinates
   mesh_io::AttributeChoice attributes{};
+  std::filesystem::path drape{};  ///< an orthophoto on rasters of heights; empty: none
 };
 
 /// Returns a file's name unpacked: "a.ply" for "a.ply.gz".
@@ -82,11 +84,19 @@ class InputFiles {
   std::optional<Unit> units() const;
   /// Returns SourceSummary's unused attributes, each once: the first kMostUnused and how many more.
   std::vector<std::string> unused() const;
+  /// Returns the rasters among them, as one; null if there are none.
+  const std::shared_ptr<const mesh_io::Mosaic>& mosaic() const { return mosaic_; }
+  /// Returns whether the input is rasters and nothing else, as they are: nothing is written then.
+  bool is_terrain() const;
   /// Returns counts of the parts of tilesets that are not read.
   const std::vector<SourceCount>& tileset_counts() const { return tileset_counts_; }
   /// Returns warnings about pictures and tiles that are not used, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return use_.weld; }
+  /// Returns the orthophoto that rasters show; empty: none.
+  std::filesystem::path drape() const {
+    return use_.textures == Textures::use ? use_.drape : std::filesystem::path();
+  }
   const std::optional<BoundsD>& crop() const { return use_.crop; }
   const mesh_io::AttributeChoice& attributes() const { return use_.attributes; }
   /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
@@ -134,6 +144,7 @@ class InputFiles {
   void add_mesh(const std::filesystem::path& path);
   void add_osgb(const std::filesystem::path& path, const mesh_io::MeshFormat& format);
   void add_tileset(const std::filesystem::path& path);
+  void join_rasters();
   void add_file(InputFileFacts facts);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);
@@ -154,6 +165,7 @@ class InputFiles {
   std::vector<InputFileFacts> all_;
   /// The frame of the first tileset, if there is one; all tilesets stand in it.
   std::optional<std::optional<mesh_io::GlobeFrame>> frame_;
+  std::shared_ptr<const mesh_io::Mosaic> mosaic_;
   std::vector<SourceCount> tileset_counts_;
   CompanionFiles companions_;
   std::vector<std::string> unused_, warnings_;

@@ -68,10 +68,12 @@ void MeshInput::look_for_copies(const Place& place) {
   const std::unique_ptr<mesh_io::MeshSource> imported = in_place_ ? nullptr : open_imported();
   mesh_io::MeshSource& source = in_place_ ? *in_place_ : *imported;
   using storage::ScratchFile;
+  copy_scratch_.emplace(system_, place.copies, place.pool);
+  if (source.description().place_count == source.description().vertex_count)
+    return;
   ScratchFile scratch(system_, place.scratch, place.pool, ScratchFile::Stays::no,
                       ScratchFile::Files::one_a_thread);
   const std::uint64_t memory = place.sort_bytes;
-  copy_scratch_.emplace(system_, place.copies, place.pool);
   copies_ = importing::find_copies(
       source, *copy_scratch_,
       {scratch, memory, execution::useful_blocks(memory, look_block_bytes(description_)),
@@ -85,6 +87,8 @@ void MeshInput::recall(const mesh_io::MeshDescription& found) {
     note_unplaced();
   if (needs_import())
     description_ = found;
+  if (input_.is_terrain())
+    description_.held_bytes = input_.mosaic()->held_bytes();
   description_.place_count = found.place_count;
 }
 
@@ -98,6 +102,9 @@ bool MeshInput::is_sure_label(const std::string& name) const {
 
 void MeshInput::drop() {
   ply_.reset();
+  facts_.terrain.reset();
+  if (input_.mosaic())
+    input_.mosaic()->release();
   copies_ = {};
   copy_scratch_.reset();
 }
@@ -107,6 +114,8 @@ std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {
 }
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
+  if (facts_.terrain)
+    return open_terrain(*facts_.terrain);
   return mesh_io::make_ply_source(
       mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()),
       {.writer = facts_.writer, .attributes = input_.attributes()});

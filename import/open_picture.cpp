@@ -1,5 +1,6 @@
 #include "import/open_picture.h"
 
+#include "images/tiff_picture.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_stream.h"
@@ -77,6 +78,8 @@ ByteSource source_of(const images::ImageSource& source, storage::FileSystem& fil
 
 std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& source,
                                                   storage::FileSystem& files) {
+  if (source.is_drape)
+    return images::open_framed_tiff(files.open(source.file), source.name);
   return images::open_image(source_of(source, files), source.name);
 }
 

@@ -2,6 +2,8 @@
 
 #include "base/small_letters.h"
 #include "mesh_io/gltf_buffer_files.h"
+#include "mesh_io/height_raster.h"
+#include "mesh_io/hgt_name.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
@@ -26,6 +28,24 @@ constexpr Certainty sure_if(bool is_so) {
 /// STL, whatever stands in the 80 bytes that makers may fill.
 bool has_length_of_stl(const MeshContent& c) {
   return !c.is_gzip() && c.stl_bytes() == c.file().size();
+}
+
+bool begins_as_tiff(std::string_view start) {
+  using namespace std::string_view_literals;
+  return start.starts_with("II*\0"sv) || start.starts_with("MM\0*"sv) ||
+         start.starts_with("II+\0"sv) || start.starts_with("MM\0+"sv);
+}
+
+bool begins_as_asc(const MeshContent& c) {
+  const std::string word = small_letters(c.first_word());
+  return c.is_text() && (word == "ncols" || word == "nrows");
+}
+
+/// Files of SRTM have no mark: their name and their size tell.
+Certainty look_for_hgt(MeshContent& c) {
+  const storage::File& file = c.file();
+  return sure_if(!c.is_gzip() && small_letters(file.path().extension().string()) == ".hgt" &&
+                 hgt_corner(file.path().filename().string()) && hgt_side(file.size()));
 }
 
 std::vector<FormatRow> make_rows() {
@@ -120,6 +140,35 @@ std::vector<FormatRow> make_rows() {
        .kept = "the finest tiles of a PagedLOD, and of the files that it names; normals, vertex "
                "colours, pictures (JPEG, PNG, DXT) of the first texture",
        .left_out = "points, lines, shapes, other textures"},
+      {.kind = MeshKind::geotiff,
+       .name = "GeoTIFF",
+       .format = "GeoTIFF",
+       .ending = ".tif",
+       .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_tiff(c.start())); },
+       .is_raster = true,
+       .kept = "heights: one band of integers or floats of 8 to 64 bits, BigTIFF, tiles and strips "
+               "in all compressions of libtiff; scale, offset, unit and nodata; place and CRS; "
+               "several files on one grid are one surface",
+       .left_out = "overviews, masks; control points and CRSs that a file defines itself"},
+      {.kind = MeshKind::geotiff, .name = "GeoTIFF", .format = "GeoTIFF", .ending = ".tiff"},
+      {.kind = MeshKind::hgt,
+       .name = "SRTM heights",
+       .format = "SRTM",
+       .ending = ".hgt",
+       .look = look_for_hgt,
+       .is_raster = true,
+       .kept = "heights of 3 or 1 seconds; the name tells the place (`N53E027.hgt`)",
+       .left_out = "nothing"},
+      {.kind = MeshKind::asc,
+       .name = "ESRI text grid",
+       .format = "ESRI ASCII",
+       .ending = ".asc",
+       .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_asc(c)); },
+       .buffers = [](const storage::File& file) { return std::vector{crs_file_of(file.path())}; },
+       .is_raster = true,
+       .companions = {".prj"},
+       .kept = "heights, place, and the CRS of a `.prj` beside it",
+       .left_out = "`.prj` files that are no WKT"},
   };
 }
 

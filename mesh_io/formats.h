@@ -13,7 +13,8 @@
 
 namespace meshhier::mesh_io {
 
-/// A tileset is the JSON of 3D Tiles, whose tiles are meshes; a b3dm is such a tile.
+/// A tileset is the JSON of 3D Tiles, whose tiles are meshes; a b3dm is such a tile. The last ones
+/// are rasters of heights.
 enum class MeshKind : std::uint8_t {
   ply,
   obj,
@@ -24,7 +25,10 @@ enum class MeshKind : std::uint8_t {
   off,
   tileset,
   b3dm,
-  osgb
+  osgb,
+  geotiff,
+  hgt,
+  asc
 };
 
 class MeshContent;  // recognition.h
@@ -41,6 +45,7 @@ struct FormatRow {
   /// Lists the files with vertices and triangles that a file names; null: it names none.
   std::vector<std::filesystem::path> (*buffers)(const storage::File&) = nullptr;
   bool in_metres = false;       ///< its coordinates are, by its specification
+  bool is_raster = false;       ///< of heights: several are one mosaic
   bool names_features = false;  ///< numbers of features in it are labels, by its specification
   /// Endings of files that one names, besides pictures.
   std::vector<std::string_view> companions{};

@@ -37,6 +37,7 @@ struct MeshDescription {
   bool wide_coordinates = false;
   bool vertices_in_place = false;  ///< vertices are binary, of one fixed size, at a known offset:
                                    ///< reading them again costs no more than their bytes
+  std::uint64_t held_bytes = 0;    ///< memory that the source has all the time
 
   std::uint64_t places() const { return place_count > 0 ? place_count : vertex_count; }
 };

@@ -1,5 +1,6 @@
 #include "mesh_io/other_formats.h"
 
+#include "base/small_letters.h"
 #include "base/text_mark.h"
 #include "hierarchy/image_format.h"
 #include "mesh_io/formats.h"
@@ -37,10 +38,11 @@ constexpr std::string_view kTriangulate =
 constexpr std::string_view kTileset = "build the tileset.json that lists it";
 constexpr std::string_view kHierarchy =
     "it is part of what a build makes: `meshhier inspect` and `serve` take its directory";
-constexpr std::string_view kHeights = "if its values are heights, make a mesh of them first";
 constexpr std::string_view kOfMesh = "give the mesh that it belongs to";
 constexpr std::string_view kPicture =
-    "give the mesh that it belongs to, or if its values are heights, make a mesh of them first";
+    "give the mesh that it belongs to, or if its values are heights, what `gdal_translate FILE "
+    "heights.tif` makes of it";
+constexpr std::string_view kRaster = "give what `gdal_translate FILE heights.tif` makes of it";
 
 /// A file is of the first row with a mark in its bytes, else of the first one with a word in it.
 std::vector<OtherFormat> make_others() {
@@ -111,11 +113,16 @@ std::vector<OtherFormat> make_others() {
       {"the manifest of a hierarchy", kHierarchy, {}, {{"\"format\": \"meshhier"sv, 0, "{"}}},
       {"a hierarchy", {}, {".hier", ".3tz"}},
       {"a PNG picture, damaged as by a transfer as text", kOfMesh, {}, {{"\x89PNG"sv}}, true},
-      {"a TIFF picture",
-       kHeights,
-       {".tif", ".tiff"},
-       {{"II*\0"sv}, {"MM\0*"sv}, {"II+\0"sv}},
-       true},
+      {"a TIFF in gzip", kUnpack, {".tif", ".tiff"}, {{"II*\0"sv}, {"MM\0*"sv}, {"II+\0"sv}}, true},
+      {"a text grid in gzip", kUnpack, {}, {{"ncols"sv}, {"NCOLS"sv}, {"nrows"sv}, {"NROWS"sv}}},
+      {"a raster of ERDAS", kRaster, {".img"}, {{"EHFA_HEADER_TAG"sv}}},
+      {"a raster of GDAL (VRT)", kRaster, {".vrt"}, {{"<VRTDataset"sv, 0, "<"}}},
+      {"a raster in netCDF", kRaster, {".nc"}, {{"CDF\x01"sv}, {"CDF\x02"sv}}},
+      {"a file in HDF5, perhaps a raster in netCDF", kRaster, {}, {{"\x89HDF\r\n"sv}}},
+      {"a raster in GRIB", kRaster, {}, {{"GRIB"sv}}},
+      {"a raster in DTED", kRaster, {".dt1", ".dt2"}, {{"UHL1"sv}}},
+      {"a grid of Surfer", kRaster, {".grd"}, {{"DSAA"sv}, {"DSBB"sv}, {"DSRB"sv}}},
+      {"a picture in JPEG 2000", kPicture, {".jp2"}, {{"\0\0\0\x0CjP  "sv}}},
       {"a BMP picture", {}, {".bmp"}, {}, true},
       {"a GIF picture", kOfMesh, {".gif"}, {{"GIF8"sv}}, true},
       {"a TGA picture", {}, {".tga"}, {}, true},
@@ -216,6 +223,12 @@ bool is_known_ending(std::string_view ending) {
   };
   return has(mesh_endings()) || has(companion_picture_endings()) ||
          std::ranges::any_of(others(), has, &OtherFormat::endings);
+}
+
+bool may_be_picture(std::string_view name) {
+  const std::string small = small_letters(name);
+  return std::ranges::any_of(companion_picture_endings(),
+                             [&](std::string_view ending) { return small.ends_with(ending); });
 }
 
 std::vector<std::string_view> companion_picture_endings() {

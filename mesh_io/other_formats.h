@@ -16,6 +16,10 @@ std::string other_format(std::string_view start);
 /// Returns whether files of that ending, such as ".fbx", are of a known format, read or not.
 bool is_known_ending(std::string_view ending);
 
+/// Returns whether a file of that name may be a picture of a mesh, whatever else it may be: a TIFF
+/// may be a raster of heights, too.
+bool may_be_picture(std::string_view name);
+
 /// Returns the endings of pictures, read or not, which may belong to a mesh.
 std::vector<std::string_view> companion_picture_endings();
 

@@ -50,6 +50,8 @@ std::vector<StageTime> import_time(const importing::MeshInput& input,
   double bytes = 0;
   for (const importing::InputFileFacts& file : input.files().all())
     bytes += static_cast<double>(file.identity.bytes) * (file.format.is_gzip ? kPacked : 1);
+  if (input.files().mosaic())
+    bytes += 2 * kTriangleBytes * static_cast<double>(input.files().mosaic()->cells());
   const double rest = bytes / kTriangleBytes * kBuildTriangleSeconds;
   const StageTime others{"", "", 0, rest / static_cast<double>(thread_count(config))};
   const std::uint64_t vertices = input.needs_import() ? 0 : input.description().vertex_count;
@@ -79,7 +81,8 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
           {.weld = config.weld,
            .textures = config.texture.use ? importing::Textures::use : importing::Textures::ignore,
            .crop = config.crop_box(),
-           .attributes = config.attributes}};
+           .attributes = config.attributes,
+           .drape = config.texture.drape}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {

@@ -14,14 +14,14 @@ namespace meshhier::pipeline {
 namespace {
 
 /// Returns the memory of what several stages keep about each tile until the end, of the archive's
-/// index, and of PROJ.
+/// index, of what the input's reader holds, and of PROJ.
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
   // A tile has six blob entries, its record, its statistics, its step and the sums of steps with
   // some twenty neighbours each.
   constexpr std::uint64_t kTileBytes = 528;
   const std::uint64_t tiles = 2 * std::uint64_t{job.partition_count};
   return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0)) +
-         (job.has_map ? config::kMapMemoryBytes : 0);
+         job.held_bytes + (job.has_map ? config::kMapMemoryBytes : 0);
 }
 
 /// Returns the times of one kind of all stages that apply.

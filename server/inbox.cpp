@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/other_formats.h"
 
 #include <algorithm>
 #include <utility>
@@ -63,6 +64,8 @@ std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const st
   } catch (const Error&) {
     return std::nullopt;
   }
+  if (meshes.size() > 1)  // what may be a picture of another one is none of its own
+    std::erase_if(meshes, [](const InboxFile& file) { return mesh_io::may_be_picture(file.name); });
   if (meshes.size() != 1)
     return std::nullopt;
   meshes.front().is_whole = now - since >= options_.settle;

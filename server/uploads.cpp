@@ -4,6 +4,7 @@
 #include "base/plain_text.h"
 #include "execution/size_text.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/other_formats.h"
 #include "server/build_target.h"
 #include "server/multipart.h"
 #include "server/staged_upload.h"
@@ -107,7 +108,7 @@ class FolderFiles {
       return refused;
     if (next == MultipartReader::Next::malformed)
       return text_reply(400, "The body is no form of files.");
-    if (meshes_ == 0)
+    if (meshes_ == 0 && rasters_ != 1)
       return text_reply(
           400, fmt::format("There is no mesh among the files: {}.", mesh_io::mesh_endings_text()));
     files_.sync_directory(folder_);
@@ -118,7 +119,8 @@ class FolderFiles {
   std::optional<Reply> refuse_name(const std::string& name) {
     if (!is_plain_name(name))
       return text_reply(400, "A file has a name that cannot be taken: rename it.");
-    meshes_ += mesh_io::is_mesh_name(name) ? 1 : 0;
+    if (mesh_io::is_mesh_name(name))
+      ++(mesh_io::may_be_picture(name) ? rasters_ : meshes_);
     if (meshes_ > 1)
       return text_reply(400, "There are several meshes among the files: send them one by one.");
     if (!names_.insert(lower_case(name)).second)
@@ -135,6 +137,7 @@ class FolderFiles {
   std::string name_, suffix_;
   std::set<std::string> names_;  ///< in small letters: some disks make no difference
   std::size_t meshes_ = 0;
+  std::size_t rasters_ = 0;  ///< files that may be one, or pictures of a mesh
 };
 
 Reply taken(const std::string& name) {

@@ -368,6 +368,27 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
   return use;
 }
 
+/// Takes the orthophoto of heights out of the inputs, or finds it beside the first of them: the
+/// manifest tells its name. Returns "" if there is none.
+std::filesystem::path take_drape(const VerifyJob& job, mesh_io::InputPaths& inputs) {
+  const auto& made_of = job.reader.manifest().source.files;
+  const auto is_raster = [](const SourceFile& file) {
+    return std::ranges::any_of(mesh_io::format_rows(), [&](const mesh_io::FormatRow& row) {
+      return row.is_raster && row.name == file.format;
+    });
+  };
+  const auto picture = std::ranges::find(made_of, "picture", &SourceFile::format);
+  if (picture == made_of.end() || inputs.empty() || std::ranges::none_of(made_of, is_raster))
+    return {};
+  const auto named = std::ranges::find_if(
+      inputs, [&](const std::filesystem::path& path) { return path.filename() == picture->name; });
+  if (named == inputs.end())
+    return inputs[0].parent_path() / picture->name;
+  const std::filesystem::path drape = *named;
+  inputs.erase(named);
+  return drape;
+}
+
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
                   const InputProblems& problems) {
   const auto compare = [&](std::string_view what, const MultisetSum& in, const MultisetSum& out) {
@@ -388,7 +409,10 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
-  importing::MeshInput files(job.options.input, job.files, use_of(job.reader.manifest()));
+  mesh_io::InputPaths inputs = job.options.input;
+  importing::InputUse use = use_of(job.reader.manifest());
+  use.drape = take_drape(job, inputs);
+  importing::MeshInput files(inputs, job.files, use);
   if (expected.count_of(importing::kDroppedUnplaced) > 0)
     files.note_unplaced();
   if (files.needs_import()) {

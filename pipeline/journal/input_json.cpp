@@ -11,7 +11,8 @@ namespace {
 nlohmann::json to_json(const images::ImageSource& image) {
   return {{"name", to_binary(image.name)}, {"file", to_binary(image.file.string())},
           {"offset", image.offset},        {"bytes", image.bytes},
-          {"data", to_binary(image.data)}, {"packed", image.is_packed}};
+          {"data", to_binary(image.data)}, {"packed", image.is_packed},
+          {"drape", image.is_drape}};
 }
 
 images::ImageSource image_source(const nlohmann::json& json) {
@@ -23,6 +24,7 @@ images::ImageSource image_source(const nlohmann::json& json) {
   const auto data = std::as_bytes(std::span(json.at("data").get_binary()));
   image.data.assign(data.begin(), data.end());
   image.is_packed = json.at("packed");
+  image.is_drape = json.at("drape");
   return image;
 }
 

@@ -117,6 +117,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.place_count = tree.vertex_count();
   job.face_count = mesh.face_count;
   job.channels = mesh.attributes.channels();
+  job.held_bytes = mesh.held_bytes;
   job.imported_bytes = imported_bytes;
   job.vertices_in_place = mesh.vertices_in_place;
   job.wide_coordinates = mesh.wide_coordinates;

@@ -17,6 +17,7 @@ struct JobSize {
   std::uint64_t face_count = 0;
   int channels = 0;                  ///< attribute floats per vertex
   bool computes_normals = false;     ///< tiles get normals, which the mesh does not have
+  std::uint64_t held_bytes = 0;      ///< memory that the input's reader has
   std::uint64_t imported_bytes = 0;  ///< size of the PLY that the input was imported to, if it was
   bool vertices_in_place = true;     ///< else the vertices are spooled once more
   bool wide_coordinates = false;     ///< spooled as doubles

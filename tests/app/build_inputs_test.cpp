@@ -216,7 +216,8 @@ TEST_F(CommandLine, WhatIsNeitherAMeshNorAConfigIsToldSo) {
   const Outcome letter = run({"build", (work() / "a.txt").string()});
   EXPECT_EQ(letter.code, kUsage);
   EXPECT_THAT(letter.messages,
-              HasSubstr("expected a mesh (PLY, OBJ, glTF, STL, OFF or OSGB, perhaps in gzip) "
+              HasSubstr("expected a mesh (PLY, OBJ, glTF, STL, OFF, OSGB, GeoTIFF, "
+                        "SRTM or ESRI ASCII, perhaps in gzip) "
                         "or a config (JSON), found 'Dear Sir,'"));
   write_text(work() / "a.ply", "Dear Sir,");
   const Outcome ply = run({"build", (work() / "a.ply").string()});

@@ -47,7 +47,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
        {"storage/io", {"hierarchy"}},
        {"storage/format", {"hierarchy", "storage/io"}},
        {"execution", {"hierarchy", "storage/io"}},
-       {"mesh_io", {"hierarchy", "images", "mesh_io/osgb", "storage/io"}},
+       {"mesh_io", {"geodesy", "hierarchy", "images", "mesh_io/osgb", "storage/io"}},
        {"mesh_io/osgb", {"hierarchy", "images", "storage/io"}},
        {"partition", {"hierarchy", "storage/io"}},
        {"cluster_simplify", {"hierarchy"}},

@@ -11,6 +11,7 @@
 #include "mesh_io/ply_source.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
 namespace meshhier::tests::fuzz {
@@ -39,8 +40,10 @@ void check_materials(const mesh_io::VertexBlock& block, const AttributeLayout& l
 }
 
 void check(MemoryFiles& files, const importing::ImportFacts& facts) {
-  const auto source =
-      mesh_io::make_ply_source(files.open("imported.ply"), {.writer = facts.writer});
+  const std::unique_ptr<mesh_io::MeshSource> source =
+      facts.terrain
+          ? importing::open_terrain(*facts.terrain)
+          : mesh_io::make_ply_source(files.open("imported.ply"), {.writer = facts.writer});
   const mesh_io::MeshDescription& mesh = source->description();
   require(mesh.attributes.material == facts.textures.has_value() &&
               mesh.attributes.material == !facts.materials.empty(),
@@ -92,9 +95,9 @@ std::string imported(MemoryFiles& files, bool weld, importing::Textures textures
               facts.files,
               [&](const SourceFile& file) { return file.bytes >= files.bytes("mesh").size(); }),
           "the file is noted");
-  if (facts.faces)  // else unpacked, and read by nobody yet
+  if (facts.faces || facts.terrain)  // else unpacked, and read by nobody yet
     check(files, facts);
-  return files.content("imported.ply");
+  return facts.terrain ? "" : files.content("imported.ply");
 }
 
 void mesh(Bytes input) {

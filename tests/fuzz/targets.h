@@ -57,6 +57,8 @@ void request(std::span<const std::byte> input);
 void form(std::span<const std::byte> input);
 /// A JPEG, PNG or WebP file.
 void image(std::span<const std::byte> input);
+/// A raster of heights: its kind, then the file.
+void raster(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -89,6 +91,7 @@ inline constexpr std::array<Target, 24> kTargets{{{"ply_header", ply_header},
                                                   {"request", request},
                                                   {"form", form},
                                                   {"image", image},
+                                                  {"raster", raster},
                                                   {"build", build}}};
 
 }  // namespace meshhier::tests::fuzz

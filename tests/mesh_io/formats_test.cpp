@@ -45,6 +45,13 @@ TEST(MeshFormat, IsKnownByTheContent) {
   EXPECT_EQ(format_of(binary_stl("", 0, 0)), "binary STL");
 }
 
+TEST(MeshFormat, OfRasters) {
+  for (const char* start : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
+    EXPECT_EQ(format_of(std::string(start, 4) + "more"), "GeoTIFF") << start;
+  EXPECT_EQ(format_of("NCOLS 4\r\nnrows 3\r\n"), "ESRI text grid");
+  EXPECT_THAT(format_refusal(gzip(std::string("II*\0more", 8))), HasSubstr("unpack it"));
+}
+
 TEST(MeshFormat, IsKnownWithSmallSins) {
   for (const char* start : {"\xEF\xBB\xBFply\n", "\n\r\n ply \r\n", "PLY\n", "Ply\r"}) {
     EXPECT_EQ(format_of(std::string(start) + "format ascii 1.0\n"), "PLY") << start;
@@ -98,8 +105,8 @@ TEST(MeshFormat, OsgbIsKnownByItsFirstBytes) {
 
 TEST(MeshFormat, WhatIsNoMeshIsRefused) {
   EXPECT_EQ(format_refusal(""),
-            "mesh: expected a mesh (PLY, OBJ, glTF, STL, OFF or OSGB, or one of them packed by "
-            "gzip), found an "
+            "mesh: expected a mesh (PLY, OBJ, glTF, STL, OFF, OSGB, GeoTIFF, SRTM or ESRI ASCII, "
+            "or one of them packed by gzip), found an "
             "empty file");
   EXPECT_THAT(format_refusal("hello world"), HasSubstr("found 'hello world'"));
   EXPECT_THAT(format_refusal("plyx"), HasSubstr("found 'plyx'"));

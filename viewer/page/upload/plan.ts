@@ -48,6 +48,17 @@ function isMesh({ path }: Chosen): boolean {
   return MESH.test(split(path)[1]);
 }
 
+function isCompanion({ path }: Chosen): boolean {
+  return COMPANION.test(split(path)[1]);
+}
+
+/// What may be a mesh or a picture of one (a TIFF may hold heights) is a mesh where there is no other.
+function meshesAmong(files: readonly Chosen[]): readonly Chosen[] {
+  const meshes = files.filter(isMesh);
+  const sure = meshes.filter((file) => !isCompanion(file));
+  return sure.length > 0 ? sure : meshes;
+}
+
 /// The nearest meshes: those in the folder of a file, or in the next one above that has some; all if none has.
 function meshesFor({ path }: Chosen, meshes: readonly Chosen[]): readonly Chosen[] {
   for (let [folder] = split(path); folder !== ''; [folder] = split(folder.slice(0, -1))) {
@@ -89,10 +100,10 @@ function problemOf(upload: Upload, limit: number, limitText: string): string | n
 
 export function plan(chosen: readonly Chosen[], limit: number, limitText: string): Plan {
   const visible = chosen.filter(({ path }) => !isHidden(path));
-  const meshes = visible.filter(isMesh);
+  const meshes = meshesAmong(visible);
   if (meshes.length === 0) return { uploads: [], problems: [words.upload.noMesh(FORMATS.meshes.join(', '))] };
   const belonging = new Map<Chosen, Chosen[]>(meshes.map((mesh) => [mesh, []]));
-  for (const file of visible.filter(({ path }) => COMPANION.test(path))) {
+  for (const file of visible.filter((file) => isCompanion(file) && !meshes.includes(file))) {
     const owner = ownerOf(file, meshes);
     if (owner === null) return { uploads: [], problems: [words.upload.whose(split(file.path)[1])] };
     belonging.get(owner)!.push(file);

@@ -12,11 +12,13 @@ export const FORMATS = {
   ],
   "namesOthers": [
     ".obj",
-    ".gltf"
+    ".gltf",
+    ".asc"
   ],
   "companions": [
     ".mtl",
     ".bin",
+    ".prj",
     ".jpg",
     ".jpeg",
     ".png",
