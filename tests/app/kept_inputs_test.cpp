@@ -102,6 +102,7 @@ struct Case {
 /// By command and argument.
 const std::map<std::string, Case> kCases{
     {"build FILE", {{"build", kIn}, "b.obj"}},
+    {"build --drape", {{"build", "b.obj", "--drape", kIn}, "matrix.txt"}},
     {"plan FILE", {{"plan", kIn, "--tasks", "2"}, "b.obj"}},
     {"compare FROM", {{"compare", kIn, "b.hier"}, "a.hier"}},
     {"compare TO", {{"compare", "b.hier", kIn}, "a.3tz"}},
