@@ -11,8 +11,8 @@ namespace meshhier::geodesy {
 namespace {
 
 // Values of keys.
-constexpr std::uint16_t kProjected = 1, kPixelIsArea = 1, kWgs84 = 4326, kMetre = 9001,
-                        kDegree = 9102;
+constexpr std::uint16_t kProjected = 1, kPixelIsArea = 1, kWgs84 = 4326, kMetreUnit = 9001,
+                        kDegreeUnit = 9102;
 
 /// What EPSG's code is in GeoTIFF: of methods the value, of parameters the key.
 struct CodePair {
@@ -87,7 +87,7 @@ void add_geodetic(KeyWriter& keys, const MapMethod& map) {
   keys.add(kGeodeticCrs, map.geodetic == 0 ? std::uint16_t{kUserDefined} : map.geodetic);
   if (map.geodetic == 0)
     keys.add(kDatum, kUserDefined);
-  keys.add(kAngularUnit, kDegree);
+  keys.add(kAngularUnit, kDegreeUnit);
   if (map.geodetic != 0)
     return;
   keys.add(kOwnEllipsoid, kUserDefined);
@@ -101,7 +101,7 @@ void add_method(KeyWriter& keys, const MapMethod& map) {
   keys.add(kProjectedCrs, kUserDefined);
   keys.add(kProjection, kUserDefined);
   keys.add(kProjectionMethod, geotiff_method(map.method));
-  keys.add(kLinearUnit, map.unit_metres == 1 ? kMetre : kUserDefined);
+  keys.add(kLinearUnit, map.unit_metres == 1 ? kMetreUnit : kUserDefined);
   if (map.unit_metres != 1)
     keys.add(kLinearUnitSize, map.unit_metres);
   for (const CodePair& row : kParameters) {

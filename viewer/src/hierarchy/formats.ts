@@ -8,7 +8,11 @@ export const FORMATS = {
     ".glb",
     ".stl",
     ".off",
-    ".osgb"
+    ".osgb",
+    ".tif",
+    ".tiff",
+    ".hgt",
+    ".asc"
   ],
   "namesOthers": [
     ".obj",
