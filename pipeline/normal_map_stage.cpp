@@ -235,7 +235,7 @@ int depth_of(const TilePopulation& tiles) {
 /// Returns how many tiles have maps, or are looked at for one.
 double mapped_tiles(const JobSize& job, const TilePopulation& tiles) {
   const int mapped = mapped_levels(depth_of(tiles), job);
-  return mapped < depth_of(tiles) ? std::exp2(mapped) - 1
+  return mapped < depth_of(tiles) ? std::ldexp(1.0, mapped) - 1
                                   : tiles.simplified.count - tiles.early.count;
 }
 
@@ -255,7 +255,7 @@ double map_texels(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kShown = 0.4, kUsualTexelsAVertex = kMostTexelsAVertex;
   double texels = 0, left = mapped_tiles(job, tiles);
   const int unmapped = depth_of(tiles) - mapped_levels(depth_of(tiles), job);
-  for (double below = std::exp2(unmapped + 1); left > 0.5; below *= 2) {
+  for (double below = std::ldexp(1.0, unmapped + 1); left > 0.5; below *= 2) {
     const double on_level = std::min(left, std::ceil(left / 2));
     texels += on_level * std::min(side * side, below * vertices * kUsualTexelsAVertex / kShown);
     left -= on_level;

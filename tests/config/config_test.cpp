@@ -104,7 +104,7 @@ TEST(Config, KeysTwoLevelsDeepAreOverriddenAndResolved) {
       parse_config(with(R"("storage": {"positions": {"bits": 12}})"), {"a.json", {}}, overrides);
   EXPECT_EQ(config.storage.position_bits, 16u);
   EXPECT_EQ(resolved_json(config)["storage"].dump(),
-            R"({"compression":"zlib","positions":{"bits":16},"normals":"smooth"})");
+            R"({"compression":"zlib","positions":{"bits":16},"normals":"auto"})");
   EXPECT_EQ(parse_config(with(""), {"a.json", {}}, overrides), config);
   const std::vector<std::string> whole{R"(storage={"positions": {"bits": 4}})"};
   try {

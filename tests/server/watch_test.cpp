@@ -325,7 +325,7 @@ TEST_F(WatchTest, AGrowingFileWaits) {
 TEST_F(WatchTest, TheResultIsThatOfABuildByHand) {
   config_ = directory_.path() / "config.json";
   tests::write_text(config_, R"({"input": "x", "output": "y", "partition": {"vertices": 100},
-                                 "simplify": {"method": "half_edge"}, "storage": {"compression": "zlib"}})");
+                                 "simplify": {"method": "half_edge"}, "storage": {"compression": "zlib", "normals": "smooth"}})");
   start();
   drop("a.ply");
   wait_until([&] { return is_there("a.hier"); });

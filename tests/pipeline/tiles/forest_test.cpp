@@ -310,7 +310,7 @@ TEST(ForestTest, AnEarlyNodeShowsItsPartition) {
 TEST(ForestTest, MapsGoUpSeveralLevels) {
   const Grove grove(tests::sphere(1000, 0.01F), {5, 0, 0, 1});
   const Level last = grove.tree().depth();
-  for (std::size_t v = 0; v < 1000; ++v) {
+  for (std::size_t v = 0; v < grove.places()[raw(last)].size(); ++v) {
     const Place& place = grove.places()[raw(last)][v];
     const NodeId partition{last, place.tile};
     for (NodeId at = grove.tree().parent_tile(partition);; at = grove.tree().parent(at)) {
