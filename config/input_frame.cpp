@@ -10,6 +10,7 @@
 #include "mesh_io/terrain_frame.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/paths.h"
+#include "storage/io/process.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -109,6 +110,7 @@ mesh_io::GlobePlace on_wgs84(mesh_io::GlobePlace place, const std::string& crs) 
 /// Takes the place from rasters: their map, or the middle of a grid in degrees.
 void place_terrain(storage::FileSystem& files, const std::vector<std::filesystem::path>& rasters,
                    Config& config) {
+  storage::allow_many_open_files();  // each raster stays open
   const mesh_io::Mosaic mosaic(files, rasters);
   const std::string& crs = mosaic.keys().crs;
   PlacementConfig& place = config.placement;

@@ -9,7 +9,8 @@
 //     errors <= half a pixel   ->     tiles over each one     ->     packed tiles, overviews, head
 //
 // Invariant. A pixel depends on the cut and on the raster's place alone: the files are the same for
-// any number of threads and any budget. Both are complete, or none is there.
+// any number of threads and any budget. Each is complete or not there; the
+// orthophoto gets its name first.
 //
 // Cost. A tile is read once for each window that it touches, and, if the cut mixes levels, once
 // before. Memory: for each thread a window and a tile.

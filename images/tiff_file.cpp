@@ -218,6 +218,8 @@ void TiffFile::read_block(std::uint32_t index, std::span<std::byte> into) {
                             ? TIFFReadEncodedTile(tiff_.get(), index, into.data(), room)
                             : TIFFReadEncodedStrip(tiff_.get(), index, into.data(), room);
   check(read >= 0);
+  // Else each handle keeps the packed bytes of its largest block.
+  check(TIFFReadBufferSetup(tiff_.get(), nullptr, 1) == 1);
   if (read != room) {
     fail("block " + std::to_string(index) + " has " + std::to_string(read) + " bytes, expected " +
          std::to_string(room));

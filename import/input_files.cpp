@@ -13,6 +13,7 @@
 #include "storage/io/file_checksum.h"
 #include "storage/io/hash.h"
 #include "storage/io/paths.h"
+#include "storage/io/process.h"
 
 #include <algorithm>
 #include <bit>
@@ -99,6 +100,7 @@ void InputFiles::join_rasters() {
   }
   if (rasters.empty())
     return;
+  storage::allow_many_open_files();  // each raster stays open
   mosaic_ = std::make_shared<const mesh_io::Mosaic>(files_, rasters);
   for (std::string& warning : mosaic_->warnings())
     warnings_.push_back(std::move(warning));

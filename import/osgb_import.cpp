@@ -5,9 +5,9 @@
 #include "mesh_io/osgb_tiles.h"
 #include "mesh_io/part_of_file.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,11 +21,15 @@ namespace {
 /// Returns where a range of the GLB lies in the OSGB as it is, as pictures that are files do.
 std::optional<std::uint64_t> find_in_file(const mesh_io::OsgbShown& shown, std::uint64_t offset,
                                           std::uint64_t bytes) {
-  const std::span<const std::byte> all = shown.file.bytes();
-  const auto found = std::ranges::search(all, std::span(*shown.tile.glb).subspan(offset, bytes));
-  if (found.empty() || shown.file.is_packed())
+  if (shown.file.is_packed() || bytes == 0)
     return std::nullopt;
-  return static_cast<std::uint64_t>(found.begin() - all.begin());
+  const std::span<const std::byte> all = shown.file.bytes();
+  // Linear, whatever the bytes are.
+  const void* const found =
+      ::memmem(all.data(), all.size(), shown.tile.glb->data() + offset, bytes);
+  if (found == nullptr)
+    return std::nullopt;
+  return static_cast<std::uint64_t>(static_cast<const std::byte*>(found) - all.data());
 }
 
 std::vector<std::string> warnings_of(const std::filesystem::path& path,

@@ -133,7 +133,7 @@ geodesy::RasterMap keys_of_wkt(std::string_view text) {
     return std::ranges::find(names, name) != names.end();
   };
   geodesy::RasterMap keys;
-  if (!is_in(kLengths) && !is_in(kDegrees))
+  if ((!is_in(kLengths) && !is_in(kDegrees)) || text.find(']') == std::string_view::npos)
     return keys;
   keys.kind = is_in(kLengths) ? geodesy::MapKind::lengths : geodesy::MapKind::degrees;
   keys.crs = text.substr(0, text.find_last_of(']') + 1);

@@ -114,7 +114,19 @@ class AscRaster final : public BlockedRaster {
       const double height = number_of(words.next(), place.row, i, words);
       std::memcpy(into.data() + i * sizeof height, &height, sizeof height);
     }
+    if (place.row * rows_ + rows == head_.rows)
+      require_end(words);
     note_begin(place.row + 1, words.offset());
+  }
+
+  /// Numbers that are left over mean rows longer than the head says: all would lie askew.
+  void require_end(AscWords& words) const {
+    const std::string_view word = words.next();
+    if (!word.empty()) {
+      fail_at_byte(head_.path, words.offset() - word.size(),
+                   fmt::format("expected the end behind {} rows of {}, found {}", head_.rows,
+                               head_.columns, number_in_quotes(word)));
+    }
   }
 
   double number_of(std::string_view word, std::uint32_t block, std::size_t i,

@@ -47,7 +47,7 @@ struct SampleRow {
 template <class T>
 std::optional<T> as_sample(double value) {
   if constexpr (std::is_floating_point_v<T>)
-    return std::isfinite(value) ? std::optional(static_cast<T>(value)) : std::nullopt;
+    return std::isnan(value) ? std::nullopt : std::optional(static_cast<T>(value));
   // The largest integer of 64 bits becomes 2^63 or 2^64, which are none.
   const bool is_one = value >= static_cast<double>(std::numeric_limits<T>::min()) &&
                       value <= static_cast<double>(std::numeric_limits<T>::max()) &&

@@ -80,10 +80,8 @@ class ImplicitTree {
     const std::string uri = name_of_cell(tiling_.subtrees, waiting.cell);
     const auto file = open_(document_.path.parent_path(), uri,
                             place_of(document_, {{}, tiling_.tile, kSubtreesPlace}));
-    const Subtree subtree = read_subtree(*file, tiling_.shape, most_bytes_, open_);
-    if (subtree.contents.size() > templates_.size())
-      fail_file(file->path(), fmt::format("tells of {} contents of a tile, whose tileset names {}",
-                                          subtree.contents.size(), templates_.size()));
+    const Subtree subtree =
+        read_subtree(*file, tiling_.shape, templates_.size(), most_bytes_, open_);
     if (!subtree.tiles.at(0))
       fail_file(file->path(), "is a subtree without its root");
     std::vector<Placed> level{{0, waiting.cell, add_root(waiting)}};
@@ -150,6 +148,8 @@ class ImplicitTree {
       if (name.uri)
         name.uri = name_of_cell(*std::move(name.uri), placed.cell);
       name.tile = placed.tile;
+      if (document_.contents.size() >= most_tiles_)
+        fail_file(document_.path, fmt::format("has more than {} contents", most_tiles_));
       document_.contents.push_back(std::move(name));
     }
     tile.end_content = static_cast<std::uint32_t>(document_.contents.size());

@@ -71,14 +71,25 @@ SubtreeParts parts_of(const storage::File& file, std::uint64_t most_bytes) {
 class SubtreeReader {
  public:
   SubtreeReader(const storage::File& file, const SubtreeParts& parts, const SubtreeShape& shape,
-                const OpenNamed& open, const GltfObject& root)
-      : file_(file), parts_(parts), shape_(shape), open_(open), root_(root) {}
+                std::size_t most_contents, std::uint64_t most_bytes, const OpenNamed& open,
+                const GltfObject& root)
+      : file_(file),
+        parts_(parts),
+        shape_(shape),
+        most_contents_(most_contents),
+        left_bytes_(most_bytes),
+        open_(open),
+        root_(root) {}
 
-  Subtree read() const {
+  Subtree read() {
     Subtree subtree;
     const std::uint64_t tiles = shape_.first_of(shape_.levels);
     subtree.tiles = availability(root_.require_object("tileAvailability"), tiles);
     const auto add = [&](const GltfObject& content) {
+      if (subtree.contents.size() >= most_contents_)
+        fail_file(file_.path(),
+                  fmt::format("tells of {} contents of a tile, whose tileset names {}",
+                              subtree.contents.size() + 1, most_contents_));
       subtree.contents.push_back(availability(content, tiles));
     };
     if (root_.has_object("contentAvailability"))  // of 1.0
@@ -93,7 +104,7 @@ class SubtreeReader {
   }
 
  private:
-  Availability availability(const GltfObject& object, std::uint64_t bits) const {
+  Availability availability(const GltfObject& object, std::uint64_t bits) {
     if (const auto constant = object.count("constant", 1))
       return Availability(*constant == 1);
     const std::size_t views = root_.item_count("bufferViews");
@@ -104,7 +115,7 @@ class SubtreeReader {
   }
 
   /// Returns the first bytes of a view.
-  std::vector<std::byte> bits_of(const GltfObject& view, std::uint64_t bytes) const {
+  std::vector<std::byte> bits_of(const GltfObject& view, std::uint64_t bytes) {
     const std::uint32_t number = view.require_index("buffer", root_.item_count("buffers"));
     const std::uint64_t offset = view.count("byteOffset", kMostViewBytes).value_or(0);
     const std::uint64_t size = view.require_count("byteLength", kMostViewBytes);
@@ -115,6 +126,11 @@ class SubtreeReader {
     const std::uint64_t all = buffer.require_count("byteLength", kMostViewBytes);
     if (offset > all || bytes > all - offset)
       view.fail(fmt::format("reaches beyond its buffer, which has {} bytes", all));
+    if (bytes > left_bytes_)
+      throw Error(ErrorCode::budget, file_.path().string() +
+                                         ": its bits take more memory than there is; give a larger "
+                                         "memory_budget");
+    left_bytes_ -= bytes;
     std::vector<std::byte> found(bytes);
     read_buffer(buffer, offset, found);
     return found;
@@ -154,20 +170,22 @@ class SubtreeReader {
   const storage::File& file_;
   const SubtreeParts& parts_;
   const SubtreeShape& shape_;
+  std::size_t most_contents_;
+  std::uint64_t left_bytes_;  ///< for bits
   const OpenNamed& open_;
   const GltfObject& root_;
 };
 
 }  // namespace
 
-Subtree read_subtree(const storage::File& file, const SubtreeShape& shape, std::uint64_t most_bytes,
-                     const OpenNamed& open) {
+Subtree read_subtree(const storage::File& file, const SubtreeShape& shape,
+                     std::size_t most_contents, std::uint64_t most_bytes, const OpenNamed& open) {
   const std::unique_ptr<storage::File> content = is_gzip(file) ? unpacked(file) : nullptr;
   const storage::File& plain = content ? *content : file;
   SubtreeParts parts = parts_of(plain, most_bytes);
   const nlohmann::json json = parse_gltf_json(std::move(parts.json), file.path(), most_bytes);
   const GltfObject root(json, file.path());
-  return SubtreeReader(plain, parts, shape, open, root).read();
+  return SubtreeReader(plain, parts, shape, most_contents, most_bytes, open, root).read();
 }
 
 }  // namespace meshhier::mesh_io

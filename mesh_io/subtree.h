@@ -77,10 +77,11 @@ struct Subtree {
 using OpenNamed = std::function<std::unique_ptr<storage::File>(
     const std::filesystem::path& folder, const std::string& uri, const std::string& place)>;
 
-/// Reads a subtree, packed by gzip or not. `most_bytes`: memory for its JSON. Throws Error(input)
-/// naming file and place if it is none, or has fewer bits than `shape` asks for; Error(budget),
-/// Error(io), and what `open` throws. Requires up to kMostAvailabilityBits by shape.
-Subtree read_subtree(const storage::File& file, const SubtreeShape& shape, std::uint64_t most_bytes,
-                     const OpenNamed& open);
+/// Reads a subtree, packed by gzip or not. `most_contents`: of a tile; `most_bytes`: memory for its
+/// JSON, and for its bits. Throws Error(input) naming file and place if it is none, has fewer bits
+/// than `shape` asks for, or tells of more contents; Error(budget), Error(io), and what `open`
+/// throws. Requires up to kMostAvailabilityBits by shape.
+Subtree read_subtree(const storage::File& file, const SubtreeShape& shape,
+                     std::size_t most_contents, std::uint64_t most_bytes, const OpenNamed& open);
 
 }  // namespace meshhier::mesh_io

@@ -114,6 +114,21 @@ TEST(HeightRaster, NodataScaleAndUnitCount) {
   EXPECT_NEAR(heights[8], 0.3048 * 104, 1e-12);
 }
 
+TEST(HeightRaster, NodataMayBeInfinite) {
+  MemoryFiles files;
+  std::vector<float> heights = slope<float>();
+  heights[5] = -std::numeric_limits<float>::infinity();
+  put_tiff<float>(files, kHeights, {.nodata = "-inf"}, kColumns, heights);
+  EXPECT_TRUE(std::isnan(all_heights(Mosaic(files, {kHeights}))[5]));
+}
+
+TEST(HeightRaster, ADamagedCrsBesideATextGridIsNone) {
+  MemoryFiles files;
+  files.put("/models/a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
+  files.put("/models/a.prj", "PROJCS[\"x");
+  EXPECT_EQ(Mosaic(files, {"/models/a.asc"}).keys().kind, geodesy::MapKind::unknown);
+}
+
 TEST(HeightRaster, WhatIsNoGridOfHeightsIsToldOf) {
   MemoryFiles files;
   const std::vector<std::uint8_t> colours(kColumns * kRows * 3);
@@ -203,6 +218,8 @@ TEST(HeightRaster, BrokenTextGridsAreToldOf) {
     return raster_refusal(files, {"/models/a.asc"});
   };
   EXPECT_THAT(refusal(head + "1 2 3"), HasSubstr("ends in row 1 of 2"));
+  EXPECT_THAT(refusal(head + "1 2 3\n4 5 6"),
+              HasSubstr("expected the end behind 2 rows of 2, found '5'"));
   EXPECT_THAT(refusal(head + "1 2 x 4"), HasSubstr("byte 55: expected a height, found 'x'"));
   EXPECT_THAT(refusal("ncols 2\nnrows 0\n1"), HasSubstr("\"nrows\""));
   EXPECT_THAT(refusal("ncols 2\nnrows 2\ncellsize 0\n1"), HasSubstr("\"cellsize\""));

@@ -317,6 +317,12 @@ TEST_F(MemoryTest, SLOW_AMillionVerticesInMoreThanEnough) {
   expect_within("256MiB", {"threads=8"});
 }
 
+TEST_F(MemoryTest, SLOW_NormalMapsOfAMillionVerticesIn256MiB) {
+  write_mesh(million_vertices());
+  expect_within("256MiB", {"storage.normals=auto"});
+  expect_within("256MiB", {"storage.normals=auto", "threads=5"});
+}
+
 TEST_F(MemoryTest, SLOW_AttributesAndDoubleCoordinatesInTheLeastBudget) {
   bench::SurfaceOptions options = million_vertices();
   options.normals = true;
