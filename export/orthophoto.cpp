@@ -432,6 +432,11 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
   const Drawn drawn = draw(drawing, options.memory_budget, pyramids, progress);
   if (drawn.covered == 0 && drawing.region)
     fail_empty(reader, options.region);
+  if (drawn.covered == 0) {
+    throw Error(ErrorCode::usage,
+                "the surface covers the middle of no pixel: give a smaller --gsd, unless it stands "
+                "upright");
+  }
   make_overviews(pyramids, progress, cancel);
   write_rasters(pyramids, view, reader.manifest().licence, outputs, cancel);
   return raster_text(options, view, cut.name, drawn);

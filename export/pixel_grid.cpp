@@ -35,7 +35,7 @@ PixelGrid grid_over(const BoundsD& box, double size, PlanPoint corner) {
     const double least = size * most / render::kMostPlanSide;
     throw Error(
         ErrorCode::usage,
-        fmt::format("pixels of {} would be {:.0f} x {:.0f}, and a side has at most {}; give "
+        fmt::format("pixels of {:.6g} would be {:.6g} x {:.6g}, and a side has at most {}; give "
                     "--gsd {:.2g} or more, or a smaller --box",
                     size, across.count(), upward.count(), render::kMostPlanSide, 1.05 * least));
   }

@@ -391,14 +391,32 @@ class FileReader::Impl {
       drape = open_drape(input_.system(), input_.drape(), *input_.mosaic());
     Terrain terrain = count_terrain(input_.mosaic(), input_.bytes());
     if (drape) {
+      if (drape->lies_beside)
+        env_.progress.warn(mesh_io::file_message(
+            input_.drape(), "lies beside the heights: nothing of them shows it"));
       terrain.drape = drape->texcoords;
       terrain.materials = std::move(drape->materials);
     }
     return terrain;
   }
 
+  /// Refuses rasters whose blocks side by side take more than the import has.
+  void require_room(const mesh_io::Mosaic& mosaic) const {
+    const std::uint64_t room = 4 * env_.sort_bytes;
+    if (room == 0 || mosaic.held_bytes() <= room)
+      return;
+    throw Error(ErrorCode::budget,
+                mesh_io::file_message(
+                    input_.all().front().path,
+                    fmt::format("its rows of blocks take {} MiB of memory, the import has {}; give "
+                                "a larger memory_budget, or smaller blocks (`gdal_translate -co "
+                                "TILED=YES -co BLOCKXSIZE=256 -co BLOCKYSIZE=256`)",
+                                mosaic.held_bytes() >> 20, room >> 20)));
+  }
+
   /// Counts the cells; `bytes`: of the files, by which progress advances.
   Terrain count_terrain(std::shared_ptr<const mesh_io::Mosaic> mosaic, std::uint64_t bytes) {
+    require_room(*mosaic);
     double done = 0;
     const auto advance = [&](double part) {
       const auto before = static_cast<std::uint64_t>(done * static_cast<double>(bytes));

@@ -7,6 +7,7 @@
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -56,6 +57,18 @@ mesh_io::GridMap cells_to_pixels(const mesh_io::GridMap& cells, const mesh_io::G
           along(cells.column), along(cells.row)};
 }
 
+/// Whether all corners of the heights lie beyond one edge of the picture.
+bool lies_beside(const mesh_io::GridMap& texcoords, const mesh_io::Mosaic& heights) {
+  const double right = heights.columns() - 1.0, bottom = heights.rows() - 1.0;
+  const std::array corners{texcoords.at(0, 0), texcoords.at(right, 0), texcoords.at(0, bottom),
+                           texcoords.at(right, bottom)};
+  const auto all = [&](const auto& is_beyond) { return std::ranges::all_of(corners, is_beyond); };
+  return all([](mesh_io::MapPoint at) { return at.x < 0; }) ||
+         all([](mesh_io::MapPoint at) { return at.x > 1; }) ||
+         all([](mesh_io::MapPoint at) { return at.y < 0; }) ||
+         all([](mesh_io::MapPoint at) { return at.y > 1; });
+}
+
 }  // namespace
 
 TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path& path,
@@ -77,6 +90,7 @@ TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path&
   drape.texcoords = {{(pixels.first.x + to_corner) / width, (pixels.first.y + to_corner) / height},
                      {pixels.column.x / width, pixels.column.y / height},
                      {pixels.row.x / width, pixels.row.y / height}};
+  drape.lies_beside = lies_beside(drape.texcoords, heights);
   images::Material material;
   material.name = "orthophoto";
   material.image = 0;

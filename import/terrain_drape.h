@@ -14,6 +14,7 @@ struct TerrainDrape {
   images::MaterialList materials;  ///< one, that shows the picture
   /// From a cell's column and row to texture coordinates, those of the picture with its frame.
   mesh_io::GridMap texcoords;
+  bool lies_beside = false;  ///< it covers none of the heights
 };
 
 /// Looks at the head of an orthophoto. Throws Error(input) naming the file if it is no GeoTIFF with

@@ -258,7 +258,10 @@ MeshFormat detect_format(const storage::File& file) {
   if (const auto format = format_of(content))
     return *format;
   const std::string_view start = content.start();
-  if (const std::string other = other_format(start); !other.empty()) {
+  const std::string other = is_packed_hgt(content)
+                                ? "SRTM heights in gzip; unpack them, and build the file in it"
+                                : other_format(start);
+  if (!other.empty()) {
     fail_file(file.path(), fmt::format("expected a mesh ({}, or a tileset.json), found {}",
                                        format_names(), other));
   }

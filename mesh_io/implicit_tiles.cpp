@@ -18,6 +18,9 @@ namespace {
 
 constexpr const char* kSubtreesPlace = ".implicitTiling.subtrees";
 
+/// A tileset has up to a million names made of one.
+constexpr std::size_t kLongestTemplate = 1024;
+
 void replace_all(std::string& text, std::string_view word, std::uint64_t number) {
   const std::string digits = std::to_string(number);
   for (std::size_t at = text.find(word); at != std::string::npos;
@@ -54,6 +57,9 @@ class ImplicitTree {
     templates_.assign(document_.contents.begin() + root.first_content,
                       document_.contents.begin() + root.end_content);
     root.end_content = root.first_content;
+    require_short(tiling_.subtrees);
+    for (const TileContentName& name : templates_)
+      require_short(name.uri.value_or(""));
   }
 
   void expand() {
@@ -75,6 +81,13 @@ class ImplicitTree {
     TileCell cell;
     std::uint32_t tile;
   };
+
+  void require_short(const std::string& name) const {
+    if (name.size() > kLongestTemplate)
+      fail_file(document_.path, fmt::format("names implicit tiles by a template of {} bytes, up to "
+                                            "{} are read",
+                                            name.size(), kLongestTemplate));
+  }
 
   void add_subtree(const Waiting& waiting) {
     const std::string uri = name_of_cell(tiling_.subtrees, waiting.cell);

@@ -22,6 +22,8 @@ constexpr std::int64_t kMostRows = std::int64_t{1} << 24;
 constexpr double kSamePlace = 1e-2;
 
 constexpr const char* kRegrid = "; `gdalwarp -tr ... -tap` brings them to one grid";
+constexpr const char* kOneMap =
+    "; `gdalwarp -t_srs` brings it to another CRS, `gdal_edit.py -a_srs` names one that is missing";
 
 std::unique_ptr<HeightRaster> open_height_raster(storage::FileSystem& files,
                                                  const std::filesystem::path& path) {
@@ -52,9 +54,9 @@ double nearest(double value) {
 }
 
 [[noreturn]] void fail_apart(const RasterHead& head, const RasterHead& first,
-                             const std::string& how) {
+                             const std::string& how, const char* remedy = kRegrid) {
   fail_file(head.path,
-            fmt::format("cannot be joined with {}: {}{}", first.path.string(), how, kRegrid));
+            fmt::format("cannot be joined with {}: {}{}", first.path.string(), how, remedy));
 }
 
 /// Throws unless the steps of two grids are the same over all of the second one.
@@ -80,7 +82,8 @@ void require_same_map(const RasterHead& head, const RasterHead& first) {
   if (head.keys.crs != first.keys.crs || head.keys.kind != first.keys.kind ||
       head.keys.unit != first.keys.unit) {
     fail_apart(head, first,
-               fmt::format("it lies in {}, the other in {}", name(head.keys), name(first.keys)));
+               fmt::format("it lies in {}, the other in {}", name(head.keys), name(first.keys)),
+               kOneMap);
   }
 }
 

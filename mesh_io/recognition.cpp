@@ -188,6 +188,11 @@ bool begins_as_ply(std::string_view start) {
   return is_ply(start) || is_odd_ply(start);
 }
 
+bool is_packed_hgt(const MeshContent& content) {
+  return content.is_gzip() &&
+         small_letters(content.file().path().filename().string()).ends_with(".hgt.gz");
+}
+
 Certainty look_for_binary_stl(MeshContent& content) {
   const auto bytes = content.stl_bytes();
   if (!bytes)
@@ -198,8 +203,8 @@ Certainty look_for_binary_stl(MeshContent& content) {
   if (content.is_text() || content.begins_as_object())
     return Certainty::none;
   const std::string_view start = content.start();
-  const bool is_likely = content.is_gzip() || (is_stl_with_more(start, *bytes, file_bytes) &&
-                                               other_format(start).empty());
+  const bool is_likely = other_format(start).empty() && !is_packed_hgt(content) &&
+                         (content.is_gzip() || is_stl_with_more(start, *bytes, file_bytes));
   return is_likely ? Certainty::likely : Certainty::none;
 }
 

@@ -50,5 +50,7 @@ bool begins_as_ply(std::string_view start);
 /// told (it is packed), or where more follows, it is likely if the first bytes are no text, and if
 /// its first facets have numbers as meshes have.
 Certainty look_for_binary_stl(MeshContent& content);
+/// Files of SRTM have no mark: "N53E027.hgt.gz" is known by its name.
+bool is_packed_hgt(const MeshContent& content);
 
 }  // namespace meshhier::mesh_io

@@ -261,6 +261,9 @@ std::unique_ptr<File> ZipDirectory::open(const ZipEntry& entry,
   if (std::max(entry.bytes, entry.packed) > kMostPacked)
     refuse(fmt::format("is packed from {} bytes, up to {} are read; unpack the archive",
                        entry.bytes, kMostPacked));
+  constexpr std::uint64_t kMostDeflated = 1032;  // bytes that Deflate makes of one
+  if (entry.method == kDeflated && entry.bytes / kMostDeflated > entry.packed + 1)
+    refuse("is damaged: Deflate cannot have packed it so small");
   const Bytes bytes = unpacked(entry, begin);
   if (bytes == nullptr)
     refuse("is damaged: what is packed is not what the archive's directory says");
