@@ -148,7 +148,7 @@ describe.skipIf(!hasProgram)('a hierarchy that is replaced', () => {
   function archive(colour: Colour): Uint8Array<ArrayBuffer> {
     build(50, colour, plain); // makes the mesh
     const output = path.join(workshop.directory, `${colour}.3tz`);
-    if (!existsSync(output)) execFileSync(MESHHIER, ['build', path.join(workshop.directory, `50_${colour}.ply`), '-o', output, '--set', 'partition.vertices=60', '--progress', 'none']);
+    if (!existsSync(output)) execFileSync(MESHHIER, ['build', path.join(workshop.directory, `50_${colour}.ply`), '-o', output, '--set', 'partition.vertices=60', 'storage.normals=smooth', '--progress', 'none']);
     return new Uint8Array(readFileSync(output));
   }
 

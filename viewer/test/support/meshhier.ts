@@ -25,7 +25,8 @@ if (!hasProgram) console.warn(`tests of real hierarchies are skipped: ${MESHHIER
 export class Workshop {
   readonly directory = mkdtempSync(path.join(tmpdir(), 'meshhier-viewer-'));
 
-  /// The hierarchy of a mesh that `meshgen` makes; the one of that name if it was made already.
+  /// The hierarchy of a mesh that `meshgen` makes; the one of that name if it was made already. Without
+  /// normal maps, which Node.js does not decode, unless the config wants them.
   build(name: string, meshgen: readonly string[], config: object): string {
     const mesh = path.join(this.directory, `${name}.ply`);
     if (!existsSync(mesh)) execFileSync(MESHGEN, [...meshgen, '-o', mesh]);
@@ -57,7 +58,8 @@ export class Workshop {
     const output = path.join(this.directory, file);
     if (existsSync(output)) return output;
     const json = path.join(this.directory, `${file}.json`);
-    writeFileSync(json, JSON.stringify({ input: mesh, output, ...config }));
+    const { storage } = config as { storage?: object };
+    writeFileSync(json, JSON.stringify({ input: mesh, output, ...config, storage: { normals: 'smooth', ...storage } }));
     execFileSync(MESHHIER, ['build', json, '--progress', 'none']);
     return output;
   }
