@@ -56,8 +56,8 @@ std::uint32_t normal_map_side(const config::Config& config, const JobSize& job) 
   return normals == config::Normals::map ? job.picture_side : 0;
 }
 
-/// With `auto` three levels have none, seven eighths of the simplified tiles: they are nearer to the
-/// original's shading themselves.
+/// With `auto` three levels have none, seven eighths of the simplified tiles: they are nearer to
+/// the original's shading themselves.
 int unmapped_levels(const config::Config& config) {
   return config.storage.normals == config::Normals::map_or_none ? 3 : 0;
 }

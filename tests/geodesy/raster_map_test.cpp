@@ -37,8 +37,8 @@ struct SampleKeys {
 
 TEST(RasterMap, OfAMapAndItsHeights) {
   const RasterMap keys = SampleKeys{{1024, 0, 1, 1,    1025, 0, 1, 2,   3072, 0, 1, 32633,  //
-                                   3076, 0, 1, 9001, 4096, 0, 1, 5773}}
-                           .parse();
+                                     3076, 0, 1, 9001, 4096, 0, 1, 5773}}
+                             .parse();
   EXPECT_EQ(keys.kind, MapKind::lengths);
   EXPECT_EQ(keys.crs, "EPSG:32633+5773");
   EXPECT_TRUE(keys.is_point);
