@@ -19,7 +19,7 @@ def test_its_version_is_that_of_the_package() -> None:
 
 def test_a_build_tells_how_far_it_is(torus: str, tmp_path: Path) -> None:
     told: list[meshhier.Progress] = []
-    hierarchy = meshhier.build(torus, tmp_path / "a.hier", settings={"memory_budget": "128MiB", "threads": 1}, progress=told.append)
+    hierarchy = meshhier.build(torus, tmp_path / "a.hier", settings={"memory_budget": "256MiB", "threads": 1}, progress=told.append)
     assert hierarchy.triangles == 20736
     assert {"ingest", "simplify"} <= {one.stage for one in told}
     assert told[-1].job_done == pytest.approx(1, abs=0.1)
