@@ -15,8 +15,6 @@
 namespace meshhier::images {
 namespace {
 
-constexpr std::uint64_t kPictureHeadBytes = std::uint64_t{64} << 20;
-constexpr std::size_t kMostPictures = 256;
 /// The most memory of a row of decoded blocks, with its mask.
 constexpr std::uint64_t kMostBand = std::uint64_t{2} << 30;
 constexpr std::uint32_t kFull16 = 65535, kFull8 = 255;
@@ -97,11 +95,10 @@ class FramedTiff final : public ImageReader {
  public:
   FramedTiff(std::unique_ptr<storage::File> file, std::string name)
       : file_(std::move(file)), name_(std::move(name)) {
-    TiffFile tiff(*file_, kPictureHeadBytes);
-    const auto all = tiff_directories(tiff, kMostPictures);
-    const auto image = std::ranges::find_if(
-        all, [](const TiffDirectory& one) { return !one.is_reduced && !one.is_mask; });
-    if (image == all.end())
+    TiffFile tiff(*file_, kMostTiffHead);
+    const auto all = tiff_directories(tiff);
+    const TiffDirectory* const image = full_image(all);
+    if (image == nullptr)
       fail("has overviews or masks alone, no picture of full resolution");
     pixels_ = std::make_unique<TiffPixels>(*file_, image->offset);
     tiff.select(image->offset);

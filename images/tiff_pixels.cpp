@@ -42,6 +42,11 @@ void swap_samples(std::span<std::byte> bytes, std::size_t size) {
 
 }  // namespace
 
+const TiffDirectory* full_image(std::span<const TiffDirectory> images) {
+  const auto found = std::ranges::find_if(images, &TiffDirectory::is_full);
+  return found == images.end() ? nullptr : &*found;
+}
+
 std::vector<TiffDirectory> tiff_directories(TiffFile& tiff, std::size_t most) {
   std::vector<TiffDirectory> all;
   do {

@@ -23,6 +23,9 @@ namespace meshhier::images {
 
 /// The most bytes of a decoded block.
 inline constexpr std::uint64_t kMostTiffBlock = std::uint64_t{256} << 20;
+/// The most memory that a file's tags take, and the most images of it that are looked at.
+inline constexpr std::uint64_t kMostTiffHead = std::uint64_t{64} << 20;
+inline constexpr std::size_t kMostTiffImages = 256;
 
 /// An image among those of a file.
 struct TiffDirectory {
@@ -30,10 +33,15 @@ struct TiffDirectory {
   std::uint32_t width = 0, height = 0;
   bool is_reduced = false;  ///< smaller than another one, which it shows
   bool is_mask = false;     ///< tells which pixels of another one are seen
+
+  /// Whether it has pixels of its own, in full resolution.
+  bool is_full() const { return !is_reduced && !is_mask; }
 };
 
 /// Returns the images of a file in their order, at most so many. Throws as TiffFile.
-std::vector<TiffDirectory> tiff_directories(TiffFile& tiff, std::size_t most);
+std::vector<TiffDirectory> tiff_directories(TiffFile& tiff, std::size_t most = kMostTiffImages);
+/// Returns the first image of full resolution, the one that is shown; null if there is none.
+const TiffDirectory* full_image(std::span<const TiffDirectory> images);
 
 enum class TiffSamples : std::uint8_t { unsigned_integers, integers, reals };
 

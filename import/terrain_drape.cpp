@@ -16,9 +16,6 @@
 namespace meshhier::importing {
 namespace {
 
-constexpr std::uint64_t kDrapeHeadBytes = std::uint64_t{64} << 20;
-constexpr std::size_t kDrapeImages = 256;
-
 /// Returns a CRS without its heights: "EPSG:32633" of "EPSG:32633+5773".
 std::string horizontal(const std::string& crs) {
   return crs.starts_with("EPSG:") ? crs.substr(0, crs.find('+')) : crs;
@@ -75,11 +72,9 @@ TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path&
                         const mesh_io::Mosaic& heights) {
   const auto head = images::open_framed_tiff(files.open(path), path.string())->info();
   const auto file = files.open(path);
-  images::TiffFile tiff(*file, kDrapeHeadBytes);
-  const auto all = images::tiff_directories(tiff, kDrapeImages);
-  const auto image = std::ranges::find_if(
-      all, [](const images::TiffDirectory& one) { return !one.is_reduced && !one.is_mask; });
-  tiff.select(image->offset);
+  images::TiffFile tiff(*file, images::kMostTiffHead);
+  const auto all = images::tiff_directories(tiff);
+  tiff.select(images::full_image(all)->offset);  // the picture above has one
   const mesh_io::GeoTiffPlace place = mesh_io::read_place(tiff);
   require_same_crs(place.keys, heights.keys(), path);
 

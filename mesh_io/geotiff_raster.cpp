@@ -30,8 +30,6 @@ using images::TiffPixels;
 using images::TiffSamples;
 
 /// The memory of the library while the head is read.
-constexpr std::uint64_t kHeadBytes = std::uint64_t{64} << 20;
-constexpr std::size_t kMostDirectories = 256;
 
 /// A kind of samples, and how they become heights.
 struct SampleRow {
@@ -121,25 +119,18 @@ void require_heights(const TiffLayout& layout, const std::filesystem::path& path
 class GeoTiffRaster final : public BlockedRaster {
  public:
   explicit GeoTiffRaster(std::unique_ptr<storage::File> file) : file_(std::move(file)) {
-    TiffFile tiff(*file_, kHeadBytes);
-    const auto all = images::tiff_directories(tiff, kMostDirectories);
-    const TiffDirectory& image = choose(all, tiff);
-    pixels_ = std::make_unique<TiffPixels>(*file_, image.offset);
+    TiffFile tiff(*file_, images::kMostTiffHead);
+    const auto all = images::tiff_directories(tiff);
+    const TiffDirectory* const image = images::full_image(all);
+    if (image == nullptr)
+      tiff.fail("has overviews or masks alone, no image of full resolution");
+    pixels_ = std::make_unique<TiffPixels>(*file_, image->offset);
     require_heights(pixels_->layout(), file_->path());
-    tiff.select(image.offset);
+    tiff.select(image->offset);
     read_head(tiff, all);
   }
 
  private:
-  /// Returns the first image of full resolution.
-  static const TiffDirectory& choose(const std::vector<TiffDirectory>& all, TiffFile& tiff) {
-    const auto found = std::ranges::find_if(
-        all, [](const TiffDirectory& one) { return !one.is_reduced && !one.is_mask; });
-    if (found == all.end())
-      tiff.fail("has overviews or masks alone, no image of full resolution");
-    return *found;
-  }
-
   void read_head(TiffFile& tiff, const std::vector<TiffDirectory>& all) {
     const TiffLayout& layout = pixels_->layout();
     sample_ = row_of(layout);
@@ -160,8 +151,7 @@ class GeoTiffRaster final : public BlockedRaster {
   }
 
   void warn(const std::vector<TiffDirectory>& all, RasterHead& head) const {
-    const auto others = std::ranges::count_if(
-        all, [](const TiffDirectory& one) { return !one.is_reduced && !one.is_mask; });
+    const auto others = std::ranges::count_if(all, &TiffDirectory::is_full);
     const auto say = [&](const std::string& text) {
       head.warnings.push_back(file_message(head.path, text));
     };

@@ -93,11 +93,11 @@ class ParentVertices {
     }
   }
 
-  /// Whether any vertex of a finer tile has become one of the tile's.
+  /// Whether any vertex of a neighbour's finer tile has become one of the tile's.
   bool has_any(std::span<const std::uint16_t> parents) const {
-    return is_own_ || std::ranges::any_of(parents, [&](std::uint16_t parent) {
-             return parent < ghosts_.size() && ghosts_[parent] != texture::kNoVertex;
-           });
+    return std::ranges::any_of(parents, [&](std::uint16_t parent) {
+      return parent < ghosts_.size() && ghosts_[parent] != texture::kNoVertex;
+    });
   }
 
   /// Returns the tile's vertices that a finer surface's have become.
@@ -198,7 +198,7 @@ std::vector<FinerSurface> finer_surfaces(
   const auto add = [&](NodeId parent, const auto& choose) {
     const ParentVertices vertices(node, parent, mesh);
     for_each_tile(forest.tree(), parent, finer, [&](NodeId tile) {
-      if (!vertices.has_any(forest.map_up(tile, node.level)))
+      if (parent != node && !vertices.has_any(forest.map_up(tile, node.level)))
         return;
       FinerSurface one = choose(source(tile));
       if (!one.source || one.source->triangles.empty())
