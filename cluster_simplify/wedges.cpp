@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -217,23 +218,26 @@ class WedgeContraction {
   }
 
   /// For each wedge of the cluster a number of what labels it has: `order` are those that count.
-  /// All of too many have the number of the first.
+  /// All of too many have the number of the first of their object.
   std::vector<std::uint32_t> label_groups(std::span<const ClusterWedge> cluster,
                                           std::span<const std::uint32_t> order) const {
     std::vector<std::uint32_t> group_of(cluster.size());
-    std::vector<std::uint32_t> firsts;
+    std::map<double, std::vector<std::uint32_t>> firsts_of_objects;
+    std::uint32_t groups = 0;
     for (const std::uint32_t i : order) {
+      const float* channels = channels_of_wedge(cluster[i]);
+      std::vector<std::uint32_t>& firsts = firsts_of_objects[rules_.values().object_of(channels)];
       const auto known = std::ranges::find_if(firsts, [&](std::uint32_t first) {
-        return rules_.values().have_equal_labels(channels_of_wedge(cluster[first]),
-                                                 channels_of_wedge(cluster[i]));
+        return rules_.values().have_equal_labels(channels_of_wedge(cluster[first]), channels);
       });
-      group_of[i] = static_cast<std::uint32_t>(known - firsts.begin());
-      if (known != firsts.end())
-        continue;
-      if (firsts.size() < Leaders<AttributeMetric>::kMost)
+      if (known != firsts.end()) {
+        group_of[i] = group_of[*known];
+      } else if (firsts.size() < Leaders<AttributeMetric>::kMost) {
+        group_of[i] = groups++;
         firsts.push_back(i);
-      else
-        group_of[i] = 0;
+      } else {
+        group_of[i] = group_of[firsts[0]];
+      }
     }
     return group_of;
   }

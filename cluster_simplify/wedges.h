@@ -17,7 +17,8 @@
 //   - Groups are made by leaders: the wedge that shows the largest area leads; one that differs
 //   from
 //     all leaders by too much becomes one (attribute_groups.h).
-//   - Labels do not mix: wedges with different ones stay apart.
+//   - Labels do not mix: wedges with different ones stay apart. So a triangle that survives keeps
+//     its object, which all of its corners have.
 //
 // So textures do not blend across seams, hard edges stay hard, and shading stays smooth across a
 // seam of the texture.

@@ -6,6 +6,9 @@
 // arithmetic goes through value_in() and put_value().
 #pragma once
 
+#include "base/named_value.h"
+
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -35,8 +38,26 @@ struct ScalarAttribute {
   ValueType type{};
   /// Names something, as an object or a class: is never averaged. Otherwise it is a quantity.
   bool is_label = false;
+  /// Is a label that says which object a triangle belongs to: its corners have the same one, in
+  /// every tile. A mesh has one such value at most, of the type u32.
+  bool is_object = false;
   friend bool operator==(const ScalarAttribute&, const ScalarAttribute&) = default;
 };
+
+enum class ValueKind : std::uint8_t { quantity, label, object };
+inline constexpr std::array kValueKinds{NamedValue{"quantity", ValueKind::quantity},
+                                        NamedValue{"label", ValueKind::label},
+                                        NamedValue{"object", ValueKind::object}};
+
+inline ValueKind kind_of(const ScalarAttribute& attribute) {
+  return attribute.is_object  ? ValueKind::object
+         : attribute.is_label ? ValueKind::label
+                              : ValueKind::quantity;
+}
+inline void set_kind(ScalarAttribute& attribute, ValueKind kind) {
+  attribute.is_label = kind != ValueKind::quantity;
+  attribute.is_object = kind == ValueKind::object;
+}
 
 inline constexpr std::size_t kMostNameBytes = 100;
 bool is_attribute_name(std::string_view name);

@@ -93,7 +93,8 @@ std::vector<PlacedValue> quantities_of(const AttributeLayout& layout) {
 
 ValueMixer::ValueMixer(const AttributeLayout& layout)
     : values_(quantities_of(layout)),
-      has_labels_(std::ranges::any_of(values_, &PlacedValue::is_label)) {}
+      has_labels_(std::ranges::any_of(values_, &PlacedValue::is_label)),
+      object_(placed_object(layout)) {}
 
 void ValueMixer::mix(std::span<const WeightedVertex> vertices, float* to) const {
   assert(!vertices.empty());

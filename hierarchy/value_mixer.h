@@ -5,6 +5,7 @@
 #include "hierarchy/value_channels.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,10 +34,15 @@ class ValueMixer {
 
   /// Whether two vertices have the same labels.
   bool have_equal_labels(const float* a, const float* b) const;
+  /// Returns the object of a vertex; 0 if there are no objects.
+  double object_of(const float* channels) const {
+    return object_ ? value_in(object_->type, channels + object_->channel) : 0;
+  }
 
  private:
   std::vector<PlacedValue> values_;  ///< of all kinds of quantities
   bool has_labels_ = false;
+  std::optional<PlacedValue> object_;
 };
 
 }  // namespace meshhier

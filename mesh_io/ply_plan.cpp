@@ -259,6 +259,10 @@ void Planner::list_unused() {
 
 }  // namespace
 
+std::string imported_prefix(ValueKind kind) {
+  return std::string(name_in(kValueKinds, kind)) + ':';
+}
+
 std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints) {
   if (space == ColourSpace::srgb) {
     return tints ? std::array<std::string_view, 3>{"tint_red", "tint_green", "tint_blue"}

@@ -82,10 +82,9 @@ struct PlyPlan {
   std::uint64_t odd_header_lines = 0;        ///< as PlyHeader's
 };
 
-/// Prefixes of the names of values in files that the import writes: no other property has a name of
-/// that kind.
-inline constexpr std::string_view kImportedQuantity = "quantity:";
-inline constexpr std::string_view kImportedLabel = "label:";
+/// Returns what the names of values begin with in files that the import writes, "label:": no other
+/// property has a name of that kind.
+std::string imported_prefix(ValueKind kind);
 
 /// Returns the names of red, green and blue in files that the import writes.
 std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints);

@@ -44,11 +44,13 @@ std::optional<ScalarAttribute> value_of(const PlyProperty& property, const Attri
       choice.labels ? choice.is_label(property.name, type) : is_integer(property.type);
   ScalarAttribute value{property.name, type, is_label};
   if (writer == PlyWrittenBy::import) {
-    value.is_label = property.name.starts_with(kImportedLabel);
-    const std::string_view prefix = value.is_label ? kImportedLabel : kImportedQuantity;
-    if (!property.name.starts_with(prefix))
+    const auto* kind = std::ranges::find_if(kValueKinds, [&](const auto& one) {
+      return property.name.starts_with(imported_prefix(one.value));
+    });
+    if (kind == kValueKinds.end())
       return std::nullopt;
-    value.name.erase(0, prefix.size());
+    set_kind(value, kind->value);
+    value.name.erase(0, imported_prefix(kind->value).size());
   } else if (!choice.takes(value.name) ||
              (choice.which == AttributeChoice::Which::all && value.name == kBookkeeping)) {
     return std::nullopt;

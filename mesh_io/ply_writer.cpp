@@ -68,10 +68,7 @@ std::vector<WrittenProperty> value_properties(const AttributeLayout& layout, boo
     return std::ranges::find(list, name, &WrittenProperty::name) != list.end();
   };
   for (const ScalarAttribute& value : layout.values) {
-    const std::string_view prefix = !is_import       ? ""
-                                    : value.is_label ? kImportedLabel
-                                                     : kImportedQuantity;
-    const std::string wanted = std::string(prefix) + value.name;
+    const std::string wanted = (is_import ? imported_prefix(kind_of(value)) : "") + value.name;
     std::string name = wanted;
     for (int number = 2; has(others, name) || has(values, name); ++number)
       name = fmt::format("{}_{}", wanted, number);

@@ -20,7 +20,7 @@ struct PlyContent {
   std::uint64_t triangle_count = 0;
   std::uint64_t edge_count = 0;  ///< 0: no edge element
   AttributeLayout attributes;
-  bool is_import = false;  ///< values are written as kImportedQuantity and kImportedLabel say
+  bool is_import = false;  ///< values are written with their imported_prefix()
   bool double_coordinates = false;
   std::vector<std::string> comments;  ///< one line each
 };

@@ -18,7 +18,7 @@ constexpr double kMostExponent = 1100;
 Json value_json(const ScalarAttribute& attribute, const ValueStatistics& statistics) {
   Json json{{"name", attribute.name},
             {"type", name_of(attribute.type)},
-            {"kind", attribute.is_label ? "label" : "quantity"},
+            {"kind", name_in(kValueKinds, kind_of(attribute))},
             {"missing", statistics.missing},
             {"min", statistics.min},
             {"max", statistics.max},
@@ -90,10 +90,12 @@ ScalarAttribute attribute_of(const JsonObject& object) {
   if (!type)
     object.wrong("type", "one of i8, u8, i16, u16, i32, u32, f32, f64");
   attribute.type = *type;
-  const std::string kind = object.text("kind");
-  if (kind != "label" && kind != "quantity")
-    object.wrong("kind", "label or quantity");
-  attribute.is_label = kind == "label";
+  const auto kind = value_named(kValueKinds, object.text("kind"));
+  if (!kind)
+    object.wrong("kind", names_in(kValueKinds));
+  set_kind(attribute, *kind);
+  if (attribute.is_object && attribute.type != ValueType::u32)
+    object.wrong("type", "u32 of objects");
   return attribute;
 }
 
@@ -139,6 +141,9 @@ void read_source_values(const JsonObject& object, SourceSummary& source) {
         std::ranges::find(attributes, attributes.back().name, &ScalarAttribute::name);
     if (known != attributes.end() - 1)
       value.wrong("name", "another one than before");
+    if (attributes.back().is_object &&
+        std::ranges::count_if(attributes, &ScalarAttribute::is_object) > 1)
+      value.wrong("kind", "object of one value alone");
     if (source.attributes.value_channels() > kMaxValueChannels)
       object.wrong("values", "fewer of them");
   }
