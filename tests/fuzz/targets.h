@@ -43,6 +43,8 @@ void tile(std::span<const std::byte> input);
 void outline(std::span<const std::byte> input);
 /// A 3tz archive, and what one is made of (see archive.cpp).
 void archive(std::span<const std::byte> input);
+/// A table of objects: a kind, then a file, or a part of one.
+void object_table(std::span<const std::byte> input);
 /// A layout and runs of lists, packed here or whole as a file, for a mesh of a few thousand slots.
 void detail(std::span<const std::byte> input);
 /// A progressive.json; also with the right checksum at its end.
@@ -84,6 +86,7 @@ inline constexpr auto kTargets = std::to_array<Target>({{"ply_header", ply_heade
                                                         {"tile", tile},
                                                         {"outline", outline},
                                                         {"archive", archive},
+                                                        {"object_table", object_table},
                                                         {"detail", detail},
                                                         {"stream_index", stream_index},
                                                         {"stream", stream},

@@ -16,6 +16,7 @@ TEST(Layout, FilesOfAHierarchyHaveTheirDocumentedNames) {
   EXPECT_EQ(index_path(hierarchy), "some/where/david.hier/tiles.bin");
   EXPECT_EQ(outline_path(hierarchy), "some/where/david.hier/outline.glb");
   EXPECT_EQ(preview_path(hierarchy), "some/where/david.hier/preview.webp");
+  EXPECT_EQ(objects_path(hierarchy), "some/where/david.hier/objects.bin");
   EXPECT_EQ(level_directory(hierarchy, Level{7}), "some/where/david.hier/tiles/07");
   EXPECT_EQ(tile_path(hierarchy, {Level{7}, 42}), "some/where/david.hier/tiles/07/000042.glb");
 }
