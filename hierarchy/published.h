@@ -7,6 +7,7 @@
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
+#include "hierarchy/tile_objects.h"
 #include "hierarchy/tree.h"
 #include "hierarchy/unit.h"
 #include "hierarchy/value_statistics.h"
@@ -83,6 +84,7 @@ struct PublishedTile {
   /// From where the model is looked at first: of the root, unless an older program made it.
   std::optional<Standpoint> first_view{};
   TileImage normal_map{};  ///< empty unless the tile has one: opaque
+  TileObjects objects{};   ///< empty unless the hierarchy's tiles have tables of them
 };
 
 /// Leaves a tile what its vertices have.

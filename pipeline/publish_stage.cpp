@@ -19,7 +19,9 @@
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/manifest.h"
+#include "storage/format/object_table.h"
 #include "storage/format/outline_glb.h"
+#include "storage/format/tile_object_table.h"
 #include "storage/format/tile_plan.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
@@ -28,6 +30,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -46,7 +49,8 @@ std::optional<Lattice> lattice_of(const DistributedSource& source, const StageCo
 }
 
 storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
-                              const TextureStore& textures, const StageContext& context) {
+                              const TextureStore& textures, const storage::ObjectTable* objects,
+                              const StageContext& context) {
   storage::TileFormat format = {source.summary.attributes,
                                 {{}, context.config.up_axis()},  // the origin is in the tileset
                                 context.config.storage.compression,
@@ -57,7 +61,18 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
   if (context.plan.job.normal_map_side > 0 && textures.has_normal_maps())
     format.normal_maps = context.config.normal_map.format;
   format.lattice = lattice_of(source, context);
+  if (objects != nullptr)
+    format.objects = objects->properties();
   return format;
+}
+
+/// Opens the table of objects that the import has left, if tiles are to have tables of theirs.
+std::unique_ptr<const storage::ObjectTable> open_objects(const std::filesystem::path& hierarchy,
+                                                         const StageContext& context) {
+  if (!context.plan.job.has_objects)
+    return nullptr;
+  const auto imported = storage::imported_objects_path(hierarchy.parent_path());
+  return std::make_unique<storage::ObjectTable>(context.files.open(imported));
 }
 
 /// All that writing tiles needs.
@@ -67,7 +82,8 @@ struct TileWriter {
   const storage::TileFormat format;
   const TileFiles& to;
   const StageContext& context;
-  std::optional<Standpoint> first_view{};  ///< for the root
+  std::optional<Standpoint> first_view{};                 ///< for the root
+  std::unique_ptr<const storage::ObjectTable> objects{};  ///< if tiles have tables of theirs
 };
 
 TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
@@ -129,6 +145,15 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
+/// Returns the table of the tile's objects; an empty one if tiles have none.
+TileObjects objects_in(const TileWriter& to, const TileMesh& mesh) {
+  if (!to.objects)
+    return {};
+  return storage::make_tile_objects(storage::objects_of(mesh, to.format.attributes),
+                                    to.objects->properties(),
+                                    [&](std::uint32_t object) { return to.objects->row(object); });
+}
+
 /// Returns the first view that the config asks for, or the one in which the root is recognised.
 Standpoint first_view_of(const TileWriter& to, Forest& forest) {
   if (const auto wished = to.context.config.first_view.standpoint())
@@ -174,6 +199,7 @@ Published write_tile(const TileWriter& to, NodeId node) {
     published.rounding = round_to(*to.format.lattice, mesh);
   TileRecord& record = published.record;
   record = describe(to, node, mesh, shading);
+  const TileObjects objects = objects_in(to, mesh);
   record.has_normal_map = !normal_map.empty();
   if (const TileImage& shown = record.has_normal_map ? normal_map : image; !shown.empty()) {
     record.image_width = shown.width;
@@ -183,7 +209,7 @@ Published write_tile(const TileWriter& to, NodeId node) {
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
   const std::vector<std::byte> bytes = storage::encode_tile(
       {node, mesh, shading, image, record.bounds, parent_map, chains,
-       node == forest.tree().root() ? to.first_view : std::nullopt, &normal_map},
+       node == forest.tree().root() ? to.first_view : std::nullopt, &normal_map, &objects},
       forest.tree(), to.format);
   write_tile_file(to, node, bytes);
   record.file_bytes = bytes.size();
@@ -235,9 +261,15 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
       left.push_back(nodes[i]);
   }
   context.progress.stage("publish", left.size(), "tiles");
-  TileWriter writer{forest, textures,
-                    format_of(*journal.source(), forest.computes_normals(), textures, context), to,
-                    context};
+  std::unique_ptr<const storage::ObjectTable> objects = open_objects(to.directory, context);
+  TileWriter writer{forest,
+                    textures,
+                    format_of(*journal.source(), forest.computes_normals(), textures, objects.get(),
+                              context),
+                    to,
+                    context,
+                    {},
+                    std::move(objects)};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
   // A picture is held as it was stored, on its own, and in the tile's file.
@@ -278,14 +310,16 @@ TileErrors complete_errors(const TextureStore& textures, BuildJournal& journal,
 }  // namespace
 
 void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-                   const OutlineStageResult& outline, const std::filesystem::path& directory,
-                   const StageContext& context) {
+                   const OutlineStageResult& outline,
+                   const std::optional<storage::ObjectsSummary>& known_objects,
+                   const std::filesystem::path& directory, const StageContext& context) {
   storage::FileSystem& files = context.files;
   const Tree& tree = context.tree();
   const SourceSummary source = complete_source(journal, context);
   const std::vector<Published> tiles = journal.published();
-  storage::TileFormat format =
-      format_of(*journal.source(), forest.computes_normals(), textures, context);
+  const auto objects = open_objects(directory, context);
+  storage::TileFormat format = format_of(*journal.source(), forest.computes_normals(), textures,
+                                         objects.get(), context);
   std::optional<storage::Quantization> quantization;
   if (format.lattice) {
     quantization.emplace();
@@ -341,6 +375,9 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.outline_bytes = outline_file.size();
   manifest.outline_checksum = storage::checksum(outline_file);
   manifest.outline = outline.report;
+  manifest.objects = known_objects;
+  if (manifest.objects)
+    manifest.objects->are_in_tiles = format.objects.has_value();
   if (preview)
     manifest.preview = preview->facts;
   manifest.levels = nlohmann::ordered_json::array();
@@ -348,7 +385,8 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
     manifest.levels.push_back(storage::to_json(level));
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(),
-      index.size() + outline_file.size() + (preview ? preview->file.size() : 0),
+      index.size() + outline_file.size() + (preview ? preview->file.size() : 0) +
+          (known_objects ? known_objects->table.bytes : 0),
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
   storage::write_tilesets(files, directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);

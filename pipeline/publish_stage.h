@@ -8,6 +8,7 @@
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/forest.h"
 #include "pipeline/tiles/texture_store.h"
+#include "storage/format/manifest.h"
 
 #include <filesystem>
 
@@ -35,9 +36,11 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
              const TileFiles& to, const Share& share, const StageContext& context);
 
 /// Adds up the errors and bounds of all tiles, which must be published, and writes all other files
-/// of the hierarchy; the manifest comes last. Throws Error(io | corrupt | interrupted).
+/// of the hierarchy; the manifest comes last. `objects`: if the mesh has any. Throws Error(io |
+/// corrupt | interrupted).
 void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-                   const OutlineStageResult& outline, const std::filesystem::path& directory,
-                   const StageContext& context);
+                   const OutlineStageResult& outline,
+                   const std::optional<storage::ObjectsSummary>& objects,
+                   const std::filesystem::path& directory, const StageContext& context);
 
 }  // namespace meshhier::pipeline

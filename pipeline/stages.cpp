@@ -9,12 +9,14 @@
 #include "pipeline/ingest_stage.h"
 #include "pipeline/leaves_stage.h"
 #include "pipeline/normal_map_stage.h"
+#include "pipeline/object_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/stage_costs.h"
 #include "pipeline/tasks/input_slices.h"
 #include "pipeline/texture_stage.h"
+#include "storage/format/layout.h"
 
 #include <algorithm>
 #include <array>
@@ -161,6 +163,19 @@ constexpr std::array kStages{
                 of.outline = make_outline(of.workshop.forest, source.diagonal(), context);
               },
           .tasks = {{kFinishTask}}},
+    // tiles → what is known of each object
+    Stage{.name = "objects",
+          .applies = [](const JobSize& job) { return job.has_objects; },
+          .time = objects_time,
+          .make =
+              [](Making& of, auto&, auto& context) {
+                Workshop& at = of.workshop;
+                const auto work = of.to.directory.parent_path();
+                of.objects = make_objects(at.forest, at.journal.source()->origin,
+                                          storage::imported_objects_path(work), of.to.directory,
+                                          at.tile_scratch, context);
+              },
+          .tasks = {{kFinishTask}}},
     // tiles, their pictures and maps → their files
     Stage{.name = "publish",
           .memory = publish_memory,
@@ -177,8 +192,8 @@ constexpr std::array kStages{
           .make =
               [](Making& of, auto&, auto& context) {
                 Workshop& at = of.workshop;
-                write_account(at.forest, at.textures, at.journal, of.outline, of.to.directory,
-                              context);
+                write_account(at.forest, at.textures, at.journal, of.outline, of.objects,
+                              of.to.directory, context);
               },
           .tasks = {{kFinishTask}}},
     // all files → an archive

@@ -27,6 +27,7 @@ struct Making {
   TileFiles to;                  ///< where the tiles' files go
   DiskNeed disk{};               ///< the build's, as well as it is known
   OutlineStageResult outline{};  ///< when it is made
+  std::optional<storage::ObjectsSummary> objects{};  ///< likewise, if the mesh has any
   std::future<void> settled{};   ///< when the partitions have reached the disk
 };
 

@@ -5,6 +5,7 @@
 #include "config/partition_size.h"
 #include "execution/size_text.h"
 #include "hierarchy/normal_code.h"
+#include "hierarchy/value_channels.h"
 #include "images/formats.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
@@ -136,6 +137,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.draws_preview = config.preview;
   job.outline_sectors = config.outline.sectors;
   job.has_map = config.placement.crs.has_value();
+  job.has_objects = placed_object(mesh.attributes).has_value();
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);
   job.normal_map_side = normal_map_side(config, job);

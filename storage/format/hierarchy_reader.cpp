@@ -107,6 +107,8 @@ TileFormat format_of(const Manifest& manifest) {
   format.textures = manifest.textures;
   format.screen_colours = manifest.screen_colours;
   format.normal_maps = manifest.normal_maps;
+  if (manifest.objects && manifest.objects->are_in_tiles)
+    format.objects = manifest.objects->table.properties;
   return format;
 }
 

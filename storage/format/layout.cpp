@@ -187,6 +187,10 @@ std::filesystem::path imported_path(const std::filesystem::path& work) {
   return work / "import.ply";
 }
 
+std::filesystem::path imported_objects_path(const std::filesystem::path& work) {
+  return work / "import.objects";
+}
+
 std::filesystem::path task_plan_path(const std::filesystem::path& work) {
   return work / "plan.json";
 }

@@ -97,6 +97,8 @@ std::filesystem::path set_aside_path(const std::filesystem::path& work, std::uin
 std::filesystem::path built_path(const std::filesystem::path& work);
 std::filesystem::path packed_path(const std::filesystem::path& work);
 std::filesystem::path imported_path(const std::filesystem::path& work);
+/// The table of objects that the import leaves.
+std::filesystem::path imported_objects_path(const std::filesystem::path& work);
 std::filesystem::path task_plan_path(const std::filesystem::path& work);
 std::filesystem::path segments_path(const std::filesystem::path& work);
 std::filesystem::path attempts_path(const std::filesystem::path& work);

@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "base/named_value.h"
+#include "hierarchy/target_vertex_counts.h"
 #include "storage/format/layout.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/source_values.h"
 
@@ -100,6 +102,13 @@ Json preview_json(const Preview& preview) {
           {"height", preview.height}};
 }
 
+Json objects_json(const ObjectsSummary& objects) {
+  Json json = object_facts_json(objects.table);
+  json["shown"] = objects.shown;
+  json["in_tiles"] = objects.are_in_tiles;
+  return json;
+}
+
 Json tileset_json(const Manifest& manifest) {
   Json tileset = {{"file", tileset_path({}).string()},
                   {"files", manifest.tileset_files},
@@ -135,6 +144,8 @@ Json manifest_json(const Manifest& manifest) {
   document["outline"] = outline_json(manifest);
   if (manifest.preview)
     document["preview"] = preview_json(*manifest.preview);
+  if (manifest.objects)
+    document["objects"] = objects_json(*manifest.objects);
   document["tileset"] = tileset_json(manifest);
   document["levels"] = manifest.levels;
   document["total_bytes"] = manifest.total_bytes;
@@ -311,8 +322,11 @@ void read_tileset(const JsonObject& object, std::uint64_t version, Manifest& man
 
 /// Throws if the version does not follow from the content; of 12 and later ones one thing decides.
 void check_version(std::uint64_t version, const Manifest& manifest, const JsonObject& object) {
-  if ((version == kFormatVersion) != manifest.has_relief())
-    object.wrong("format_version", "13 if and only if there are pictures and normal maps");
+  if ((version == kFormatVersion) != manifest.objects.has_value())
+    object.wrong("format_version", "14 if and only if there are objects");
+  if (version < kFormatVersion && (version == kNoObjectsFormatVersion) != manifest.has_relief())
+    object.wrong("format_version",
+                 "13 if and only if there are pictures and normal maps, and no objects");
   if (version > kTrueErrorsFormatVersion)
     return;
   if (version < kNoKtx2FormatVersion &&
@@ -323,6 +337,30 @@ void check_version(std::uint64_t version, const Manifest& manifest, const JsonOb
   if (version < kTrueErrorsFormatVersion &&
       (version == kNoKtx2FormatVersion) != manifest.normal_maps.has_value())
     object.wrong("format_version", "10 if and only if there are normal maps, none of them KTX2");
+}
+
+bool has_object(const SourceSummary& source) {
+  return std::ranges::any_of(source.attributes.values, &ScalarAttribute::is_object);
+}
+
+std::optional<ObjectsSummary> read_objects_summary(const JsonObject& object,
+                                                   const SourceSummary& source) {
+  if (object.has("objects") != has_object(source))
+    object.wrong("objects", "to be there if and only if a value of the source is of kind object");
+  if (!object.has("objects"))
+    return std::nullopt;
+  const JsonObject objects = object.object("objects");
+  ObjectsSummary summary{read_object_facts(objects), {}, objects.boolean("in_tiles")};
+  const Json& shown = objects.at("shown");
+  const bool is_sound = shown.is_array() && shown.size() <= TargetVertexCounts::kMostLevels + 1 &&
+                        std::all_of(shown.begin(), shown.end(), [&](const Json& count) {
+                          return count.is_number_unsigned() &&
+                                 count.get<std::uint64_t>() <= summary.table.objects;
+                        });
+  if (!is_sound)
+    objects.wrong("shown", "a count of objects for each level");
+  summary.shown = shown.get<std::vector<std::uint64_t>>();
+  return summary;
 }
 
 std::uint32_t read_side(const JsonObject& object, const char* key) {
@@ -425,6 +463,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
   manifest.textures = read_textures(storage, manifest.source);
   manifest.normal_maps = read_normal_maps(storage);
+  manifest.objects = read_objects_summary(object, manifest.source);
   check_version(version, manifest, object);
   manifest.config = object.at("config");
   if (!manifest.config.is_object())

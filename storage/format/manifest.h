@@ -6,6 +6,7 @@
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
+#include "storage/format/object_table.h"
 #include "storage/format/tile_glb.h"
 
 #include <cstdint>
@@ -19,8 +20,10 @@ namespace meshhier::storage {
 
 // The versions that are read. Manifest::format_version() tells by the content which one a manifest
 // has.
-inline constexpr int kFormatVersion = 13;
-/// No tiles with both a picture and a normal map.
+inline constexpr int kFormatVersion = 14;
+/// No objects; tiles with both a picture and a normal map.
+inline constexpr int kNoObjectsFormatVersion = 13;
+/// No such tiles either.
 inline constexpr int kNoReliefFormatVersion = 12;
 /// No Manifest::tileset_pixels either; pictures or normal maps in KTX2.
 inline constexpr int kTrueErrorsFormatVersion = 11;
@@ -56,6 +59,14 @@ inline constexpr std::uint32_t kMostPreviewSide = 512;
 /// A gallery of a hundred models is loaded in a few seconds.
 inline constexpr std::uint64_t kMostPreviewBytes = 40000;
 
+/// The objects that the mesh consists of.
+struct ObjectsSummary {
+  ObjectTableFacts table;
+  std::vector<std::uint64_t> shown;  ///< of each level: objects of which its cut shows a triangle
+  bool are_in_tiles = false;         ///< tiles have tables of theirs, for other viewers
+  friend bool operator==(const ObjectsSummary&, const ObjectsSummary&) = default;
+};
+
 /// The facts of a hierarchy that all its tiles share.
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
@@ -78,6 +89,7 @@ struct Manifest {
   std::optional<TextureFormat> textures;  ///< tiles' pictures; if and only if the source has any
   bool screen_colours = false;            ///< as TileFormat's; only in format versions up to 7
   std::optional<NormalMapFormat> normal_maps{};  ///< some tiles have one
+  std::optional<ObjectsSummary> objects{};       ///< if and only if a value of the source is one
   /// The tileset's geometric errors are the tiles' errors times this, at least 1. None in format
   /// versions up to 11, whose nodes hold the origin; later it is in the tileset's root.
   std::optional<double> tileset_pixels{};
@@ -114,7 +126,8 @@ struct Manifest {
   bool has_relief() const { return textures && normal_maps; }
 
   int format_version() const {
-    return has_relief()                        ? kFormatVersion
+    return objects                             ? kFormatVersion
+           : has_relief()                      ? kNoObjectsFormatVersion
            : tileset_pixels                    ? kNoReliefFormatVersion
            : has_ktx2()                        ? kTrueErrorsFormatVersion
            : normal_maps                       ? kNoKtx2FormatVersion

@@ -121,7 +121,23 @@ class Writer {
     }
   }
 
-  void put_image(TilePart part, std::span<const std::byte> bytes) {
+  /// Writes the row of each vertex in the table of its objects.
+  void put_features(std::span<const float> attributes, const TileObjects& objects) {
+    const Section& section = plan_[TilePart::feature];
+    if (section.view < 0)
+      return;
+    const PlacedValue place = placed_object(plan_.layout()).value();
+    const auto channels = static_cast<std::size_t>(plan_.layout().channels());
+    for (std::size_t v = 0; v < section.count; ++v) {
+      const auto object = static_cast<std::uint32_t>(
+          value_in(place.type, attributes.data() + v * channels + place.channel));
+      const auto row = std::ranges::lower_bound(objects.objects, object) - objects.objects.begin();
+      section.component == kU16 ? put(section, v, 0, static_cast<std::uint16_t>(row))
+                                : put(section, v, 0, static_cast<float>(row));
+    }
+  }
+
+  void put_bytes(TilePart part, std::span<const std::byte> bytes) {
     std::ranges::copy(bytes, at(plan_[part]));
   }
 
@@ -320,12 +336,38 @@ bool have_same_sides(const ImageShape& a, const ImageShape& b) {
   return a.width == b.width && a.height == b.height;
 }
 
+ObjectTableShape read_table_shape(const Json& extension,
+                                  const std::vector<ObjectProperty>& properties,
+                                  const std::string& name) {
+  ObjectTableShape shape;
+  shape.properties = properties;
+  shape.rows = require_count(extension, "objectCount", kMostObjects, name);
+  const std::uint64_t columns =
+      require_count(extension, "objectColumns", 2 + properties.size(), name);
+  if (shape.rows == 0 || columns == 0)
+    throw Error(ErrorCode::corrupt, name + ": a table of objects without a row or a column");
+  shape.columns = static_cast<std::uint32_t>(columns);
+  const Json texts = extension.value("objectTextBytes", Json());
+  const bool is_sound =
+      texts.is_array() && texts.size() == text_columns(properties, columns) &&
+      std::all_of(texts.begin(), texts.end(), [](const Json& bytes) {
+        return bytes.is_number_unsigned() && bytes.get<std::uint64_t>() <= UINT32_MAX;
+      });
+  if (!is_sound)
+    throw Error(ErrorCode::corrupt,
+                name + ": JSON: \"objectTextBytes\" is not the bytes of each column of texts");
+  shape.text_bytes = texts.get<std::vector<std::uint64_t>>();
+  return shape;
+}
+
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
   const Json& extension = require_extension(
       document, kTileExtension,
-      tile_version(format.attributes, format.screen_colours, format.normal_maps.has_value()), name);
+      tile_version(format.attributes, format.screen_colours, format.normal_maps.has_value(),
+                   format.objects.has_value()),
+      name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
@@ -358,6 +400,8 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
     if (shape.has_image() && !have_same_sides(shape.image, shape.normal_map))
       throw Error(ErrorCode::corrupt, name + ": picture and normal map have different sides");
   }
+  if (format.objects)
+    shape.objects = read_table_shape(extension, *format.objects, name);
   if (node == tree.root())
     shape.first_view = read_first_view(document, name);
   if (shape.own == 0)
@@ -448,6 +492,10 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   tile.first_view,
                   format.screen_colours,
                   format.normal_maps};
+  if (format.objects) {
+    const TileObjects& objects = *tile.objects;
+    shape.objects = {*format.objects, objects.objects.size(), objects.columns, objects.text_bytes};
+  }
   if (has_map(tile.normal_map))
     shape.normal_map = {tile.normal_map->bytes.size(), tile.normal_map->width,
                         tile.normal_map->height, AlphaMode::opaque};
@@ -481,9 +529,13 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   writer.put_list<std::uint16_t>(TilePart::ghost_chains, tile.chains);
   writer.put_vertices(TilePart::copy_of, mesh.copies.places);
   writer.put_vertices(TilePart::split_of, shading.split_of);
-  writer.put_image(TilePart::image, tile.image.bytes);
+  if (format.objects) {
+    writer.put_features(vertices.attributes, *tile.objects);
+    writer.put_bytes(TilePart::objects, tile.objects->table);
+  }
+  writer.put_bytes(TilePart::image, tile.image.bytes);
   if (has_map(tile.normal_map))
-    writer.put_image(TilePart::normal_map, tile.normal_map->bytes);
+    writer.put_bytes(TilePart::normal_map, tile.normal_map->bytes);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(json_text(plan.document(tile.bounds, format.frame, &bin.packing)), bin.bin);
@@ -497,7 +549,7 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
   assert(tile.chains.size() == tile.mesh.ghosts.size());
   return encode_tile(
       {tile.node, tile.mesh, tile.shading, tile.image, bounds_of(tile.mesh.vertices.positions),
-       tile.parent_map, tile.chains.entries(), tile.first_view, &tile.normal_map},
+       tile.parent_map, tile.chains.entries(), tile.first_view, &tile.normal_map, &tile.objects},
       tree, format);
 }
 

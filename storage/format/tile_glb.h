@@ -5,9 +5,11 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/object_row.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
+#include "hierarchy/tile_objects.h"
 #include "hierarchy/tree.h"
 #include "storage/format/tile_compression.h"
 
@@ -38,6 +40,9 @@ struct TileFormat {
   /// Tiles above the partitions may have a normal map, of the sides of their picture if they have
   /// one.
   std::optional<NormalMapFormat> normal_maps{};
+  /// Tiles have a table of their objects, which have these properties. Requires an object among the
+  /// values.
+  std::optional<std::vector<ObjectProperty>> objects{};
 };
 
 /// The parts of a tile that its file is made of.
@@ -51,6 +56,7 @@ struct TileView {
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
   std::optional<Standpoint> first_view{};     ///< as PublishedTile's
   const TileImage* normal_map = nullptr;      ///< none, or null: it has none
+  const TileObjects* objects = nullptr;       ///< as far as the format says
 };
 
 /// Returns the bytes of a tile's file. Deterministic, O(size), thread-safe. Compressed files depend

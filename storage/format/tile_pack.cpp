@@ -125,6 +125,7 @@ PackedBin pack_bin(const TilePlan& plan, std::span<const std::byte> plain) {
     const auto bytes = pack_section(plan, part, plain.subspan(section.offset, section.bytes()),
                                     packed.packing.exponential);
     packed.packing.bytes[i] = bytes.size();
+    packed.bin.resize(begin_of(part, packed.bin.size()));
     packed.bin.insert(packed.bin.end(), bytes.begin(), bytes.end());
     packed.bin.resize(aligned4(packed.bin.size()));
   }

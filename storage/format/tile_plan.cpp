@@ -39,6 +39,7 @@ constexpr std::array<PartRow, kPartCount> kParts{{
     {TilePart::texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes, kVertexTarget},
     {TilePart::map_texcoord, gltf_name(AttributeKind::texcoords), ViewMode::attributes,
      kVertexTarget},
+    {TilePart::feature, kFeatureAttribute, ViewMode::attributes, kVertexTarget},
     {TilePart::interior, "interior", ViewMode::triangles, kIndexTarget},
     {TilePart::border, "border", ViewMode::triangles, kIndexTarget},
     {TilePart::values, "values", ViewMode::attributes, kVertexTarget},
@@ -52,6 +53,7 @@ constexpr std::array<PartRow, kPartCount> kParts{{
     {TilePart::raw_colours, "rawColours", ViewMode::attributes},
     {TilePart::raw_texcoords, "rawTexcoords", ViewMode::attributes},
     {TilePart::raw_values, "rawValues", ViewMode::attributes},
+    {TilePart::objects, "objectTable", ViewMode::raw},
     {TilePart::image, "image", ViewMode::raw},
     {TilePart::normal_map, "normalMap", ViewMode::raw},
 }};
@@ -78,6 +80,8 @@ std::pair<unsigned, std::size_t> computed_elements(TilePart part, const TileShap
     return {kF32, 2};
   if (part == TilePart::map_texcoord && shape.has_map_texcoords())
     return {kU16, 2};
+  if (part == TilePart::feature && shape.objects)
+    return {shape.objects->rows <= UINT16_MAX ? kU16 : kF32, 1};
   return {};
 }
 
@@ -137,7 +141,7 @@ Json accessor_json(const TilePlan& plan, TilePart part, const Bounds& bounds) {
                    {"count", section.count},
                    {"type", vector_type(section.components)}};
   const bool is_number = section.component != kF32;
-  if (is_number && part > TilePart::position && part < TilePart::interior)
+  if (is_number && part > TilePart::position && part < TilePart::feature)
     accessor["normalized"] = true;
   if (part == TilePart::position) {
     accessor["min"] = corner_json(plan, bounds.min);
@@ -194,6 +198,9 @@ Json primitives_json(const TilePlan& plan) {
         Json::object({{"attributes", attributes}, {"material", 0}, {"mode", kPoints}}));
   }
   for (Json& primitive : primitives) {
+    if (const auto& objects = plan.shape().objects)
+      primitive["extensions"][kFeaturesExtension]["featureIds"] =
+          Json::array({{{"featureCount", objects->rows}, {"attribute", 0}, {"propertyTable", 0}}});
     if (!values.empty())
       primitive["extensions"][kMetadataExtension]["propertyAttributes"] = Json::array({0});
   }
@@ -245,6 +252,8 @@ bool is_told(TilePart part, const TilePlan& plan) {
   const TileShape& shape = plan.shape();
   if (part == TilePart::values || part == TilePart::raw_values)
     return !plan.layout().values.empty();
+  if (part == TilePart::objects)
+    return shape.objects.has_value();
   if (part == TilePart::split_of)
     return shape.is_shaded();
   if (part == TilePart::normal_map)
@@ -257,7 +266,8 @@ Json extension_json(const TilePlan& plan) {
   const bool interior = shape.interior > 0;
   const bool border = shape.border > 0;
   Json extension = {
-      {"version", tile_version(plan.layout(), shape.screen_colours, shape.normal_maps.has_value())},
+      {"version", tile_version(plan.layout(), shape.screen_colours, shape.normal_maps.has_value(),
+                               shape.objects.has_value())},
       {"level", raw(shape.node.level)},
       {"index", shape.node.index},
       {"ownCount", shape.own},
@@ -270,6 +280,11 @@ Json extension_json(const TilePlan& plan) {
       {"borderCount", shape.border},
       {"interiorPrimitive", interior ? 0 : -1},
       {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
+  if (shape.objects) {
+    extension["objectCount"] = shape.objects->rows;
+    extension["objectColumns"] = shape.objects->columns;
+    extension["objectTextBytes"] = shape.objects->text_bytes;
+  }
   if (shape.is_shaded())
     extension["splitCount"] = shape.splits;
   if (shape.textures) {
@@ -303,6 +318,33 @@ Json buffers_json(const TilePlan& plan, const Packing* packing) {
 }
 
 /// Returns the extensions without which a viewer cannot show the tile.
+/// Adds a view for each column of the table of objects.
+void add_column_views(const TilePlan& plan, const Packing* packing, Json& views) {
+  const std::uint64_t begin = packing != nullptr ? packing->offset(TilePart::objects)
+                                                 : plan[TilePart::objects].offset;
+  const auto add = [&](std::uint64_t offset, std::uint64_t bytes) {
+    views.push_back({{"buffer", kBin}, {"byteOffset", begin + offset}, {"byteLength", bytes}});
+  };
+  for (const ObjectColumn& column : plan.shape().objects->plan().columns) {
+    add(column.values, std::max<std::uint64_t>(column.value_bytes, 1));
+    if (column.start_bytes > 0)
+      add(column.starts, column.start_bytes);
+  }
+}
+
+/// Returns the content of the root's extension. Values are there whenever objects are.
+Json metadata_json(const TilePlan& plan) {
+  Json metadata = values_metadata(plan.layout());
+  const auto& objects = plan.shape().objects;
+  if (!objects)
+    return metadata;
+  const ObjectColumns columns = objects->plan();
+  metadata["schema"]["classes"]["object"] = object_class(columns);
+  metadata["propertyTables"] = Json::array(
+      {object_table_json(columns, objects->rows, static_cast<std::size_t>(plan.views()))});
+  return metadata;
+}
+
 Json required_extensions(const TilePlan& plan, const Packing* packing) {
   Json names = Json::array();
   if (packing != nullptr)
@@ -324,11 +366,15 @@ ViewMode mode_of(TilePart part) {
   return row_of(part).mode;
 }
 
+std::uint64_t begin_of(TilePart part, std::uint64_t end) {
+  return part == TilePart::objects ? (end + 7) / 8 * 8 : aligned4(end);
+}
+
 std::uint64_t Packing::offset(TilePart part) const {
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(part); ++i)
-    offset += aligned4(bytes[i]);
-  return offset;
+    offset = begin_of(static_cast<TilePart>(i), offset) + bytes[i];
+  return begin_of(part, offset);
 }
 
 std::uint64_t Packing::total() const {
@@ -383,6 +429,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   }
   add(TilePart::raw_values, kF32, layout.part(AttributeKind::values).count,
       shape.raw_values ? shape.vertices() : 0);
+  add(TilePart::objects, kU8, 1, shape.objects ? shape.objects->plan().bytes : 0);
   add(TilePart::image, kU8, 1, shape.image.bytes);
   add(TilePart::normal_map, kU8, 1, shape.normal_map.bytes);
 }
@@ -390,11 +437,13 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
 void TilePlan::add(TilePart part, unsigned component, std::size_t components, std::uint64_t count) {
   if (components == 0 || count == 0)
     return;
+  bytes_ = begin_of(part, bytes_);
   const std::uint64_t size = component_bytes(component) * components;
+  const bool is_padded = components > 1 || part == TilePart::feature;
   sections_[static_cast<std::size_t>(part)] = {.component = component,
                                                .components = static_cast<unsigned>(components),
                                                .count = count,
-                                               .stride = components > 1 ? aligned4(size) : size,
+                                               .stride = is_padded ? aligned4(size) : size,
                                                .offset = bytes_,
                                                .view = views_++};
   bytes_ = aligned4(bytes_ + count * sections_[static_cast<std::size_t>(part)].stride);
@@ -411,6 +460,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
     if (part <= TilePart::border)
       accessors.push_back(accessor_json(*this, part, bounds));
   }
+  if (shape_.objects)
+    add_column_views(*this, packing, views);
   for (std::size_t i = 0; i < layout_.values.size(); ++i)
     accessors.push_back(value_accessor_json(*this, i));
   const Json mesh = {{"primitives", primitives_json(*this)}};
@@ -419,6 +470,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   Json used = required;
   if (shape_.has_image() && shape_.textures->unlit)
     used.push_back(kUnlitExtension);
+  if (shape_.objects)
+    used.push_back(kFeaturesExtension);
   if (!layout_.values.empty())
     used.push_back(kMetadataExtension);
   used.push_back(kTileExtension);
@@ -438,7 +491,7 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["bufferViews"] = std::move(views);
   document["buffers"] = buffers_json(*this, packing);
   if (!layout_.values.empty())
-    document["extensions"][kMetadataExtension] = values_metadata(layout_);
+    document["extensions"][kMetadataExtension] = metadata_json(*this);
   document["extensions"][kTileExtension] = extension_json(*this);
   if (shape_.first_view)
     document["extras"] = first_view_extras(*shape_.first_view);

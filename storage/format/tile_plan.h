@@ -10,28 +10,34 @@
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "storage/format/tile_colours.h"
+#include "storage/format/tile_object_table.h"
 #include "storage/format/tile_sums.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-/// Hierarchies with normal maps.
-inline constexpr unsigned kTileExtensionVersion = 6;
+/// Hierarchies with tables of objects.
+inline constexpr unsigned kTileExtensionVersion = 7;
+/// No tables; normal maps.
+inline constexpr unsigned kNoObjectsVersion = 6;
 /// No normal maps; tiles with values.
 inline constexpr unsigned kNoMapsVersion = 5;
 /// No values either.
 inline constexpr unsigned kNoValuesVersion = 4;
 /// No values either, and colours as screens have them.
 inline constexpr unsigned kScreenColoursVersion = 3;
-inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours, bool has_maps) {
-  return has_maps                ? kTileExtensionVersion
+inline unsigned tile_version(const AttributeLayout& layout, bool screen_colours, bool has_maps,
+                             bool has_objects) {
+  return has_objects             ? kTileExtensionVersion
+         : has_maps              ? kNoObjectsVersion
          : screen_colours        ? kScreenColoursVersion
          : layout.values.empty() ? kNoValuesVersion
                                  : kNoMapsVersion;
@@ -51,6 +57,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   colour         N                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
 //   texcoord       N                 2 f32; of textured tiles those in their picture, and map
 //   map_texcoord   N or none         2 u16: of tiles with a normal map and no picture
+//   feature        N or none         u16, stride 4, or f32: rows in the table of objects
 //   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
 //   values         N                 4 bytes for each value, of which its component type may take
@@ -65,6 +72,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   raw_colours    n or none         3 or 4 f32
 //   raw_texcoords  n or none         2 f32
 //   raw_values     n or none         f32 or f64 for each value
+//   objects        its bytes         u8, from a multiple of 8 on: tile_object_table.h
 //   image          its bytes         u8, a picture as it is
 //   normal_map     its bytes         u8, the same
 enum class TilePart : std::size_t {
@@ -74,6 +82,7 @@ enum class TilePart : std::size_t {
   colour,
   texcoord,
   map_texcoord,
+  feature,
   interior,
   border,
   values,
@@ -87,16 +96,17 @@ enum class TilePart : std::size_t {
   raw_colours,
   raw_texcoords,
   raw_values,
+  objects,
   image,
   normal_map
 };
-inline constexpr std::size_t kPartCount = 21;
+inline constexpr std::size_t kPartCount = 23;
 
 /// A coordinate of 1 in a normal map is stored as this.
 inline constexpr float kMaxMapTexcoord = 65535;
 
 /// The key of a part in the extension (from values on), or the name of its attribute (up to
-/// map_texcoord) where it is shown.
+/// feature) where it is shown.
 const char* key_of(TilePart part);
 
 /// The kinds of attributes that have a section for each vertex: as glTF shows them, and in
@@ -125,8 +135,11 @@ using ChannelGroups = std::array<ChannelGroup, kAttributeSections.size()>;
 enum class ViewMode { raw, attributes, triangles, indices };
 ViewMode mode_of(TilePart part);
 
-/// The BIN chunk of a tile of compressed sections: these, each at the next multiple of 4, in the
-/// order of the parts.
+/// Returns where a part begins behind what ends there: at a multiple of 4, of 8 for tables.
+std::uint64_t begin_of(TilePart part, std::uint64_t end);
+
+/// The BIN chunk of a tile of compressed sections: these, each from its begin_of() on, in the order
+/// of the parts.
 struct Packing {
   std::array<std::uint64_t, kPartCount> bytes{};  ///< size of each section in the file
   bool exponential = false;                       ///< positions went through the filter EXPONENTIAL
@@ -149,6 +162,16 @@ struct ImageShape {
   AlphaMode alpha = AlphaMode::opaque;
 };
 
+/// The table of objects.
+struct ObjectTableShape {
+  std::vector<ObjectProperty> properties;  ///< the hierarchy's
+  std::uint64_t rows = 0;
+  std::uint32_t columns = 0;
+  std::vector<std::uint64_t> text_bytes;  ///< of each of them that has texts
+
+  ObjectColumns plan() const { return {properties, columns, rows, text_bytes}; }
+};
+
 /// The numbers from which the place of everything in the file follows; each below 2^32, so that no
 /// size overflows 64 bits.
 struct TileShape {
@@ -165,6 +188,7 @@ struct TileShape {
   bool screen_colours = false;                   ///< the hierarchy's, see TileFormat
   std::optional<NormalMapFormat> normal_maps{};  ///< likewise
   ImageShape normal_map{};
+  std::optional<ObjectTableShape> objects{};  ///< if the hierarchy's tiles have tables
 
   /// Whether there can be splits.
   bool is_shaded() const { return computed_normals || textures || normal_maps; }
@@ -204,6 +228,8 @@ class TilePlan {
   const Section& operator[](TilePart part) const {
     return sections_[static_cast<std::size_t>(part)];
   }
+  /// The number of views with a section each; those of the columns of objects follow.
+  int views() const { return views_; }
   /// Bytes of the BIN chunk if nothing is compressed.
   std::uint64_t bytes() const { return bytes_; }
 

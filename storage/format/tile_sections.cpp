@@ -112,6 +112,7 @@ class Reader {
     tile.node = shape.node;
     TileMesh& mesh = tile.mesh;
     mesh.vertices = {std::move(positions), attributes(), plan_.layout().channels()};
+    tile.objects = objects(mesh.vertices);
     mesh.own_count = static_cast<std::uint32_t>(shape.own);
     mesh.boundary_count = static_cast<std::uint32_t>(shape.boundary);
     mesh.copies = take_copies(mesh.vertices, copy_places(mesh.vertices.positions));
@@ -120,6 +121,7 @@ class Reader {
     shading.tangents = tangents();
     shading.texcoords = plan_.shape().has_image() ? texcoords() : map_texcoords();
     shading.split_of = splits();
+    check_split_features(shading.split_of);
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
     read_triangles(TilePart::interior, numbers, shading.split_of,
                    {mesh.interior, mesh.interior_wedges, shading.interior});
@@ -204,6 +206,46 @@ class Reader {
     if (!std::isfinite(stored))
       fail(fmt::format("value {} of vertex {} is not finite", value.name, vertex));
     return stored;
+  }
+
+  std::uint64_t feature(std::uint64_t vertex) const {
+    const Section& section = plan_[TilePart::feature];
+    if (section.component == kU16)
+      return get<std::uint16_t>(section, vertex);
+    const auto stored = get<float>(section, vertex);
+    if (!(stored >= 0 && stored < static_cast<float>(kMostObjects)))
+      fail(fmt::format("the row of vertex {} in the table of objects is {}", vertex, stored));
+    return static_cast<std::uint64_t>(stored);
+  }
+
+  /// Reads the table, and checks that vertices, copies included, have the rows of their objects.
+  TileObjects objects(const VertexArray& vertices) const {
+    const auto& shape = plan_.shape().objects;
+    if (!shape)
+      return {};
+    const Section& section = plan_[TilePart::objects];
+    const auto table = bin_.subspan(section.offset, section.bytes());
+    TileObjects objects{read_objects(table, shape->plan(), shape->rows, name_),
+                        shape->columns,
+                        shape->text_bytes,
+                        {table.begin(), table.end()}};
+    const PlacedValue place = placed_object(plan_.layout()).value();
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const std::uint64_t row = feature(v);
+      const double object =
+          value_in(place.type, vertices.attributes_of(v).data() + place.channel);
+      if (row >= shape->rows || objects.objects[row] != object)
+        fail(fmt::format("vertex {} has row {} in the table of objects, which is not of its object",
+                         v, row));
+    }
+    return objects;
+  }
+
+  void check_split_features(std::span<const std::uint32_t> split_of) const {
+    for (std::size_t i = 0; plan_.shape().objects && i < split_of.size(); ++i) {
+      if (feature(plan_.shape().vertices() + i) != feature(split_of[i]))
+        fail(fmt::format("split {} has another object than its vertex", i));
+    }
   }
 
   /// Returns the vertices that the elements of a section repeat; checks that they are below `limit`

@@ -3,6 +3,7 @@
 #include "hierarchy/value_channels.h"
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
+#include "storage/format/metadata_ids.h"
 
 #include <algorithm>
 #include <array>
@@ -16,25 +17,6 @@ namespace meshhier::storage {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-bool is_alphanumeric(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
-
-/// Returns a name of letters, digits and underscores.
-std::string as_word(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return !is_alphanumeric(c); }, '_');
-  return name;
-}
-
-/// Adds a name; if it is there already, it gets a number behind it.
-void add_unique(std::vector<std::string>& names, const std::string& name) {
-  std::string unique = name;
-  for (int number = 2; std::ranges::find(names, unique) != names.end(); ++number)
-    unique = name + '_' + std::to_string(number);
-  names.push_back(std::move(unique));
-}
 
 const char* component_name(unsigned component) {
   switch (component) {
@@ -123,13 +105,9 @@ std::vector<std::string> value_attributes(const AttributeLayout& layout) {
 
 std::vector<std::string> value_ids(const AttributeLayout& layout) {
   std::vector<std::string> names;
-  for (const ScalarAttribute& value : layout.values) {
-    std::string word = as_word(value.name);
-    if (word[0] >= '0' && word[0] <= '9')
-      word.insert(word.begin(), '_');
-    add_unique(names, word);
-  }
-  return names;
+  for (const ScalarAttribute& value : layout.values)
+    names.push_back(value.name);
+  return metadata_ids(names);
 }
 
 Json values_metadata(const AttributeLayout& layout) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <map>
 #include <tuple>
@@ -109,11 +110,14 @@ WedgeMesh soup_of(const TestMesh& mesh, int channels, const CornerAttributes& at
 
 WedgeMesh welded(const WedgeMesh& mesh) {
   WedgeMesh result{mesh.channels, {}, {}, mesh.triangles};
-  std::map<std::pair<std::array<float, 3>, std::vector<float>>, std::uint32_t> known;
+  std::map<std::pair<std::array<float, 3>, std::vector<std::uint32_t>>, std::uint32_t> known;
   for (MeshTriangle& t : result.triangles) {
     for (std::uint32_t& v : t) {
       const std::vector<float> attributes = attributes_of(mesh, v);
-      const auto [found, is_new] = known.try_emplace({key_of(mesh.positions[v]), attributes}, 0);
+      std::vector<std::uint32_t> bits;  // which no order of floats compares: halves of doubles
+      for (const float number : attributes)
+        bits.push_back(std::bit_cast<std::uint32_t>(number));
+      const auto [found, is_new] = known.try_emplace({key_of(mesh.positions[v]), bits}, 0);
       if (is_new)
         found->second = result.add(mesh.positions[v], attributes);
       v = found->second;

@@ -1,6 +1,7 @@
 #include "cluster_simplify/wedges.h"
 
 #include "cluster_simplify/contraction.h"
+#include "hierarchy/scalar_value.h"
 #include "hierarchy/tile_mesh.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/cluster_simplify/wedge_tiles.h"
@@ -769,6 +770,84 @@ TEST(WedgesTest, NumbersFollowTheFirstOldWedges) {
   EXPECT_EQ(c.wedges.map(0, 0), 0U);
   EXPECT_EQ(c.wedges.map(0, 1), 1U);
   EXPECT_EQ(c.at(0, 0), (Attributes{0.75F, 0.5F}));
+}
+
+// ---- objects ------------------------------------------------------------------------------
+
+const AttributeLayout kObjects{.values = {{"object", ValueType::u32, true, true}}};
+
+double object_in(std::span<const float> channels) {
+  return value_in(ValueType::u32, channels.data());
+}
+
+/// Triangles of the mesh belong to objects by `object_of`.
+WedgeMesh of_objects(const tests::TestMesh& mesh,
+                     const std::function<double(std::uint32_t triangle)>& object_of) {
+  return tests::welded(tests::soup_of(mesh, 2, [&](std::uint32_t t, Vec3f) {
+    Attributes channels(2);
+    put_value(ValueType::u32, object_of(t), channels.data());
+    return channels;
+  }));
+}
+
+/// Every triangle that survives still belongs to the object that it did.
+void expect_objects_kept(const ContractedTile& c) {
+  std::size_t survivors = 0;
+  for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
+    const double object = object_in(tests::wedge_of(c.tile.mesh, raw(t[0]), wedges[0]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (c.tile.mesh.is_own(t[k])) {
+        EXPECT_EQ(object_in(c.image(raw(t[k]), wedges[k])), object);
+      }
+    }
+    ++survivors;
+  });
+  EXPECT_GT(survivors, 0U);
+}
+
+TEST(WedgesTest, TrianglesKeepTheirObjectsWithAnyMethod) {
+  const tests::TestMesh grid = tests::open_grid(12, 8);
+  for (const NamedMethod& method : methods()) {
+    SCOPED_TRACE(method.name);
+    for (const double many : {2.0, 7.0, 500.0}) {
+      const WedgeMesh mesh = of_objects(grid, [&](std::uint32_t t) {
+        return 4294967295.0 - std::fmod(std::floor(t / 3.0) * 5, many);
+      });
+      for (const float limit : {100.0F, 9.0F, 4.0F}) {
+        const BuildTile tile = tests::tile_of(mesh, limit);
+        expect_objects_kept(contracted(tile, tile.mesh.own_count / 2, kObjects, method));
+      }
+    }
+  }
+}
+
+TEST(WedgesTest, PiecesThatOnlyAMethodBringsTogetherKeepTheirObjects) {
+  // Boxes side by side, no two of which have a place in common.
+  tests::TestMesh boxes;
+  for (std::uint32_t box = 0; box < 20; ++box) {
+    const tests::TestMesh cube = tests::cube(2);
+    const auto first = static_cast<std::uint32_t>(boxes.positions.size());
+    for (const Vec3f p : cube.positions)
+      boxes.positions.push_back(p + Vec3f{2.01F * static_cast<float>(box), 0, 0});
+    for (const tests::MeshTriangle& t : cube.triangles)
+      boxes.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const auto triangles = static_cast<std::uint32_t>(boxes.triangles.size() / 20);
+  const WedgeMesh mesh = of_objects(boxes, [&](std::uint32_t t) { return t / triangles; });
+  for (const NamedMethod& method : methods()) {
+    SCOPED_TRACE(method.name);
+    const BuildTile tile = tests::tile_of(mesh);
+    expect_objects_kept(contracted(tile, tile.mesh.own_count / 3, kObjects, method));
+  }
+}
+
+TEST(WedgesTest, OfAnyNumberOfObjectsAtAPlaceNoneTakesAnothers) {
+  const WedgeMesh mesh =
+      of_objects(tests::wheel(200, 0.1F), [](std::uint32_t t) { return t + 16777216.0; });
+  const BuildTile tile = tests::tile_of(mesh);
+  const ContractedTile c = contracted(tile, identity(tile), kObjects);
+  expect_objects_kept(c);
+  EXPECT_EQ(c.count_at(c.place(0)), 200U);
 }
 
 }  // namespace
