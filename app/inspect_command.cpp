@@ -2,11 +2,14 @@
 #include "app/hierarchy_place.h"
 #include "app/options.h"
 #include "inspection/inspect.h"
+#include "inspection/list_objects.h"
 #include "storage/io/json_text.h"
 
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -18,12 +21,17 @@ struct InspectArguments {
   std::string hierarchy;
   WebOptions web;
   inspection::InspectOptions options;
+  std::optional<std::string> objects;  ///< what the names of those that are listed begin with
   bool json = false;
 };
 
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  if (arguments.json) {
+  if (arguments.objects) {
+    inspection::list_objects(
+        place.files(), place.path(), {*arguments.objects, arguments.json},
+        [&](std::string_view line) { environment.out << line << '\n'; });
+  } else if (arguments.json) {
     environment.out << storage::json_text(
                            inspection::inspect_json(place.files(), place.path(), arguments.options),
                            {.indent = 2})
@@ -39,6 +47,8 @@ constexpr const char* kInspectFooter = R"(Examples:
   meshhier inspect david.hier
   meshhier inspect david.hier --level 3
   meshhier inspect david.hier --json | jq .partitions
+  meshhier inspect town.hier --objects
+  meshhier inspect town.hier --objects=Main_Street/ --json | jq .properties.height
 )";
 
 }  // namespace
@@ -47,7 +57,13 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command = parser.add_subcommand("inspect", "Tell what a hierarchy holds");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
-  command->add_flag("--json", arguments->json, "One JSON object, for programs");
+  command->add_flag("--json", arguments->json,
+                    "One JSON object, for programs; of objects one a line");
+  command
+      ->add_option("--objects", arguments->objects,
+                   "List the objects instead: their names, sizes and properties. --objects=PREFIX "
+                   "those whose names begin so")
+      ->expected(0, 1);
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);
   command->callback([arguments, &invocation] {

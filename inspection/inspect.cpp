@@ -146,12 +146,25 @@ std::string names_text(const std::vector<ValueStatistics::LabelCount>& labels) {
 std::string value_text(const ScalarAttribute& attribute, const ValueStatistics& values) {
   std::string text =
       fmt::format("  {:<10} {} {}, {} to {}", shown(attribute.name), name_of(attribute.type),
-                  attribute.is_label ? "label" : "quantity", values.min, values.max);
+                  name_in(kValueKinds, kind_of(attribute)), values.min, values.max);
   if (!values.labels.empty())
     text += ", " + counted(values.labels.size(), "labels") + names_text(values.labels);
   if (values.missing > 0)
     text += fmt::format(", missing at {}", grouped(values.missing, "vertices"));
   return text + '\n';
+}
+
+/// Returns a text about the objects: "objects      100,000, with height (number)".
+std::string objects_text(const storage::ObjectsSummary& objects) {
+  std::vector<std::string> properties, shown_by_level;
+  for (const auto& [name, type] : objects.table.properties)
+    properties.push_back(fmt::format("{} ({})", shown(name), name_of(type)));
+  for (const std::uint64_t count : objects.shown)
+    shown_by_level.push_back(grouped(count));
+  return fmt::format("objects      {}{}{}; shown by level, from the root down: {}{}\n",
+                     grouped(objects.table.objects), properties.empty() ? "" : ", with ",
+                     fmt::join(properties, ", "), fmt::join(shown_by_level, "  "),
+                     objects.are_in_tiles ? "; tiles have tables of them" : "");
 }
 
 std::string source_text(const storage::Manifest& manifest) {
@@ -173,6 +186,8 @@ std::string source_text(const storage::Manifest& manifest) {
   text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
   for (std::size_t i = 0; i < s.values.size(); ++i)
     text += value_text(s.attributes.values[i], s.values[i]);
+  if (manifest.objects)
+    text += objects_text(*manifest.objects);
   text += fmt::format("normals      {}{}\n", normals_of(manifest),
                       manifest.computed_normals ? ", 8 bits" : "");
   if (s.textures)

@@ -19,8 +19,9 @@ StageTimes objects_time(const JobSize& job, const TilePopulation& tiles);
 /// level shows. Requires all tiles. Reads each tile once; sorts a record for each object of a tile,
 /// in `scratch`. `origin`: of the tiles' positions. Throws Error(corrupt) if a triangle belongs to
 /// no object of the table, Error(io | budget | interrupted).
-storage::ObjectsSummary make_objects(Forest& forest, Vec3d origin, const std::filesystem::path& imported,
-                            const std::filesystem::path& directory, storage::ScratchFile& scratch,
-                            const StageContext& context);
+storage::ObjectsSummary make_objects(Forest& forest, Vec3d origin,
+                                     const std::filesystem::path& imported,
+                                     const std::filesystem::path& directory,
+                                     storage::ScratchFile& scratch, const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -262,14 +262,14 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
   }
   context.progress.stage("publish", left.size(), "tiles");
   std::unique_ptr<const storage::ObjectTable> objects = open_objects(to.directory, context);
-  TileWriter writer{forest,
-                    textures,
-                    format_of(*journal.source(), forest.computes_normals(), textures, objects.get(),
-                              context),
-                    to,
-                    context,
-                    {},
-                    std::move(objects)};
+  TileWriter writer{
+      forest,
+      textures,
+      format_of(*journal.source(), forest.computes_normals(), textures, objects.get(), context),
+      to,
+      context,
+      {},
+      std::move(objects)};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
   // A picture is held as it was stored, on its own, and in the tile's file.
@@ -318,8 +318,8 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   const SourceSummary source = complete_source(journal, context);
   const std::vector<Published> tiles = journal.published();
   const auto objects = open_objects(directory, context);
-  storage::TileFormat format = format_of(*journal.source(), forest.computes_normals(), textures,
-                                         objects.get(), context);
+  storage::TileFormat format =
+      format_of(*journal.source(), forest.computes_normals(), textures, objects.get(), context);
   std::optional<storage::Quantization> quantization;
   if (format.lattice) {
     quantization.emplace();

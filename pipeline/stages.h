@@ -24,11 +24,11 @@ class InputSlices;
 /// Results that stages hand on, besides what they put into the workshop.
 struct Making {
   Workshop& workshop;
-  TileFiles to;                  ///< where the tiles' files go
-  DiskNeed disk{};               ///< the build's, as well as it is known
-  OutlineStageResult outline{};  ///< when it is made
+  TileFiles to;                                      ///< where the tiles' files go
+  DiskNeed disk{};                                   ///< the build's, as well as it is known
+  OutlineStageResult outline{};                      ///< when it is made
   std::optional<storage::ObjectsSummary> objects{};  ///< likewise, if the mesh has any
-  std::future<void> settled{};   ///< when the partitions have reached the disk
+  std::future<void> settled{};                       ///< when the partitions have reached the disk
 };
 
 /// The part of a stage's work that one kind of task does.

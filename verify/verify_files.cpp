@@ -35,6 +35,7 @@ bool is_known(const VerifyJob& job, const std::set<fs::path>& tilesets, const fs
   return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
          relative == storage::outline_path({}) ||
          (has_preview && relative == storage::preview_path({})) ||
+         (job.reader.manifest().objects && relative == storage::objects_path({})) ||
          is_tile_file(job.tree(), relative) || tilesets.contains(relative);
 }
 

@@ -192,7 +192,8 @@ void check_bounds(const VerifyJob& job, const ManifestProblems& problems) {
 void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
   const storage::Manifest& manifest = job.reader.manifest();
   std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes +
-                        (manifest.preview ? manifest.preview->bytes : 0);
+                        (manifest.preview ? manifest.preview->bytes : 0) +
+                        (manifest.objects ? manifest.objects->table.bytes : 0);
   std::uint64_t triangles = 0;
   for (const TileRecord& record : job.reader.records()) {
     bytes += record.file_bytes;

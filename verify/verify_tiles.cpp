@@ -5,10 +5,12 @@
 #include "images/formats.h"
 #include "partition/compactness.h"
 #include "storage/format/layout.h"
+#include "verify/verify_objects.h"
 #include "verify/verify_parts.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -259,6 +261,9 @@ void verify_tiles(const VerifyJob& job) {
   const auto has_texcoords = [&](NodeId node) { return job.reader.record(node).image_width > 0; };
   BorderPairs pairs(job.tree(), maps, has_texcoords, job.scratch, job.options.memory_budget / 8);
   CopyClaims claims(job.tree(), has_texcoords, job.scratch, job.options.memory_budget / 8);
+  std::optional<ObjectCheck> objects;
+  if (job.reader.manifest().objects)
+    objects.emplace(job, job.options.memory_budget / 8);
   job.progress.stage("verify", records.size(), "tiles");
   std::vector<NodeId> nodes;
   for (const TileRecord& record : records)
@@ -270,6 +275,8 @@ void verify_tiles(const VerifyJob& job) {
       verify_alone(job, record, *tile);
       pairs.add(*tile);
       claims.add(*tile);
+      if (objects)
+        objects->add(*tile);
       if (job.tree().is_partition(record.node)) {
         totals.copies += exporting::own_copy_count(tile->mesh);
         totals.unreferenced += unreferenced_count(tile->mesh);
@@ -288,6 +295,8 @@ void verify_tiles(const VerifyJob& job) {
     explain_difference(job, {level, pair.low}, {level, pair.high});
   });
   claims.finish([&](const WrongCopies& wrong) { tell_wrong_copies(job, wrong); });
+  if (objects && job.tiles.unreadable_count() == 0)
+    objects->finish();
   job.checks.push_back(fmt::format(
       "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
       records.size() - job.tiles.unreadable_count(), off_target));

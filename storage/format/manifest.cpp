@@ -352,11 +352,11 @@ std::optional<ObjectsSummary> read_objects_summary(const JsonObject& object,
   const JsonObject objects = object.object("objects");
   ObjectsSummary summary{read_object_facts(objects), {}, objects.boolean("in_tiles")};
   const Json& shown = objects.at("shown");
-  const bool is_sound = shown.is_array() && shown.size() <= TargetVertexCounts::kMostLevels + 1 &&
-                        std::all_of(shown.begin(), shown.end(), [&](const Json& count) {
-                          return count.is_number_unsigned() &&
-                                 count.get<std::uint64_t>() <= summary.table.objects;
-                        });
+  const bool is_sound =
+      shown.is_array() && shown.size() <= TargetVertexCounts::kMostLevels + 1 &&
+      std::all_of(shown.begin(), shown.end(), [&](const Json& count) {
+        return count.is_number_unsigned() && count.get<std::uint64_t>() <= summary.table.objects;
+      });
   if (!is_sound)
     objects.wrong("shown", "a count of objects for each level");
   summary.shown = shown.get<std::vector<std::uint64_t>>();

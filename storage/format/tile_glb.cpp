@@ -363,11 +363,11 @@ ObjectTableShape read_table_shape(const Json& extension,
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
-  const Json& extension = require_extension(
-      document, kTileExtension,
-      tile_version(format.attributes, format.screen_colours, format.normal_maps.has_value(),
-                   format.objects.has_value()),
-      name);
+  const Json& extension =
+      require_extension(document, kTileExtension,
+                        tile_version(format.attributes, format.screen_colours,
+                                     format.normal_maps.has_value(), format.objects.has_value()),
+                        name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };

@@ -320,8 +320,8 @@ Json buffers_json(const TilePlan& plan, const Packing* packing) {
 /// Returns the extensions without which a viewer cannot show the tile.
 /// Adds a view for each column of the table of objects.
 void add_column_views(const TilePlan& plan, const Packing* packing, Json& views) {
-  const std::uint64_t begin = packing != nullptr ? packing->offset(TilePart::objects)
-                                                 : plan[TilePart::objects].offset;
+  const std::uint64_t begin =
+      packing != nullptr ? packing->offset(TilePart::objects) : plan[TilePart::objects].offset;
   const auto add = [&](std::uint64_t offset, std::uint64_t bytes) {
     views.push_back({{"buffer", kBin}, {"byteOffset", begin + offset}, {"byteLength", bytes}});
   };

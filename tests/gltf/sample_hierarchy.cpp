@@ -2,6 +2,8 @@
 
 #include "base/bounds.h"
 #include "hierarchy/attribute_rules.h"
+#include "hierarchy/value_channels.h"
+#include "storage/format/tile_object_table.h"
 #include "support/sample_shading.h"
 #include "support/sample_texture.h"
 
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
 
 namespace meshhier::tests {
 namespace {
@@ -321,6 +324,43 @@ SampleHierarchy shaded(SampleHierarchy sample) {
   sample.format.computed_normals = true;
   for (PublishedTile& tile : sample.tiles)
     tile.shading = sample_shading(tile);
+  return sample;
+}
+
+ObjectRow sample_object(std::uint32_t object, const std::vector<ObjectProperty>& properties) {
+  ObjectRow row;
+  row.name = "Gebäude/" + std::to_string(object);
+  for (const ObjectProperty& property : properties) {
+    const std::uint32_t which = object % 3;
+    row.values.emplace_back();
+    if (which == 0)
+      continue;
+    if (property.type == ObjectPropertyType::number)
+      row.values.back() = object / 7.0;
+    else if (property.type == ObjectPropertyType::boolean)
+      row.values.back() = which == 1;
+    else
+      row.values.back() = std::string(which == 1 ? 1 : 200, 'x') + "é€";
+  }
+  return row;
+}
+
+SampleHierarchy with_objects(SampleHierarchy sample,
+                             const std::vector<ObjectProperty>& properties) {
+  sample.format.objects = properties;
+  const PlacedValue object = placed_object(sample.format.attributes).value();
+  for (PublishedTile& tile : sample.tiles) {
+    std::uint32_t number = 16777000;
+    for (VertexArray* vertices : {&tile.mesh.vertices, &tile.mesh.copies.vertices}) {
+      const auto channels = static_cast<std::size_t>(vertices->channels);
+      for (std::size_t v = 0; v < vertices->size(); ++v)
+        put_value(object.type, number - v % 23 * 1000,
+                  vertices->attributes.data() + v * channels + object.channel);
+    }
+    tile.objects = storage::make_tile_objects(
+        storage::objects_of(tile.mesh, sample.format.attributes), properties,
+        [&](std::uint32_t one) { return sample_object(one, properties); });
+  }
   return sample;
 }
 

@@ -48,6 +48,12 @@ SampleHierarchy with_relief(SampleHierarchy sample, ImageFormat pictures, ImageF
 /// The same with its positions rounded to a lattice of so many bits over all of them.
 SampleHierarchy quantized(SampleHierarchy sample, int bits);
 
+/// The same with objects of these properties: a mesh whose layout has an object, some of whose
+/// triangles then have corners of several. Comes last.
+SampleHierarchy with_objects(SampleHierarchy sample, const std::vector<ObjectProperty>& properties);
+/// What is known of an object there: names and texts with letters of any kind.
+ObjectRow sample_object(std::uint32_t object, const std::vector<ObjectProperty>& properties);
+
 /// Attributes of a vertex as a real input has them: unit normals, whole numbers for u8 and u16
 /// colours, others in [0, 1].
 std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_t vertex);

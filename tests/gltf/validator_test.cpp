@@ -176,6 +176,19 @@ TEST_F(GltfValidator, AcceptsTilesWithPicturesAndNormalMaps) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsTilesWithTablesOfObjects) {
+  const AttributeLayout layout{.values = {{"object", ValueType::u32, true, true}}};
+  int number = 0;
+  for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
+    SampleHierarchy sample = with_objects(
+        with_copies(make_sample(torus(150, 0.05F), 3, {layout, {}})),
+        {{"height", ObjectPropertyType::number}, {"owner", ObjectPropertyType::text}});
+    sample.format.compression = compression;
+    write_tiles(fmt::format("objects{}", number++), sample);
+  }
+  expect_clean();
+}
+
 TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
   int number = 0;
   for (const AttributeLayout& layout : sample_layouts()) {

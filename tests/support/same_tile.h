@@ -44,6 +44,7 @@ inline void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
   EXPECT_EQ(a.mesh.border_wedges, b.mesh.border_wedges);
   EXPECT_TRUE(a.shading == b.shading);
   EXPECT_TRUE(a.image == b.image);
+  EXPECT_TRUE(a.objects == b.objects);
 }
 
 inline void expect_same_attributes(const PublishedTile& a, const PublishedTile& b) {

@@ -1,0 +1,90 @@
+#include "inspection/list_objects.h"
+
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+#include "storage/format/object_table.h"
+#include "storage/io/json_text.h"
+
+#include <span>
+#include <variant>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::inspection {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostShownBytes = 200;
+
+Json json_of(const ObjectValue& value) {
+  return std::visit(
+      [](const auto& known) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
+          return Json();
+        else
+          return Json(known);
+      },
+      value);
+}
+
+std::string text_of(const ObjectValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text == nullptr ? storage::json_text(json_of(value)) : plain_text(*text, kMostShownBytes);
+}
+
+std::string json_line(std::uint32_t object, const ObjectRow& row,
+                      std::span<const ObjectProperty> properties) {
+  Json json = {
+      {"object", object}, {"name", row.name}, {"triangles", row.triangles}, {"area", row.area}};
+  const auto corner = [](Vec3d p) { return Json::array({p.x, p.y, p.z}); };
+  json["box"] =
+      row.box ? Json{{"min", corner(row.box->min)}, {"max", corner(row.box->max)}} : Json();
+  json["properties"] = Json::object();
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    if (!std::holds_alternative<std::monostate>(row.values[i]))
+      json["properties"][properties[i].name] = json_of(row.values[i]);
+  }
+  return storage::json_text(json);
+}
+
+std::string text_line(std::uint32_t object, const ObjectRow& row,
+                      std::span<const ObjectProperty> properties) {
+  std::string line = fmt::format("{:>8}  {}  {}, area {:.6g}", object,
+                                 row.name.empty() ? "-" : plain_text(row.name, kMostShownBytes),
+                                 counted(row.triangles, "triangles"), row.area);
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    if (!std::holds_alternative<std::monostate>(row.values[i]))
+      line += fmt::format(", {} {}", plain_text(properties[i].name, kMostShownBytes),
+                          text_of(row.values[i]));
+  }
+  return line;
+}
+
+}  // namespace
+
+void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
+                  const ListedObjects& which, const std::function<void(std::string_view)>& visit) {
+  const storage::HierarchyReader reader(files, directory);
+  const auto& objects = reader.manifest().objects;
+  if (!objects)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{}: has no objects; \"objects\" of the config says what they are made of",
+                    directory.string()));
+  const storage::ObjectTable table(files.open(storage::objects_path(directory)), &objects->table);
+  const auto tell = [&](std::uint32_t object, const ObjectRow& row) {
+    visit(which.as_json ? json_line(object, row, table.properties())
+                        : text_line(object, row, table.properties()));
+  };
+  if (which.prefix.empty())
+    return table.for_each(tell);
+  const auto [begin, end] = table.range_of_prefix(which.prefix);
+  for (std::uint32_t object = begin; object < end; ++object)
+    tell(object, table.row(object));
+}
+
+}  // namespace meshhier::inspection

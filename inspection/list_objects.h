@@ -1,0 +1,25 @@
+// Tells of the objects of a hierarchy, one line each, from the table alone.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace meshhier::inspection {
+
+/// Which objects are told of, and how.
+struct ListedObjects {
+  std::string prefix;  ///< those whose names begin so; empty: all
+  bool as_json = false;
+};
+
+/// Hands a line for each object to `visit`, ascending by name: its number, name, triangles, area
+/// and properties; as JSON an object that also has its box. Reads the table block by block. Throws
+/// Error(usage) if the hierarchy has no objects, Error(io | corrupt).
+void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
+                  const ListedObjects& which, const std::function<void(std::string_view)>& visit);
+
+}  // namespace meshhier::inspection

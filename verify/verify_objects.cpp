@@ -1,0 +1,139 @@
+#include "verify/verify_objects.h"
+
+#include "base/error.h"
+#include "base/plain_text.h"
+#include "hierarchy/object_parts.h"
+#include "storage/format/layout.h"
+#include "storage/format/tile_object_table.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::verifying {
+namespace {
+
+/// Runs a check; that a file is not as it must be is a problem.
+template <class Check>
+void note_problems(const VerifyJob& job, const Check& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
+    job.problems.add(error.what());
+  }
+}
+
+/// Areas are sums of the same numbers in another order.
+bool are_near(double a, double b) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
+}
+
+bool are_near(Vec3d a, Vec3d b, double slack) {
+  return std::abs(a.x - b.x) <= slack && std::abs(a.y - b.y) <= slack &&
+         std::abs(a.z - b.z) <= slack;
+}
+
+/// `slack`: how far positions of tiles are from those that were measured.
+bool is_of(const ObjectRow& row, const partition::ObjectExtent& extent, double slack) {
+  if (row.triangles != extent.triangles || row.box.has_value() != extent.box.has_value())
+    return false;
+  if (row.box && !(are_near(row.box->min, extent.box->min, slack) &&
+                   are_near(row.box->max, extent.box->max, slack)))
+    return false;
+  return slack > 0 || are_near(row.area, extent.area);
+}
+
+}  // namespace
+
+ObjectCheck::ObjectCheck(const VerifyJob& job, std::uint64_t memory_bytes)
+    : job_(job), census_(job.tree().depth(), job.scratch, memory_bytes) {
+  note_problems(job, [&] {
+    const auto path = storage::objects_path(job.reader.directory());
+    table_ = std::make_unique<storage::ObjectTable>(job.files.open(path),
+                                                    &job.reader.manifest().objects->table);
+  });
+}
+
+void ObjectCheck::add(const PublishedTile& tile) {
+  const AttributeLayout& layout = job_.reader.tile_format().attributes;
+  const auto tell = [&](const std::string& what) {
+    job_.problems.add(fmt::format(
+        "{}: {}", storage::tile_path(job_.reader.directory(), tile.node).string(), what));
+  };
+  if (const auto torn = torn_triangle(tile.mesh, layout)) {
+    tell(fmt::format("the corners {}, {} and {} of a triangle belong to different objects",
+                     raw((*torn)[0]), raw((*torn)[1]), raw((*torn)[2])));
+    return;
+  }
+  census_.add(
+      object_parts(job_.tree(), tile.node, tile.mesh, layout, job_.reader.manifest().origin));
+  const std::vector<std::uint32_t> objects = storage::objects_of(tile.mesh, layout);
+  if (!table_ || objects.back() >= table_->size()) {
+    if (table_)
+      tell(fmt::format("object {} of {}", objects.back(), table_->size()));
+    return;
+  }
+  if (tile.objects.empty())
+    return;
+  const TileObjects expected = storage::make_tile_objects(
+      objects, table_->properties(), [&](std::uint32_t object) { return table_->row(object); });
+  if (tile.objects != expected)
+    tell("its table of objects is not what objects.bin says");
+}
+
+void ObjectCheck::finish() {
+  if (!table_)
+    return;
+  census_.end();
+  note_problems(job_, [&] { check_rows(); });
+  note_problems(job_, [&] { check_sum(); });
+  const auto& told = job_.reader.manifest().objects->shown;
+  if (told != census_.shown())
+    job_.problems.add(fmt::format("{}: \"objects.shown\" is not what the tiles show",
+                                  storage::manifest_path(job_.reader.directory()).string()));
+  job_.checks.push_back(fmt::format(
+      "objects: names and properties of {}, their boxes and areas compared with their "
+      "triangles{}",
+      table_->size(), job_.reader.tile_format().objects ? ", the tables of tiles with both" : ""));
+}
+
+void ObjectCheck::check_rows() {
+  const std::string name = storage::objects_path(job_.reader.directory()).string();
+  const auto& rounded = job_.reader.manifest().quantization;
+  const double slack = rounded ? rounded->worst_rounding * (1 + 1e-9) : 0;
+  table_->for_each([&](std::uint32_t object, const ObjectRow& row) {
+    job_.cancel.check();
+    if (!is_of(row, census_.take(object), slack))
+      job_.problems.add(fmt::format(
+          "{}: box, area or triangles of object {} are not those of its triangles", name, object));
+  });
+}
+
+void ObjectCheck::check_sum() const {
+  const auto path = storage::objects_path(job_.reader.directory());
+  const auto file = job_.files.open(path);
+  const storage::ObjectTableFacts& told = job_.reader.manifest().objects->table;
+  storage::Checksum sum;
+  std::vector<std::byte> block(std::size_t{1} << 18);
+  for (std::uint64_t at = 0; at < file->size(); at += block.size()) {
+    job_.cancel.check();
+    const auto part =
+        std::span(block).first(std::min<std::uint64_t>(block.size(), file->size() - at));
+    file->read_exact(at, part);
+    sum.add(part);
+  }
+  if (sum.value() != told.checksum)
+    throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
+}
+
+}  // namespace meshhier::verifying
