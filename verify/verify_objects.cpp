@@ -34,8 +34,8 @@ void note_problems(const VerifyJob& job, const Check& check) {
 
 /// Areas are sums of the same numbers in another order.
 bool are_near(double a, double b) {
-  constexpr double kRounding = 1e-9;
-  return std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
+  constexpr double kSumError = 1e-9;
+  return std::abs(a - b) <= kSumError * std::max(std::abs(a), std::abs(b));
 }
 
 bool are_near(Vec3d a, Vec3d b, double slack) {
