@@ -1,4 +1,5 @@
 // meshgen: makes meshes for tests and measurements.
+#include "bench/city.h"
 #include "bench/generator.h"
 #include "bench/program.h"
 #include "bench/split.h"
@@ -21,6 +22,7 @@ struct Arguments {
   bench::AtlasOptions atlas;
   bench::TexturedFileOptions textured;
   bench::AmplifyOptions amplify;
+  bench::CityOptions city;
   std::string stress_case;
   std::uint64_t stress_size = 100'000;
   std::string split_case;
@@ -163,6 +165,12 @@ void add_stress(CLI::App& app, Arguments& arguments) {
   command->footer(listing(bench::stress_cases()));
 }
 
+void add_city(CLI::App& app, Arguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("city", "Boxes, an object each, as OBJ, and a table of them as CSV");
+  command->add_option("--buildings", arguments.city.buildings, "1 to 2^24")->capture_default_str();
+}
+
 bench::LoadedMesh load(storage::FileSystem& files, const std::string& path) {
   return bench::load_mesh(*mesh_io::open_mesh(files, path));
 }
@@ -201,8 +209,20 @@ void run_textured(storage::FileSystem& files, Arguments& arguments) {
              atlas.chart_count(), atlas.chart_side(), atlas.chart_side(), sizes.image_bytes);
 }
 
+void run_city(storage::FileSystem& files, Arguments& arguments) {
+  arguments.city.seed = arguments.seed;
+  const bench::CitySizes sizes =
+      bench::write_city(files, {arguments.output, arguments.force, {}}, arguments.city);
+  fmt::print("{}: {} buildings, {} bytes; a table of {} bytes\n", arguments.output,
+             arguments.city.buildings, sizes.mesh_bytes, sizes.table_bytes);
+}
+
 void run(const CLI::App& app, Arguments& arguments) {
   const auto files = storage::make_posix_file_system();
+  if (app.got_subcommand("city")) {
+    run_city(*files, arguments);
+    return;
+  }
   if (app.got_subcommand("textured")) {
     run_textured(*files, arguments);
     return;
@@ -228,6 +248,7 @@ int main(int argc, char** argv) {
   add_shuffle(app, arguments);
   add_split(app, arguments);
   add_stress(app, arguments);
+  add_city(app, arguments);
   app.require_subcommand(1);
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_option("--seed", arguments.seed, "Another seed, another mesh")
