@@ -284,6 +284,23 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
           },
           "The orthophoto (GeoTIFF) that heights of a raster show")
       ->type_name("FILE");
+  command
+      ->add_option_function<std::string>(
+          "--objects",
+          [arguments](const std::string& source) {
+            arguments->settings.push_back("objects.from=" + source);
+          },
+          "What objects are made from: node, group, object, material, file, solid, feature, "
+          "label:NAME, or none")
+      ->type_name("SOURCE");
+  command
+      ->add_option_function<std::string>(
+          "--object-table",
+          [arguments](const std::string& table) {
+            arguments->settings.push_back("objects.table=" + table);
+          },
+          "Properties of the objects: CSV or lines of JSON, with a column id or name")
+      ->type_name("FILE");
   command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");

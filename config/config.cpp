@@ -163,6 +163,19 @@ void check_first_view(const Config& config, const Draft& draft) {
     refuse(draft.origin_of("first_view"), "expected both \"azimuth\" and \"elevation\"");
 }
 
+/// Refuses a table that no object could have a row of, and a label that is not read.
+void check_objects(const Config& config, const Draft& draft) {
+  using mesh_io::ObjectSource;
+  const auto& [from, table] = config.objects;
+  if (from.from == ObjectSource::none && !table.empty())
+    refuse(draft.origin_of("objects.table"), "expected objects for its rows, found \"none\"");
+  if (from.from == ObjectSource::label && !config.attributes.takes(from.label)) {
+    refuse(draft.origin_of("objects.from"),
+           fmt::format("the label {} is not read: \"attributes\" must have it",
+                       in_quotes(from.label)));
+  }
+}
+
 constexpr const char* kMeshWords = "the mesh on the command line";
 constexpr const char* kOutputWord = "-o";
 constexpr const char* kContainerKey = "storage.container";
@@ -242,10 +255,13 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
     file = resolved_path(draft, "placement.metadata", file, origin.directory);
   if (std::filesystem::path& file = config.texture.drape; !file.empty())
     file = resolved_path(draft, "texture.drape", file, origin.directory);
+  if (std::filesystem::path& file = config.objects.table; !file.empty())
+    file = resolved_path(draft, "objects.table", file, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);
   check_crop(config, draft);
   check_first_view(config, draft);
+  check_objects(config, draft);
   return config;
 }
 
@@ -261,6 +277,8 @@ std::vector<std::filesystem::path> read_by(const Config& config) {
     files.push_back(config.placement.metadata);
   if (!config.texture.drape.empty())
     files.push_back(config.texture.drape);
+  if (!config.objects.table.empty())
+    files.push_back(config.objects.table);
   return files;
 }
 

@@ -14,6 +14,7 @@
 #include "hierarchy/unit.h"
 #include "mesh_io/attribute_choice.h"
 #include "mesh_io/input_paths.h"
+#include "mesh_io/object_choice.h"
 #include "partition/direction.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/work_directory.h"
@@ -139,6 +140,14 @@ struct TextureConfig {
   friend bool operator==(const TextureConfig&, const TextureConfig&) = default;
 };
 
+/// The things that the mesh consists of.
+struct ObjectsConfig {
+  mesh_io::ObjectChoice from;  ///< what they are made from
+  std::filesystem::path
+      table{};  ///< of their properties, besides those that the mesh has; or empty
+  friend bool operator==(const ObjectsConfig&, const ObjectsConfig&) = default;
+};
+
 /// The effect of a picture that cannot be decoded.
 enum class MissingImages {
   warn,   ///< one that is not there is a warning, a broken one an error
@@ -195,6 +204,7 @@ struct Config {
   FirstViewConfig first_view;
   StorageConfig storage;
   TextureConfig texture;
+  ObjectsConfig objects;
   NormalMapConfig normal_map;
   MissingImages missing_images = MissingImages::warn;
   /// The axis of the input that points up; none: z for a tileset, else y (with_input_frame()).

@@ -177,7 +177,9 @@ std::string did_you_mean(const std::optional<std::string>& word) {
 }
 
 Draft::Draft(std::string_view text, std::string name)
-    : document_(parse_text(text, name)), name_(std::move(name)) {}
+    : document_(parse_text(text, name)), name_(std::move(name)) {
+  open_short_sections();
+}
 
 void Draft::apply(const std::string& setting) {
   const Override parts = split_override(setting);
@@ -192,6 +194,7 @@ void Draft::put(const std::string& path, Json value, const std::string& source) 
   const std::size_t dot = path.rfind('.');
   if (dot == std::string::npos) {
     document_[path] = std::move(value);
+    open_short_sections();
     return;
   }
   const std::string section = path.substr(0, dot);
@@ -203,6 +206,16 @@ void Draft::put(const std::string& path, Json value, const std::string& source) 
 bool Draft::has(const std::string& path) const {
   const Json::json_pointer place = json_pointer_to(path);
   return document_.contains(place);
+}
+
+void Draft::open_short_sections() {
+  for (const ConfigSection& section : config_sections()) {
+    if (section.short_for.empty() || !document_.contains(section.path) ||
+        !document_[section.path].is_string())
+      continue;
+    Json value = std::move(document_[section.path]);
+    document_[section.path] = Json::object({{section.short_for, std::move(value)}});
+  }
 }
 
 void Draft::settle(const std::string& section, const std::string& one, const std::string& other) {

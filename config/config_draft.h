@@ -37,6 +37,8 @@ class Draft {
   /// `source`: which words of the command line say so.
   void put(const std::string& path, nlohmann::ordered_json value, const std::string& source);
   bool has(const std::string& path) const;
+  /// Makes objects of the values that stand in the place of a section (ConfigSection::short_for).
+  void open_short_sections();
   /// Two keys exclude each other: one that was overridden replaces one that was not.
   void settle(const std::string& section, const std::string& one, const std::string& other);
 

@@ -1,5 +1,6 @@
 #include "config/config_reference.h"
 
+#include "config/config_draft.h"
 #include "config/config_schema.h"
 #include "hierarchy/image_format.h"
 #include "mesh_io/formats.h"
@@ -89,7 +90,10 @@ Json value_schema(const ConfigKey& key) {
     case KeyKind::choice:
       break;
   }
-  return {{"enum", key.choices}};
+  const Json choices{{"enum", key.choices}};
+  if (key.prefix.empty())
+    return choices;
+  return {{"anyOf", Json::array({choices, {{"pattern", '^' + key.prefix + "[!-~]{1,100}$"}}})}};
 }
 
 Json key_schema(const ConfigKey& key) {
@@ -135,7 +139,12 @@ Json object_schema(const std::string& prefix) {
         section.path.find('.', prefix.size()) != std::string::npos)
       continue;
     Json inner{{"description", as_sentence(section.meaning)}};
-    inner.update(object_schema(section.path + '.'));
+    const Json keys = object_schema(section.path + '.');
+    inner.update(section.short_for.empty()
+                     ? keys
+                     : Json{{"anyOf",
+                             {keys, value_schema(*find_config_key(
+                                        with_key(section.path, section.short_for)))}}});
     properties[section.path.substr(prefix.size())] = inner;
   }
   Json schema{{"type", "object"}, {"additionalProperties", false}};

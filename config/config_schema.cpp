@@ -277,6 +277,21 @@ ConfigKey labels(ConfigKey key) {
   return key;
 }
 
+ConfigKey object_source(ConfigKey key) {
+  key.kind = KeyKind::choice;
+  key.prefix = mesh_io::kObjectLabel;
+  for (const auto& row : mesh_io::kObjectSources)
+    key.choices.emplace_back(row.name);
+  key.assign = [](Config& config, const Json& value) {
+    config.objects.from = mesh_io::object_choice_of(value.get_ref<const std::string&>()).value();
+  };
+  // What is evident is not told, so that builds without objects tell what they always did.
+  key.show = [](const Config& config) {
+    return config.objects.from.is_evident() ? Json() : Json(text_of(config.objects.from));
+  };
+  return key;
+}
+
 ConfigKey deciding(ConfigKey key) {
   key.decides_result = true;
   return key;
@@ -333,6 +348,21 @@ std::vector<ConfigKey> make_config_keys() {
                        .meaning =
                            "which of them are labels, of which no means are made: those of integer "
                            "types (`integers`), or a list of names"})),
+      deciding(object_source(
+          {.path = "objects.from",
+           .meaning = "what the objects are made from: nodes of a glTF (`node`), statements `g` "
+                      "(`group`), `o` (`object`) or `usemtl` (`material`) of an OBJ file, "
+                      "materials of a glTF, the files of a list (`file`), solids of an ASCII STL "
+                      "file (`solid`), features of a glTF or b3dm (`feature`), a label "
+                      "(`label:NAME`), or nothing (`none`)",
+           .unset = "`auto`: features that have properties, else `object` or `group`, named "
+                    "nodes, `solid`, if there are two names or more"})),
+      deciding(path(
+          {.path = "objects.table",
+           .meaning = "a table of the objects' properties, CSV or lines of JSON, whose column "
+                      "`id` (the value of a label or of a feature) or `name` says whose a row is; "
+                      "`--object-table` of `build` sets it"},
+          [](auto& c) -> auto& { return c.objects.table; })),
       deciding(number(
           {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),
@@ -588,8 +618,12 @@ bool is_list_of_levels(const ConfigKey& key, const Json& value) {
 }
 
 bool is_choice(const ConfigKey& key, const Json& value) {
-  return value.is_string() &&
-         std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end();
+  if (!value.is_string())
+    return false;
+  const std::string_view text = value.get_ref<const std::string&>();
+  if (!key.prefix.empty() && text.starts_with(key.prefix))
+    return is_attribute_name(text.substr(key.prefix.size()));
+  return std::ranges::find(key.choices, text) != key.choices.end();
 }
 
 bool is_list_of_names(const ConfigKey& key, const Json& value) {
@@ -615,6 +649,9 @@ const std::vector<ConfigKey>& config_keys() {
 
 const std::vector<ConfigSection>& config_sections() {
   static const std::vector<ConfigSection> sections = {
+      {"objects",
+       "the things that the mesh consists of, with names and properties; a text is the key `from`",
+       "from"},
       {"partition", "how the mesh is cut into partitions, the finest tiles"},
       {"simplify", "how the coarser tiles are made"},
       {"outline", "the shape-outline, the lines that are shown first"},
@@ -637,10 +674,14 @@ const ConfigKey* find_config_key(std::string_view path) {
   return found == keys.end() ? nullptr : &*found;
 }
 
-bool is_config_section(std::string_view path) {
+const ConfigSection* find_config_section(std::string_view path) {
   const std::vector<ConfigSection>& sections = config_sections();
-  return std::any_of(sections.begin(), sections.end(),
-                     [&](const ConfigSection& section) { return section.path == path; });
+  const auto found = std::ranges::find(sections, path, &ConfigSection::path);
+  return found == sections.end() ? nullptr : &*found;
+}
+
+bool is_config_section(std::string_view path) {
+  return find_config_section(path) != nullptr;
 }
 
 Json::json_pointer json_pointer_to(std::string path) {
@@ -716,7 +757,9 @@ std::string expectation(const ConfigKey& key) {
   }
   return fmt::format("{}\"{}\"{}", key.choices.size() > 1 ? "one of " : "",
                      fmt::join(key.choices, "\", \""),
-                     key.kind == KeyKind::names ? " or a list of names" : "");
+                     key.kind == KeyKind::names ? " or a list of names"
+                     : !key.prefix.empty()      ? fmt::format(" or \"{}NAME\"", key.prefix)
+                                                : "");
 }
 
 }  // namespace meshhier::config

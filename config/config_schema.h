@@ -25,7 +25,7 @@ enum class KeyKind {
   numbers,  ///< a list of so many finite numbers as `maximum` says
   levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
-  choice,   ///< one of `choices`
+  choice,   ///< one of `choices`, or `prefix` and the name of an attribute
   names     ///< one of `choices`, or a list of at most `maximum` names of attributes
 };
 
@@ -43,6 +43,7 @@ struct ConfigKey {
   double maximum = 0;
   std::size_t most_levels = 0;
   std::vector<std::string> choices{};
+  std::string prefix{};  ///< of a choice; empty: none
   /// Stores an acceptable value.
   std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
   /// Returns the config's value as it would be written; null if it is not set.
@@ -52,6 +53,8 @@ struct ConfigKey {
 struct ConfigSection {
   std::string path;     ///< dotted
   std::string meaning;  ///< as that of a key
+  /// The key of the section that a value in the section's place means; empty: none is allowed.
+  std::string short_for{};
 };
 
 /// Returns all keys, in the order in which they are listed to people. Thread-safe.
@@ -62,6 +65,9 @@ const std::vector<ConfigSection>& config_sections();
 
 /// Returns the key of that dotted path, or null.
 const ConfigKey* find_config_key(std::string_view path);
+
+/// Returns the inner node of that dotted path, or null.
+const ConfigSection* find_config_section(std::string_view path);
 
 /// Whether it is an inner node of the keys' paths: "partition".
 bool is_config_section(std::string_view path);

@@ -36,6 +36,8 @@ void append_mesh(RawMesh&& from, RawMesh& to, const execution::CancelToken& canc
     throw Error(ErrorCode::input, "the input has 2^32 vertices or more; split it");
   const auto first_material = static_cast<float>(to.materials.append(std::move(from.materials)));
   const std::size_t channels = from.channels();
+  if (from.objects && to.objects)
+    to.objects->append(*from.objects);
   append_all(from.positions, kAppendBlock, to.positions, cancel, [](auto) {});
   append_all(from.attributes, kAppendBlock * std::max<std::size_t>(channels, 1), to.attributes,
              cancel, [&](std::span<float> block) {

@@ -14,6 +14,7 @@
 #include "import/stl_import.h"
 #include "import/terrain_drape.h"
 #include "import/text_blocks.h"
+#include "mesh_io/batch_table.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/named_files.h"
 #include "mesh_io/part_of_file.h"
@@ -38,6 +39,8 @@ using mesh_io::InputStream;
 using mesh_io::MeshKind;
 
 class FileReader::Impl {
+  using Path = std::filesystem::path;
+
  public:
   static constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
@@ -51,6 +54,12 @@ class FileReader::Impl {
 
   /// Requires a kind that files have: the tiles of a tileset are files of their own.
   std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room) {
+    std::vector<AddedFile> added = read_by_kind(facts, room);
+    complete_objects(facts);
+    return added;
+  }
+
+  std::vector<AddedFile> read_by_kind(const InputFileFacts& facts, const Path& room) {
     if (facts.format.kind == MeshKind::osgb)
       return read_osgb(facts);
     const std::uint64_t before = mesh_.vertex_count();
@@ -87,7 +96,18 @@ class FileReader::Impl {
       count(one.name, one.count);
   }
 
-  using Path = std::filesystem::path;
+  /// Says whose the last triangles of a file are, where its reader did not.
+  void complete_objects(const InputFileFacts& facts) {
+    if (!mesh_.objects || mesh_.objects->choice.from == mesh_io::ObjectSource::label)
+      return;
+    MeshObjects& objects = *mesh_.objects;
+    const std::uint64_t end = mesh_.triangles.size();
+    if (objects.choice.from == mesh_io::ObjectSource::file && end > objects.runs.triangles())
+      objects.runs.add(objects.names.number(input_.object_name(facts.path)),
+                       end - objects.runs.triangles());
+    objects.fill(end);
+  }
+
   using AddStream = AddedFile (Impl::*)(InputStream& stream, const Path& path);
 
   /// The way in which a file of a kind is read. `room`: a path where a file may be while it is
@@ -290,18 +310,23 @@ class FileReader::Impl {
     const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
     if (facts.tile && tile.offset + tile.bytes > content->size())
       mesh_io::fail_file(facts.path, "ends within a tile (truncated?)");
+    const auto batch =
+        mesh.objects ? open_batch_table(content, tile.batch, decoding_bytes()) : nullptr;
     if (facts.tile)
       content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
     mesh_io::GltfFile file(std::move(content), facts.path.parent_path(),
                            {input_.system(), env_.scratch, decoding_bytes(), content_of(facts),
                             facts.path, [this] { env_.cancel.check(); }, tile.offset,
                             [this](std::uint64_t bytes) { return decoding_.share(bytes); }});
-    return import_gltf(file, tile.placement, mesh, input_.textures(), input_.attributes(), room_);
+    const std::string name =
+        input_.all().size() > 1 ? input_.object_name(facts.path) + '/' : std::string();
+    return import_gltf(file, {tile.placement, facts.tile.has_value(), name, batch.get()}, mesh,
+                       input_.textures(), input_.attributes(), room_);
   }
 
   AddedFile add_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement) {
     return note_gltf(
-        import_gltf(file, placement, mesh_, input_.textures(), input_.attributes(), room_));
+        import_gltf(file, {placement, true}, mesh_, input_.textures(), input_.attributes(), room_));
   }
 
   AddedFile note_gltf(const GltfImport& import) {
@@ -322,6 +347,8 @@ class FileReader::Impl {
 
   std::unique_ptr<Apart> read_apart(const InputFileFacts& facts) {
     auto apart = std::make_unique<Apart>(env_.scratch);
+    if (mesh_.objects)
+      apart->mesh.objects = std::make_unique<MeshObjects>(env_.scratch, mesh_.objects->choice);
     apart->import = import_plain_gltf(facts, facts.content(input_.system()), apart->mesh);
     apart->mesh.layout = apart->import.layout;
     return apart;
@@ -338,6 +365,7 @@ class FileReader::Impl {
           const std::uint64_t vertices = apart->mesh.vertex_count();
           checked_base(files[i].path, vertices);
           append_mesh(std::move(apart->mesh), mesh_, env_.cancel);
+          complete_objects(files[i]);
           checksums_.push_back(checksum_of(files[i].path));
           env_.progress.advance(files[i].identity.bytes);
           AddedFile one = note_gltf(apart->import);

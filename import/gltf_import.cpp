@@ -5,6 +5,7 @@
 #include "import/append_value.h"
 #include "import/gltf_copies.h"
 #include "import/gltf_materials.h"
+#include "import/gltf_objects.h"
 #include "import/gltf_primitive.h"
 #include "import/gltf_skin.h"
 #include "import/gltf_values.h"
@@ -99,13 +100,14 @@ std::array<double, 2> transformed(const mesh_io::GltfTextureTransform& t, double
 
 class GltfImporter {
  public:
-  GltfImporter(GltfFile& file, const GltfTransform& placement, RawMesh& mesh, Textures textures,
+  GltfImporter(GltfFile& file, const GltfPlace& place, RawMesh& mesh, Textures textures,
                const mesh_io::AttributeChoice& attributes, const ImportRoom& room)
       : file_(file),
         mesh_(mesh),
         textures_(textures),
         room_(room),
-        scene_(gltf_scene(file.document(), file.path(), placement)),
+        scene_(gltf_scene(file.document(), file.path(), place.placement)),
+        objects_(file, scene_, mesh, place, room),
         materials_(file),
         found_values_(attributes) {}
 
@@ -118,8 +120,11 @@ class GltfImporter {
     for (const mesh_io::GltfInstance& instance : scene_.instances) {
       const std::vector<GltfTransform>& joints = joints_of(instance);
       skinned_ += joints.empty() ? 0 : 1;
+      objects_.begin(instance);
+      std::uint64_t copy = 0;
       for_each_copy(file_, instance, [&](const GltfTransform& transform) {
         copies_ += instance.copies ? 1 : 0;
+        objects_.begin_copy(instance.copies ? ++copy : 0);
         for (const GltfPrimitive& primitive : primitives(instance))
           append(primitive, transform, joints);
       });
@@ -252,7 +257,9 @@ class GltfImporter {
     storage::RecordSpool<std::uint32_t> used(room_.scratch, kImportSpoolBytes);
     const bool has_joints = !joints.empty() && importing::is_skinned(primitive);
     const bool is_turned = has_joints ? are_mirrored(joints) : is_mirrored(transform);
+    const std::uint64_t before = mesh_.triangles.size();
     append_used(read_triangles(sources, position), position.count, is_turned, mesh_, used, room_);
+    objects_.add(primitive, sources, before, used, position.count);
     left_out_ += position.count - used.size();
     std::optional<GltfSkinning> skin;
     if (has_joints)
@@ -551,6 +558,8 @@ class GltfImporter {
                       {"instanced_meshes", copies_},
                       {"hidden_meshes", scene_.hidden},
                       {"ignored_skins", ignored_skins_},
+                      {std::string(kFeaturesInTextures), objects_.features_in_textures()},
+                      {std::string(kUnreadTables), objects_.unread_tables()},
                       {std::string(kIgnoredEmission), materials_.dropped_lights(is_textured())},
                       {"dropped_values", found_values_.dropped()},
                       {"vertices_left_out", left_out_},
@@ -564,6 +573,7 @@ class GltfImporter {
   Textures textures_;
   const ImportRoom& room_;
   mesh_io::GltfScene scene_;
+  GltfObjects objects_;
   GltfMaterials materials_;
   GltfImport import_;
   GltfValues found_values_;
@@ -578,10 +588,10 @@ class GltfImporter {
 
 }  // namespace
 
-GltfImport import_gltf(mesh_io::GltfFile& file, const GltfTransform& placement, RawMesh& mesh,
+GltfImport import_gltf(mesh_io::GltfFile& file, const GltfPlace& place, RawMesh& mesh,
                        Textures textures, const mesh_io::AttributeChoice& attributes,
                        const ImportRoom& room) {
-  return GltfImporter(file, placement, mesh, textures, attributes, room).run();
+  return GltfImporter(file, place, mesh, textures, attributes, room).run();
 }
 
 }  // namespace meshhier::importing

@@ -5,6 +5,7 @@
 #include "import/crop_mesh.h"
 #include "import/file_reader.h"
 #include "import/join_layouts.h"
+#include "import/name_objects.h"
 #include "import/place_vertices.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
@@ -31,7 +32,10 @@ class Import {
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
         mesh_(environment.scratch),
-        reader_(input, environment, mesh_) {}
+        reader_(input, environment, mesh_) {
+    if (input.objects().from != mesh_io::ObjectSource::none)
+      mesh_.objects = std::make_unique<MeshObjects>(environment.scratch, input.objects());
+  }
 
   ImportFacts run(TemporaryFile& ply) {
     env_.progress.stage("import", input_.bytes(), "bytes");
@@ -50,7 +54,8 @@ class Import {
         facts_.tile_ends.clear();
       require_triangles();
       join();
-      RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
+      RawMesh& named = mesh_.objects ? name() : mesh_;
+      RawMesh& placed = unplaced_.count > 0 ? place(named) : named;
       RawMesh& piece = input_.crop() ? crop(placed) : placed;
       write(input_.weld() ? weld(piece) : piece, ply);
     }
@@ -210,9 +215,24 @@ class Import {
     return *cropped_;
   }
 
-  RawMesh& place() {
+  /// Returns the mesh with its objects; as it is, if it has none.
+  RawMesh& name() {
+    named_.emplace(env_.scratch);
+    auto objects =
+        name_objects(mesh_, *named_, facts_.tile_ends,
+                     {env_.files, input_.name(), input_.object_table(), env_.objects, room_});
+    if (!objects)
+      return mesh_;
+    for (const SourceCount& one : objects->counts)
+      count(one.name, one.count);
+    std::ranges::for_each(objects->warnings, [&](const auto& text) { env_.progress.warn(text); });
+    facts_.objects = std::move(objects->imported);
+    return *named_;
+  }
+
+  RawMesh& place(RawMesh& mesh) {
     placed_.emplace(env_.scratch);
-    const DroppedUnplaced dropped = drop_unplaced(mesh_, *placed_, unplaced_.first, room_);
+    const DroppedUnplaced dropped = drop_unplaced(mesh, *placed_, unplaced_.first, room_);
     count(kDroppedUnplaced, dropped.vertices);
     count("dropped_unplaced_triangles", dropped.triangles);
     if (dropped.triangles > 0) {
@@ -269,7 +289,7 @@ class Import {
   ImportRoom room_;
   RawMesh mesh_;
   FileReader reader_;
-  std::optional<RawMesh> placed_, cropped_, welded_;
+  std::optional<RawMesh> named_, placed_, cropped_, welded_;
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   bool are_tiles_ = false;  ///< all files are, and there are several
@@ -382,6 +402,10 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
     else if (file.has_corner_attributes)
       cornered += (kCorneredSpools - kSpools) * bytes;
   }
+  // Objects: corners are sorted, and vertices written anew.
+  constexpr std::uint64_t kObjectSpools = 4;
+  if (input.asks_for_objects())
+    cornered += kObjectSpools * content;
   const std::uint64_t spools = input.is_unpacked_only() ? 0 : kSpools * content + cornered;
   return content + spools - std::min(spools, memory.pool_bytes);
 }

@@ -16,6 +16,7 @@
 #include "images/material_list.h"
 #include "import/input_files.h"
 #include "import/label_names.h"
+#include "import/name_objects.h"
 #include "import/terrain_source.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_plan.h"
@@ -66,6 +67,7 @@ struct ImportFacts {
   /// unless the mesh is textured.
   images::MaterialList materials;
   AllLabelNames label_names;
+  std::optional<ImportedObjects> objects;
   /// The count of vertices up to the end of each tile, if the mesh is several tiles of tilesets as
   /// they are; else none.
   std::vector<std::uint64_t> tile_ends;
@@ -98,12 +100,13 @@ struct ImportEnvironment {
   std::uint64_t sort_bytes = 0;
   execution::Progress& progress;
   const execution::CancelToken& cancel;
+  std::filesystem::path objects;  ///< becomes the table of objects, if there are any
 };
 
-/// Writes the PLY, or counts the cells of rasters, and tells `input` which companions it has.
-/// Parallel only within sorts; the result depends on the files alone, but for the order of
-/// triangles if they are welded. Throws Error(input) naming file and line or byte, also if files
-/// that are joined have not the same attributes, Error(io), Error(interrupted).
+/// Writes the PLY, and the table of objects, or counts the cells of rasters, and tells `input`
+/// which companions it has. Parallel only within sorts; the result depends on the files alone, but
+/// for the order of triangles if they are welded. Throws Error(input) naming file and line or byte,
+/// also if files that are joined have not the same attributes, Error(io), Error(interrupted).
 ImportFacts import_input(InputFiles& input, TemporaryFile& ply,
                          const ImportEnvironment& environment);
 

@@ -59,6 +59,8 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
   for (const std::filesystem::path& path : paths)
     add_mesh(path);
   join_rasters();
+  add_object_table();
+  find_common_folder();
   std::ranges::sort(tileset_counts_, {}, &SourceCount::name);
 }
 
@@ -104,6 +106,38 @@ void InputFiles::join_rasters() {
   mosaic_ = std::make_shared<const mesh_io::Mosaic>(files_, rasters);
   for (std::string& warning : mosaic_->warnings())
     warnings_.push_back(std::move(warning));
+}
+
+bool InputFiles::asks_for_objects() const {
+  using mesh_io::ObjectSource;
+  return use_.objects.from > ObjectSource::none || !use_.object_table.empty();
+}
+
+void InputFiles::add_object_table() {
+  if (asks_for_objects() && is_terrain()) {
+    throw Error(ErrorCode::usage,
+                "objects: rasters of heights have none; say \"none\", without a table");
+  }
+  if (!use_.object_table.empty())
+    companions_.add({use_.object_table, InputPart::table, files_.identity(use_.object_table)});
+}
+
+void InputFiles::find_common_folder() {
+  for (const InputFileFacts& file : all_) {
+    const std::filesystem::path folder = file.path.parent_path();
+    if (&file == &all_.front())
+      common_folder_ = folder;
+    const auto differ = std::ranges::mismatch(common_folder_, folder);
+    std::filesystem::path common;
+    for (auto part = common_folder_.begin(); part != differ.in1; ++part)
+      common /= *part;
+    common_folder_ = common;
+  }
+}
+
+std::string InputFiles::object_name(const std::filesystem::path& mesh) const {
+  const std::filesystem::path way = mesh.lexically_relative(common_folder_);
+  return (way.empty() ? mesh : way).generic_string();
 }
 
 bool InputFiles::is_terrain() const {
@@ -227,6 +261,10 @@ bool InputFiles::recall(const InputRecord& earlier) {
   const bool has_drape =
       std::ranges::find(earlier.files, drape(), &ReadFile::path) != earlier.files.end();
   if (mosaic_ && (has_drape == drape().empty() || std::ranges::any_of(earlier.files, is_other)))
+    return false;
+  // So is the table of objects.
+  const auto table = std::ranges::find(earlier.files, InputPart::table, &ReadFile::part);
+  if ((table == earlier.files.end() ? std::filesystem::path() : table->path) != object_table())
     return false;
   CompanionFiles now;
   now.await(earlier.awaited);

@@ -10,6 +10,7 @@
 #include "mesh_io/input_paths.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/mosaic.h"
+#include "mesh_io/object_choice.h"
 #include "mesh_io/ply_plan.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/file.h"
@@ -36,6 +37,8 @@ struct InputUse {
   std::optional<BoundsD> crop{};  ///< only triangles that touch it; in the input's coordinates
   mesh_io::AttributeChoice attributes{};
   std::filesystem::path drape{};  ///< an orthophoto on rasters of heights; empty: none
+  mesh_io::ObjectChoice objects{};
+  std::filesystem::path object_table{};  ///< rows of properties of objects; empty: none
 };
 
 /// Returns a file's name unpacked: "a.ply" for "a.ply.gz".
@@ -103,9 +106,15 @@ class InputFiles {
   void note_unplaced() { has_unplaced_ = true; }
   bool has_unplaced() const { return has_unplaced_; }
   Textures textures() const { return use_.textures; }
+  const mesh_io::ObjectChoice& objects() const { return use_.objects; }
+  const std::filesystem::path& object_table() const { return use_.object_table; }
+  /// Returns whether there shall be objects, evident or not.
+  bool asks_for_objects() const;
+  /// Returns the name of a mesh among them as an object: its path from the folder that all are in.
+  std::string object_name(const std::filesystem::path& mesh) const;
   /// Returns false if the input is one PLY that is read in place as it is.
   bool needs_import() const {
-    return is_changed() || all_.size() != 1 || !all_[0].is_plain_ply() ||
+    return is_changed() || asks_for_objects() || all_.size() != 1 || !all_[0].is_plain_ply() ||
            all_[0].has_corner_attributes;
   }
 
@@ -113,8 +122,8 @@ class InputFiles {
   std::string formats() const;
   /// Returns true if the input is one packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
-    return !is_changed() && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply &&
-           !all_[0].has_corner_attributes;
+    return !is_changed() && !asks_for_objects() && all_.size() == 1 &&
+           all_[0].format.kind == mesh_io::MeshKind::ply && !all_[0].has_corner_attributes;
   }
 
   /// Returns file names, with ", " between them.
@@ -145,6 +154,8 @@ class InputFiles {
   void add_osgb(const std::filesystem::path& path, const mesh_io::MeshFormat& format);
   void add_tileset(const std::filesystem::path& path);
   void join_rasters();
+  void add_object_table();
+  void find_common_folder();
   void add_file(InputFileFacts facts);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);
@@ -172,6 +183,7 @@ class InputFiles {
   std::set<std::string> known_unused_;
   InputUse use_;
   bool has_unplaced_ = false;
+  std::filesystem::path common_folder_;  ///< that all meshes are in
 };
 
 }  // namespace meshhier::importing

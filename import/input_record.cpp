@@ -18,7 +18,8 @@ constexpr std::array kParts{NamedValue{"mesh", InputPart::mesh},
                             NamedValue{"material library", InputPart::library},
                             NamedValue{"picture", InputPart::picture},
                             NamedValue{"tileset", InputPart::tileset},
-                            NamedValue{"tile", InputPart::tile}};
+                            NamedValue{"tile", InputPart::tile},
+                            NamedValue{"object table", InputPart::table}};
 
 /// Joins the files of a part, one or more.
 SourceFile joined(std::span<const ReadFile> files) {

@@ -17,7 +17,7 @@
 namespace meshhier::importing {
 
 /// The part of a file in the input, in the order in which checksums are joined.
-enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset, tile };
+enum class InputPart : std::uint8_t { mesh, buffer, library, picture, tileset, tile, table };
 
 /// A file that meshes are not whole without.
 struct CompanionFile {
@@ -87,6 +87,10 @@ inline constexpr std::string_view kIgnoredTechniques = "ignored_techniques";
 inline constexpr std::string_view kInvisibleParts = "invisible_parts";
 /// Parts that are no triangles: they are left out.
 inline constexpr std::string_view kPointsAndLines = "ignored_points_and_lines";
+/// Sets of feature ids that textures have: they are not read.
+inline constexpr std::string_view kFeaturesInTextures = "ignored_feature_textures";
+/// Property tables whose schema is in another file: they are not read.
+inline constexpr std::string_view kUnreadTables = "ignored_property_tables";
 /// Vertices of which a coordinate is not finite.
 inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 

@@ -40,8 +40,12 @@ MeshInput::MeshInput(const mesh_io::InputPaths& paths, storage::FileSystem& file
 void MeshInput::import(const Place& place) {
   storage::ScratchFile scratch(system_, place.scratch, place.pool);
   ply_.emplace(system_, place.ply, place.pool.scratch_use());
+  const std::filesystem::path beside = place.ply.string() + "-objects";
+  if (place.objects.empty())
+    objects_.emplace(system_, beside, place.pool.scratch_use());
   facts_ = import_input(input_, *ply_,
-                        {system_, scratch, place.sort_bytes, place.progress, place.cancel});
+                        {system_, scratch, place.sort_bytes, place.progress, place.cancel,
+                         objects_ ? beside : place.objects});
   description_ = open_imported()->description();
 }
 
@@ -96,12 +100,17 @@ bool MeshInput::is_sure_label(const std::string& name) const {
   const auto names_features = [](const InputFileFacts& file) {
     return file.format.row().names_features;
   };
-  return facts_.label_names.contains(name) ||
+  const auto& values = description_.attributes.values;
+  const auto is_object = [&](const ScalarAttribute& value) {
+    return value.is_object && value.name == name;
+  };
+  return facts_.label_names.contains(name) || std::ranges::any_of(values, is_object) ||
          (is_feature_name(name) && std::ranges::any_of(input_.all(), names_features));
 }
 
 void MeshInput::drop() {
   ply_.reset();
+  objects_.reset();
   facts_.terrain.reset();
   if (input_.mosaic())
     input_.mosaic()->release();

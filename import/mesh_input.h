@@ -27,6 +27,8 @@ class MeshInput {
     execution::Progress& progress;
     const execution::CancelToken& cancel;
     std::filesystem::path copies{};  ///< a temporary file
+    /// Becomes the table of objects, which stays; empty: it goes with the PLY.
+    std::filesystem::path objects{};
   };
 
   /// Opens the files and finds out what they are; reads the header if they are read in place.
@@ -67,6 +69,8 @@ class MeshInput {
   /// Returns the materials that AttributeLayout::material of the description numbers; none if it
   /// was recalled.
   const images::MaterialList& materials() const { return facts_.materials; }
+  /// Returns the table of objects; none if there are none, or if it was recalled.
+  const std::optional<ImportedObjects>& objects() const { return facts_.objects; }
   /// Returns whether an attribute is a label whatever its values are: the input has names for
   /// these, or says that they are features of a glTF.
   bool is_sure_label(const std::string& name) const;
@@ -86,7 +90,7 @@ class MeshInput {
   storage::FileSystem& system_;
   InputFiles input_;
   std::unique_ptr<mesh_io::MeshSource> in_place_;
-  std::optional<TemporaryFile> ply_;
+  std::optional<TemporaryFile> ply_, objects_;
   ImportFacts facts_;
   mesh_io::MeshDescription description_;
   std::optional<storage::ScratchFile> copy_scratch_;

@@ -4,6 +4,7 @@
 #include "execution/spool_cursor.h"
 #include "import/material_colours.h"
 #include "import/obj_labels.h"
+#include "import/obj_objects.h"
 #include "import/obj_textures.h"
 #include "import/place_lookup.h"
 #include "import/split_corners.h"
@@ -49,9 +50,10 @@ bool has_texcoords(const ObjTriangle& triangle) {
 class ObjParts final : public mesh_io::ObjVisitor {
  public:
   ObjParts(storage::ScratchFile& scratch, const std::filesystem::path& path, Textures use,
-           const mesh_io::AttributeChoice& attributes, AllLabelNames& label_names)
+           const mesh_io::AttributeChoice& attributes, RawMesh& mesh)
       : names(path),
-        labels(attributes, label_names),
+        labels(attributes, mesh.label_names),
+        objects(mesh.objects.get(), scratch),
         positions(scratch, kImportSpoolBytes),
         colours(scratch, kImportSpoolBytes),
         texcoords(scratch, kImportSpoolBytes),
@@ -92,11 +94,11 @@ class ObjParts final : public mesh_io::ObjVisitor {
   void use_material(const std::string& name) override {
     if (keeps_materials_)
       names.begin(name);
-    labels.begin(ObjLabel::material, name);
+    begin(ObjLabel::material, name);
   }
-  bool takes_groups() const override { return labels.are_asked(); }
-  void use_group(const std::string& group) override { labels.begin(ObjLabel::group, group); }
-  void use_object(const std::string& name) override { labels.begin(ObjLabel::object, name); }
+  bool takes_groups() const override { return labels.are_asked() || objects.are_asked(); }
+  void use_group(const std::string& group) override { begin(ObjLabel::group, group); }
+  void use_object(const std::string& name) override { begin(ObjLabel::object, name); }
   void use_libraries(const std::string& statement) override {
     if (keeps_materials_)
       names.add_libraries(statement);
@@ -111,6 +113,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
 
   MaterialNames names;
   ObjLabels labels;
+  ObjObjects objects;
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<ObjColour> colours;  ///< none, or one a position, perhaps kNoColour
   storage::RecordSpool<Texcoord> texcoords;
@@ -120,6 +123,11 @@ class ObjParts final : public mesh_io::ObjVisitor {
   storage::RecordSpool<std::uint32_t> combinations;  ///< number in `labels`, likewise
 
  private:
+  void begin(ObjLabel statement, const std::string& name) {
+    labels.begin(statement, name);
+    objects.begin(statement, name, triangles.size());
+  }
+
   bool keeps_materials_;
   bool has_colours_ = false;  ///< lines v have colours
   SpoolLookup<Vec3d> places_;
@@ -584,9 +592,10 @@ mesh_io::ObjCounts read_parts(mesh_io::InputStream& stream, const std::filesyste
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
                      mesh_io::NamedFiles& files, Textures textures,
                      const mesh_io::AttributeChoice& attributes, const ImportRoom& room) {
-  ObjParts parts(room.scratch, path, textures, attributes, mesh.label_names);
+  ObjParts parts(room.scratch, path, textures, attributes, mesh);
   ObjImport import;
   import.counts = read_parts(stream, path, parts, room);
+  parts.objects.finish(parts.triangles.size());
   import.fits_float = import.counts.fits_float;
   import.layout.texcoords = import.counts.textured_corners > 0;
   import.layout.normals = import.counts.normal_corners > 0;

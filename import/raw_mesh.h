@@ -2,19 +2,18 @@
 #pragma once
 
 #include "base/vec.h"
-#include "execution/cancel.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/triangle.h"
+#include "import/import_room.h"
 #include "import/label_names.h"
 #include "import/material_table.h"
+#include "import/object_names.h"
 #include "storage/io/spool.h"
 
 #include <cstdint>
+#include <memory>
 
 namespace meshhier::importing {
-
-/// Blocks of the import's spools: large writes, but small beside the least budget.
-inline constexpr std::size_t kImportSpoolBytes = std::size_t{1} << 18;
 
 /// A mesh whose vertices and triangles lie in spools, in the order in which vertices are numbered.
 /// Readers append to it; welding, cropping and joining make another one of it. For one thread.
@@ -34,18 +33,13 @@ struct RawMesh {
   AttributeLayout layout;
   MaterialTable materials;    ///< numbered as layout.material says
   AllLabelNames label_names;  ///< numbered as values of these attributes
+  /// The objects of the triangles, in their order; null if there shall be none.
+  std::unique_ptr<MeshObjects> objects;
   /// All coordinates are floats, or their texts say no more (DecimalNumber).
   bool fits_float = true;
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<float> attributes;  ///< channels() a vertex
   storage::RecordSpool<Triangle<std::uint32_t>> triangles;
-};
-
-/// The means that an import works with.
-struct ImportRoom {
-  storage::ScratchFile& scratch;
-  std::uint64_t sort_bytes = 0;  ///< memory of each of two sorts, or of a table
-  const execution::CancelToken& cancel;
 };
 
 }  // namespace meshhier::importing

@@ -18,8 +18,10 @@ namespace {
 template <class Point>
 class StlImporter {
  public:
-  explicit StlImporter(const ImportRoom& room)
+  /// `objects`: those of the mesh; null: nobody asks for them.
+  StlImporter(MeshObjects* objects, const ImportRoom& room)
       : room_(room),
+        objects_(objects),
         corners_(room.scratch, kImportSpoolBytes),
         attributes_(room.scratch, kImportSpoolBytes),
         colours_(room.scratch, kImportSpoolBytes) {}
@@ -51,14 +53,23 @@ class StlImporter {
                                                 known_.add(attributes);
                                               });
     } else {
-      mesh_io::StlTextReader reader(path, take);
+      mesh_io::StlTextReader reader(path, take, solid_visitor());
       made_.counts = read_text_blocks<mesh_io::StlBlock>(
           mesh_io::LineBlocks(stream, mesh_io::whole_facets), mesh_io::kStlBlockBytes,
           mesh_io::parse_facets, reader, room_);
     }
   }
 
+  mesh_io::StlSolidVisitor solid_visitor() {
+    if (objects_ == nullptr || !objects_->choice.takes(mesh_io::ObjectSource::solid))
+      return {};
+    return [this](std::string_view name) { solid_ = objects_->names.number(name); };
+  }
+
   void append(const mesh_io::SoupTriangle& triangle) {
+    const auto& [a, b, c] = triangle;
+    if (solid_ && a != b && b != c && c != a)  // others are dropped by welding
+      objects_->runs.add(*solid_, 1);
     for (const Vec3d& p : triangle) {
       if constexpr (std::is_same_v<Point, Vec3f>)
         corners_.append(to_float(p));
@@ -84,6 +95,8 @@ class StlImporter {
   }
 
   const ImportRoom& room_;
+  MeshObjects* objects_;
+  std::optional<std::uint32_t> solid_{};  ///< object of the facets from here on
   storage::RecordSpool<Point> corners_;
   storage::RecordSpool<std::uint16_t> attributes_;  ///< one for each facet of a binary file
   storage::RecordSpool<FacetColour> colours_;       ///< the same
@@ -96,8 +109,9 @@ class StlImporter {
 
 StlImport import_stl(StlForm form, mesh_io::InputStream& stream, const std::filesystem::path& path,
                      RawMesh& mesh, const ImportRoom& room) {
-  return form == StlForm::binary ? StlImporter<Vec3f>(room).import(stream, path, mesh)
-                                 : StlImporter<Vec3d>(room).import(stream, path, mesh);
+  MeshObjects* const objects = mesh.objects.get();
+  return form == StlForm::binary ? StlImporter<Vec3f>(objects, room).import(stream, path, mesh)
+                                 : StlImporter<Vec3d>(objects, room).import(stream, path, mesh);
 }
 
 }  // namespace meshhier::importing

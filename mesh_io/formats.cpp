@@ -67,7 +67,7 @@ std::vector<FormatRow> make_rows() {
            [](MeshContent& c) { return sure_if(c.is_text() && is_obj_statement(c.first_word())); },
        .companions = {".mtl"},
        .kept = "`v`, `vt`, `vn`, `f`; polygons; vertex colours; materials with their pictures; "
-               "groups and objects if one asks for them",
+               "objects by `o`, `g` or `usemtl`, and labels if one asks for them",
        .left_out = "points and lines, smoothing groups, curves and surfaces: counted. Unknown "
                    "words: errors"},
       {.kind = MeshKind::gltf,
@@ -84,7 +84,7 @@ std::vector<FormatRow> make_rows() {
        .companions = {".bin"},
        .kept = "2.0; triangles, strips and fans of the scene at their places, "
                "skins in their pose; normals, `COLOR_0`, texture coordinates and picture of the "
-               "base colour, light that is emitted",
+               "base colour, light that is emitted; nodes or features as objects",
        .left_out = "points, lines, morph targets, animations, cameras, other materials"},
       {.kind = MeshKind::glb,
        .name = "GLB",
@@ -102,7 +102,7 @@ std::vector<FormatRow> make_rows() {
        .format = "STL",
        .ending = ".stl",
        .look = look_for_binary_stl,
-       .kept = "binary and ASCII, also several solids; colours of facets",
+       .kept = "binary and ASCII, also several solids, which are objects; colours of facets",
        .left_out = "facet normals, other attribute bytes: counted"},
       {.kind = MeshKind::stl_text,
        .name = "ASCII STL",

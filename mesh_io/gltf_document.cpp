@@ -83,6 +83,11 @@ std::string read_name(const GltfObject& object) {
   return plain_text(object.text("name").value_or(""), kLongestGltfName);
 }
 
+/// The same as it is, for objects; what is no text is no name.
+std::string read_whole_name(const GltfObject& object) {
+  return object.has_text("name", "") ? *object.text("name") : std::string();
+}
+
 /// One reading of a document.
 class DocumentReader {
  public:
@@ -102,6 +107,9 @@ class DocumentReader {
     root_.for_each("nodes", [&](const GltfObject& o) { read_node(o); });
     read_roots();
     document_.animations = root_.item_count("animations");
+    if (root_.has_object("extensions") &&
+        root_.object("extensions")->has_object("EXT_structural_metadata"))
+      document_.metadata = root_.extension("EXT_structural_metadata")->copy();
     return std::move(document_);
   }
 
@@ -328,6 +336,8 @@ class DocumentReader {
       primitive.draco = {draco->require_index("bufferView", document_.views.size()),
                          read_attributes(draco->require_object("attributes"), kMostGltfElements)};
     }
+    if (o.has_object("extensions") && o.object("extensions")->has_object("EXT_mesh_features"))
+      primitive.features = o.extension("EXT_mesh_features")->copy();
     return primitive;
   }
 
@@ -335,6 +345,7 @@ class DocumentReader {
     GltfMesh mesh;
     o.for_each("primitives",
                [&](const GltfObject& p) { mesh.primitives.push_back(read_primitive(p)); });
+    mesh.name = read_whole_name(o);
     document_.meshes.push_back(std::move(mesh));
   }
 
@@ -373,7 +384,7 @@ class DocumentReader {
         {o.index("mesh", document_.meshes.size()), o.indices("children", root_.item_count("nodes")),
          read_transform(o), o.index("skin", document_.skins.size()), o.has("camera"),
          !visibility || !visibility->has("visible") || visibility->flag("visible"),
-         read_instancing(o)});
+         read_instancing(o), read_whole_name(o), o.values("extras")});
   }
 
   void read_roots() {

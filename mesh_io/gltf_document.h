@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/vec.h"
+#include "hierarchy/object_row.h"
 #include "hierarchy/texture.h"
 #include "mesh_io/gltf_transform.h"
 
@@ -10,9 +11,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace meshhier::mesh_io {
 
@@ -82,6 +87,7 @@ struct GltfPrimitive {
   std::optional<std::uint32_t> material;
   std::optional<GltfDraco> draco{};
   std::uint64_t morph_targets = 0;
+  std::shared_ptr<const nlohmann::json> features{};  ///< EXT_mesh_features as it is; null: none
 
   bool has_triangles() const { return mode >= Mode::triangles; }
   std::optional<std::uint32_t> attribute(const std::string& name) const;
@@ -89,6 +95,7 @@ struct GltfPrimitive {
 
 struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
+  std::string name{};
 };
 
 /// Copies of a node's mesh within the node (EXT_mesh_gpu_instancing): accessors with an element for
@@ -110,6 +117,9 @@ struct GltfNode {
   bool is_camera = false;
   bool is_visible = true;  ///< KHR_node_visibility; else neither it nor what is below it is shown
   std::optional<GltfInstancing> instancing{};
+  std::string name{};
+  /// Values of its "extras", by key.
+  std::vector<std::pair<std::string, ObjectValue>> extras{};
 };
 
 /// KHR_texture_transform: offset + rotation * (scale * coordinate).
@@ -189,7 +199,8 @@ struct GltfDocument {
   std::uint64_t animations = 0;
   /// The vector that is added to all positions, in the document's own axes (CESIUM_RTC).
   Vec3d centre{};
-  std::vector<std::string> required;  ///< extensions
+  std::vector<std::string> required;                 ///< extensions
+  std::shared_ptr<const nlohmann::json> metadata{};  ///< EXT_structural_metadata as it is, or null
 };
 
 /// Reads a document. The scene is the one that it names, else the first; if there is none, all

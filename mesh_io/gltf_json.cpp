@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/json_value.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
@@ -241,6 +242,23 @@ bool GltfObject::has_numbers(const char* key, std::size_t size) const {
   const Json* value = find(key);
   return value != nullptr && value->is_array() && value->size() == size &&
          std::all_of(value->begin(), value->end(), [](const Json& v) { return v.is_number(); });
+}
+
+std::vector<std::pair<std::string, ObjectValue>> GltfObject::values(const char* key) const {
+  std::vector<std::pair<std::string, ObjectValue>> values;
+  if (!has_object(key))
+    return values;
+  for (const auto& [name, value] : find(key)->items())
+    values.emplace_back(name, value_of_json(value));
+  return values;
+}
+
+ObjectValue GltfObject::value(const char* key) const {
+  return has(key) ? value_of_json(*find(key)) : ObjectValue();
+}
+
+std::shared_ptr<const Json> GltfObject::copy() const {
+  return std::make_shared<const Json>(*object_);
 }
 
 std::optional<GltfObject> GltfObject::object(const char* key) const {

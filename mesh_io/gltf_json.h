@@ -1,13 +1,17 @@
 // The JSON of a glTF file: parsed within limits, and read value by value with checks.
 #pragma once
 
+#include "hierarchy/object_row.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -65,6 +69,14 @@ class GltfObject {
   /// items.
   void for_each_index(std::size_t size,
                       const std::function<void(const std::string&, std::uint32_t)>& visit) const;
+
+  /// Returns the members of an object, by key, as value_of_json() has them; none if there is no
+  /// such object.
+  std::vector<std::pair<std::string, ObjectValue>> values(const char* key) const;
+  /// Returns a member as value_of_json() has it; none if there is no such key.
+  ObjectValue value(const char* key) const;
+  /// Returns the JSON by itself.
+  std::shared_ptr<const nlohmann::json> copy() const;
 
   /// Returns where it stands in the JSON: "accessors[3]"; empty for the whole document.
   const std::string& place() const { return place_; }

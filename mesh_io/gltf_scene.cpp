@@ -21,16 +21,17 @@ void add_reversed(std::vector<Visit>& visits, const std::vector<std::uint32_t>& 
     visits.push_back({nodes[i], parent, are_visible});
 }
 
-void add_instance(GltfScene& scene, const GltfNode& node, const GltfTransform& transform) {
+void add_instance(GltfScene& scene, const GltfDocument& document, std::uint32_t number,
+                  const GltfTransform& transform) {
+  const GltfNode& node = document.nodes[number];
   scene.cameras += node.is_camera ? 1 : 0;
   if (!node.mesh)
     return;
-  scene.instances.push_back({*node.mesh, transform, node.instancing, node.skin});
+  scene.instances.push_back({*node.mesh, transform, node.instancing, node.skin, number});
 }
 
-constexpr std::uint32_t kNoParent = UINT32_MAX;
+}  // namespace
 
-/// The first one that names each node.
 std::vector<std::uint32_t> parents_of(const GltfDocument& document) {
   std::vector<std::uint32_t> parents(document.nodes.size(), kNoParent);
   for (std::uint32_t i = 0; i < parents.size(); ++i) {
@@ -41,6 +42,8 @@ std::vector<std::uint32_t> parents_of(const GltfDocument& document) {
   }
   return parents;
 }
+
+namespace {
 
 GltfTransform moved_by(Vec3d offset) {
   GltfTransform transform;
@@ -94,7 +97,7 @@ GltfScene gltf_scene(const GltfDocument& document, const std::filesystem::path& 
       scene.places[visit.node] = transform;
     const bool is_visible = visit.is_visible && node.is_visible;
     if (is_visible)
-      add_instance(scene, node, transform);
+      add_instance(scene, document, visit.node, transform);
     else
       scene.hidden += node.mesh ? 1 : 0;
     add_reversed(visits, node.children, transform, is_visible);

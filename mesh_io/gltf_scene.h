@@ -17,6 +17,7 @@ struct GltfInstance {
   GltfTransform transform;
   std::optional<GltfInstancing> copies{};  ///< that stand within `transform`
   std::optional<std::uint32_t> skin{};  ///< whose joints place its vertices, if these have weights
+  std::uint32_t node = 0;
 };
 
 struct GltfScene {
@@ -25,6 +26,10 @@ struct GltfScene {
   std::uint64_t cameras = 0;
   std::uint64_t hidden = 0;  ///< meshes of nodes that are not visible
 };
+
+inline constexpr std::uint32_t kNoParent = UINT32_MAX;
+/// Returns the first node that names each one as its child; kNoParent: none does.
+std::vector<std::uint32_t> parents_of(const GltfDocument& document);
 
 /// Walks the tree of nodes from the roots; all stand within `placement`. Joints that the scene does
 /// not show stand where their parents bring them. Throws Error(input) naming a node that is reached

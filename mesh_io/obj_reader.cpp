@@ -3,6 +3,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/line_blocks.h"
 #include "mesh_io/number_text.h"
+#include "mesh_io/object_choice.h"
 #include "mesh_io/polygon_cut.h"
 #include "mesh_io/text_chars.h"
 #include "mesh_io/text_stream.h"
@@ -250,12 +251,14 @@ class ObjReader::Impl {
 
   void read_group() {
     ++counts_.groups;
-    visitor_.takes_groups() ? visitor_.use_group(words_.take_rest()) : words_.skip_line();
+    visitor_.takes_groups() ? visitor_.use_group(words_.take_rest(kMostObjectNameBytes))
+                            : words_.skip_line();
   }
 
   void read_object() {
     ++counts_.objects;
-    visitor_.takes_groups() ? visitor_.use_object(words_.take_rest()) : words_.skip_line();
+    visitor_.takes_groups() ? visitor_.use_object(words_.take_rest(kMostObjectNameBytes))
+                            : words_.skip_line();
   }
 
   void read_libraries() {

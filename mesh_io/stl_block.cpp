@@ -10,6 +10,14 @@
 namespace meshhier::mesh_io {
 namespace {
 
+std::string_view trimmed_name(std::string_view text) {
+  while (!text.empty() && is_blank(text.front()))
+    text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back()))
+    text.remove_suffix(1);
+  return text;
+}
+
 class StlBlockParser {
  public:
   explicit StlBlockParser(StlBlock& block)
@@ -32,8 +40,11 @@ class StlBlockParser {
         return false;
       if (begins_solid || is_stl_keyword(word, "endsolid")) {
         block_.ends_in_solid = begins_solid;
-        block_.solids += begins_solid ? 1 : 0;
-        skip_line();
+        const char* const name = line_.at();
+        line_.skip_line();
+        if (begins_solid)
+          block_.solids.push_back({block_.facets.size(), trimmed_name({name, line_.at()})});
+        end_line();
       } else if (!is_stl_keyword(word, "facet") || !take_facet()) {
         return false;
       }
@@ -107,7 +118,8 @@ bool ends_facet(std::string_view line) {
 }  // namespace
 
 void parse_facets(StlBlock& block) {
-  block.lines = block.solids = 0;
+  block.lines = 0;
+  block.solids.clear();
   block.facets.clear();
   block.fits_float = true;
   block.is_plain = StlBlockParser(block).run();

@@ -16,7 +16,12 @@ struct StlBlock {
   bool is_plain = false;  ///< the fields below hold all of it; else it must be read by words
   bool begins_in_solid = false, ends_in_solid = false;
   std::uint64_t lines = 0;
-  std::uint64_t solids = 0;  ///< solids that begin
+  /// A solid that begins: the facets of the block before it, and its name in `text`.
+  struct Solid {
+    std::size_t facets;
+    std::string_view name;
+  };
+  std::vector<Solid> solids;
   std::vector<SoupTriangle> facets;
   bool fits_float = true;  ///< all coordinates do (DecimalNumber)
 };

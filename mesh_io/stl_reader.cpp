@@ -3,6 +3,7 @@
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/line_blocks.h"
+#include "mesh_io/object_choice.h"
 #include "mesh_io/ply_values.h"
 #include "mesh_io/stl_block.h"
 #include "mesh_io/text_stream.h"
@@ -142,8 +143,8 @@ StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path
 
 class StlTextReader::Impl {
  public:
-  Impl(const std::filesystem::path& path, const SoupVisitor& visit)
-      : none_({}), words_(none_, path, {}), visit_(visit) {}
+  Impl(const std::filesystem::path& path, const SoupVisitor& visit, StlSolidVisitor visit_solid)
+      : none_({}), words_(none_, path, {}), visit_(visit), visit_solid_(std::move(visit_solid)) {}
 
   void take(const StlBlock& block) {
     if (!block.is_plain || block.begins_in_solid != in_solid_) {
@@ -151,10 +152,10 @@ class StlTextReader::Impl {
       take_rest(text);
       return;
     }
-    visit_(block.facets);
+    hand_out(block);
     in_solid_ = block.ends_in_solid;
     counts_.facets += block.facets.size();
-    counts_.solids += block.solids;
+    counts_.solids += block.solids.size();
     counts_.fits_float = counts_.fits_float && block.fits_float;
     line_ += block.lines;
   }
@@ -180,9 +181,30 @@ class StlTextReader::Impl {
   }
 
  private:
+  void hand_out(const StlBlock& block) {
+    const std::span<const SoupTriangle> facets(block.facets);
+    std::size_t done = 0;
+    for (const StlBlock::Solid& solid : block.solids) {
+      if (!visit_solid_)
+        break;
+      visit_(facets.subspan(done, solid.facets - done));
+      visit_solid_(solid.name);
+      done = solid.facets;
+    }
+    visit_(facets.subspan(done));
+  }
+
   void flush() {
     visit_(facets_);
     facets_.clear();
+  }
+
+  /// Goes to the end of the line that begins a solid.
+  void pass_name() {
+    if (!visit_solid_)
+      return words_.skip_line();
+    flush();
+    visit_solid_(words_.take_rest(kMostObjectNameBytes));
   }
 
   void begin_solid() {
@@ -192,7 +214,7 @@ class StlTextReader::Impl {
       return words_.skip_line();
     }
     expect(word, "solid");
-    words_.skip_line();
+    pass_name();
     ++counts_.solids;
     in_solid_ = true;
   }
@@ -202,7 +224,7 @@ class StlTextReader::Impl {
     const std::string word(words_.take_word());
     if (is_stl_keyword(word, "solid")) {
       ++counts_.odd.header_lines;
-      words_.skip_line();
+      pass_name();
       return true;
     }
     if (!is_stl_keyword(word, "facet")) {
@@ -260,14 +282,16 @@ class StlTextReader::Impl {
   TextStream none_;
   WordStream words_;
   const SoupVisitor& visit_;
+  StlSolidVisitor visit_solid_;       ///< may be none
   std::vector<SoupTriangle> facets_;  ///< read by words, not handed out yet
   std::uint64_t line_ = 1;
   bool in_solid_ = false;
   StlCounts counts_;
 };
 
-StlTextReader::StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit)
-    : impl_(std::make_unique<Impl>(path, visit)) {}
+StlTextReader::StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit,
+                             StlSolidVisitor visit_solid)
+    : impl_(std::make_unique<Impl>(path, visit, std::move(visit_solid))) {}
 StlTextReader::~StlTextReader() = default;
 
 void StlTextReader::take(const StlBlock& block) {

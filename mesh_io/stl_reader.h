@@ -25,6 +25,8 @@ inline constexpr std::size_t kStlFacetBytes = 50;
 
 using SoupTriangle = std::array<Vec3d, 3>;
 using SoupVisitor = std::function<void(std::span<const SoupTriangle>)>;
+/// Visits the name of a solid of a text, before its facets.
+using StlSolidVisitor = std::function<void(std::string_view name)>;
 /// Visits the last two bytes of the facets of the SoupVisitor's call before.
 using StlAttributeVisitor = std::function<void(std::span<const std::uint16_t>)>;
 
@@ -62,8 +64,9 @@ struct StlBlock;
 /// Throws as read_text_stl(). For one thread.
 class StlTextReader {
  public:
-  /// Both must outlive it.
-  StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit);
+  /// Path and visitor must outlive it.
+  StlTextReader(const std::filesystem::path& path, const SoupVisitor& visit,
+                StlSolidVisitor visit_solid = {});
   ~StlTextReader();
 
   /// Takes the blocks of the file in their order (LineBlocks, by whole_facets()).

@@ -119,7 +119,12 @@ class TileFileReader {
                    "the tables of the b3dm reach beyond its end (truncated?)");
     }
     const std::uint64_t gltf = tile.begin + parts.before_gltf();
-    found_.meshes.push_back({MeshKind::b3dm, gltf, tile.end - gltf, centre_of(tile.begin, parts)});
+    found_.meshes.push_back(
+        {MeshKind::b3dm,
+         gltf,
+         tile.end - gltf,
+         centre_of(tile.begin, parts),
+         {gltf - parts.bytes[2] - parts.bytes[3], parts.bytes[2], parts.bytes[3]}});
   }
 
   /// Before 3D Tiles 1.0 headers were shorter: their words are followed by the JSON of the batch

@@ -11,11 +11,18 @@
 
 namespace meshhier::mesh_io {
 
+/// The place of a b3dm's batch table in its file.
+struct BatchTablePlace {
+  std::uint64_t json = 0, json_bytes = 0, binary_bytes = 0;  ///< the binary part stands behind
+  friend bool operator==(const BatchTablePlace&, const BatchTablePlace&) = default;
+};
+
 /// A glTF within a file.
 struct TileGltf {
   MeshKind kind{};                      ///< gltf, glb or b3dm
   std::uint64_t offset = 0, bytes = 0;  ///< the glTF's place in the file
   Vec3d centre;                         ///< added to positions, z-up (RTC_CENTER)
+  BatchTablePlace batch{};
 };
 
 struct TileFile {

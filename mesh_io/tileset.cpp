@@ -107,7 +107,8 @@ void add_meshes(const ShownContent& shown, Tileset& to) {
                          gltf.offset,
                          gltf.bytes,
                          shown.placement * moved * shown.axes,
-                         shown.content.data});
+                         shown.content.data,
+                         gltf.batch});
   }
 }
 

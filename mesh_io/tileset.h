@@ -8,6 +8,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/globe_frame.h"
 #include "mesh_io/gltf_transform.h"
+#include "mesh_io/tile_file.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -42,6 +43,7 @@ struct TilesetMesh {
   GltfTransform placement;  ///< from the coordinates of its scene to the frame's
   /// The bytes that stand for the file, if it holds the tile as a data URI.
   std::shared_ptr<const std::vector<std::byte>> data{};
+  BatchTablePlace batch{};
 };
 
 struct Tileset {

@@ -184,7 +184,7 @@ void WordStream::skip_line() {
   }
 }
 
-std::string WordStream::take_rest() {
+std::string WordStream::take_rest(std::size_t most_bytes) {
   std::string rest;
   std::size_t blanks = 0;   // blanks that count if something follows them
   bool in_comment = false;  // perhaps: a name may have a '#' as well
@@ -203,8 +203,8 @@ std::string WordStream::take_rest() {
       rest.append(std::min(blanks, kMaxWordBytes), ' ');
     blanks = 0;
     rest += c;
-    if (rest.size() > kMaxWordBytes)
-      fail(fmt::format("found a line of more than {} bytes behind its first word", kMaxWordBytes));
+    if (rest.size() > most_bytes)
+      fail(fmt::format("found a line of more than {} bytes behind its first word", most_bytes));
   }
   return rest;
 }

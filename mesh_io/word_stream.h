@@ -54,8 +54,8 @@ class WordStream {
   /// Goes to the end of this line, over lines that are joined with it.
   void skip_line();
   /// Takes the rest of this line but for blanks around it, comments too; lines that are joined have
-  /// a blank between them. One that is too long is an error.
-  std::string take_rest();
+  /// a blank between them. One of more than `most_bytes` is an error.
+  std::string take_rest(std::size_t most_bytes = kMaxWordBytes);
 
   /// Takes the next word of this line as a finite number; `what` names it in messages.
   DecimalNumber take_number(const char* what);

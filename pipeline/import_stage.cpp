@@ -19,8 +19,14 @@ namespace {
 importing::MeshInput::Place place_of(const std::filesystem::path& work, storage::MemoryPool& pool,
                                      std::uint64_t sort_bytes,
                                      const BuildEnvironment& environment) {
-  return {storage::imported_path(work), work / "import",    pool,           sort_bytes,
-          environment.progress,         environment.cancel, work / "copies"};
+  return {storage::imported_path(work),
+          work / "import",
+          pool,
+          sort_bytes,
+          environment.progress,
+          environment.cancel,
+          work / "copies",
+          storage::imported_objects_path(work)};
 }
 
 bool is_to_be_looked_at(const config::Config& config) {
@@ -82,7 +88,9 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
            .textures = config.texture.use ? importing::Textures::use : importing::Textures::ignore,
            .crop = config.crop_box(),
            .attributes = config.attributes,
-           .drape = config.texture.drape}};
+           .drape = config.texture.drape,
+           .objects = config.objects.from,
+           .object_table = config.objects.table}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {

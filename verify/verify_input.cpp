@@ -352,7 +352,12 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
 importing::InputUse use_of(const storage::Manifest& manifest) {
   importing::InputUse use;
   use.attributes = {.which = mesh_io::AttributeChoice::Which::named, .labels = {{}}};
+  use.objects.from = mesh_io::ObjectSource::none;
+  bool has_objects = false;
   for (const ScalarAttribute& value : manifest.source.attributes.values) {
+    has_objects = has_objects || value.is_object;
+    if (value.is_object)
+      continue;
     use.attributes.names.push_back(value.name);
     if (value.is_label)
       use.attributes.labels->push_back(value.name);
@@ -363,9 +368,22 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
     const config::Config config = exporting::config_of(manifest);
     use.weld = config.weld;
     use.crop = config.crop_box();
+    if (has_objects)
+      use.objects = config.objects.from;
   } catch (const Error&) {
   }
   return use;
+}
+
+/// Takes the file of that name out of the inputs; if it is not there, it is beside the first one.
+std::filesystem::path take_named(const std::string& name, mesh_io::InputPaths& inputs) {
+  const auto named = std::ranges::find_if(
+      inputs, [&](const std::filesystem::path& path) { return path.filename() == name; });
+  if (named == inputs.end())
+    return inputs[0].parent_path() / name;
+  std::filesystem::path found = *named;
+  inputs.erase(named);
+  return found;
 }
 
 /// Takes the orthophoto of heights out of the inputs, or finds it beside the first of them: the
@@ -380,13 +398,15 @@ std::filesystem::path take_drape(const VerifyJob& job, mesh_io::InputPaths& inpu
   const auto picture = std::ranges::find(made_of, "picture", &SourceFile::format);
   if (picture == made_of.end() || inputs.empty() || std::ranges::none_of(made_of, is_raster))
     return {};
-  const auto named = std::ranges::find_if(
-      inputs, [&](const std::filesystem::path& path) { return path.filename() == picture->name; });
-  if (named == inputs.end())
-    return inputs[0].parent_path() / picture->name;
-  const std::filesystem::path drape = *named;
-  inputs.erase(named);
-  return drape;
+  return take_named(picture->name, inputs);
+}
+
+/// Takes the table of objects in the same way.
+std::filesystem::path take_object_table(const VerifyJob& job, mesh_io::InputPaths& inputs) {
+  const auto& made_of = job.reader.manifest().source.files;
+  const auto table = std::ranges::find(made_of, "object table", &SourceFile::format);
+  return table == made_of.end() || inputs.empty() ? std::filesystem::path()
+                                                  : take_named(table->name, inputs);
 }
 
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
@@ -412,6 +432,7 @@ void verify_input(const VerifyJob& job) {
   mesh_io::InputPaths inputs = job.options.input;
   importing::InputUse use = use_of(job.reader.manifest());
   use.drape = take_drape(job, inputs);
+  use.object_table = take_object_table(job, inputs);
   importing::MeshInput files(inputs, job.files, use);
   if (expected.count_of(importing::kDroppedUnplaced) > 0)
     files.note_unplaced();

@@ -206,7 +206,8 @@ std::filesystem::path WorkDirectory::packed() const {
 
 void WorkDirectory::clear() {
   for (const std::filesystem::path& file : files_.list(path_)) {
-    if (file != lock_path(path_) && file != imported_path(path_))
+    if (file != lock_path(path_) && file != imported_path(path_) &&
+        file != imported_objects_path(path_))
       files_.remove_all(file);
   }
   files_.remove_all(built());

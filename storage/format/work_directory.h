@@ -74,7 +74,7 @@ class WorkDirectory {
   std::filesystem::path built() const;   ///< the hierarchy to be, in path()
   std::filesystem::path packed() const;  ///< its archive to be, in path()
 
-  /// Removes all that is in it, but for an imported mesh and the lock.
+  /// Removes all that is in it, but for an imported mesh with its objects, and the lock.
   void clear();
   /// Says whether its content stays when the object goes without having been published.
   void keep(bool kept) { kept_ = kept; }

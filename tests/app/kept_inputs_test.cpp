@@ -103,6 +103,7 @@ struct Case {
 const std::map<std::string, Case> kCases{
     {"build FILE", {{"build", kIn}, "b.obj"}},
     {"build --drape", {{"build", "b.obj", "--drape", kIn}, "matrix.txt"}},
+    {"build --object-table", {{"build", "b.obj", "--object-table", kIn}, "matrix.txt"}},
     {"plan FILE", {{"plan", kIn, "--tasks", "2"}, "b.obj"}},
     {"compare FROM", {{"compare", kIn, "b.hier"}, "a.hier"}},
     {"compare TO", {{"compare", "b.hier", kIn}, "a.3tz"}},

@@ -59,7 +59,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
        {"geodesy", {"hierarchy", "storage/io"}},
        {"config", with_storage({"cluster_simplify", "execution", "geodesy", "hierarchy", "mesh_io",
                                 "partition"})},
-       {"import", {"execution", "hierarchy", "images", "mesh_io", "partition", "storage/io"}},
+       {"import", with_storage({"execution", "hierarchy", "images", "mesh_io", "partition"})},
        {"pipeline/tiles", with_storage({"cluster_simplify", "hierarchy", "images", "partition",
                                         "shading", "texture"})},
        {"pipeline/plan",

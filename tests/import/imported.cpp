@@ -1,6 +1,7 @@
 #include "import/imported.h"
 
 #include "hierarchy/value_channels.h"
+#include "storage/format/object_table.h"
 #include "tests/support/warnings.h"
 
 #include <algorithm>
@@ -47,6 +48,37 @@ std::vector<std::string> Imported::companions() const {
   for (const std::filesystem::path& place : record.awaited)
     all.push_back("no " + place.generic_string());
   return all;
+}
+
+std::vector<std::uint32_t> Imported::objects_of_triangles() const {
+  const auto place = placed_object(layout);
+  std::vector<std::uint32_t> all;
+  for (const auto& triangle : triangles) {
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t k = 0; place && k < 3; ++k) {
+      const std::size_t first = triangle[k] * static_cast<std::size_t>(layout.channels());
+      corners[k] = static_cast<std::uint32_t>(
+          value_in(place->type, attributes.data() + first + place->channel));
+    }
+    if (!place || corners[0] != corners[1] || corners[0] != corners[2])
+      throw std::logic_error("the corners of a triangle have no object, or several");
+    all.push_back(corners[0]);
+  }
+  return all;
+}
+
+std::vector<std::string> Imported::names_of_triangles() const {
+  std::vector<std::string> names;
+  for (const std::uint32_t object : objects_of_triangles())
+    names.push_back(objects.at(object).name);
+  return names;
+}
+
+std::vector<std::string> Imported::object_names() const {
+  std::vector<std::string> names;
+  for (const ObjectRow& row : objects)
+    names.push_back(row.name);
+  return names;
 }
 
 std::uint32_t Imported::material_of(std::size_t triangle) const {
@@ -116,7 +148,9 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   storage::MemoryPool pool(how.memory.pool_bytes);
   Warnings warnings;
   const execution::CancelToken cancel;
-  importing::MeshInput input(inputs, files, {how.weld, how.textures, how.crop, how.attributes});
+  importing::MeshInput input(
+      inputs, files,
+      {how.weld, how.textures, how.crop, how.attributes, {}, how.objects, how.object_table});
   if (input.needs_import()) {
     input.import({how.folder / "imported.ply", how.folder / "import", pool, how.memory.sort_bytes,
                   warnings, cancel});
@@ -124,6 +158,11 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   Imported result;
   result.layout = input.description().attributes;
   result.materials = input.materials();
+  if (input.objects()) {
+    const storage::ObjectTable table(files.open(input.objects()->file), &input.objects()->facts);
+    result.properties = table.properties();
+    table.for_each([&](std::uint32_t, const ObjectRow& row) { result.objects.push_back(row); });
+  }
   read(*input.open(), result);
   result.summary.attributes = result.layout;
   result.summary.values = result.statistics();

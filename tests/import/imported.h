@@ -1,6 +1,7 @@
 // An imported mesh, read back as a build reads it.
 #pragma once
 
+#include "hierarchy/object_row.h"
 #include "hierarchy/published.h"
 #include "images/material_list.h"
 #include "import/mesh_input.h"
@@ -18,8 +19,10 @@ struct Imported {
   SourceSummary summary;
   importing::InputRecord record;
   std::vector<std::string> warnings;
-  std::uint64_t disk_bytes = 0;       ///< temporary, at most at once
-  std::uint64_t predicted_bytes = 0;  ///< as importing::predict_import
+  std::uint64_t disk_bytes = 0;            ///< temporary, at most at once
+  std::uint64_t predicted_bytes = 0;       ///< as importing::predict_import
+  std::vector<ObjectProperty> properties;  ///< of the objects
+  std::vector<ObjectRow> objects;
   std::vector<Vec3d> positions;
   std::vector<float> attributes;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -28,6 +31,12 @@ struct Imported {
   std::uint64_t count(const std::string& name) const;
   /// Returns the files that belong to the meshes: "w/a.png", and "no w/b.png" for a missing one.
   std::vector<std::string> companions() const;
+  /// Returns the object of each triangle, whose corners must all have it.
+  std::vector<std::uint32_t> objects_of_triangles() const;
+  /// Returns the name of each triangle's object.
+  std::vector<std::string> names_of_triangles() const;
+  /// Returns the names of all objects.
+  std::vector<std::string> object_names() const;
   /// The number of a triangle's material, which all of its corners must name.
   std::uint32_t material_of(std::size_t triangle) const;
   /// Number `attribute` of layout.values, of all vertices.
@@ -53,6 +62,8 @@ struct ImportHow {
   std::filesystem::path folder = "w";  ///< for temporary files
   std::optional<BoundsD> crop{};
   mesh_io::AttributeChoice attributes{};
+  mesh_io::ObjectChoice objects{mesh_io::ObjectSource::none};
+  std::filesystem::path object_table{};
 };
 
 /// Throws as importing::MeshInput.

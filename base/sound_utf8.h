@@ -1,0 +1,12 @@
+// Texts that may not be UTF-8.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace meshhier {
+
+/// Returns `text` in UTF-8 (RFC 3629): each byte that is part of no character becomes U+FFFD.
+std::string sound_utf8(std::string_view text);
+
+}  // namespace meshhier

@@ -1,0 +1,19 @@
+// The part of a glTF in a larger scene.
+#pragma once
+
+#include "mesh_io/feature_table.h"
+#include "mesh_io/gltf_transform.h"
+
+#include <string>
+
+namespace meshhier::importing {
+
+struct GltfPlace {
+  mesh_io::GltfTransform placement{};
+  /// Of a tileset, or of a like tree, whose nodes are evident for nobody.
+  bool is_tile = false;
+  std::string name{};                      ///< before names of features; empty: it is alone
+  mesh_io::FeatureTable* batch = nullptr;  ///< table of the b3dm that it is in; null: none
+};
+
+}  // namespace meshhier::importing

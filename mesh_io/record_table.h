@@ -1,0 +1,46 @@
+// Tables beside a mesh, as streams of records: CSV and JSON lines.
+#pragma once
+
+#include "hierarchy/object_row.h"
+#include "mesh_io/input_stream.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace meshhier::mesh_io {
+
+/// A value of a record, under its column's name.
+struct RecordField {
+  std::string column;
+  ObjectValue value;
+};
+
+struct RecordCounts {
+  std::uint64_t records = 0;
+  std::uint64_t ragged = 0;  ///< of CSV: records with more or fewer fields than the first line
+  std::uint64_t first_ragged = 0;  ///< its line
+};
+
+/// Takes the fields of a record; columns of CSV are always the same, in the same order. Texts are
+/// UTF-8. `is_plain`: all values are texts, which may mean anything, as those of CSV.
+using RecordVisitor = std::function<void(std::span<const RecordField> fields, bool is_plain)>;
+
+/// Reads
+///
+///   CSV (RFC 4180)   a line of columns' names, then a line a record; between fields stands a
+///                    comma, semicolon or tab, whichever the first line has most of; fields in
+///                    quotes may have these, line ends, and two quotes for one; an empty field is
+///                    no value
+///   JSON lines       an object a line: numbers, booleans, texts; others as text of JSON; null is
+///                    no value
+///
+/// A text that begins with "{" is JSON. Empty lines are passed over. Bytes that are no UTF-8 become
+/// U+FFFD; UTF-16 with a byte order mark is read, too. Memory: a record, up to 4 MiB. Throws
+/// Error(input) naming the line, Error(io).
+RecordCounts read_records(InputStream& stream, const std::filesystem::path& path,
+                          const RecordVisitor& visit);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,313 @@
+// Objects of glTF files and tiles: nodes, materials and features.
+#include "base/error.h"
+#include "import/imported.h"
+#include "support/gltf_builder.h"
+#include "tests/support/memory_files.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using mesh_io::ObjectSource;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using tests::GltfBuilder;
+using tests::GltfJson;
+using tests::Imported;
+using tests::ImportHow;
+
+ImportHow asking(ObjectSource source) {
+  ImportHow how;
+  how.objects = {source};
+  return how;
+}
+
+/// Six corners of two triangles.
+const std::vector<float> kPair{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+
+std::string number_word(std::size_t number) {
+  return tests::little(static_cast<std::uint32_t>(number));
+}
+
+std::string batched_tile(const std::string& glb, std::string json, const std::string& binary = "") {
+  json.resize((json.size() + 7) / 8 * 8, ' ');
+  const std::string features = R"({"BATCH_LENGTH":2}      )";
+  return "b3dm" + number_word(1) +
+         number_word(28 + features.size() + json.size() + binary.size() + glb.size()) +
+         number_word(features.size()) + number_word(0) + number_word(json.size()) +
+         number_word(binary.size()) + features + json + binary + glb;
+}
+
+class GltfObjectsTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(fs::path("w") / name, content);
+  }
+  Imported import(const GltfBuilder& gltf, ObjectSource source = ObjectSource::evident) {
+    put("a.glb", gltf.glb());
+    return tests::import_files(files_, fs::path("w/a.glb"), asking(source));
+  }
+  std::string failure(const GltfBuilder& gltf, ObjectSource source = ObjectSource::feature) {
+    try {
+      import(gltf, source);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      return error.what();
+    }
+    return {};
+  }
+  Imported import_tiles(const std::vector<std::string>& tiles) {
+    GltfJson root{{"boundingVolume", {{"sphere", {0, 0, 0, 10}}}}, {"geometricError", 0}};
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      put(fmt::format("{}.b3dm", i), tiles[i]);
+      root["children"].push_back({{"boundingVolume", {{"sphere", {0, 0, 0, 10}}}},
+                                  {"geometricError", 0},
+                                  {"content", {{"uri", fmt::format("{}.b3dm", i)}}}});
+    }
+    put("tileset.json",
+        GltfJson{{"asset", {{"version", "1.0"}}}, {"geometricError", 9}, {"root", root}}.dump());
+    return tests::import_files(files_, fs::path("w/tileset.json"), asking(ObjectSource::evident));
+  }
+
+  tests::MemoryFiles files_;
+};
+
+std::string shown(const ObjectValue& value) {
+  if (const auto* number = std::get_if<double>(&value))
+    return fmt::format("{}", *number);
+  if (const auto* flag = std::get_if<bool>(&value))
+    return *flag ? "true" : "false";
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr ? *text : "-";
+}
+
+std::vector<std::string> rows_of(const Imported& mesh) {
+  std::vector<std::string> rows;
+  for (const ObjectRow& row : mesh.objects) {
+    std::string text = row.name + ":";
+    for (const ObjectValue& value : row.values)
+      text += ' ' + shown(value);
+    rows.push_back(text);
+  }
+  return rows;
+}
+
+TEST_F(GltfObjectsTest, NodesThatShowAMesh) {
+  GltfBuilder gltf;
+  const std::size_t mesh =
+      gltf.mesh({{"attributes", {{"POSITION", gltf.accessor(kPair, "VEC3")}}}});
+  gltf.node({{"name", "house"}, {"children", {1, 4}}});
+  gltf.node({{"name", "storey"}, {"children", {2, 3}}});
+  gltf.node({{"name", "wall"}, {"mesh", mesh}, {"extras", {{"thick", 0.25}, {"tags", {1, 2}}}}});
+  gltf.node({{"name", "wall"}, {"mesh", mesh}});
+  gltf.node({{"mesh", mesh}});
+  gltf.json["scenes"] = GltfJson::array({{{"nodes", {0}}}});
+  const Imported evident = import(gltf);
+  EXPECT_THAT(rows_of(evident), ElementsAre("house/node 4: - -", "house/storey/wall: [1,2] 0.25",
+                                            "house/storey/wall (2): - -"));
+  EXPECT_THAT(evident.names_of_triangles(),
+              ElementsAre("house/storey/wall", "house/storey/wall", "house/storey/wall (2)",
+                          "house/storey/wall (2)", "house/node 4", "house/node 4"));
+  gltf.json["nodes"][3].erase("name");
+  EXPECT_THAT(import(gltf).objects, IsEmpty()) << "one has a name";
+  EXPECT_THAT(import(gltf, ObjectSource::node).objects, SizeIs(3));
+  gltf.json["meshes"][0]["name"] = "brick";
+  EXPECT_THAT(import(gltf).object_names(),
+              ElementsAre("house/brick", "house/storey/brick", "house/storey/wall"));
+  gltf.json["nodes"][2]["name"] = 7;
+  EXPECT_THAT(import(gltf).objects, SizeIs(3)) << "a name that is no text is none";
+}
+
+TEST_F(GltfObjectsTest, CopiesOfANodeAndMaterials) {
+  GltfBuilder gltf;
+  const GltfJson attributes{{"POSITION", gltf.accessor(kPair, "VEC3")}};
+  gltf.add("materials", {{"name", "brick"}});
+  gltf.add("materials", {{"name", "glass"}});
+  const std::size_t places = gltf.accessor(std::vector<float>{0, 0, 0, 5, 0, 0}, "VEC3");
+  gltf.node(
+      {{"name", "tree"},
+       {"mesh", gltf.mesh({{"attributes", attributes}, {"material", 1}})},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
+  gltf.node({{"mesh", gltf.mesh({{"attributes", attributes}, {"material", 0}})}});
+  EXPECT_THAT(import(gltf, ObjectSource::node).object_names(),
+              ElementsAre("node 1", "tree/1", "tree/2"));
+  EXPECT_THAT(import(gltf, ObjectSource::material).names_of_triangles(),
+              ElementsAre("glass", "glass", "glass", "glass", "brick", "brick"));
+}
+
+TEST_F(GltfObjectsTest, WaysOfHostileDepthAreCut) {
+  GltfBuilder gltf;
+  const std::size_t mesh =
+      gltf.mesh({{"attributes", {{"POSITION", gltf.accessor(kPair, "VEC3")}}}});
+  for (std::size_t i = 0; i < 3000; ++i) {
+    GltfJson node{{"name", fmt::format("level {}", i)}, {"mesh", mesh}};
+    if (i + 1 < 3000)
+      node["children"] = {i + 1};
+    gltf.node(node);
+  }
+  const Imported mesh_of_all = import(gltf);
+  ASSERT_THAT(mesh_of_all.objects, SizeIs(3000));
+  for (const ObjectRow& row : mesh_of_all.objects)
+    EXPECT_LE(row.name.size(), 5000U);
+}
+
+/// Two triangles with features 1 and 0, and a table.
+GltfBuilder with_table(const GltfJson& properties, const GltfJson& columns) {
+  GltfBuilder gltf;
+  gltf.show(
+      {{"attributes",
+        {{"POSITION", gltf.accessor(kPair, "VEC3")},
+         {"_FEATURE_ID_0", gltf.accessor(std::vector<float>{1, 1, 1, 0, 0, 5}, "SCALAR")}}},
+       {"extensions",
+        {{"EXT_mesh_features",
+          {{"featureIds", {{{"featureCount", 2}, {"attribute", 0}, {"propertyTable", 0}}}}}}}}});
+  gltf.json["extensions"]["EXT_structural_metadata"] = {
+      {"schema",
+       {{"classes", {{"building", {{"properties", properties}}}}},
+        {"enums",
+         {{"roofs",
+           {{"values",
+             {{{"name", "flat"}, {"value", 0}}, {{"name", "gabled"}, {"value", 7}}}}}}}}}},
+      {"propertyTables", {{{"class", "building"}, {"count", 2}, {"properties", columns}}}}};
+  return gltf;
+}
+
+TEST_F(GltfObjectsTest, FeaturesWithAPropertyTable) {
+  GltfBuilder gltf = with_table({}, {});
+  const auto view = [&](const std::string& bytes) { return gltf.view(bytes); };
+  const std::string offsets = number_word(0) + number_word(4) + number_word(8);
+  GltfJson& metadata = gltf.json["extensions"]["EXT_structural_metadata"];
+  metadata["schema"]["classes"]["building"]["properties"] = {
+      {"name", {{"type", "STRING"}}},
+      {"h", {{"type", "SCALAR"}, {"componentType", "FLOAT32"}, {"noData", 9}, {"default", 4}}},
+      {"roof", {{"type", "ENUM"}, {"enumType", "roofs"}}},
+      {"on", {{"type", "BOOLEAN"}}},
+      {"at", {{"type", "VEC2"}, {"componentType", "INT16"}}},
+      {"many", {{"type", "SCALAR"}, {"componentType", "UINT8"}, {"array", true}}},
+      {"id64", {{"type", "SCALAR"}, {"componentType", "UINT64"}}},
+      {"part",
+       {{"type", "SCALAR"},
+        {"componentType", "UINT8"},
+        {"normalized", true},
+        {"scale", 10},
+        {"offset", 1}}}};
+  metadata["propertyTables"][0]["properties"] = {
+      {"name", {{"values", view("hallmill")}, {"stringOffsets", view(offsets)}}},
+      {"h", {{"values", view(GltfBuilder::bytes_of(std::vector<float>{9, 2.5F}))}}},
+      {"roof", {{"values", view(GltfBuilder::bytes_of(std::vector<std::uint16_t>{7, 3}))}}},
+      {"on", {{"values", view(std::string(1, '\2'))}}},
+      {"at", {{"values", view(GltfBuilder::bytes_of(std::vector<std::int16_t>{1, -2, 3, 4}))}}},
+      {"many",
+       {{"values", view(std::string("\1\2\3", 3))},
+        {"arrayOffsets", view(number_word(0) + number_word(1) + number_word(3))}}},
+      {"id64", {{"values", view(std::string(8, '\xff') + "\5" + std::string(7, '\0'))}}},
+      {"part", {{"values", view(std::string("\xff\0", 2))}}}};
+  const Imported mesh = import(gltf);
+  EXPECT_THAT(rows_of(mesh), ElementsAre("hall: 4 gabled false [1, -2] [1] 18446744073709551615 11",
+                                         "mill: 2.5 3 true [3, 4] [2, 3] 5 1"));
+  EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("mill", "hall"));
+  EXPECT_EQ(mesh.properties[5].type, ObjectPropertyType::text);
+
+  metadata["propertyTables"][0]["count"] = 3;
+  EXPECT_THAT(failure(gltf), HasSubstr("too few for 3 rows"));
+  metadata["propertyTables"][0]["count"] = 2;
+  metadata["propertyTables"][0]["properties"]["name"]["stringOffsets"] =
+      view(number_word(0) + number_word(6) + number_word(4));
+  EXPECT_THAT(failure(gltf), HasSubstr("offsets that do not ascend"));
+  metadata["propertyTables"][0]["properties"]["name"]["stringOffsets"] =
+      view(number_word(0) + number_word(4) + number_word(4000));
+  EXPECT_THAT(failure(gltf), HasSubstr("leads beyond its values"));
+}
+
+TEST_F(GltfObjectsTest, FeaturesWithoutNamesAreNumbered) {
+  GltfBuilder gltf = with_table({}, {});
+  const std::size_t view = gltf.view(GltfBuilder::bytes_of(std::vector<float>{1, 2}));
+  GltfJson& metadata = gltf.json["extensions"]["EXT_structural_metadata"];
+  metadata["schema"]["classes"]["building"]["properties"] = {
+      {"h", {{"type", "SCALAR"}, {"componentType", "FLOAT32"}}}};
+  metadata["propertyTables"][0]["properties"] = {{"h", {{"values", view}}}};
+  EXPECT_THAT(rows_of(import(gltf)), ElementsAre("feature 0: 1", "feature 1: 2"));
+
+  GltfBuilder bare = gltf;
+  bare.json.erase("extensions");
+  bare.json["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"][0].erase(
+      "propertyTable");
+  EXPECT_THAT(import(bare).objects, IsEmpty()) << "ids without properties are labels alone";
+  EXPECT_THAT(import(bare, ObjectSource::feature).names_of_triangles(),
+              ElementsAre("feature 1", "feature 0"));
+  bare.json["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"][0]
+           ["nullFeatureId"] = 0;
+  EXPECT_THAT(import(bare, ObjectSource::feature).names_of_triangles(),
+              ElementsAre("feature 1", ""));
+}
+
+TEST_F(GltfObjectsTest, FeaturesInTexturesAreCounted) {
+  GltfBuilder gltf;
+  gltf.show({{"attributes", {{"POSITION", gltf.accessor(kPair, "VEC3")}}},
+             {"extensions",
+              {{"EXT_mesh_features",
+                {{"featureIds", {{{"featureCount", 2}, {"texture", {{"index", 0}}}}}}}}}}});
+  EXPECT_THAT(import(gltf).objects, IsEmpty());
+  EXPECT_THAT(failure(gltf), HasSubstr("has no features of a glTF or b3dm"));
+}
+
+TEST_F(GltfObjectsTest, BatchTablesOfTiles) {
+  GltfBuilder gltf;
+  gltf.show({{"attributes",
+              {{"POSITION", gltf.accessor(kPair, "VEC3")},
+               {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 1, 1, 1}, "SCALAR")}}}});
+  const std::string heights = GltfBuilder::bytes_of(std::vector<float>{1.5F, 2});
+  const Imported mesh = import_tiles(
+      {batched_tile(gltf.glb(),
+                    R"({"id":["x1","x2"],"h":{"byteOffset":0,"componentType":"FLOAT","type":)"
+                    R"("SCALAR"},"use":["home",null],"HIERARCHY":{"classes":[]}})",
+                    heights),
+       batched_tile(gltf.glb(), R"({"id":["x2","x3"],"use":["shop","farm"]})")});
+  EXPECT_THAT(rows_of(mesh), ElementsAre("x1: 1.5 home", "x2: 2 shop", "x3: - farm"));
+  EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("x1", "x2", "x2", "x3"));
+
+  const Imported unnamed =
+      import_tiles({batched_tile(gltf.glb(), R"({"id":[0,1],"use":["a","b"]})"),
+                    batched_tile(gltf.glb(), R"({"id":[0,1],"use":["c","d"]})")});
+  EXPECT_THAT(rows_of(unnamed), ElementsAre("0.b3dm/feature 0: 0 a", "0.b3dm/feature 1: 1 b",
+                                            "1.b3dm/feature 0: 0 c", "1.b3dm/feature 1: 1 d"))
+      << "numbers of rows say nothing in another tile";
+}
+
+TEST_F(GltfObjectsTest, BatchTablesThatLie) {
+  GltfBuilder gltf;
+  gltf.show({{"attributes",
+              {{"POSITION", gltf.accessor(kPair, "VEC3")},
+               {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 9, 9, 9}, "SCALAR")}}}});
+  const auto failure_of = [&](const std::string& json) -> std::string {
+    try {
+      import_tiles({batched_tile(gltf.glb(), json, "12345678")});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(failure_of(R"({"h":{"byteOffset":9,"componentType":"FLOAT","type":"SCALAR"}})"),
+              HasSubstr("byteOffset"));
+  EXPECT_THAT(failure_of(R"({"h":{"byteOffset":0,"componentType":"HALF","type":"SCALAR"}})"),
+              HasSubstr("unknown componentType or type"));
+  EXPECT_THAT(failure_of("[1]"), HasSubstr("no object of JSON"));
+  EXPECT_THAT(failure_of("{\"a\":"), HasSubstr("0.b3dm"));
+  const Imported shorter = import_tiles({batched_tile(gltf.glb(), R"({"n":["a","b"],"m":["c"]})")});
+  EXPECT_THAT(rows_of(shorter), ElementsAre("feature 0: a c", "feature 1: b -", "feature 9: - -"))
+      << "a feature without a row";
+}
+
+}  // namespace
+}  // namespace meshhier::importing
