@@ -292,6 +292,12 @@ ConfigKey object_source(ConfigKey key) {
   return key;
 }
 
+/// Builds without objects tell what they always did.
+ConfigKey objects_in_tiles(ConfigKey key) {
+  key.show = [](const Config& config) { return config.objects.in_tiles ? Json() : Json(false); };
+  return key;
+}
+
 ConfigKey deciding(ConfigKey key) {
   key.decides_result = true;
   return key;
@@ -363,6 +369,12 @@ std::vector<ConfigKey> make_config_keys() {
                       "`id` (the value of a label or of a feature) or `name` says whose a row is; "
                       "`--object-table` of `build` sets it"},
           [](auto& c) -> auto& { return c.objects.table; })),
+      deciding(objects_in_tiles(boolean(
+          {.path = "objects.in_tiles",
+           .meaning = "tiles have tables of their objects, which other viewers show: names and "
+                      "properties once more in each tile",
+           .unset = "`true`"},
+          [](auto& c) -> auto& { return c.objects.in_tiles; }))),
       deciding(number(
           {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),

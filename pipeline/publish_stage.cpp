@@ -69,7 +69,7 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
 /// Opens the table of objects that the import has left, if tiles are to have tables of theirs.
 std::unique_ptr<const storage::ObjectTable> open_objects(const std::filesystem::path& hierarchy,
                                                          const StageContext& context) {
-  if (!context.plan.job.has_objects)
+  if (!context.plan.job.has_objects || !context.config.objects.in_tiles)
     return nullptr;
   const auto imported = storage::imported_objects_path(hierarchy.parent_path());
   return std::make_unique<storage::ObjectTable>(context.files.open(imported));

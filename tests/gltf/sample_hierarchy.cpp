@@ -350,11 +350,11 @@ SampleHierarchy with_objects(SampleHierarchy sample,
   sample.format.objects = properties;
   const PlacedValue object = placed_object(sample.format.attributes).value();
   for (PublishedTile& tile : sample.tiles) {
-    std::uint32_t number = 16777000;
+    constexpr double kNumber = 16777000;
     for (VertexArray* vertices : {&tile.mesh.vertices, &tile.mesh.copies.vertices}) {
       const auto channels = static_cast<std::size_t>(vertices->channels);
       for (std::size_t v = 0; v < vertices->size(); ++v)
-        put_value(object.type, number - v % 23 * 1000,
+        put_value(object.type, kNumber - static_cast<double>(v % 23 * 1000),
                   vertices->attributes.data() + v * channels + object.channel);
     }
     tile.objects = storage::make_tile_objects(
