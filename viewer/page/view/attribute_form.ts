@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which attribute colours the model, and how: a legend that one can change.
-import { attributeIndex, labelColour, rampColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
+import { attributeIndex, isLabel, labelColour, rampColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
 import { formatCount, formatLength } from '../numbers.js';
 import { checkbox, choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
@@ -131,10 +131,10 @@ export class AttributeForm {
     this.select.value = attribute.name;
     this.missing.hidden = attribute.missing === 0;
     this.missing.textContent = words.attribute.missing(formatCount(attribute.missing));
-    const isLabel = attribute.kind === 'label';
-    this.quantity.hidden = isLabel;
-    this.labels.hidden = !isLabel;
-    if (isLabel) this.showLabels(attribute, look.hidden);
+    const isNamed = isLabel(attribute);
+    this.quantity.hidden = isNamed;
+    this.labels.hidden = !isNamed;
+    if (isNamed) this.showLabels(attribute, look.hidden);
     else this.showQuantity(attribute, look);
   }
 

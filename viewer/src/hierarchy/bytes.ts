@@ -179,7 +179,7 @@ export async function fetchBytes(
 /// More than this is not fetched whole for a part of it.
 const MOST_WHOLE = 2 ** 26;
 
-/// Bytes [first, end) of a file of `length`, or all of it where the host knows no ranges.
+/// Bytes [first, end) of a file of `length`, or all of it where the host knows no ranges; as they are stored.
 export async function fetchRange(
   fetch: Fetch,
   url: string,
@@ -188,5 +188,5 @@ export async function fetchRange(
   length: number,
   signal: AbortSignal,
 ): Promise<Uint8Array<ArrayBuffer>> {
-  return fetchBytes(fetch, url, name, Math.min(length, MOST_WHOLE), { signal, headers: { Range: `bytes=${first}-${end - 1}` } });
+  return fetchStored(fetch, url, name, Math.min(length, MOST_WHOLE), { signal, headers: { Range: `bytes=${first}-${end - 1}` } });
 }

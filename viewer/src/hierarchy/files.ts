@@ -16,7 +16,7 @@ export interface RemoteFiles {
   stored(name: string, most: number, init?: Asking, where?: FilePlace): Promise<Uint8Array<ArrayBuffer>>;
   /// Tells whether a file will not come: what is there is not all of the hierarchy. If it is not said, all is there.
   lacks?(name: string): boolean;
-  /// Bytes [first, end) of a file of `length`; or all of it, where a host knows no ranges.
+  /// Bytes [first, end) of a file of `length`, as they are stored; or all of it, where a host knows no ranges.
   part(name: string, [first, end]: [number, number], length: number, signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>>;
   /// The manifest as the host has it now, from no cache.
   manifestNow(signal: AbortSignal): Promise<Uint8Array<ArrayBuffer>>;

@@ -3,6 +3,7 @@
 import { JsonValue, type Fail } from '../json_value.js';
 import { COMPRESSIONS, COMPRESSION_NAMES } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
+import { readObjectFacts, type ObjectFacts } from './object_facts.js';
 import { readScalarAttributes, type ScalarAttribute } from './scalar_values.js';
 import { FORMATS } from './formats.js';
 import { MANIFEST, MOST_MANIFEST_BYTES } from './manifest_file.js';
@@ -52,6 +53,8 @@ export interface Manifest {
   readonly outline: NamedFile;
   /// The model's picture; null: it has none.
   readonly preview: NamedFile | null;
+  /// What is known of the model's objects; null: it has none.
+  readonly objects: ObjectFacts | null;
   /// The name of the build: its own checksum, which covers that of the index, which covers those of all tiles.
   readonly build: string;
 }
@@ -64,7 +67,7 @@ export interface NamedFile {
   readonly checksum: bigint;
 }
 
-const FORMAT_VERSION = 13; // 12: the same without tiles that have both a picture and a normal map; 11: with another tileset; 10: and without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
+const FORMAT_VERSION = 14; // 13: the same without objects; 12: and without tiles that have both a picture and a normal map; 11: with another tileset; 10: and without KTX2; 9: and without normal maps; 8: and without values; 7: tiles hold colours as screens have them
 const OLDEST_VERSION = 6; // that without a first view
 const MOST_PREVIEW_BYTES = 40_000;
 
@@ -137,6 +140,7 @@ export function readManifest(text: string): Manifest {
     index: readFile(root.at('index'), indexBytes, indexBytes),
     outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
     preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
+    objects: root.has('objects') ? readObjectFacts(root.at('objects')) : null,
     build: root.at('checksum').checksum(),
     hasNormalMaps: root.at('storage').has('normal_map'),
     packedTiles: COMPRESSIONS[root.at('storage').at('compression').oneOf(...COMPRESSION_NAMES)],

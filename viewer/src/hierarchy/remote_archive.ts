@@ -123,11 +123,11 @@ export class RemoteArchive implements RemoteFiles {
   }
 
   /// Notes where the files behind the manifest lie. Older archives have another order: there they are looked up.
-  private place({ index, outline, preview }: Manifest, bytes: Uint8Array, from: number): void {
+  private place({ index, outline, preview, objects }: Manifest, bytes: Uint8Array, from: number): void {
     const root = readLocalHeader(bytes, this.name);
     if (root?.name !== tilePath({ level: 0, index: 0 })) return;
     let at = from;
-    const others = [index, outline, ...(preview === null ? [] : [preview])].map(({ file, bytes }) => ({ name: file, bytes, headerBytes: archivedBytes(file, 0) }));
+    const others = [index, outline, preview, objects].filter((file) => file !== null).map(({ file, bytes }) => ({ name: file, bytes, headerBytes: archivedBytes(file, 0) }));
     for (const file of [root, ...others]) {
       this.note(file, at);
       at += file.headerBytes + file.bytes;

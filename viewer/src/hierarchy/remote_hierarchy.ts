@@ -3,6 +3,7 @@
 import { Build } from './build.js';
 import { checksum } from './checksum.js';
 import { fetchManifest, type Manifest } from './manifest.js';
+import { ObjectTable } from './object_table.js';
 import { fetchOutlineOf, type Outline } from './outline.js';
 import { HierarchyProblem, HierarchyReplaced } from './problem.js';
 import { MOST_SIDE } from './limits.js';
@@ -98,6 +99,17 @@ export class RemoteHierarchy {
     } catch (problem) {
       throw await this.explained(problem);
     }
+  }
+
+  /// Names and properties of objects, read as they are asked for; null: there are none. Call it once the directory is there.
+  objects({ objects }: Manifest): ObjectTable | null {
+    return objects && new ObjectTable(objects, async (first, end) => {
+      try {
+        return await this.files.part(objects.file, [first, end], objects.bytes, this.signal);
+      } catch (problem) {
+        throw await this.explained(problem, this.holds(objects.file, end));
+      }
+    });
   }
 
   async manifest(): Promise<Manifest> {

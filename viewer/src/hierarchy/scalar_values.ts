@@ -11,8 +11,8 @@ export const NO_VALUE = -3.4028234663852886e38;
 /// One number a vertex.
 export interface ScalarAttribute {
   readonly name: string;
-  /// A label names something, as a class or an object; of a quantity means are made.
-  readonly kind: 'quantity' | 'label';
+  /// A label names something, as a class; of a quantity means are made. An object is a label of which all corners of a triangle have the same.
+  readonly kind: 'quantity' | 'label' | 'object';
   readonly min: number;
   readonly max: number;
   /// Vertices without a finite value.
@@ -25,6 +25,16 @@ export interface ScalarAttribute {
   readonly labels: readonly number[];
   /// The input's names of the labels; '' where it says nothing.
   readonly labelNames: readonly string[];
+}
+
+/// Tells whether numbers stand for things: nothing lies between two.
+export function isLabel({ kind }: Pick<ScalarAttribute, 'kind'>): boolean {
+  return kind !== 'quantity';
+}
+
+/// The place of the value that is a triangle's object; -1: there is none.
+export function objectIndex(attributes: readonly ScalarAttribute[]): number {
+  return attributes.findIndex(({ kind }) => kind === 'object');
 }
 
 /// The name of a label, or '' if it has none.
@@ -54,7 +64,7 @@ function readScalarAttribute(value: JsonValue): ScalarAttribute {
   const labels = value.has('labels') ? numbers(value.at('labels')) : [];
   return {
     name: value.at('name').text(),
-    kind: value.at('kind').oneOf('quantity', 'label'),
+    kind: value.at('kind').oneOf('quantity', 'label', 'object'),
     min: value.at('min').number(),
     max: value.at('max').number(),
     missing: value.at('missing').count(),

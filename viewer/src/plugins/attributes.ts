@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Colours by an attribute of the vertices: along a ramp, or one for each label.
 import { DataTexture, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, Vector2, type BufferGeometry } from 'three';
-import { LEAST_VALUE, valueWidth, type ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { isLabel, LEAST_VALUE, valueWidth, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { labelTexture, rampTexture } from '../scene/ramps.js';
 import { attributeIndex, wholeRange, type AttributeLook, type Look } from '../scene/settings.js';
@@ -79,7 +79,7 @@ export class Attributes implements PluginOf<unknown>, Shading {
     const key = JSON.stringify([this.index, look]);
     if (key === this.made && attribute === this.shown) return;
     [this.made, this.shown] = [key, attribute];
-    this.isLabel = attribute.kind === 'label';
+    this.isLabel = isLabel(attribute);
     this.uniforms.valueRamp.value?.dispose();
     if (this.isLabel) this.setLabels(attribute, look.hidden);
     else this.setRamp(attribute, look);

@@ -3,6 +3,7 @@
 import { Group, type Box3, type Matrix4, type PerspectiveCamera, type Scene, type Vector3, type WebGLRenderer } from 'three';
 import type { Vector } from '../cut/viewpoint.js';
 import type { Manifest } from '../hierarchy/manifest.js';
+import type { ObjectTable } from '../hierarchy/object_table.js';
 import type { Node } from '../hierarchy/tree.js';
 import { Attributes } from '../plugins/attributes.js';
 import { Plugins, type PluginOf, type StageOf } from '../plugins/plugin.js';
@@ -190,6 +191,11 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Figures as of now; they cost little, and may be asked for in each frame.
   stats(): Stats {
     return this.frames.stats();
+  }
+
+  /// The names and properties of the model's objects, read as they are asked for. Null: it has none, or it is not known yet.
+  get objects(): ObjectTable | null {
+    return this.loading.objects;
   }
 
   // ---- plug-ins, and the host

@@ -5,6 +5,7 @@ import { Refinement } from '../cut/refinement.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
+import type { ObjectTable } from '../hierarchy/object_table.js';
 import { HierarchyReplaced } from '../hierarchy/problem.js';
 import { remoteFiles } from '../hierarchy/remote_files.js';
 import type { Directory } from '../hierarchy/remote_hierarchy.js';
@@ -42,6 +43,7 @@ export class ShownCut {
 export class Loading implements FileHost {
   manifest: Manifest | null = null;
   directory: Directory | null = null;
+  objects: ObjectTable | null = null;
   cut = new ShownCut();
   store: TileStore;
   failed = 0;
@@ -253,6 +255,7 @@ export class Loading implements FileHost {
     const { context } = this;
     this.directory = directory;
     this.manifest = manifest;
+    this.objects = this.opening.remote.objects(manifest);
     context.form.takeManifest(manifest);
     context.tiles.hasNormalMaps = manifest.hasNormalMaps;
     const [vertexBytes, texelBytes] = [vertexBytesOf(root), texelBytesOf(root)];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tells of a point that was picked.
 import type { Manifest } from '../hierarchy/manifest.js';
-import { LEAST_VALUE, labelName, type ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { isLabel, LEAST_VALUE, labelName, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import { Coordinates, type GlobePlace } from './coordinates.js';
 import type { Hit } from './pick.js';
 import type { Vector } from './vectors.js';
@@ -31,8 +31,8 @@ export interface PickedPoint {
 
 function valuesOf({ between, atCorner }: Hit, attributes: readonly ScalarAttribute[], snaps: boolean): PickedPoint['values'] {
   return attributes.slice(0, atCorner.length).map((attribute, i) => {
-    const { name, kind } = attribute;
-    const value = snaps || kind === 'label' ? atCorner[i] : between[i];
+    const { name } = attribute;
+    const value = snaps || isLabel(attribute) ? atCorner[i] : between[i];
     return { name, value: value > LEAST_VALUE ? value : null, label: labelName(attribute, value) };
   });
 }

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// A table as the program writes it (ObjectTableWriter): object 0 without a name, 519 rooms, 300 names that differ behind 300 bytes.
+
+export const TABLE_JSON = {
+  file: 'objects.bin',
+  bytes: 4753,
+  checksum: '0000000000000000',
+  count: 820,
+  directory: { bytes: 153, checksum: '32457757cff3979e' },
+  properties: [{ name: 'height', type: 'number' }, { name: 'listed', type: 'boolean' }, { name: 'use', type: 'text' }, { name: 'built', type: 'date' }],
+};
+
+const BASE64 =
+  'TUhUQUJMRQoBAAAAH4sIAAAAAAAC/+2c3U5UVxiGx6r4U5sColJFOyiiiOCs/7X8HVyiiCJVEUUUtVZrWy2N7QVwJ/W0dzGJN+BhDznwoAcekKYxxpime7P2/oa+tSNTTRVmPYh7u0Le' +
+  'PMZ8vtnfRgstjU0hEmlgLv708Nbjn+8UBw48nJ5+UCwxPOB4IPBA4oHCA40HBg8sHjg4YCU8QFOGpgxNGZoyNGVoytCUoSlDU46mHE05mnI05WjK0ZSjKUdTjqYcTQWaCjQVaCrQVKCp' +
+  'QFOBpgJNBZoKNJVoKtFUoqlEU4mmEk0lmko0lWgq0VShqUJThaYKTRWaKjRVaKrQVKGpQlONphpNNZpqNNVoqtFUo6lGU42mGk0Nmho0NWhq0NSgqUFTg6YGTQ2aGjS1aGrR1KKpRVOL' +
+  'phZNLZpaNLVoatHUoalDU4emDk0dmjo0dWjq0NShqSPT41kVlPCA4QHHA4EHEg8UHmg8MHhg8QBNGZoyNGVoytCUoSlDU4amDE0ZmjI05WjK0ZSjKUdTjqYcTTmacjTlaMrRVKCpQFOB' +
+  'pgJNBZoKNBVoKtBUoKlAU4mmEk0lmko0lWgq0VSiqURTiaYSTRWaKjRVaKrQVKGpQlOFpgpNFZoqNNVoqtFUo6lGU42mGk01mmo01Wiq0dSgqUFTg6YGTQ2aGjQ1aGrQ1KCpQVOLphZN' +
+  'LZpaNLVoatHUoqlFU4umFk0dmjo0dWjq0NShqUNTh6YOTR2aVjvKY0d57CiPHeWxozx2lMeO8thRHjvKY0d57CiPHeWxozx2lMeO8thRHjvKY0d57CiPHeWxozx2lMeO8thRHjvKY0d5' +
+  '7CiPHeWxozx2lMeO8thRHjvKY0d57CiPHeWxozx2lMeO8thRHjvKY0d57CiPHeWxozx2lMeO8thRHjvKY0d57CiPHeWxozx2lMeO8thR+YEqrMhpzLu48IpEIh8gM+Fj5rU35ZlKoVwJ' +
+  'l5lKdlnUSfHmzKPKbKFYvpldZh5ll8psdnnHXzNXWNvc1t5R3Nm9d9/+/hLjQmlj3cFDh48cK5cHBo4f9/7E4ODJk6dODQ2dHh4+c+bs2ZGRc6OjXyScP3/+QsLFhLGxsUsJ4+PjlxOu' +
+  'JExMTFxNmJycvJZwPWFqaupGws3ArcCXgdsZXwXuBO4Gvg7cy/gm8G3gu8D9wIOM7wPTgeS30gDEsYxEIpHI21FpCOKfcyQSiUQikUgkshTJ16+vvQnL1XzVWsiXr4s4KZbzNepMvkat' +
+  '5GvUQr5Gfbdfk69ju/J1rMzXsUeXzzr2h3Lcx0YikUgk8kZiX0Yikcj7fcBc+t/vU3ny6+zT357N/f78xctXfxZWfLRyddOatevWf7zhk0+bm1taWls3bmzbtGnz5i1b2ts/27p127aO' +
+  'ju3bd3z+eTGhs7NzZ8KuhK6urt0J3d3dexL2JvT09OxL6O3t3Z/Ql9Df338goRRgAR4QGTKgAjpgAjbDBQ4GDgUOB45kHA0cex3LtS/XbGhs4l9LkUgkEolEIpFIBJ/a//WDHsz/4yc9' +
+  'Wr+f64vZuReFVWs3NLe2bW7f2rGj2LlzV9fu7j17e/b17u/rP5A+c6dP2unjdfpQnT5Jp8/P6VNz+qicPkMODKQvldPXyt6fSBgcTN8up++X0zfMQ0OnE4aH0xfN6avm9GXzyMi5hNHR' +
+  '8M45e+88z4WMixljGZcyxjMuZ1zJmMi4mjGZcS3jesZUxo2M5fxsv6h9+fw/lG3cH5FI5P/o0Zl/fpbT75JKv2Xqzdd0K52un9NddLqYfhe/rjyZffps7o/nL18VVqxc1bRm3fp0gd3S' +
+  '0rqxrW1TurxOd9fzm+t8b50vrcPKOt9Xz2+r53fV+aZ6wZp6wYa6up5esJtesJau7qQX7KOX2B66QP/1QmP+VAjFsiyuhex31aifTaublvSPWDqRt+HH2/emp+/fvnX38S/hNh7Eg3gQ' +
+  'DxZ5UPjbf8nVeJf1y5dYjpEPCuZKrK+k+5hK7jjdCbqTdKfoTtOdpTuX37ES3VEyo2RGyYzyGOUxQ3eUzCiZUzKnPE55nEw5JXNK5pTMKU9QniBTQcmCkgUlC8oTlCfIVFCypGRJyZLy' +
+  'JOVJMpWULClZUrKiPEV5ikwVJStKVpSsKE9V88hUU7KmZE3JmvI05Wky1ZSsKVlTsqE8Q3mGTA0lG0o2lGwoz1CeJVNLyZaSLSVbyrOUZ8nUUrKlZEfJjvIc5TkydZTsKNlRsqO8EuUt' +
+  'eraqE2Xqnq3qRMl6Z2vBRLG6Z6s6Ubbu2apOlKp7tqoTxeueLcqTru7Zqk6Urnu2qhMl6p6t6kSV6p6t6kSZumerOlGy3tlaMFGs7tmqTpSte7Zqt1Xt2ardVrVnq3Zb1Z6t2m1Ve7Zq' +
+  't1Xt2ardVrVnq2ZbvWG2arTVXyqyugJlbgAAH4sIAAAAAAAC/+2cW24VRxRFzUf4iPIRZuAJoHT1q6r+nMC+eT+kTMCOAyEJxATI++UhMIPwm78MwRITyBAYAkOI2/ieppau2mkhFEOf' +
+  'LYO7z73aWggdL7lofOnSsrPl8Sw4n967s/fwz2vbV964c3Bwa7vrOYgcJA4yBn3FQeCg5qDhoOWg44CkPUl7kvYkjSSNJI0kjSSNJI0kjSSNJI0kjSRNJE0kTSRNJE0kTSRNJE0kTSRN' +
+  'JM0kzSTNJM0kzSTNJM0kzSTNJM1GevXJoKo4CBzUHDQctBx0HPQcRA4SByQNJA0kDSQNJA0kDSQNJA0kDSQNJK1JWpO0JmlN0pqkNUlrktYkrUlak7QhaUPShqQNSRuSNiRtSNqQtCFp' +
+  'Q9KWpC1JW5K2JG1J2pK0JWlL0pakLUk7knYk7UjakbQjaUfSjqQdSTuSdiTtSdqTtCdpT9KepD1Je5L2JO1J2pM0kjSSNJI0kjSSNJI0kjSSNJI0kjSRNJE0kTSRNJE0kTSRNJE0kTSR' +
+  'NJM0kzSTNJM0kzSTNJM0kzSTdHSU6CjRUaKjREeJjhIdJTpKdJToKNFRoqNER4mOEh0lOkp0lOgo0VGio0RHiY4SHSU6SnSU6CjRUaKjREeJjhIdJTpKdJToKNFRoqNER4mOEh0lOkp0' +
+  'lOgo0VGio0RHiY4SHSU6SnSU6CjRUaKjREeJjhIdJTpKdJToKNFRoqNER4mOEh0lOkp0lOgo0VGio0RHiY4SHSU6SnSU6CjRUaKjREeJjhIdJTpKdJToKNFRoqNER4mOEh0lOkp0lOgo' +
+  '0VGio0RHiY4SHSU6SnSU6CjRUaKjREet6KgVHbWio1Z01IqOWtFRKzpqRUet6KgVHbWio9aDcOE4WxfWWd6Vn4B5PJ7/Ka9vV5/s3j68/+Dvo38eD3c7x7cnd4+Ob0/uhhdP7oYXT9/6' +
+  '6PHpWw/vn771PPfcLvJtmTtF7pa5V+S7It+X+aHIj2V+KvJzkV/K/FrktzK/F/mjyM4i4ivr8Xg8nmfL0SLif88ej8fj8Xg8Hs95zXCKuT62fLQ+/jxcH39ur48/j9bHn7vr48+t9fHn' +
+  'g/Xx5znuWcRx7KGfx3o8Ho/Hc3bclx6Px/N8v8F8+Z/3Kb/ivlnmrSJXylwtoiKrMm8XeafMu0XeK/J+mQ+KfFjmoyIfF1mGL19bePxLlsfj8Xg8Ho/Hs6zv2O2fWe3b4OXc7yJ7yGfI' +
+  'PvI5cg25jnyB3EC+RL5CvkZuIreQb5ADZGfhOfnfsgv+8C+AHs9z0OrwQNLwdNLwqNLw3NLwENPwRNPweNPwrNO5eX3zUfbGI+yNZ9ebz6w3nlVvPKXefDq98VT6hfLK6c9hWOpvg1pe' +
+  'ls9bp3+upf66+MrFF/rDdeR5ltzdv3FwcHN/7/rDv55c+sAHPvDBfxyMP5NrmZ9efXnjcvScq4Tc9Zer/nLojq+iXaX1VV/ZVbCr2q4au2rtqrMr6+vHvry+itYcrTlac7S+aH3RSKM1' +
+  'R2uO1pysL1lfMtJkzcmakzUn60vWl400W3O25mzN2fqy9WUjzdacrbmy5sr6KuurjLSy5sqaK2uurC9YXzDSYM3BmoM1B+sL1heMNFhzbc21NdfWV1tfbaS1NdfWXFtzY32N9TVG2lhz' +
+  'Y82NNTfW14x9Rtpac2vNrTW31tdaX2ukrTW31txac2d9nfV1RtpZc2fNT+2W9XV59m6NG9XP3q1xo5rZuzVuVDV7t8aNirN3a9yodu5uPbVRYfZujRuVZu/WuFHd7N0aN6qevVvWV+fZ' +
+  'uzVuVD97t8aNambv1rhR1ezdmrTVGbs1bavJ3TrDVtO7NW2r6d2attX0bk3banq3pm01vVvTtprYrX8B5iMjO39uAAAfiwgAAAAAAAL/7d2xTpNhAIbRdpAY4wAbIyMLoS1tgY3J2cQr' +
+  'QKNx0GDQC/BOnL0LE25MY39rUhx81Bgt502HPx+BtIflgeXb21vteDs3Gjbezo3sP96Td9eXNx+eHzw6vr66en0wnW0enGwezDcPFpsHy82D082Ds82D86f205tMJhAK1xRC4ZpBKFwn' +
+  'EArXHELhWkAoXEsIhesUQuE6g1C4VH3hmqr6xKXqE5eqT1yqPnGp+sSl6hOXqk9cqj5xqfrEpeoL10zVJy5Vn7hUfeJS9YlL1ScuVZ+4VH3iUvWJS9UnLlVfuE5UfeJS9YlL1ScuVZ+4' +
+  'VH3iUvWJS9UnLlWfuFR94lL1hWuu6hOXqk9cqj5xqfrEpeoTl6pPXKo+can6xKXqE5eqL1wLVZ+4VH3iUvWJS9UnLlWfuFR94lL1iUvVJy5Vn7hUfeFaqvrEpeoTl6pPXKo+can6xKXq' +
+  'E5eqT1yqPnGp+sSl6gvXqapPXKo+can6xKXqE5eqT1yqPnGp+sSl6hOXqk9cqr5wnan6xKXqE5eqT1yqPnGp+sSl6hOXqk9cqj5xqfrEpeoL17mqT1yqPnGp+sSl6hOXqk9cqj5xqfrE' +
+  'peoTl6pPXKo+bOpu2cal6hOXqk9cqj5xqfrEpeoTl6pPXKo+can6xKXqC5e7ZRuXqk9cqj5xqfrEpeoTl6pPXKo+can6xKXqE5eqL1zulm1cqj5xqfrEpeoTl6pPXKo+can6xKXqE5eq' +
+  'T1yqvnC5W7ZxqfrEpeoTl6pPXKo+can6xKXqE5eqT1yqPnGp+sLlbtnGpeoTl6pPXKo+can6xKXqE5eqT1yqPnGp+sSl6guXu2Ubl6pPXKo+can6xKXqE5eqT1yqPnGp+sSl6hOXqi9c' +
+  '7pZtXKo+can6xKXqE5eqT1yqPnGp+sSl6hOXqk9cqr5wuVu2can6xKXqE5eqT1yqPnGp+sSl6hOXqk9cqj5xqfrC5W7ZxqXqE5eqT1yqPnGp+sSl6hOXqk9cqj5xqfrEpeoLl7tlG5eq' +
+  'T1yqPnGp+sSl6hOXqk9cqj5xqfrEpeoTl6oPm7lbtnGp+sSl6hOXqk9cqj5xqfrEpeoTl6pPXKo+can6wuVu2cal6hOXqk9cqj5xzcfDRnd893f3Dw4nZ++HXQz71R/3adhffvsXf+r9' +
+  '5+8f3sDjYd++/+GwkZmZmZmZ/U7rb+mnezNsSz/e7/5h9o9vPBp/fd257e4fTr7/5Tv+qrC1Dqvf8mg0fMwt/ZQ793a+vG6fv3328urq1bPLFzcfV4+3DoZ/qW0rzIPVfvi16fl0djRZ' +
+  'Hk0XX55O1k/z9dNi/bRcP52un85XT58BgaBzSBMXAQAfiwgAAAAAAAL/7dY7FYMAAMBAqojyBzv1L6IWyMDQ14uEmzKOD/R6ouFn+uh287RBKFw7hMJ1QChcJ4TCdUEIXPMbQuGaIBSu' +
+  'GULhWiAUrhVC4XL1icvVJy5Xn7hcfeJy9YVrcfWJy9UnLlefuFx94nL1icvVJy5Xn7hcfeJy9YnL1Reu1dUnLlefuFx94nL1icvVJy5Xn7hcfeJy9YnL1ScuV1+4NlefuFx94nL1icvV' +
+  'Jy5Xn7hcfeJy9YnL1ScuV5+4XH3h2l194nL1icvVJy5Xn7hcfeJy9YnL1ScuV5+4XH3icvWF63D1icvVJy5Xn7hcfeJy9YnL1ScuV5+4XH3icvWJy9UXrtPVJy5Xn7hcfeJy9YnL1Scu' +
+  'V5+4XH3icvWJy9UnLldfuC5Xn7hcfeJy9YnL1ScuV5+4XH3icvWJy9UnLlefuK5BkqR/6gu7Ld6v6GwAAB+LCAAAAAAAAv9jYWBgYAFiBkYmZjY2ZlYGJJCRmpmeUZKTWVySmlJanJpU' +
+  'mplTwsBwP5SREaGGo+5bBDsrM1wktV74RV6eeA7QQDBfpUaJKzC4mD+BfTf/rNniJfrMlxM/h+3uTdu9668WA089g6Dgf2Q7g0uKEg/PT1Vw1i/Kz89VMDWDCbhBBAyNkkY2AACniLJe' +
+  'sQEAAJkAAAAAAAAAsQEAAAAAAACel/PPV3dFMg==';
+
+export function tableBytes(): Uint8Array<ArrayBuffer> {
+  return new Uint8Array(Buffer.from(BASE64, 'base64'));
+}
