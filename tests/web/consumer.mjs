@@ -50,7 +50,7 @@ new HierarchyView('a.hier', { createWorker: () => new TileWorker() });
 `;
 
 /// The library's plug-ins, and what is in their scripts alone.
-const PLUGINS = ['attributes', 'clipping', 'immersion', 'measuring', 'occlusion', 'relief', 'stories'];
+const PLUGINS = ['attributes', 'clipping', 'immersion', 'measuring', 'objects', 'occlusion', 'relief', 'stories'];
 const OF_PLUGINS_ALONE = ['requestSession', 'GTAO', 'stencilWrite', 'meshhier-overlay'];
 
 let problems = 0;

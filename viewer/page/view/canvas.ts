@@ -8,6 +8,8 @@ import type { CameraPose } from '../../src/scene/camera_pose.js';
 import { depthRange, VIEW_ANGLE } from './camera_moves.js';
 import type { HierarchyView } from '../../src/index.js';
 import { Lighting } from '../../src/scene/lighting.js';
+import { TileObject } from '../../src/scene/tile_object.js';
+import { valuesAt } from '../../src/tools/pick.js';
 
 const MOST_RATIO = 2;
 
@@ -87,7 +89,7 @@ export class Canvas {
   pick(right: number, up: number): Vector3 | null {
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
     const hits = this.raycaster.intersectObject(this.view, true);
-    return hits.find(({ point }) => this.view.plugins.keeps(point))?.point ?? null;
+    return hits.find(({ point, object, face }) => this.view.plugins.keeps(point, object instanceof TileObject && face ? valuesAt(object.drawn().tile, face.a) : []))?.point ?? null;
   }
 
   dispose(): void {

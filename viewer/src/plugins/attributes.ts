@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Colours by an attribute of the vertices: along a ramp, or one for each label.
-import { DataTexture, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, Vector2, type BufferGeometry } from 'three';
-import { isLabel, LEAST_VALUE, valueWidth, type ScalarAttribute } from '../hierarchy/scalar_values.js';
+import { DataTexture, Vector2, type BufferGeometry } from 'three';
+import { isLabel, LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { labelTexture, rampTexture } from '../scene/ramps.js';
 import { attributeIndex, wholeRange, type AttributeLook, type Look } from '../scene/settings.js';
 import { replaceChunk, type Shader, type Shading } from '../scene/shading.js';
 import type { PluginOf } from './plugin.js';
+import { setValueAttribute } from './value_attribute.js';
 
 /// Labels farther apart share colours: a texture has no more texels.
 const MOST_LABEL_TEXELS = 4096;
@@ -85,13 +86,9 @@ export class Attributes implements PluginOf<unknown>, Shading {
     else this.setRamp(attribute, look);
   }
 
-  /// All values of a tile are one buffer, once one of them is shown.
   prepare(geometry: BufferGeometry, tile: Tile, { colours }: Look): void {
     if (colours !== 'attribute' || tile.values === null || this.index < 0) return;
-    const shown = geometry.attributes.scalar as InterleavedBufferAttribute | undefined;
-    if (shown?.offset === this.index) return;
-    const values = shown?.data ?? new InterleavedBuffer(tile.values, valueWidth(tile)).setUsage(DynamicDrawUsage);
-    geometry.setAttribute('scalar', new InterleavedBufferAttribute(values, 1, this.index));
+    setValueAttribute(geometry, tile, 'scalar', this.index);
   }
 
   dispose(): void {

@@ -55,8 +55,9 @@ export interface PluginOf<View> {
   shade?(frame: Frame): void;
   /// A frame is complete: time for what lies over the canvas.
   drawn?(frame: Frame): void;
-  /// Tells whether a point of the world is drawn: one that any plug-in leaves out is not picked. Called for each hit of a ray.
-  keeps?(point: Vector3): boolean;
+  /// Tells whether a point of the world is drawn: one that any plug-in leaves out is not picked. Called for each hit of a ray. `values`: of a
+  /// corner of its triangle, as the manifest lists them.
+  keeps?(point: Vector3, values: readonly number[]): boolean;
   /// A place of the picture was tapped. True: it was meant for this plug-in, and no later one is asked.
   tapped?(right: number, up: number): boolean;
   /// It was taken away, or the view was disposed of, or it could not begin. It may be registered again afterwards.
@@ -129,8 +130,8 @@ export class Plugins<View> {
     for (const plugin of this.every) this.ask(plugin, 'drawn', () => plugin.drawn?.(frame), undefined);
   }
 
-  keeps(point: Vector3): boolean {
-    return this.every.every((plugin) => this.ask(plugin, 'keeps', () => plugin.keeps?.(point) ?? true, true));
+  keeps(point: Vector3, values: readonly number[] = []): boolean {
+    return this.every.every((plugin) => this.ask(plugin, 'keeps', () => plugin.keeps?.(point, values) ?? true, true));
   }
 
   tapped(right: number, up: number): boolean {

@@ -7,7 +7,7 @@ import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { makeMatcap } from './matcap.js';
 import type { Look } from './settings.js';
-import { numberOf, replaceChunk, Shadings, type Shader } from './shading.js';
+import { numberOf, replaceChunk, Shadings, type Shader, type Shading } from './shading.js';
 
 const PLAIN = 0xb9b4ab;
 const CLAY = 0xd99a76;
@@ -118,12 +118,23 @@ function standing({ wires, points }: Look): { polygonOffset: boolean; polygonOff
 }
 
 /// The picture's colours, and what tints them.
-function unlitMaterial(look: Look, { tile: { picture, coloursTint }, texture }: Painting): MeshBasicMaterial {
+function unlitMaterial(look: Look, { tile, texture }: Painting, { shadings }: SharedMaterials): MeshBasicMaterial {
+  const { picture, coloursTint } = tile;
   const material = new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, vertexColors: coloursTint, ...standing(look), ...picturing(picture, texture) });
-  if (!coloursTint) return material;
-  material.onBeforeCompile = takeScreenColours;
-  material.customProgramCacheKey = () => 'meshhier-tinted';
+  const keyed = shadings.keyed(look, tile).filter(({ shading }) => shading.isForUnlit === true);
+  if (!coloursTint && keyed.length === 0) return material;
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, ...keyed.map(({ shading: { uniforms } }) => uniforms));
+    for (const { shading } of [...keyed].reverse()) shadings.edit(shading, shader, look, tile);
+    if (coloursTint) takeScreenColours(shader);
+  };
+  material.customProgramCacheKey = () => `meshhier-unlit-${[coloursTint, ...keyed.map(programKey)].join('-')}`;
   return material;
+}
+
+/// Surfaces with the same one share the program's part of a shading.
+function programKey({ shading, key }: { readonly shading: Shading; readonly key: string }): string {
+  return `${numberOf(shading.edit)}:${key}`;
 }
 
 /// Changes three's shaders for a look.
@@ -161,7 +172,7 @@ function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: S
     for (const each of [...shadings].reverse()) shared.shadings.edit(each, shader, look, tile); // the last one that replaces a chunk comes first in it
     edit(shader, look, vertexColors);
   };
-  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keyed.map((each) => `${numberOf(each.shading.edit)}:${each.key}`)].join('-')}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities, look.material, ...keyed.map(programKey)].join('-')}`;
   return material;
 }
 
@@ -173,7 +184,7 @@ export function showsPictures({ colours, texture }: Look): boolean {
 /// One tile's: programs are shared by all of a look.
 export function surfaceMaterial(look: Look, painting: Painting, shared: SharedMaterials): SurfaceMaterial {
   const shown = showsPictures(look) ? painting : { ...painting, texture: null };
-  return shown.texture !== null && shown.tile.picture?.unlit && !look.relight ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
+  return shown.texture !== null && shown.tile.picture?.unlit && !look.relight ? unlitMaterial(look, shown, shared) : litMaterial(look, shown, shared);
 }
 
 export function partitionColour(level: number, index: number): Color {

@@ -8,12 +8,14 @@ import type { Look } from './settings.js';
 
 export type Shader = WebGLProgramParametersWithUniforms;
 
-/// Changes the material of lit surfaces. All tiles of a view share it. Its members are called whenever tiles are shown otherwise, in the order
+/// Changes the material of surfaces. All tiles of a view share it. Its members are called whenever tiles are shown otherwise, in the order
 /// `show`, `key`, `parameters`, `prepare`, and `edit` once a program is compiled. If one of them throws, the error is told and the shading left
 /// out, until its plug-in is registered anew.
 export interface Shading {
   /// They are declared by `edit`, and there in all programs that it edits.
   readonly uniforms: Readonly<Record<string, IUniform>>;
+  /// It also changes surfaces that no light is on, of pictures that have theirs already; else only lit ones.
+  readonly isForUnlit?: boolean;
   /// Surfaces of one key have one program, as far as they share `edit`; empty: this one's is left alone.
   key(look: Look, tile: Tile): string;
   /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too: what they add runs in the order

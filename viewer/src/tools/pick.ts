@@ -29,13 +29,13 @@ export interface Hit {
 export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
 
 /// All values of a vertex.
-function valuesAt(tile: PickedTile, vertex: number): number[] {
+export function valuesAt(tile: PickedTile, vertex: number): number[] {
   const width = valueWidth(tile);
   return Array.from((tile.values ?? new Float32Array(0)).subarray(width * vertex, width * (vertex + 1)));
 }
 
-/// Tells whether a point may be hit: what is cut away may not.
-export type Keeps = (point: Vector) => boolean;
+/// Tells whether a point may be hit: what is cut away may not. `values`: of a corner of its triangle.
+export type Keeps = (point: Vector, values: readonly number[]) => boolean;
 
 const KEEPS_ALL: Keeps = () => true;
 
@@ -66,10 +66,10 @@ export class Search {
     if (!(distance < this.limit)) return this.limit;
     const corners = [a, b, c].map((vertex) => vertexAt(positions, vertex));
     const point = corners.map((corner, k) => scale(corner, this.probe.weights[k])).reduce(add);
-    if (!this.keeps(point)) return this.limit;
+    const values = [a, b, c].map((vertex) => valuesAt(tile, vertex));
+    if (!this.keeps(point, values[0])) return this.limit;
     const normal = unit(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
     const nearest = [0, 1, 2].reduce((best, other) => (distanceOf(corners[other], point) < distanceOf(corners[best], point) ? other : best));
-    const values = [a, b, c].map((vertex) => valuesAt(tile, vertex));
     const between = values[0].map((_, i) => values.reduce((sum, each, k) => sum + each[i] * this.probe.weights[k], 0));
     this.hit = { node, point, normal, corner: corners[nearest], distance, between, atCorner: values[nearest] };
     this.limit = distance;

@@ -22,7 +22,7 @@ export class Pointing {
   at(right: number, up: number, snaps: boolean, signal: AbortSignal): Pointed | null {
     const { view, camera } = this.stage;
     const { manifest, source } = view;
-    const keeps: Keeps = (point) => view.plugins.keeps(new Vector3(...point).applyMatrix4(view.surfaceMatrix));
+    const keeps: Keeps = (point, values) => view.plugins.keeps(new Vector3(...point).applyMatrix4(view.surfaceMatrix), values);
     const ray = rayThrough(camera, right, up, view.surfaceMatrix);
     const hit = this.picker.pick(view.surface, ray, keeps);
     if (hit === null || manifest === null || source === null) return null;

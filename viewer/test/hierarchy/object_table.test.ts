@@ -8,6 +8,7 @@ import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
 import { readObjectFacts, type ObjectFacts } from '../../src/hierarchy/object_facts.js';
 import { ObjectTable } from '../../src/hierarchy/object_table.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';
+import { f64, planes, tableOfRows, texts, u32 } from '../support/object_table.js';
 import { TABLE_JSON, tableBytes } from './object_table_bytes.js';
 
 function factsOf(json: object): ObjectFacts {
@@ -15,7 +16,7 @@ function factsOf(json: object): ObjectFacts {
 }
 
 /// A host that counts what it is asked for; `isWhole`: it knows no ranges.
-function tableOf(bytes = tableBytes(), { isWhole = false, json = TABLE_JSON } = {}): { table: ObjectTable; asked: [number, number][] } {
+function tableOf(bytes = tableBytes(), { isWhole = false, json = TABLE_JSON }: { isWhole?: boolean; json?: object } = {}): { table: ObjectTable; asked: [number, number][] } {
   const asked: [number, number][] = [];
   const table = new ObjectTable(factsOf(json), (first, end) => {
     asked.push([first, end]);
@@ -125,23 +126,6 @@ describe('a table that is damaged', () => {
   });
 });
 
-/// Little endian numbers in planes.
-function planes(width: number, values: readonly bigint[]): number[] {
-  return Array.from({ length: width }, (_, plane) => values.map((value) => Number((value >> BigInt(8 * plane)) & 255n))).flat();
-}
-
-function u32(...values: number[]): number[] {
-  return planes(4, values.map(BigInt));
-}
-
-function f64(...values: number[]): number[] {
-  return planes(8, [...new BigUint64Array(new Float64Array(values).buffer)]);
-}
-
-function texts(...values: number[][]): number[] {
-  return [...u32(...values.map(({ length }) => length)), ...values.flat()];
-}
-
 /// A file of one block with one property, whose checksums are right.
 function forged(block: readonly number[], { count = 1, key = [97], type = 0, name = 'p' } = {}): ObjectTable {
   const packed = gzipSync(Uint8Array.from(block));
@@ -187,6 +171,15 @@ describe('what no program writes', () => {
     ['a key that is too long', forged(block({ name: Array<number>(300).fill(97) }), { key: Array<number>(300).fill(97) })],
   ])('%s is refused', async (_, table) => {
     await expect(table.row(0)).rejects.toBeInstanceOf(HierarchyProblem);
+  });
+});
+
+describe('a table that tests write', () => {
+  it('is read as they mean it', async () => {
+    const rows = Array.from({ length: 700 }, (_, i) => ({ name: `wall ${String(i).padStart(3, '0')}`, values: [i, i % 2 === 0, `text ${i}`, null], box: i % 3 ? null : { min: [0, 0, i] as const, max: [1, 1, i + 1] as const }, triangles: i, area: i / 2 }));
+    const { bytes, json } = tableOfRows(rows, TABLE_JSON.properties);
+    const { table } = tableOf(bytes, { json });
+    expect(await table.rows({ begin: 0, end: 700 })).toEqual(rows.map((row, object) => ({ object, ...row })));
   });
 });
 

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Objects of a model in a view: picked, left out, flown to.
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { Scene, Vector3, type WebGLRenderer } from 'three';
+import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
+import { CameraPose, type Stage } from '../src/index.js';
+import { ObjectShading } from '../src/plugins/object_shading.js';
+import { Objects } from '../src/plugins/objects.js';
+import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
+import { Session } from './support/session.js';
+import { Town } from './support/town.js';
+
+describe.skipIf(!hasProgram)('objects of a view', () => {
+  const workshop = new Workshop();
+  const town = new Town(12);
+  const renderer: object = {};
+  const fly = vi.fn<(pose: CameraPose) => void>();
+  let directory: string;
+  let session: Session;
+  let objects: Objects;
+
+  beforeAll(() => {
+    const mesh = path.join(workshop.directory, 'town.ply');
+    writeFileSync(mesh, town.ply());
+    directory = workshop.buildMesh('town', mesh, { up: 'z', partition: { vertices: 800 } });
+    town.furnish(directory);
+  });
+  beforeEach(async () => {
+    vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout', 'performance'] });
+    fly.mockClear();
+    session = new Session(fetchFrom(directory));
+    await session.view.opened;
+    objects = new Objects();
+    const { view, camera } = session;
+    const pose = (): CameraPose => new CameraPose(camera.position.clone(), new Vector3());
+    view.registerPlugin(objects);
+    const stage: Stage = { view, renderer: renderer as unknown as WebGLRenderer, scene: new Scene(), camera, root: {} as ParentNode, surface: new EventTarget() as HTMLElement, signal: new AbortController().signal, pose, jump: vi.fn(), fly, travel: vi.fn(), redraw: vi.fn(), suspend: vi.fn() };
+    view.plugins.enter(stage);
+  });
+  afterEach(() => {
+    session.view.dispose();
+    vi.useRealTimers();
+  });
+  afterAll(() => { workshop.remove(); });
+
+  /// From above a house: z of the input is up.
+  async function above(object: number): Promise<void> {
+    const [x, y, z] = town.roof(object);
+    session.look([x, z + 3, -y], [x + 1e-3, z, -y]);
+    session.camera.updateMatrixWorld();
+    await session.settle();
+  }
+
+  it('are those of the original, by a tap', async () => {
+    for (const object of [1, 40, 77, town.rows.length - 1]) {
+      await above(object);
+      const row = await objects.pick(0, 0);
+      expect(row).toEqual({ object, ...town.rows[object] });
+      expect(objects.picked).toBe(row);
+      expect(objects.shading.uniforms.markedObject.value).toBe(object);
+    }
+    session.look([0, 300, 0], [0, 400, 0]);
+    session.camera.updateMatrixWorld();
+    expect(await objects.pick(0, 0)).toBeNull();
+    expect(objects.shading.uniforms.markedObject.value).toBe(-1);
+  });
+
+  it('are found by name, and flown to', async () => {
+    await above(1);
+    expect(await objects.chooseNamed('street 03/house 05')).toMatchObject({ object: 1 + 3 * 12 + 5 });
+    objects.go();
+    const { position, target } = fly.mock.calls[0][0];
+    expect(target.distanceTo(new Vector3(6.5, 0, -10.5))).toBeLessThan(2.5);
+    expect(position.y).toBeGreaterThan(1);
+    expect(await objects.chooseNamed('street 03/house 99')).toBeNull();
+    objects.go();
+    expect(fly).toHaveBeenCalledTimes(1);
+  });
+
+  it('that are left out are not picked', async () => {
+    const object = 30;
+    await above(object);
+    await objects.draw({ hidden: [town.rows[object].name, 'no such house'] });
+    expect(await objects.pick(0, 0)).toMatchObject({ object: 0, name: '' }); // the ground below
+    await objects.draw({ hidden: [] });
+    expect(await objects.pick(0, 0)).toMatchObject({ object });
+    await objects.draw({ only: ['street 05/'] });
+    expect(await objects.pick(0, 0)).toBeNull();
+    expect([objects.shading.draws(1 + 5 * 12), objects.shading.draws(6 * 12), objects.shading.draws(object)]).toEqual([true, true, false]);
+    await objects.draw({ hidden: ['street 05/house 00'] });
+    expect([objects.shading.draws(1 + 5 * 12), objects.shading.draws(2 + 5 * 12)]).toEqual([false, true]);
+  });
+
+  it('tell what could not be read', async () => {
+    const problem = vi.fn();
+    const other = new Session(async (url, init) => (url.includes('objects.bin') ? new Response(null, { status: 404 }) : fetchFrom(directory)(url, init)));
+    const alone = new Objects();
+    other.view.registerPlugin(alone);
+    alone.addEventListener('problem', problem);
+    await other.view.opened;
+    await other.settle();
+    expect(await alone.chooseNamed('street 03/house 05')).toBeNull();
+    expect(problem.mock.calls[0][0]).toMatchObject({ message: expect.stringContaining('objects.bin') as string });
+    other.view.dispose();
+  });
+
+  it('cost nothing until one is picked', async () => {
+    await above(1);
+    const [mesh] = session.meshes();
+    expect(mesh.geometry.attributes.object).toBeUndefined();
+    await objects.pick(0, 0);
+    await session.frame();
+    expect(session.meshes().every(({ geometry }) => geometry.attributes.object !== undefined)).toBe(true);
+  });
+});
+
+describe('objects that are left out', () => {
+  it('have a texel each, up to the last of all there may be', () => {
+    const shading = new ObjectShading();
+    shading.leaveOut([{ begin: 5, end: 7 }, { begin: 2 ** 24 - 1, end: 2 ** 24 }], false, 2 ** 24);
+    expect([4, 5, 6, 7, 2 ** 24 - 2, 2 ** 24 - 1].map((object) => shading.draws(object))).toEqual([true, false, false, true, true, false]);
+    const { image } = shading.uniforms.leftOutObjects.value!;
+    expect([image.width, image.height]).toEqual([4096, 4096]);
+    shading.leaveOut(null, false, 2 ** 24);
+    expect(shading.draws(5)).toBe(true);
+    shading.dispose();
+  });
+});
