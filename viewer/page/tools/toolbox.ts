@@ -11,10 +11,10 @@ import { Cube } from './cube.js';
 import { LastingSign } from './lasting_sign.js';
 import { ScaleLine } from './scale_line.js';
 import type { Tool } from './tool.js';
-import { TOOL_NAMES, TOOLS, type ToolName } from './tools.js';
+import { applies, TOOL_NAMES, TOOLS, type ToolName } from './tools.js';
 import { words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
-import { Workshop } from './workshop.js';
+import { Workshop, type ToolLinks, type WriteLink } from './workshop.js';
 import './tools.css';
 
 /// A plug-in of the view.
@@ -38,15 +38,15 @@ export class Toolbox implements Plugin {
   private active: ToolName | null = null;
 
   /// As the workshop has them.
-  constructor(private readonly bench: PageStage, story: StoryHost, link: string | null, write: (link: string | null) => void) {
-    this.shop = new Workshop(bench, story, link, write);
+  constructor(private readonly bench: PageStage, story: StoryHost, links: ToolLinks, write: WriteLink) {
+    this.shop = new Workshop(bench, story, links, write);
     this.scaleLine = new ScaleLine(this.shop);
     this.cube = new Cube(bench);
     this.lasting = new LastingSign(bench.surface);
     const entries = TOOL_NAMES.map((name) => [name, this.makeButton(name)] as const);
     this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
     this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
-    const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
+    const close = iconButton(words.close(words.title), ICONS.close, () => void this.put(null));
     this.grow.classList.add('tool-grow');
     this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, this.grow, close), this.body);
     this.setGrown(false);
@@ -57,10 +57,20 @@ export class Toolbox implements Plugin {
     bench.signal.addEventListener('abort', () => { for (const tool of this.made.values()) tool.close?.(); });
   }
 
-  /// Null: the bar alone, or nothing any more if it is there.
-  toggle(name: ToolName | null): void {
+  /// Null: the bar alone, or nothing any more if it is there. Resolves once the tool can be used.
+  async toggle(name: ToolName | null): Promise<void> {
     if (name === null) this.setOpen(this.root.hidden);
-    else this.put(name === this.active ? null : name);
+    else if (applies(name, this.shop.places.manifest)) await this.put(name === this.active ? null : name);
+  }
+
+  /// A tool was in use: what it does goes on.
+  has(name: ToolName): boolean {
+    return this.made.has(name);
+  }
+
+  /// A tool is in use.
+  get isWorking(): boolean {
+    return this.active !== null;
   }
 
   tapped(right: number, up: number): boolean {
@@ -83,14 +93,15 @@ export class Toolbox implements Plugin {
   /// Puts away the tool, then the bar. False: nothing is there.
   back(): boolean {
     if (this.root.hidden) return false;
-    if (this.active !== null) this.put(null);
+    if (this.active !== null) void this.put(null);
     else this.setOpen(false);
     return true;
   }
 
-  /// Another link is followed, with these notes.
-  follow(notes: string | null): void {
+  /// Another link is followed.
+  follow({ notes, objects }: ToolLinks): void {
     this.shop.notebook.follow(notes);
+    this.shop.objectLink.follow(objects);
   }
 
   private get tool(): Tool | null {
@@ -99,7 +110,8 @@ export class Toolbox implements Plugin {
 
   private makeButton(name: ToolName): HTMLButtonElement {
     const { key, icon } = TOOLS[name];
-    const button = iconButton(`${words.names[name]} (${key})`, icon, () => { this.toggle(name); });
+    const button = iconButton(`${words.names[name]} (${key})`, icon, () => void this.toggle(name));
+    button.hidden = !applies(name, this.shop.places.manifest);
     button.setAttribute('aria-label', words.names[name]);
     button.setAttribute('aria-keyshortcuts', key);
     button.setAttribute('aria-pressed', 'false');
@@ -110,7 +122,7 @@ export class Toolbox implements Plugin {
   private setOpen(open: boolean): void {
     this.root.hidden = !open;
     if (!open) {
-      this.put(null);
+      void this.put(null);
       this.overlay.show([], this.bench.camera, this.bench.view.surfaceMatrix);
     }
     this.bench.redraw();
@@ -122,7 +134,7 @@ export class Toolbox implements Plugin {
     if (!grown) this.card.scrollTop = 0;
   }
 
-  private put(name: ToolName | null): void {
+  private async put(name: ToolName | null): Promise<void> {
     const inside = this.card.contains(document.activeElement);
     if (inside) (this.active === null ? this.bench.surface : this.buttons[this.active]).focus();
     this.active = name;
@@ -131,8 +143,8 @@ export class Toolbox implements Plugin {
     this.root.classList.toggle('working', name !== null);
     this.card.hidden = true;
     this.setGrown(false);
-    if (name !== null) void this.open(name);
     this.bench.redraw();
+    if (name !== null) await this.open(name);
   }
 
   private async open(name: ToolName): Promise<void> {
@@ -146,10 +158,10 @@ export class Toolbox implements Plugin {
         more: noCodeMore,
         retry: () => {
           done();
-          this.put(name);
+          void this.put(name);
         },
       });
-      this.put(null);
+      void this.put(null);
       return;
     }
     this.title.textContent = words.names[name];

@@ -42,9 +42,8 @@ export class ViewParts {
   /// Returns what a link to this view tells.
   spot(): Spot {
     const { choices, tools, story, camera } = this;
-    const notes = tools.notes === null ? '' : `notes=${tools.notes}`;
     const told = story.linked === null ? '' : `story=${story.linked}`;
-    return { pose: camera.navigation.atHome ? null : camera.pose(), choices: [choices.text, notes, told].filter((text) => text !== '').join('&') };
+    return { pose: camera.navigation.atHome ? null : camera.pose(), choices: [choices.text, tools.links, told].filter((text) => text !== '').join('&') };
   }
 
   /// Returns what other pages need to show the same. The address tells of the camera as it is, even before it has come to rest.

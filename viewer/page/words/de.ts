@@ -258,7 +258,7 @@ export const de: Words = {
       ['G', 'nächstes Licht'],
       ['L', 'Aussehen und Einstellungen'],
       ['S', 'Messwerte'],
-      ['I M X N K', 'Werkzeuge: Punkt wählen, messen, aufschneiden, Notizen, Kamera und Bilder'],
+      ['I J M X N K', 'Werkzeuge: Punkt wählen, Objekte, messen, aufschneiden, Notizen, Kamera und Bilder'],
       ['Enter, V, Rücktaste', 'im Werkzeug: Bildmitte nehmen, an Eckpunkten einrasten, ein Schritt zurück'],
       ['B R E', 'bei der Kamera: merken, Drehteller, ganzer Bildschirm'],
       ['?', 'diese Hilfe'],

@@ -265,7 +265,7 @@ export const en = {
       ['G', 'next light'],
       ['L', 'look and settings'],
       ['S', 'figures'],
-      ['I M X N K', 'tools: pick a point, measure, cut open, notes, camera and pictures'],
+      ['I J M X N K', 'tools: pick a point, objects, measure, cut open, notes, camera and pictures'],
       ['Enter, V, Backspace', 'in a tool: take the middle of the picture, snap to vertices, a step back'],
       ['B R E', 'with the camera: bookmark, turntable, full screen'],
       ['?', 'this help'],

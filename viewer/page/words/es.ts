@@ -258,7 +258,7 @@ export const es: Words = {
       ['G', 'luz siguiente'],
       ['L', 'aspecto y ajustes'],
       ['S', 'cifras'],
-      ['I M X N K', 'herramientas: elegir un punto, medir, cortar, notas, cámara e imágenes'],
+      ['I J M X N K', 'herramientas: elegir un punto, objetos, medir, cortar, notas, cámara e imágenes'],
       ['Intro, V, Retroceso', 'en una herramienta: tomar el centro de la imagen, ajustar a los vértices, un paso atrás'],
       ['B R E', 'con la cámara: recordar, plato giratorio, pantalla completa'],
       ['?', 'esta ayuda'],
