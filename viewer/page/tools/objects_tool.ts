@@ -14,6 +14,7 @@ import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const AGAIN = 500; // milliseconds between two taps that are one
+const NEAR = 0.06; // of half a picture, between their places
 const DIGITS = 12; // of a number in a table
 
 function told(value: ObjectValue): string {
@@ -49,8 +50,9 @@ export class ObjectsTool implements Tool {
   private readonly scope = element('select', { class: 'tool-select', 'aria-label': words.objects.scope });
   private readonly acts: HTMLElement;
   private readonly all = textButton(words.objects.all, () => { this.draw({ hidden: [], only: [] }); });
-  private tapped = { at: -Infinity, object: -1 };
+  private tapped = { at: -Infinity, right: 0, up: 0 };
   private problem = '';
+  private scoped: ObjectRow | null = null;
   private following = 0; // links
 
   constructor(private readonly shop: Workshop) {
@@ -105,13 +107,13 @@ export class ObjectsTool implements Tool {
     }
   }
 
-  /// The second tap on an object flies there.
+  /// The second tap at a place flies to what is there.
   private async pick(right: number, up: number): Promise<void> {
-    const { at, object } = this.tapped;
-    const now = performance.now();
-    const row = await this.objects.pick(right, up);
-    this.tapped = { at: now, object: row?.object ?? -1 };
-    if (row !== null && row.object === object && now - at < AGAIN) this.objects.go();
+    const { tapped } = this;
+    this.tapped = { at: performance.now(), right, up };
+    const isAgain = this.tapped.at - tapped.at < AGAIN && Math.hypot(right - tapped.right, up - tapped.up) < NEAR;
+    if (isAgain && this.objects.picked !== null) this.objects.go();
+    else if ((await this.objects.pick(right, up)) !== null && isAgain) this.objects.go();
   }
 
   private find(row: ObjectRow): void {
@@ -136,7 +138,8 @@ export class ObjectsTool implements Tool {
     const { picked, choice: { hidden, only } } = this.objects;
     this.list.replaceChildren(...(picked === null ? [] : figures(this.rowsOf(picked))));
     this.acts.hidden = picked === null;
-    if (picked !== null) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name)));
+    if (picked !== null && picked !== this.scoped) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name)));
+    this.scoped = picked;
     this.all.hidden = hidden.length + only.length === 0;
     this.note.textContent = this.problem !== '' ? this.problem : picked === null ? words.objects.hint(formatCount(this.table?.count ?? 0)) : '';
     this.problem = '';

@@ -11,7 +11,8 @@ import { setValueAttribute } from './value_attribute.js';
 /// A texel an object: all 2^24 that there may be have room.
 const ROW = 4096;
 const NONE = -1;
-const MARK = 0xff8a1f;
+/// As a screen has it.
+export const MARK = 0xff8a1f;
 
 const OBJECT = `#include <begin_vertex>
 vObject = object;`;
@@ -75,6 +76,12 @@ export class ObjectShading implements Shading {
     leftOutObjects.value = new DataTexture(states, ROW, rows, RedFormat, UnsignedByteType);
     leftOutObjects.value.minFilter = leftOutObjects.value.magFilter = NearestFilter;
     leftOutObjects.value.needsUpdate = true;
+  }
+
+  /// An object is marked, and drawn.
+  get isMarking(): boolean {
+    const { value } = this.uniforms.markedObject;
+    return value !== NONE && this.draws(value);
   }
 
   /// Tells whether an object is drawn.

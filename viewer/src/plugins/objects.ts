@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The things that a model consists of: picked by a tap, marked, flown to, left out.
-import { EventDispatcher, type Vector3 } from 'three';
+import { Color, EventDispatcher, NoColorSpace, type Vector3 } from 'three';
 import type { ObjectRow } from '../hierarchy/object_blocks.js';
 import type { ObjectRange, ObjectTable } from '../hierarchy/object_table.js';
 import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
@@ -8,7 +8,9 @@ import { Coordinates } from '../tools/coordinates.js';
 import { cornersInWorld, poseOfObject } from '../tools/object_pose.js';
 import type { PickedPoint } from '../tools/picked_point.js';
 import { Pointing } from '../tools/pointing.js';
-import { ObjectShading } from './object_shading.js';
+import { ObjectOutline } from './object_outline.js';
+import { MARK, ObjectShading } from './object_shading.js';
+import type { Frame } from './plugin.js';
 
 export interface ObjectsOptions {
   /// False: objects are not picked by tapping; `pick` is yours to call.
@@ -35,6 +37,7 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
   private row: ObjectRow | null = null;
   private chosen = ALL;
   private table: ObjectTable | null = null;
+  private outline: ObjectOutline | null = null;
   private asking = new AbortController();
   private asked = 0; // choices of what is drawn
 
@@ -129,6 +132,13 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
     if (this.chosen !== ALL) void this.draw({});
   }
 
+  /// A line around the picked object; in pictures that a plug-in has painted it has its colour alone.
+  shade(frame: Frame): void {
+    if (!this.shading.isMarking || frame.renderer.xr.isPresenting) return;
+    this.outline ??= new ObjectOutline(this.shading.uniforms.markedObject, new Color().setHex(MARK, NoColorSpace));
+    this.outline.draw(frame);
+  }
+
   keeps(_: Vector3, values: readonly number[]): boolean {
     const object = this.shading.objectOf(values);
     return object === null || this.shading.draws(object);
@@ -138,6 +148,8 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
     this.asking.abort();
     ++this.asked;
     this.shading.dispose();
+    this.outline?.dispose();
+    this.outline = null;
     [this.view, this.stage, this.pointing, this.table, this.row, this.chosen] = [null, null, null, null, null, ALL];
   }
 
