@@ -21,6 +21,11 @@ import { Tree, tilePath, type Node } from './tree.js';
 const MOST_ROOT = 2 ** 25 + 2 * mostPictureBytes({ width: MOST_SIDE, height: MOST_SIDE });
 const ROOT: Node = { level: 0, index: 0 };
 
+/// A tile's table of objects has 4 MiB of columns, and at least one number a vertex, besides the row of each vertex.
+function mostTableBytes(record: TileRecord): number {
+  return 2 ** 22 + 2 ** 16 + 8 * (record.own + record.ghosts + record.copies + record.splits);
+}
+
 /// All tiles but the root need this.
 export interface Directory {
   readonly manifest: Manifest;
@@ -48,6 +53,7 @@ export class RemoteHierarchy {
   private index: TileIndex | null = null;
   private build: Build | null = null;
   private packedTiles = false;
+  private hasObjects = false;
   private rootBytes: Uint8Array | null = null; // as they came, until it is known what they should be
 
   /// `signal`: ends all that is under way. `isAnew`: what caches have is of an earlier build, perhaps.
@@ -126,6 +132,7 @@ export class RemoteHierarchy {
   async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void, drawn?: Promise<void>): Promise<Directory> {
     this.build = new Build(this.files, manifest.build, this.signal);
     this.packedTiles = manifest.packedTiles;
+    this.hasObjects = manifest.objects !== null;
     const tree = new Tree(manifest.partitions);
     const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem, (node) => this.files.lacks?.(tilePath(node)) ?? false);
@@ -141,7 +148,7 @@ export class RemoteHierarchy {
 
   private async checkedTile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
     const name = tilePath(node);
-    const most = mostBytes(record, node.level);
+    const most = mostBytes(record, node.level) + (this.hasObjects ? mostTableBytes(record) : 0);
     const seal = this.holds(name) ? null : this.sealOf(record);
     const bytes = await this.files.stored(name, most, { signal }, this.index?.whereabouts(node) ?? undefined);
     const opened = await this.decoder.decode(bytes, { name, most, expected: expectedOf(node, record), seal });

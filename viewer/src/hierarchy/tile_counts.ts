@@ -27,7 +27,8 @@ export interface TileCounts extends ExpectedCounts {
   readonly chains: number;
 }
 
-const VERSION = 6;
+const VERSION = 7;
+const NO_OBJECTS_VERSION = 6; // the same without a table of objects
 const NO_MAPS_VERSION = 5; // the same in hierarchies without normal maps
 const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
@@ -50,7 +51,7 @@ function count(glb: Glb, values: TileValues, key: string, least: number, most: n
 
 function parse(glb: Glb, values: TileValues): TileCounts {
   const screenColours = values.version === SCREEN_COLOURS_VERSION;
-  const isKnown = [VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
+  const isKnown = [VERSION, NO_OBJECTS_VERSION, NO_MAPS_VERSION, NO_VALUES_VERSION, SCREEN_COLOURS_VERSION].includes(values.version);
   if (!isKnown) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
   const side = (key: string): number => count(glb, values, key, 0, MOST_SIDE);
   const [picture, map] = [{ width: side('imageWidth'), height: side('imageHeight') }, { width: side('normalMapWidth'), height: side('normalMapHeight') }];

@@ -22,7 +22,7 @@ if (leavesObjectsOut) {
   int object = int(vObject + 0.5);
   if (texelFetch(leftOutObjects, ivec2(object & ${ROW - 1}, object >> 12), 0).r > 0.5) discard;
 }
-if (abs(vObject - markedObject) < 0.5) diffuseColor.rgb = mix(diffuseColor.rgb, objectMark, 0.6);`;
+if (abs(vObject - markedObject) < 0.5) diffuseColor.rgb = mix(diffuseColor.rgb, objectMark, 0.45);`;
 
 export class ObjectShading implements Shading {
   /// Pictures that have their light already show it, too.
