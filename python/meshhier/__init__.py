@@ -30,6 +30,7 @@ from .errors import (
 from .hierarchy import Hierarchy
 from .manifest import Scalar
 from .mesh import Mesh
+from .objects import ObjectRow, ObjectTable
 from .program import Progress, build, find_program, verify
 from .tile import Tile
 from .tree import Node, Tree
@@ -46,6 +47,6 @@ def open(path: str | os.PathLike[str]) -> Hierarchy:
 
 
 __all__ = [
-    "BudgetError", "BuildWarning", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ProgramError",
+    "BudgetError", "BuildWarning", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError",
     "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
 ]  # fmt: skip

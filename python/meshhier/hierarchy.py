@@ -15,6 +15,7 @@ from .cut import CutAssembly
 from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
 from .manifest import Scalar, read_manifest
 from .mesh import Mesh
+from .objects import ObjectTable
 from .storage import open_files
 from .tile import Tile, read_tile
 from .tree import Node, Tree
@@ -41,6 +42,8 @@ class Hierarchy:
         self.path = os.fspath(path)
         self._files = open_files(path)
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
+        facts = self._manifest.json.get("objects")
+        self._objects = ObjectTable(facts, self._read_objects, self.path) if facts else None
         self._index = self._read_index()
         self._keys = self._index["level"].astype(np.uint64) << np.uint64(32) | self._index["index"]
 
@@ -68,6 +71,9 @@ class Hierarchy:
             if self._is_replaced():
                 raise ReplacedError(f"{self.path}: another hierarchy has taken its place since it was opened: open it again") from None
             raise
+
+    def _read_objects(self, begin: int, end: int) -> bytes:
+        return self._files.part("objects.bin", begin, end)
 
     def _is_replaced(self) -> bool:
         try:
@@ -130,6 +136,11 @@ class Hierarchy:
     def scalars(self) -> list[Scalar]:
         """The further numbers of vertices: quality, label, ..."""
         return list(self._manifest.scalars)
+
+    @property
+    def objects(self) -> Optional[ObjectTable]:
+        """Names and properties of the things that the mesh consists of; None if it has none."""
+        return self._objects
 
     @property
     def errors(self) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .errors import CorruptError, NotAHierarchyError
 from .tree import Node, Tree
 
-_VERSIONS = range(7, 14)
+_VERSIONS = range(7, 15)
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Scalar:
     Attributes:
         name: the input's.
         type: "i8", "u8", "i16", "u16", "i32", "u32", "f32" or "f64".
-        kind: "quantity", of which simplified tiles have means, or "label".
+        kind: "quantity", of which simplified tiles have means, "label", or "object": a label that is the same at all corners of a triangle.
         min, max: of all vertices of the input that have a value.
         labels: number -> name ("" if the input has none); of labels, if there are at most 256.
     """

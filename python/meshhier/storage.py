@@ -17,6 +17,10 @@ class Files(Protocol):
         """All bytes of a file. Raises CorruptError if it is not there."""
         ...
 
+    def part(self, name: str, begin: int, end: int) -> bytes:
+        """Bytes [begin, end) of a file; fewer where it ends before. Raises CorruptError if it is not there."""
+        ...
+
     def close(self) -> None: ...
 
 
@@ -27,9 +31,13 @@ class Folder:
         self._path = path
 
     def read(self, name: str) -> bytes:
+        return self.part(name, 0, -1)
+
+    def part(self, name: str, begin: int, end: int) -> bytes:
         try:
             with open(os.path.join(self._path, *name.split("/")), "rb") as file:
-                return file.read()
+                file.seek(begin)
+                return file.read(end - begin if end >= 0 else -1)
         except FileNotFoundError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
 
@@ -50,6 +58,16 @@ class Archive:
     def read(self, name: str) -> bytes:
         try:
             return self._zip.read(name)
+        except KeyError as error:
+            raise CorruptError(f"{self._path}: {name} is missing") from error
+        except zipfile.BadZipFile as error:
+            raise CorruptError(f"{self._path}: {name}: {error}") from error
+
+    def part(self, name: str, begin: int, end: int) -> bytes:
+        try:
+            with self._zip.open(name) as file:
+                file.seek(begin)
+                return file.read(end - begin)
         except KeyError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
         except zipfile.BadZipFile as error:
