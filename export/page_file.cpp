@@ -155,6 +155,52 @@ std::string entry_of(const PageSource& source, const fs::path& name) {
   return page_entry(name, storage::read_file(source.files, path, kMostEntry));
 }
 
+/// A file that the page may lack: it is in it unless it takes too much of the room.
+struct Besides {
+  std::string_view missing;  ///< told if it is not
+  std::string entry;
+  bool is_in = false;
+};
+
+/// Reads a file of at least so many bytes if it fits: it then leaves less room for all else.
+Besides besides(const PageSource& source, const fs::path& name, std::uint64_t bytes,
+                std::string_view missing, std::uint64_t& room) {
+  constexpr std::uint64_t kPart = 4;  // of the room
+  Besides file{missing, bytes <= room ? entry_of(source, name) : ""};
+  file.is_in = !file.entry.empty() && file.entry.size() <= room / kPart;
+  room -= file.is_in ? file.entry.size() : 0;
+  return file;
+}
+
+/// The outline shows itself before the first tile, so it is worth a part, but no more.
+std::vector<Besides> besides_of(const PageSource& source, std::uint64_t& room) {
+  const storage::Manifest& manifest = source.reader.manifest();
+  std::vector<Besides> files;
+  files.push_back(
+      besides(source, storage::outline_path({}), 0, "the shape-outline did not fit\n", room));
+  if (manifest.objects) {
+    files.push_back(besides(source, storage::objects_path({}), manifest.objects->table.bytes,
+                            "the names and properties of objects did not fit\n", room));
+  }
+  return files;
+}
+
+/// Returns the entries of those that are in.
+std::string entries_of(std::span<const Besides> files) {
+  std::string entries;
+  for (const Besides& file : files)
+    entries += file.is_in ? file.entry : "";
+  return entries;
+}
+
+/// Returns lines that tell of the others.
+std::string missing_text(std::span<const Besides> files) {
+  std::string text;
+  for (const Besides& file : files)
+    text += file.is_in ? "" : file.missing;
+  return text;
+}
+
 /// Entries one behind the other, the first one without its comma.
 class EntryStream {
  public:
@@ -175,11 +221,11 @@ class EntryStream {
 
 /// Returns how many bytes were written.
 std::uint64_t write_files(const PageSource& source, const Filling& filling,
-                          const std::string& outline, ByteStream& out) {
+                          const std::string& besides, ByteStream& out) {
   const auto& [packer, choice] = filling;
   std::vector<TileRecord> records = source.reader.records();
   EntryStream entries(out);
-  entries.put(outline);
+  entries.put(besides);
   source.progress.stage("page", choice.tiles.size(), "tiles");
   for (const NodeId tile : choice.tiles) {
     source.cancel.check();
@@ -272,31 +318,28 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
   const PageStory story =
       story_of(files, hierarchy, options, size > viewer.size() ? size - viewer.size() : 0);
   const Frame frame = frame_of(viewer, story.text, options);
-  std::string outline = entry_of(source, storage::outline_path({}));
   const std::uint64_t fixed =
       frame.bytes() + entry_of(source, storage::manifest_path({})).size() + kManifestSlack;
   std::uint64_t room = size > fixed ? size - fixed : 0;
-  // It shows itself before the first tile, so it is worth a part, but no more.
-  const bool has_outline = outline.size() <= room / 4;
-  const Filling filling = filling_of(source, has_outline ? room - outline.size() : room);
+  const std::vector<Besides> besides = besides_of(source, room);
+  const Filling filling = filling_of(source, room);
   if (filling.choice.tiles.empty()) {
     const std::uint64_t around = fixed - std::min(fixed, viewer.size() + story.text.size());
-    refuse_size(options.size, viewer.size(), story, around + outline.size() + filling.choice.least);
+    refuse_size(options.size, viewer.size(), story,
+                around + besides.front().entry.size() + filling.choice.least);
   }
-  if (!has_outline)
-    outline.clear();
+  const std::string others = entries_of(besides);
 
   ByteStream out(*output.file());
   out.put(frame.before);
-  const std::uint64_t bytes = frame.bytes() + write_files(source, filling, outline, out);
+  const std::uint64_t bytes = frame.bytes() + write_files(source, filling, others, out);
   out.put(frame.behind);
   out.flush();
-  const std::string left_out = left_out_text(source, filling, fixed + outline.size());
+  const std::string left_out = left_out_text(source, filling, fixed + others.size());
   storage::require_same_build(place.files(), hierarchy, reader.manifest());
   output.publish();
   std::string account = account_text(source, filling, bytes, viewer.size()) + left_out +
-                        (has_outline ? "" : "the shape-outline did not fit\n") +
-                        story_text(story, progress);
+                        missing_text(besides) + story_text(story, progress);
   account.pop_back();  // the end of the last line
   return account;
 }

@@ -46,6 +46,7 @@ storage::TileFormat packed_format(const storage::HierarchyReader& reader, PagePa
   if (packing == PagePacking::as_stored)
     return format;
   format.compression = storage::Compression::meshopt;  // entries are in gzip anyway
+  format.objects.reset();                              // the viewer reads the hierarchy's table
   if (packing == PagePacking::rounded) {
     if (const auto lattice = short_lattice(reader))
       format.lattice = lattice;
@@ -184,6 +185,8 @@ storage::Manifest PagePacker::manifest(std::span<const TileRecord> records, doub
                                        std::span<const std::byte> index) const {
   storage::Manifest manifest = reader_.manifest();
   manifest.compression = format_.compression;
+  if (manifest.objects)
+    manifest.objects->are_in_tiles = format_.objects.has_value();
   manifest.config["storage"]["compression"] = storage::row_of(format_.compression).name;
   if (format_.lattice) {
     const double before = manifest.quantization ? manifest.quantization->worst_rounding : 0;

@@ -26,6 +26,8 @@ void for_each_name(const storage::HierarchyReader& made,
   visit(storage::outline_path({}));
   if (made.manifest().preview)
     visit(storage::preview_path({}));
+  if (made.manifest().objects)
+    visit(storage::objects_path({}));
   for (const TileRecord& record : std::span(tiles).subspan(1))
     visit(storage::tile_path({}, record.node));
   storage::for_each_tileset(made.manifest(), made.tree(), tiles,
@@ -38,7 +40,9 @@ std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
                    storage::ScratchUse& use, const StageContext& context) {
   storage::FileSystem& files = context.files;
   const storage::Manifest& manifest = made.manifest();
-  const std::uint64_t others = manifest.preview ? 4 : 3;  // manifest, index, outline
+  // Manifest, index, outline, and what there may be besides.
+  const std::uint64_t others =
+      3 + std::uint64_t{manifest.preview.has_value()} + std::uint64_t{manifest.objects.has_value()};
   context.progress.stage("pack", others + manifest.tileset_files + made.records().size(), "files");
   const std::unique_ptr<storage::File> archive = files.create(file);
   storage::ArchiveWriter writer(*archive, [&] { context.cancel.check(); });
