@@ -4,6 +4,7 @@ import type { ObjectProperty } from '../../src/hierarchy/object_facts.js';
 import type { ObjectRow, ObjectValue } from '../../src/hierarchy/object_blocks.js';
 import type { ObjectTable } from '../../src/hierarchy/object_table.js';
 import { Objects, type ObjectChoice } from '../../src/plugins/objects.js';
+import { fittingNames } from '../../src/tools/object_names.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
@@ -30,15 +31,6 @@ function propertyRows(properties: readonly ObjectProperty[], { values }: ObjectR
 function scopesOf(name: string): string[] {
   const branches = [...name.matchAll(/\//g)].map(({ index }) => name.slice(0, index + 1)).filter((branch) => branch !== name);
   return [name, ...branches.reverse()];
-}
-
-/// Names that begin with a text as it was typed, or else as names are often written.
-async function suggestions(table: ObjectTable, text: string, most: number): Promise<ObjectRow[]> {
-  const capital = (word: string): string => word.slice(0, 1).toUpperCase() + word.slice(1);
-  const ways = [text, capital(text), text.replace(/[^\s/_.-]+/g, capital), text.toLowerCase(), text.toUpperCase()];
-  const found = new Map<number, ObjectRow>();
-  for (const way of new Set(ways)) for (const row of await table.startingWith(way, most)) found.set(row.object, row);
-  return [...found.values()].slice(0, most);
 }
 
 export class ObjectsTool implements Tool {
@@ -99,7 +91,7 @@ export class ObjectsTool implements Tool {
 
   private async suggest(text: string, most: number): Promise<readonly ObjectRow[]> {
     try {
-      return this.table === null ? [] : await suggestions(this.table, text, most);
+      return this.table === null ? [] : await fittingNames(this.table, text, most);
     } catch (problem) {
       this.problem = problem instanceof Error ? problem.message : String(problem);
       this.show();

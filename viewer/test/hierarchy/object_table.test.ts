@@ -8,6 +8,7 @@ import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
 import { readObjectFacts, type ObjectFacts } from '../../src/hierarchy/object_facts.js';
 import { ObjectTable } from '../../src/hierarchy/object_table.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';
+import { fittingNames } from '../../src/tools/object_names.js';
 import { f64, planes, tableOfRows, texts, u32 } from '../support/object_table.js';
 import { TABLE_JSON, tableBytes } from './object_table_bytes.js';
 
@@ -180,6 +181,30 @@ describe('a table that tests write', () => {
     const { bytes, json } = tableOfRows(rows, TABLE_JSON.properties);
     const { table } = tableOf(bytes, { json });
     expect(await table.rows({ begin: 0, end: 700 })).toEqual(rows.map((row, object) => ({ object, ...row })));
+  });
+});
+
+describe('names that fit', () => {
+  const tableOfNames = (names: readonly string[]): ObjectTable => {
+    const { bytes, json } = tableOfRows([...names].sort().map((name) => ({ name, values: [], box: null, triangles: 0, area: 0 })), []);
+    return tableOf(bytes, { json }).table;
+  };
+  const found = async (table: ObjectTable, text: string, most = 8): Promise<string[]> => (await fittingNames(table, text, most)).map(({ name }) => name);
+
+  it('begin so, however their letters are written, before those that have it elsewhere', async () => {
+    const table = tableOfNames(['', 'Main Street 1', 'Main Street 12', 'MAIN', 'main', 'East Main Road', 'Old main st', 'Park']);
+    expect(await found(table, 'main')).toEqual(['main', 'Main Street 1', 'Main Street 12', 'MAIN', 'East Main Road', 'Old main st']);
+    expect(await found(table, 'main str')).toEqual(['Main Street 1', 'Main Street 12']);
+    expect(await found(table, 'road EAST')).toEqual(['East Main Road']);
+    expect(await found(table, 'm', 2)).toEqual(['main', 'MAIN']);
+    expect(await found(table, '  ')).toEqual([]);
+    expect(await found(table, 'x')).toEqual([]);
+  });
+
+  it('of a large table are those that begin so', async () => {
+    const table = tableOfNames(Array.from({ length: 2 ** 14 + 1 }, (_, i) => `Wall ${String(i).padStart(5, '0')}`));
+    expect(await found(table, 'wall 123', 2)).toEqual(['Wall 12300', 'Wall 12301']);
+    expect(await found(table, '12300')).toEqual([]);
   });
 });
 

@@ -28,9 +28,9 @@ export const de: ToolWords = {
   objects: {
     hint: (count) => `Klicken oder tippen Sie auf eines von ${count} Objekten, ein zweites Mal, um hinzufliegen; oder schreiben Sie seinen Namen.`,
     search: 'Name eines Objekts',
-    suggestions: 'Namen, die so beginnen',
+    suggestions: 'Namen, die passen',
     more: 'Es gibt mehr: schreiben Sie weiter.',
-    nothing: 'Kein Name beginnt so.',
+    nothing: 'Kein Name passt.',
     name: 'Name',
     noName: 'von keinem Objekt',
     size: 'Größe',

@@ -27,9 +27,9 @@ export const en = {
   objects: {
     hint: (count: string) => `Click or tap one of ${count} objects, a second time to fly there; or type its name.`,
     search: 'Name of an object',
-    suggestions: 'Names that begin so',
+    suggestions: 'Names that fit',
     more: 'There are more: go on typing.',
-    nothing: 'No name begins so.',
+    nothing: 'No name fits.',
     name: 'Name',
     noName: 'of no object',
     size: 'Size',

@@ -28,9 +28,9 @@ export const es: ToolWords = {
   objects: {
     hint: (count) => `Haga clic o toque uno de ${count} objetos, otra vez para volar hasta él; o escriba su nombre.`,
     search: 'Nombre de un objeto',
-    suggestions: 'Nombres que empiezan así',
+    suggestions: 'Nombres que coinciden',
     more: 'Hay más: siga escribiendo.',
-    nothing: 'Ningún nombre empieza así.',
+    nothing: 'Ningún nombre coincide.',
     name: 'Nombre',
     noName: 'de ningún objeto',
     size: 'Tamaño',
