@@ -143,9 +143,10 @@ export class ObjectsTool implements Tool {
     const { objects: text } = words;
     const { scale } = this.shop;
     const { box, triangles, area, name } = row;
-    const size = box && box.max.map((most, axis) => scale.format(most - box.min[axis])).join(' × ');
+    const sides = box?.max.map((most, axis) => scale.format(most - box.min[axis])) ?? [];
+    const size = sides.map((side, axis) => (axis < 2 ? side.slice(0, side.lastIndexOf(` ${scale.sign}`)) : side)).join(' × '); // the unit once
     return [
-      [text.name, name === '' ? text.noName : name], ...propertyRows(this.table?.properties ?? [], row), ...(size === null ? [] : [[text.size, size] as const]),
+      [text.name, name === '' ? text.noName : name], ...propertyRows(this.table?.properties ?? [], row), ...(box === null ? [] : [[text.size, size] as const]),
       [text.area, scale.formatArea(area)], [text.triangles, formatCount(triangles)],
     ];
   }
