@@ -251,7 +251,7 @@ std::vector<CornerWedges> wedges_of_images(const TileMesh& joined,
     const TileTriangle& t = triangles[i];
     if (is_degenerate(Triangle<std::uint32_t>{image(t[0]), image(t[1]), image(t[2])}))
       continue;
-    CornerWedges& corners = kept.emplace_back(wedges[i]);
+    CornerWedges& corners = kept.emplace_back(wedges.empty() ? CornerWedges{} : wedges[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       corners[k] = joined.is_own(t[k]) ? contracted.wedge_map(raw(t[k]), corners[k])
                                        : owners_number(joined, t[k], corners[k]);

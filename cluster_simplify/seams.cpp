@@ -300,7 +300,8 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     return static_cast<TileVertex>(result.parent_map[raw(v)]);
   });
   tile.foreign = one_level_up(mesh.ghosts);
-  if (!mesh.copies.empty()) {
+  const bool has_wedges = !wedges.map.firsts.empty();
+  if (has_wedges) {
     tile.copies = renumbered(wedges.copies, place);
     contraction.representatives.attributes = std::move(wedges.attributes);
     result.wedge_map = std::move(wedges.map);
@@ -313,7 +314,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
   drop_equal(tile.border, tile.border_wedges);
   drop_unused(tile.border, tile.foreign, count);
   normalize_triangles(tile.interior, tile.interior_wedges, true);
-  if (!mesh.copies.empty())
+  if (has_wedges)
     tile.interior_wedges.resize(tile.interior.size());  // without copies the first of each place
 
   tile.vertices.channels = contraction.representatives.channels;

@@ -376,7 +376,6 @@ ContractedWedges one_wedge_a_place(const TileMesh& joined) {
 
 ContractedWedges contract_wedges(const BuildTile& joined, const Contraction& contraction,
                                  const AttributeRules& rules, const WedgeOptions& options) {
-  assert(!joined.mesh.copies.empty());
   if (contraction.representatives.channels == 0)
     return one_wedge_a_place(joined.mesh);
   return WedgeContraction(joined, contraction, rules, options).run();

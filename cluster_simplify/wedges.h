@@ -44,7 +44,8 @@ struct ContractedWedges {
   WedgeMap map;  ///< of all own places and their copies
 };
 
-/// Requires that `joined` has copies. Representatives keep what the contraction gave them if no
+/// Required if `joined` has copies, or objects, pieces of which a method may bring to one place.
+/// Representatives keep what the contraction gave them if no
 /// triangle shows them any more, or if their places had no copies and are one piece of surface, of
 /// one chart. Other places have wedges that triangles show, in the order of the first old wedges
 /// that they stand for; no two are equal.

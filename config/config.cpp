@@ -166,7 +166,8 @@ void check_first_view(const Config& config, const Draft& draft) {
 /// Refuses a table that no object could have a row of, and a label that is not read.
 void check_objects(const Config& config, const Draft& draft) {
   using mesh_io::ObjectSource;
-  const auto& [from, table] = config.objects;
+  const mesh_io::ObjectChoice& from = config.objects.from;
+  const std::filesystem::path& table = config.objects.table;
   if (from.from == ObjectSource::none && !table.empty())
     refuse(draft.origin_of("objects.table"), "expected objects for its rows, found \"none\"");
   if (from.from == ObjectSource::label && !config.attributes.takes(from.label)) {

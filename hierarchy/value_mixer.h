@@ -24,6 +24,7 @@ class ValueMixer {
   std::span<const PlacedValue> values() const { return values_; }
   bool has_values() const { return !values_.empty(); }
   bool has_labels() const { return has_labels_; }
+  bool has_objects() const { return object_.has_value(); }
 
   /// Puts into the channels of values of `to`, which may be one of the vertices:
   /// * of a quantity the mean, by weight, of those that are finite; if there is none, or no weight,

@@ -132,7 +132,7 @@ class Simplifier {
     cluster_simplify::Contraction contraction = cluster_simplify::contract(
         joined, target, rules_, {how.method, how.representative, how.cost});
     cluster_simplify::ContractedWedges wedges;
-    if (!joined.mesh.copies.empty())
+    if (!joined.mesh.copies.empty() || rules_.values().has_objects())
       wedges = cluster_simplify::contract_wedges(joined, contraction, rules_, {});
     return cluster_simplify::apply(joined, std::move(contraction), std::move(wedges));
   }

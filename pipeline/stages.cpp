@@ -163,6 +163,17 @@ constexpr std::array kStages{
                 of.outline = make_outline(of.workshop.forest, source.diagonal(), context);
               },
           .tasks = {{kFinishTask}}},
+    // tiles, their pictures and maps → their files
+    Stage{.name = "publish",
+          .memory = publish_memory,
+          .time = publish_time,
+          .make =
+              [](Making& of, auto& part, auto& context) {
+                Workshop& at = of.workshop;
+                publish(at.forest, at.textures, at.journal, of.to, part.share, context);
+              },
+          .tasks = {{kPublishTask}},
+          .notes = {"publish"}},
     // tiles → what is known of each object
     Stage{.name = "objects",
           .applies = [](const JobSize& job) { return job.has_objects; },
@@ -176,17 +187,6 @@ constexpr std::array kStages{
                                           at.tile_scratch, context);
               },
           .tasks = {{kFinishTask}}},
-    // tiles, their pictures and maps → their files
-    Stage{.name = "publish",
-          .memory = publish_memory,
-          .time = publish_time,
-          .make =
-              [](Making& of, auto& part, auto& context) {
-                Workshop& at = of.workshop;
-                publish(at.forest, at.textures, at.journal, of.to, part.share, context);
-              },
-          .tasks = {{kPublishTask}},
-          .notes = {"publish"}},
     // lines, and what is known of all tiles → all other files
     Stage{.name = "account",
           .make =
