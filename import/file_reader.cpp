@@ -12,7 +12,7 @@
 #include "import/osgb_import.h"
 #include "import/ply_import.h"
 #include "import/stl_import.h"
-#include "import/terrain_drape.h"
+#include "import/terrain_import.h"
 #include "import/text_blocks.h"
 #include "mesh_io/batch_table.h"
 #include "mesh_io/input_error.h"
@@ -414,54 +414,14 @@ class FileReader::Impl {
   Terrain read_terrain() {
     for (const InputFileFacts& file : input_.all())
       checksums_.push_back(checksum_of(file.path));
-    std::optional<TerrainDrape> drape;
-    if (!input_.drape().empty())
-      drape = open_drape(input_.system(), input_.drape(), *input_.mosaic());
-    Terrain terrain = count_terrain(input_.mosaic(), input_.bytes());
-    if (drape) {
-      if (drape->lies_beside)
-        env_.progress.warn(mesh_io::file_message(
-            input_.drape(), "lies beside the heights: nothing of them shows it"));
-      terrain.drape = drape->texcoords;
-      terrain.materials = std::move(drape->materials);
-    }
-    return terrain;
+    return count_terrain(input_.bytes());
   }
 
-  /// Refuses rasters whose blocks side by side take more than the import has.
-  void require_room(const mesh_io::Mosaic& mosaic) const {
-    const std::uint64_t room = 4 * env_.sort_bytes;
-    if (room == 0 || mosaic.held_bytes() <= room)
-      return;
-    throw Error(ErrorCode::budget,
-                mesh_io::file_message(
-                    input_.all().front().path,
-                    fmt::format("its rows of blocks take {} MiB of memory, the import has {}; give "
-                                "a larger memory_budget, or smaller blocks (`gdal_translate -co "
-                                "TILED=YES -co BLOCKXSIZE=256 -co BLOCKYSIZE=256`)",
-                                mosaic.held_bytes() >> 20, room >> 20)));
-  }
-
-  /// Counts the cells; `bytes`: of the files, by which progress advances.
-  Terrain count_terrain(std::shared_ptr<const mesh_io::Mosaic> mosaic, std::uint64_t bytes) {
-    require_room(*mosaic);
-    double done = 0;
-    const auto advance = [&](double part) {
-      const auto before = static_cast<std::uint64_t>(done * static_cast<double>(bytes));
-      done = std::min(1.0, done + part);
-      env_.progress.advance(static_cast<std::uint64_t>(done * static_cast<double>(bytes)) - before);
-    };
-    const auto cells = std::make_shared<const TerrainCells>(*mosaic, advance, env_.cancel);
-    count("cells_without_height", mosaic->cells() - cells->vertices());
-    const mesh_io::SharedCells& shared = cells->shared();
-    count("cells_in_several_files", shared.equal + shared.different);
-    count("cells_with_different_heights", shared.different);
-    if (shared.different > 0) {
-      env_.progress.warn(fmt::format(
-          "{} that several files have differ, by up to {:.3g}: the files that come first count",
-          counted(shared.different, "heights"), shared.most));
-    }
-    return {.mosaic = std::move(mosaic), .cells = cells};
+  Terrain count_terrain(std::uint64_t bytes) {
+    TerrainImport import = import_terrain(input_, bytes, env_);
+    for (const SourceCount& one : import.counts)
+      count(one.name, one.count);
+    return std::move(import.terrain);
   }
 
   /// Reads all rasters with the first of them.
@@ -470,7 +430,7 @@ class FileReader::Impl {
     const auto is_raster = [](const InputFileFacts& file) { return file.format.row().is_raster; };
     if (&facts != &*std::ranges::find_if(input_.all(), is_raster))
       return {};
-    const auto source = open_terrain(count_terrain(input_.mosaic(), facts.identity.bytes));
+    const auto source = open_terrain(count_terrain(facts.identity.bytes));
     const std::uint32_t base = checked_base(facts.path, source->description().vertex_count);
     AddedFile added;
     source->read_vertices([&](const mesh_io::VertexBlock& block) {
