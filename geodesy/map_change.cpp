@@ -40,17 +40,35 @@ MapChange::~MapChange() = default;
 MapChange::MapChange(MapChange&&) noexcept = default;
 MapChange& MapChange::operator=(MapChange&&) noexcept = default;
 
-Vec3d MapChange::operator()(Vec3d place) const {
+void MapChange::settle_at(Vec3d place) {
+  if (!find(place))
+    return;
+  proj::Object used(library().trans_get_last_used_operation(parts_->operation.get()));
+  if (used)
+    parts_->operation = std::move(used);
+}
+
+std::optional<Vec3d> MapChange::find(Vec3d place) const {
   PJ* operation = parts_->operation.get();
   library().errno_reset(operation);
   const PJ_COORD to =
       library().trans(operation, PJ_FWD, library().coord(place.x, place.y, place.z, 0));
   const Vec3d found{to.xyz.x, to.xyz.y, to.xyz.z};
-  if (!is_finite(found)) {
+  return is_finite(found) ? std::optional(found) : std::nullopt;
+}
+
+Vec3d MapChange::operator()(Vec3d place) const {
+  const auto found = find(place);
+  if (!found) {
     proj::refuse(fmt::format("{} {} of {} is no place of {}, as far as PROJ can tell", place.x,
                              place.y, parts_->from, parts_->to));
   }
-  return found;
+  return *found;
+}
+
+bool MapChange::takes_datums_as_one() const {
+  return library().coordoperation_has_ballpark_transformation(parts_->context.get(),
+                                                              parts_->operation.get()) != 0;
 }
 
 }  // namespace meshhier::geodesy

@@ -4,6 +4,7 @@
 #include "base/vec.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace meshhier::geodesy {
@@ -21,8 +22,17 @@ class MapChange {
   MapChange(MapChange&&) noexcept;
   MapChange& operator=(MapChange&&) noexcept;
 
+  /// Settles on the change of datum for a place, if it is one: all others follow it, so that
+  /// nothing jumps.
+  void settle_at(Vec3d place);
+
   /// Returns the place on the other map. Throws Error(usage) if there is none.
   Vec3d operator()(Vec3d place) const;
+  /// Returns the place on the other map; nothing if there is none.
+  std::optional<Vec3d> find(Vec3d place) const;
+
+  /// Returns whether PROJ lacks the way from one datum to the other, and takes both as one.
+  bool takes_datums_as_one() const;
 
  private:
   struct Parts;

@@ -177,6 +177,10 @@ std::optional<double> metres_of_unit(std::uint16_t code) {
   return size_of(kLengths, code);
 }
 
+std::string horizontal_code(const std::string& crs) {
+  return crs.starts_with("EPSG:") ? crs.substr(0, crs.find('+')) : crs;
+}
+
 RasterMap raster_map_of(const GeoKeyTags& tags) {
   const Keys keys(tags);
   RasterMap found;

@@ -32,6 +32,10 @@ struct RasterMap {
   bool is_point = false;  ///< a place of the raster is the middle of a cell, not its corner
 };
 
+/// Returns a CRS by its code without its heights: "EPSG:32633" of "EPSG:32633+5773"; another one as
+/// it is.
+std::string horizontal_code(const std::string& crs);
+
 /// Reads the keys; a file without them has RasterMap{}. Throws Error(input) in a few words if keys
 /// contradict the tags, or name a unit that is not known, or geocentric coordinates.
 RasterMap raster_map_of(const GeoKeyTags& tags);

@@ -14,36 +14,6 @@ namespace meshhier::images {
 namespace {
 
 constexpr std::size_t kMostMessage = 200;
-/// What writing asks for at once: a block and its tables.
-constexpr std::uint64_t kMostWritten = 1U << 30U;
-
-TIFFFieldInfo geo_field(GeoTag tag, TIFFDataType type, const char* name) {
-  const bool is_text = type == TIFF_ASCII;
-  const short count = is_text ? TIFF_VARIABLE : TIFF_VARIABLE2;
-  return {.field_tag = static_cast<std::uint32_t>(tag),
-          .field_readcount = count,
-          .field_writecount = count,
-          .field_type = type,
-          .field_bit = FIELD_CUSTOM,
-          .field_oktochange = 1,
-          .field_passcount = static_cast<unsigned char>(is_text ? 0 : 1),
-          .field_name = const_cast<char*>(name)};
-}
-
-/// Makes the geo tags known to a file that is written; of one that is read the library keeps tags
-/// that it does not know, with their types.
-bool know_geo_tags(TIFF* tiff) {
-  static const std::array fields = {
-      geo_field(GeoTag::pixel_scale, TIFF_DOUBLE, "ModelPixelScale"),
-      geo_field(GeoTag::tie_points, TIFF_DOUBLE, "ModelTiepoint"),
-      geo_field(GeoTag::transformation, TIFF_DOUBLE, "ModelTransformation"),
-      geo_field(GeoTag::key_directory, TIFF_SHORT, "GeoKeyDirectory"),
-      geo_field(GeoTag::double_params, TIFF_DOUBLE, "GeoDoubleParams"),
-      geo_field(GeoTag::ascii_params, TIFF_ASCII, "GeoASCIIParams"),
-      geo_field(GeoTag::gdal_metadata, TIFF_ASCII, "GDALMetadata"),
-      geo_field(GeoTag::gdal_nodata, TIFF_ASCII, "GDALNoDataValue")};
-  return TIFFMergeFieldInfo(tiff, fields.data(), fields.size()) == 0;
-}
 
 }  // namespace
 
@@ -72,17 +42,7 @@ struct TiffFile::Calls {
     });
   }
 
-  static tmsize_t write(void* self, void* from, tmsize_t bytes) {
-    TiffFile& tiff = of(self);
-    return kept(tiff, [&] {
-      if (tiff.written_ == nullptr)
-        return tmsize_t{-1};
-      tiff.written_->write_at(
-          tiff.position_, {static_cast<const std::byte*>(from), static_cast<std::size_t>(bytes)});
-      tiff.position_ += static_cast<std::uint64_t>(bytes);
-      return bytes;
-    });
-  }
+  static tmsize_t write(void* /*self*/, void* /*from*/, tmsize_t /*bytes*/) { return -1; }
 
   static toff_t seek(void* self, toff_t offset, int whence) {
     TiffFile& tiff = of(self);
@@ -124,17 +84,6 @@ void TiffFile::Close::operator()(TIFF* tiff) const {
 }
 
 TiffFile::TiffFile(const storage::File& file, std::uint64_t most_bytes) : file_(file) {
-  open("rmO", most_bytes);  // not mapped; tables of blocks as far as they are needed
-}
-
-TiffFile::TiffFile(storage::File& file, Form form) : file_(file), written_(&file) {
-  open(form == Form::big ? "w8" : "w", kMostWritten);
-  check(know_geo_tags(tiff_.get()));
-}
-
-TiffFile::~TiffFile() = default;
-
-void TiffFile::open(const char* mode, std::uint64_t most_bytes) {
   struct Free {
     void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
   };
@@ -146,14 +95,16 @@ void TiffFile::open(const char* mode, std::uint64_t most_bytes) {
                                           most_bytes, std::numeric_limits<tmsize_t>::max())));
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Calls::say, this);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Calls::ignore, this);
-  tiff_.reset(TIFFClientOpenExt("", mode, this, Calls::read, Calls::write, Calls::seek,
+  constexpr const char* kMode = "rmO";  // not mapped; tables of blocks as far as they are needed
+  tiff_.reset(TIFFClientOpenExt("", kMode, this, Calls::read, Calls::write, Calls::seek,
                                 Calls::close, Calls::size, nullptr, nullptr, options.get()));
   check(tiff_ != nullptr);
 }
 
+TiffFile::~TiffFile() = default;
+
 void TiffFile::fail(std::string_view message) const {
-  throw Error(written_ == nullptr ? ErrorCode::input : ErrorCode::io,
-              file_.path().string() + ": " + std::string(message));
+  throw Error(ErrorCode::input, file_.path().string() + ": " + std::string(message));
 }
 
 void TiffFile::check(bool succeeded) {

@@ -1,8 +1,8 @@
-// TIFF files by libtiff, read and written through files of storage/io.
+// TIFF files by libtiff, read through files of storage/io.
 //
 // Problem. The library prints its errors, opens files by itself, and allocates what a file's tags
 // ask for.
-// Idea. Its bytes come and go through storage::File; what it says about a failure becomes the text
+// Idea. Its bytes come from storage::File; what it says about a failure becomes the text
 // of an Error; one allocation is at most as large as the caller has it. What a file of a user
 // says of a block's bytes is compared with the file before the block is read.
 #pragma once
@@ -38,24 +38,18 @@ enum class GeoTag : std::uint32_t {
 /// An open TIFF. For one thread; any number of them may read a file side by side.
 class TiffFile {
  public:
-  enum class Form : std::uint8_t { classic, big };
-
   /// Opens a file for reading, at its first directory. No allocation of the library is larger than
   /// `most_bytes`; compressors have some memory besides. Throws Error(input) that names the file if
   /// it is no TIFF, and Error(io). `file` must outlive this.
   TiffFile(const storage::File& file, std::uint64_t most_bytes);
-  /// Begins a file, which is empty, with the geo tags known. BigTIFF has no limit of 4 GB.
-  TiffFile(storage::File& file, Form form);
   TiffFile(const TiffFile&) = delete;
   TiffFile& operator=(const TiffFile&) = delete;
-  /// What was written and not flushed is lost.
   ~TiffFile();
 
   /// Returns the library's handle. After each call that can fail comes a check().
   TIFF* handle() { return tiff_.get(); }
   /// Throws the failure of the file that happened in the last calls; if they did not succeed, also
-  /// an Error with the library's words: Error(input) of a file that is read, Error(io) of one that
-  /// is written.
+  /// Error(input) with the library's words.
   void check(bool succeeded);
   [[noreturn]] void fail(std::string_view message) const;
 
@@ -69,8 +63,7 @@ class TiffFile {
     check(true);
     return found ? std::optional(value) : std::nullopt;
   }
-  /// Return the values of a geo tag of a file that is read; empty if it is not there or of another
-  /// type.
+  /// Return the values of a geo tag; empty if it is not there or of another type.
   std::vector<double> doubles(GeoTag tag);
   std::vector<std::uint16_t> shorts(GeoTag tag);
   std::string text(GeoTag tag);
@@ -90,13 +83,11 @@ class TiffFile {
   };
   struct Calls;
 
-  void open(const char* mode, std::uint64_t most_bytes);
   /// Returns the tag's values if it has them in elements of `bytes` and of `type`.
   template <class Value>
   std::vector<Value> values(GeoTag tag, TIFFDataType type);
 
   const storage::File& file_;
-  storage::File* written_ = nullptr;  ///< null: the file is read
   std::uint64_t position_ = 0;
   std::string message_;
   std::exception_ptr caught_;

@@ -161,10 +161,8 @@ void FramedTiff::read_form(TiffFile& tiff) {
 }
 
 void FramedTiff::open_mask(const std::vector<TiffDirectory>& all, const TiffDirectory& image) {
-  const auto mask = std::ranges::find_if(all, [&](const TiffDirectory& one) {
-    return one.is_mask && one.width == image.width && one.height == image.height;
-  });
-  if (mask == all.end())
+  const TiffDirectory* const mask = mask_of(all, image);
+  if (mask == nullptr)
     return;
   mask_pixels_ = std::make_unique<TiffPixels>(*file_, mask->offset);
   const TiffLayout& mask_form = mask_pixels_->layout();

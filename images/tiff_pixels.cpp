@@ -47,6 +47,13 @@ const TiffDirectory* full_image(std::span<const TiffDirectory> images) {
   return found == images.end() ? nullptr : &*found;
 }
 
+const TiffDirectory* mask_of(std::span<const TiffDirectory> images, const TiffDirectory& image) {
+  const auto found = std::ranges::find_if(images, [&](const TiffDirectory& one) {
+    return one.is_mask && one.width == image.width && one.height == image.height;
+  });
+  return found == images.end() ? nullptr : &*found;
+}
+
 std::vector<TiffDirectory> tiff_directories(TiffFile& tiff, std::size_t most) {
   std::vector<TiffDirectory> all;
   do {

@@ -42,6 +42,8 @@ struct TiffDirectory {
 std::vector<TiffDirectory> tiff_directories(TiffFile& tiff, std::size_t most = kMostTiffImages);
 /// Returns the first image of full resolution, the one that is shown; null if there is none.
 const TiffDirectory* full_image(std::span<const TiffDirectory> images);
+/// Returns the mask of an image, which has its size; null if there is none.
+const TiffDirectory* mask_of(std::span<const TiffDirectory> images, const TiffDirectory& image);
 
 enum class TiffSamples : std::uint8_t { unsigned_integers, integers, reals };
 

@@ -75,7 +75,7 @@ TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path&
   images::TiffFile tiff(*file, images::kMostTiffHead);
   const auto all = images::tiff_directories(tiff);
   tiff.select(images::full_image(all)->offset);  // the picture above has one
-  const mesh_io::GeoTiffPlace place = mesh_io::read_place(tiff);
+  const mesh_io::GeoTiffPlace place = mesh_io::read_place(tiff, files);
   require_same_crs(place.keys, heights.keys(), path);
 
   TerrainDrape drape;

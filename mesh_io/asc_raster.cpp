@@ -8,6 +8,7 @@
 // Idea. Blocks of rows end where the next one begins: the ends are found as the text is read for
 // the first time, and kept.
 #include "mesh_io/asc_head.h"
+#include "mesh_io/beside_raster.h"
 #include "mesh_io/blocked_raster.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
@@ -29,7 +30,6 @@ namespace meshhier::mesh_io {
 namespace {
 
 constexpr std::string_view kAscBlanks = " \t\r\n";
-constexpr std::size_t kMostCrsBytes = std::size_t{1} << 16;
 
 /// Takes words from a file, from a byte on.
 class AscWords {
@@ -96,14 +96,12 @@ class AscRaster final : public BlockedRaster {
 
  private:
   static void read_crs(storage::FileSystem& files, RasterHead& head) {
-    const std::filesystem::path path = crs_file_of(head.path);
-    if (files.kind(path) != storage::FileKind::regular)
+    auto crs = read_crs_file(files, head.path);
+    if (!crs)
       return;
-    std::string text(kMostCrsBytes, '\0');
-    text.resize(files.open(path)->read_at(0, std::as_writable_bytes(std::span(text))));
-    head.keys = keys_of_wkt(text);
+    head.keys = std::move(crs->keys);
     if (head.keys.kind == geodesy::MapKind::unknown)
-      head.warnings.push_back(file_message(path, "is no WKT of a map: it is not used"));
+      head.warnings.push_back(file_message(crs->path, "is no WKT of a map: it is not used"));
   }
 
   void decode(const BlockPlace& place, std::span<std::byte> into) const override {
@@ -176,10 +174,6 @@ class AscRaster final : public BlockedRaster {
 std::unique_ptr<HeightRaster> open_asc(storage::FileSystem& files,
                                        const std::filesystem::path& path) {
   return std::make_unique<AscRaster>(files.open(path), files);
-}
-
-std::filesystem::path crs_file_of(const std::filesystem::path& raster) {
-  return std::filesystem::path(raster).replace_extension(".prj");
 }
 
 }  // namespace meshhier::mesh_io

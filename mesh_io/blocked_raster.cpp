@@ -35,6 +35,7 @@ void BlockedRaster::read(DecodedBlocks& blocks, std::uint32_t row, std::uint32_t
     left = left.subspan(part.size());
     column += static_cast<std::uint32_t>(part.size());
   }
+  hide(row, first, heights);
   const auto bad = std::ranges::find_if(
       heights, [](double height) { return !std::isnan(height) && !is_coordinate(height); });
   if (bad != heights.end()) {

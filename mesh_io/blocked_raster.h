@@ -16,7 +16,7 @@ class BlockedRaster : public HeightRaster {
   const RasterHead& head() const final { return head_; }
   void read(DecodedBlocks& blocks, std::uint32_t row, std::uint32_t first,
             std::span<double> heights) const final;
-  std::uint64_t row_bytes() const final { return block_columns_ * blocks_.bytes(); }
+  std::uint64_t row_bytes() const override { return block_columns_ * blocks_.bytes(); }
 
  protected:
   /// The form of blocks. The last ones may reach beyond the raster.
@@ -37,6 +37,9 @@ class BlockedRaster : public HeightRaster {
   virtual void decode(const BlockPlace& place, std::span<std::byte> into) const = 0;
   /// Makes heights of samples. `from`: heights.size() samples.
   virtual void convert(const std::byte* from, std::span<double> heights) const = 0;
+  /// Takes away heights of a row, from column `first` on, that are not seen. Thread-safe.
+  virtual void hide(std::uint32_t /*row*/, std::uint32_t /*first*/,
+                    std::span<double> /*heights*/) const {}
 
   RasterHead head_;
 

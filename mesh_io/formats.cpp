@@ -1,9 +1,12 @@
 #include "mesh_io/formats.h"
 
 #include "base/small_letters.h"
+#include "mesh_io/beside_raster.h"
+#include "mesh_io/geotiff_place.h"
 #include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/height_raster.h"
 #include "mesh_io/hgt_name.h"
+#include "mesh_io/inflated_file.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
@@ -44,8 +47,11 @@ bool begins_as_asc(const MeshContent& c) {
 /// Files of SRTM have no mark: their name and their size tell.
 Certainty look_for_hgt(MeshContent& c) {
   const storage::File& file = c.file();
-  return sure_if(!c.is_gzip() && small_letters(file.path().extension().string()) == ".hgt" &&
-                 hgt_corner(file.path().filename().string()) && hgt_side(file.size()));
+  const std::string name = file.path().filename().string();
+  const bool is_named =
+      c.is_gzip() ? is_packed_hgt_name(name) : small_letters(name).ends_with(".hgt");
+  return sure_if(is_named && hgt_corner(name) &&
+                 hgt_side(c.is_gzip() ? told_bytes(file) : file.size()));
 }
 
 std::vector<FormatRow> make_rows() {
@@ -123,6 +129,7 @@ std::vector<FormatRow> make_rows() {
        .name = "3D Tiles",
        .format = "3D Tiles",
        .look = [](MeshContent& c) { return sure_if(c.kind_of_json() == MeshKind::tileset); },
+       .has_place = true,
        .kept = "1.0 and 1.1: the finest tiles of a `tileset.json` or in a `.3tz`, listed or "
                "implicit, where "
                "they stand",
@@ -137,6 +144,7 @@ std::vector<FormatRow> make_rows() {
        .format = "OSGB",
        .ending = ".osgb",
        .look = [](MeshContent& c) { return sure_if(begins_as_osgb(c.start())); },
+       .has_place = true,
        .kept = "the finest tiles of a PagedLOD, and of the files that it names; normals, vertex "
                "colours, pictures (JPEG, PNG, DXT) of the first texture",
        .left_out = "points, lines, shapes, other textures"},
@@ -145,19 +153,26 @@ std::vector<FormatRow> make_rows() {
        .format = "GeoTIFF",
        .ending = ".tif",
        .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_tiff(c.start())); },
+       .buffers = place_files_of,
+       .has_place = true,
        .is_raster = true,
-       .kept = "heights: one band of integers or floats of 8 to 64 bits, BigTIFF, tiles and strips "
-               "in all compressions of libtiff; scale, offset, unit and nodata; place and CRS; "
-               "several files on one grid are one surface",
-       .left_out = "overviews, masks; control points and CRSs that a file defines itself"},
+       .companions = {".tfw", ".tifw", ".wld"},
+       .kept =
+           "heights: one band of integers or floats of 8 to 64 bits, BigTIFF, tiles and strips "
+           "in all compressions of libtiff; scale, offset, unit, nodata, masks and alpha; place "
+           "and CRS, also in a world file and a `.prj` beside; several files on one grid are "
+           "one surface",
+       .left_out = "overviews; control points and CRSs that a file defines itself"},
       {.kind = MeshKind::geotiff, .name = "GeoTIFF", .format = "GeoTIFF", .ending = ".tiff"},
       {.kind = MeshKind::hgt,
        .name = "SRTM heights",
        .format = "SRTM",
        .ending = ".hgt",
        .look = look_for_hgt,
+       .has_place = true,
        .is_raster = true,
-       .kept = "heights of 3 or 1 seconds; the name tells the place (`N53E027.hgt`)",
+       .kept = "heights of 3 or 1 seconds, also in gzip; the name tells the place "
+               "(`N53E027.hgt`)",
        .left_out = "nothing"},
       {.kind = MeshKind::asc,
        .name = "ESRI text grid",
@@ -165,6 +180,7 @@ std::vector<FormatRow> make_rows() {
        .ending = ".asc",
        .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_asc(c)); },
        .buffers = [](const storage::File& file) { return std::vector{crs_file_of(file.path())}; },
+       .has_place = true,
        .is_raster = true,
        .companions = {".prj"},
        .kept = "heights, place, and the CRS of a `.prj` beside it",
@@ -259,7 +275,8 @@ MeshFormat detect_format(const storage::File& file) {
     return *format;
   const std::string_view start = content.start();
   const std::string other = is_packed_hgt(content)
-                                ? "SRTM heights in gzip; unpack them, and build the file in it"
+                                ? "SRTM heights in gzip of another size than 1201 or 3601 rows, or "
+                                  "without a name such as N53E027.hgt.gz"
                                 : other_format(start);
   if (!other.empty()) {
     fail_file(file.path(), fmt::format("expected a mesh ({}, or a tileset.json), found {}",

@@ -45,6 +45,7 @@ struct FormatRow {
   /// Lists the files with vertices and triangles that a file names; null: it names none.
   std::vector<std::filesystem::path> (*buffers)(const storage::File&) = nullptr;
   bool in_metres = false;       ///< its coordinates are, by its specification
+  bool has_place = false;       ///< its files may say where on the globe they stand; z is up
   bool is_raster = false;       ///< of heights: several are one mosaic
   bool names_features = false;  ///< numbers of features in it are labels, by its specification
   /// Endings of files that one names, besides pictures.

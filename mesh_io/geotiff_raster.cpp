@@ -1,9 +1,10 @@
 // Heights in GeoTIFF, with what GDAL's tags say of them: scale, offset, unit, and the number that
-// stands for no height.
+// stands for no height; and with the mask or the alpha that says which cells are seen.
 #include "images/tiff_pixels.h"
 #include "mesh_io/blocked_raster.h"
 #include "mesh_io/gdal_tags.h"
 #include "mesh_io/geotiff_place.h"
+#include "mesh_io/height_mask.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
@@ -29,14 +30,14 @@ using images::TiffLayout;
 using images::TiffPixels;
 using images::TiffSamples;
 
-/// The memory of the library while the head is read.
-
 /// A kind of samples, and how they become heights.
 struct SampleRow {
   TiffSamples samples;
   std::uint32_t bits;
   /// Reads samples as they are; `absent`: the number that stands for no height.
-  void (*convert)(const std::byte* from, std::optional<double> absent, std::span<double> to);
+  /// `stride`: bytes from one to the next.
+  void (*convert)(const std::byte* from, std::size_t stride, std::optional<double> absent,
+                  std::span<double> to);
   /// Returns the sample of a number.
   std::vector<std::byte> (*sample)(double value);
 };
@@ -54,14 +55,15 @@ std::optional<T> as_sample(double value) {
 }
 
 template <class T>
-void convert_samples(const std::byte* from, std::optional<double> absent, std::span<double> to) {
+void convert_samples(const std::byte* from, std::size_t stride, std::optional<double> absent,
+                     std::span<double> to) {
   const std::optional<T> none = absent ? as_sample<T>(*absent) : std::nullopt;
   const bool has_none = none.has_value();
   const T none_sample = none.value_or(T{});
   for (double& height : to) {
     T sample;
     std::memcpy(&sample, from, sizeof sample);
-    from += sizeof sample;
+    from += stride;
     height = has_none && sample == none_sample ? std::numeric_limits<double>::quiet_NaN()
                                                : static_cast<double>(sample);
   }
@@ -97,6 +99,11 @@ const SampleRow* row_of(const TiffLayout& layout) {
   return found == kSampleRows.end() ? nullptr : &*found;
 }
 
+/// Whether a second band says which heights are seen.
+bool has_alpha(const TiffLayout& layout) {
+  return layout.bands == 2 && layout.alpha_band == 1;
+}
+
 /// Refuses what is no grid of heights.
 void require_heights(const TiffLayout& layout, const std::filesystem::path& path) {
   if (layout.is_picture()) {
@@ -104,7 +111,9 @@ void require_heights(const TiffLayout& layout, const std::filesystem::path& path
               "is a picture, not heights; to show it on a surface, give the heights as the input "
               "and this by `--drape`");
   }
-  if (layout.bands > 1) {
+  if (has_alpha(layout) && layout.is_separate)
+    fail_file(path, "has its alpha apart; `gdal_translate -b 1 -mask 2` makes a mask of it");
+  if (layout.bands > 1 && !has_alpha(layout)) {
     fail_file(path, fmt::format("has {} bands; which of them are heights? `gdal_translate -b 1` "
                                 "makes a file of the first one",
                                 layout.bands));
@@ -118,7 +127,8 @@ void require_heights(const TiffLayout& layout, const std::filesystem::path& path
 
 class GeoTiffRaster final : public BlockedRaster {
  public:
-  explicit GeoTiffRaster(std::unique_ptr<storage::File> file) : file_(std::move(file)) {
+  GeoTiffRaster(std::unique_ptr<storage::File> file, storage::FileSystem& files)
+      : file_(std::move(file)) {
     TiffFile tiff(*file_, images::kMostTiffHead);
     const auto all = images::tiff_directories(tiff);
     const TiffDirectory* const image = images::full_image(all);
@@ -127,27 +137,35 @@ class GeoTiffRaster final : public BlockedRaster {
     pixels_ = std::make_unique<TiffPixels>(*file_, image->offset);
     require_heights(pixels_->layout(), file_->path());
     tiff.select(image->offset);
-    read_head(tiff, all);
+    if (const TiffDirectory* const mask = images::mask_of(all, *image))
+      mask_.emplace(*file_, mask->offset);
+    read_head(tiff, all, files);
+  }
+
+  std::uint64_t row_bytes() const override {
+    return BlockedRaster::row_bytes() + (mask_ ? mask_->row_bytes() : 0);
   }
 
  private:
-  void read_head(TiffFile& tiff, const std::vector<TiffDirectory>& all) {
+  void read_head(TiffFile& tiff, const std::vector<TiffDirectory>& all,
+                 storage::FileSystem& files) {
     const TiffLayout& layout = pixels_->layout();
     sample_ = row_of(layout);
     gdal_ = read_gdal_tags(tiff.text(GeoTag::gdal_metadata), tiff.text(GeoTag::gdal_nodata));
     RasterHead head{.path = file_->path(), .columns = layout.width, .rows = layout.height};
-    GeoTiffPlace place = read_place(tiff);
+    GeoTiffPlace place = read_place(tiff, files);
     head.map = place.map;
     head.keys = std::move(place.keys);
     if (gdal_.metres)
       head.keys.height_unit = gdal_.metres;
     const bool is_on_lengths = head.keys.kind == geodesy::MapKind::lengths;
     to_metres_ = head.keys.height_unit.value_or(is_on_lengths ? head.keys.unit : 1);
-    head.may_have_voids = gdal_.absent || layout.samples == TiffSamples::reals;
+    head.may_have_voids = gdal_.absent || layout.samples == TiffSamples::reals ||
+                          mask_.has_value() || has_alpha(layout);
     warn(all, head);
     if (gdal_.absent)
       pixels_->set_absent(sample_->sample(*gdal_.absent));
-    set(std::move(head), {layout.block_width, layout.block_height, layout.bits / 8});
+    set(std::move(head), {layout.block_width, layout.block_height, layout.bands * layout.bits / 8});
   }
 
   void warn(const std::vector<TiffDirectory>& all, RasterHead& head) const {
@@ -157,9 +175,6 @@ class GeoTiffRaster final : public BlockedRaster {
     };
     if (others > 1)
       say(fmt::format("holds {} images; the first one is read", others));
-    if (std::ranges::any_of(all, &TiffDirectory::is_mask))
-      say("has a mask, which is not read: cells without a height need a nodata number "
-          "(`gdal_translate -a_nodata`)");
     if (!gdal_.unknown_unit.empty()) {
       say(fmt::format("its heights are in {}, a unit that is not known: they are taken for metres",
                       in_quotes(gdal_.unknown_unit)));
@@ -171,7 +186,11 @@ class GeoTiffRaster final : public BlockedRaster {
   }
 
   void convert(const std::byte* from, std::span<double> heights) const override {
-    sample_->convert(from, gdal_.absent, heights);
+    const TiffLayout& layout = pixels_->layout();
+    const std::size_t bytes = layout.bits / 8, stride = layout.bands * bytes;
+    sample_->convert(from, stride, gdal_.absent, heights);
+    if (has_alpha(layout))
+      hide_transparent(from + bytes, stride, heights);
     const double scale = gdal_.scale * to_metres_, offset = gdal_.offset * to_metres_;
     if (scale == 1 && offset == 0)
       return;
@@ -179,8 +198,25 @@ class GeoTiffRaster final : public BlockedRaster {
       height = height * scale + offset;
   }
 
+  /// `alpha`: the first pixel's.
+  void hide_transparent(const std::byte* alpha, std::size_t stride,
+                        std::span<double> heights) const {
+    const std::size_t bytes = pixels_->layout().bits / 8;
+    for (double& height : heights) {
+      if (std::all_of(alpha, alpha + bytes, [](std::byte b) { return b == std::byte{0}; }))
+        height = std::numeric_limits<double>::quiet_NaN();
+      alpha += stride;
+    }
+  }
+
+  void hide(std::uint32_t row, std::uint32_t first, std::span<double> heights) const override {
+    if (mask_)
+      mask_->hide(row, first, heights);
+  }
+
   std::unique_ptr<storage::File> file_;
   std::unique_ptr<TiffPixels> pixels_;
+  std::optional<HeightMask> mask_;
   const SampleRow* sample_ = nullptr;
   GdalTags gdal_;
   double to_metres_ = 1;
@@ -190,7 +226,7 @@ class GeoTiffRaster final : public BlockedRaster {
 
 std::unique_ptr<HeightRaster> open_geotiff(storage::FileSystem& files,
                                            const std::filesystem::path& path) {
-  return std::make_unique<GeoTiffRaster>(files.open(path));
+  return std::make_unique<GeoTiffRaster>(files.open(path), files);
 }
 
 }  // namespace meshhier::mesh_io

@@ -64,7 +64,4 @@ std::unique_ptr<HeightRaster> open_hgt(storage::FileSystem& files,
 std::unique_ptr<HeightRaster> open_asc(storage::FileSystem& files,
                                        const std::filesystem::path& path);
 
-/// Returns the file beside a text grid that says in which CRS it lies: "heights.prj".
-std::filesystem::path crs_file_of(const std::filesystem::path& raster);
-
 }  // namespace meshhier::mesh_io

@@ -1,12 +1,14 @@
 // How files of SRTM are known: they have no head.
 #pragma once
 
+#include "base/small_letters.h"
 #include "mesh_io/height_raster.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace meshhier::mesh_io {
@@ -18,6 +20,11 @@ constexpr std::optional<std::uint32_t> hgt_side(std::uint64_t file_bytes) {
       return side;
   }
   return std::nullopt;
+}
+
+/// Returns whether a name is that of heights packed by gzip.
+inline bool is_packed_hgt_name(std::string_view name) {
+  return small_letters(name).ends_with(".hgt.gz");
 }
 
 /// Returns the south-western corner by a name: longitude and latitude of "N53E027.hgt".

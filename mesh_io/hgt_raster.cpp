@@ -1,7 +1,9 @@
 // Heights of SRTM: a file a degree, named by its south-western corner ("N53E027.hgt"), of 1201 or
 // 3601 rows of as many big-endian integers of 16 bits, from north to south. -32768 is no height.
+// It may be packed by gzip.
 #include "mesh_io/blocked_raster.h"
 #include "mesh_io/hgt_name.h"
+#include "mesh_io/inflated_file.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
@@ -21,6 +23,10 @@ constexpr std::uint16_t kAbsent = 0x8000;
 class HgtRaster final : public BlockedRaster {
  public:
   explicit HgtRaster(std::unique_ptr<storage::File> file) : file_(std::move(file)) {
+    if (is_packed_hgt_name(file_->path().filename().string())) {
+      const std::uint64_t bytes = told_bytes(*file_);
+      file_ = inflated(std::move(file_), bytes);
+    }
     const auto corner = hgt_corner(file_->path().filename().string());
     const auto side = hgt_side(file_->size());
     if (!corner || !side)

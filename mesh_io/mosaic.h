@@ -36,6 +36,8 @@ class Mosaic {
   std::uint32_t rows() const { return rows_; }
   const GridMap& map() const { return map_; }
   const geodesy::RasterMap& keys() const { return parts_[0].raster->head().keys; }
+  /// Returns the first raster's.
+  const std::filesystem::path& path() const { return parts_[0].raster->head().path; }
   /// Returns whether there may be cells without a height.
   bool may_have_voids() const { return may_have_voids_; }
   std::uint64_t cells() const { return std::uint64_t{columns_} * rows_; }

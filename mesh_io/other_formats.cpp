@@ -32,6 +32,7 @@ struct OtherFormat {
 };
 
 constexpr std::string_view kUnpack = "unpack it, and build the mesh in it";
+constexpr std::string_view kUnzip = "unpack it (`unzip FILE`), and build the mesh in it";
 constexpr std::string_view kExport = "export it as glTF, OBJ or PLY from the program that made it";
 constexpr std::string_view kTriangulate =
     "make a mesh of its points first, as by Poisson reconstruction";
@@ -49,7 +50,7 @@ std::vector<OtherFormat> make_others() {
   return {
       {"a zip archive (perhaps 3MF, USDZ or KMZ; a tileset in one is read if its name ends in "
        ".3tz)",
-       kUnpack,
+       kUnzip,
        {".zip", ".3mf", ".usdz"},
        {{"PK\x03\x04"sv}}},
       {"a database of SQLite (perhaps a tileset, .3dtiles)",

@@ -3,6 +3,7 @@
 #include "base/small_letters.h"
 #include "base/text_mark.h"
 #include "mesh_io/coordinate_range.h"
+#include "mesh_io/hgt_name.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/json_characters.h"
 #include "mesh_io/other_formats.h"
@@ -189,8 +190,7 @@ bool begins_as_ply(std::string_view start) {
 }
 
 bool is_packed_hgt(const MeshContent& content) {
-  return content.is_gzip() &&
-         small_letters(content.file().path().filename().string()).ends_with(".hgt.gz");
+  return content.is_gzip() && is_packed_hgt_name(content.file().path().filename().string());
 }
 
 Certainty look_for_binary_stl(MeshContent& content) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace meshhier::mesh_io {
 namespace {
@@ -34,11 +35,12 @@ std::optional<GlobePlace> middle_of(const Mosaic& mosaic) {
   return rounded({middle.x * unit, middle.y * unit});
 }
 
-TerrainFrame::TerrainFrame(const Mosaic& mosaic)
+TerrainFrame::TerrainFrame(const Mosaic& mosaic, std::shared_ptr<const CellPlaces> map)
     : map_(mosaic.map()),
       unit_(mosaic.keys().unit),
       is_mirrored_(map_.determinant() > 0),
-      middle_(middle_of(mosaic)) {
+      other_map_(std::move(map)),
+      middle_(other_map_ ? std::nullopt : middle_of(mosaic)) {
   if (!middle_)
     return;
   latitude_ = turn_of(middle_->latitude);
@@ -63,6 +65,8 @@ Vec3d TerrainFrame::on_globe(UnitTurn longitude, UnitTurn latitude, double heigh
 
 void TerrainFrame::place(std::uint32_t row, std::uint32_t first, std::span<const double> heights,
                          std::vector<Vec3d>& points) const {
+  if (other_map_ != nullptr)
+    return place_on_map(row, first, heights, points);
   const UnitTurn parallel = is_upright_ ? turn_of(map_.at(0, row).y * unit_) : UnitTurn{};
   for (std::size_t i = 0; i < heights.size(); ++i) {
     const double height = heights[i];
@@ -80,6 +84,16 @@ void TerrainFrame::place(std::uint32_t row, std::uint32_t first, std::span<const
     } else {
       points.push_back({at.x * unit_, at.y * unit_, height});
     }
+  }
+}
+
+void TerrainFrame::place_on_map(std::uint32_t row, std::uint32_t first,
+                                std::span<const double> heights, std::vector<Vec3d>& points) const {
+  std::vector<MapPoint> places(heights.size());
+  other_map_->read(row, first, places);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    if (!std::isnan(heights[i]))
+      points.push_back({places[i].x, places[i].y, heights[i]});
   }
 }
 

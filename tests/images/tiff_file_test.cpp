@@ -1,6 +1,7 @@
 #include "images/tiff_file.h"
 
 #include "support/memory_files.h"
+#include "support/tiff_writer.h"
 
 #include <array>
 #include <memory>
@@ -29,9 +30,9 @@ std::vector<std::uint16_t> strip(std::uint16_t first) {
 }
 
 /// A file of two strips, with some geo tags.
-void write_sample(tests::MemoryFiles& files, TiffFile::Form form) {
+void write_sample(tests::MemoryFiles& files, tests::TiffWriter::Form form) {
   const auto file = files.create(kTiffPath);
-  TiffFile tiff(*file, form);
+  tests::TiffWriter tiff(*file, form);
   TIFF* handle = tiff.handle();
   TIFFSetField(handle, TIFFTAG_IMAGEWIDTH, kTiffWidth);
   TIFFSetField(handle, TIFFTAG_IMAGELENGTH, kTiffHeight);
@@ -64,7 +65,7 @@ std::string tiff_message(const Work& work, ErrorCode code = ErrorCode::input) {
   return "";
 }
 
-class TiffForms : public testing::TestWithParam<TiffFile::Form> {};
+class TiffForms : public testing::TestWithParam<tests::TiffWriter::Form> {};
 
 TEST_P(TiffForms, SANITIZED_WrittenBlocksAndTagsAreReadAgain) {
   tests::MemoryFiles files;
@@ -84,7 +85,8 @@ TEST_P(TiffForms, SANITIZED_WrittenBlocksAndTagsAreReadAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, TiffForms,
-                         testing::Values(TiffFile::Form::classic, TiffFile::Form::big));
+                         testing::Values(tests::TiffWriter::Form::classic,
+                                         tests::TiffWriter::Form::big));
 
 TEST(TiffFile, SANITIZED_TellsWhatIsNone) {
   tests::MemoryFiles files;
@@ -96,7 +98,7 @@ TEST(TiffFile, SANITIZED_TellsWhatIsNone) {
 
 TEST(TiffFile, SANITIZED_EachCutFileIsToldOfOrReadAsItWas) {
   tests::MemoryFiles files;
-  write_sample(files, TiffFile::Form::classic);
+  write_sample(files, tests::TiffWriter::Form::classic);
   const std::string whole = files.content(kTiffPath);
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
     files.put(kTiffPath, whole.substr(0, bytes));
@@ -112,7 +114,7 @@ TEST(TiffFile, SANITIZED_EachCutFileIsToldOfOrReadAsItWas) {
 
 TEST(TiffFile, SANITIZED_FlippedBytesDoNoHarm) {
   tests::MemoryFiles files;
-  write_sample(files, TiffFile::Form::big);
+  write_sample(files, tests::TiffWriter::Form::big);
   const std::string whole = files.content(kTiffPath);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string flipped = whole;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "mesh_io/mosaic.h"
+#include "support/gzip.h"
 #include "support/sample_tiff.h"
 
 #include <cmath>
@@ -66,7 +67,8 @@ TEST(HeightRaster, SamplesOfAllTypesAndForms) {
   for (const std::uint32_t tile : {0, 16, 32}) {
     for (const int compression :
          {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_ZSTD}) {
-      for (const auto form : {images::TiffFile::Form::classic, images::TiffFile::Form::big}) {
+      for (const auto form :
+           {meshhier::tests::TiffWriter::Form::classic, meshhier::tests::TiffWriter::Form::big}) {
         TiffForm one{
             .tile = tile, .compression = static_cast<std::uint16_t>(compression), .form = form};
         expect_heights<std::uint8_t>(one);
@@ -152,13 +154,69 @@ TEST(HeightRaster, TheFirstImageOfFullResolutionCounts) {
   MemoryFiles files;
   {
     const auto file = files.create(kHeights);
-    images::TiffFile tiff(*file, images::TiffFile::Form::classic);
+    meshhier::tests::TiffWriter tiff(*file, meshhier::tests::TiffWriter::Form::classic);
     const std::vector<float> small(10 * 10, 1.0F);
     meshhier::tests::put_tiff_image<float>(tiff, {.subfile = FILETYPE_REDUCEDIMAGE}, 10, small);
     meshhier::tests::know_tags_again(tiff.handle());
     meshhier::tests::put_tiff_image<float>(tiff, {}, kColumns, slope<float>());
   }
   EXPECT_EQ(Mosaic(files, {kHeights}).columns(), kColumns);
+}
+
+/// The mask has other blocks than the heights.
+TEST(HeightRaster, WhatAMaskHidesHasNoHeight) {
+  MemoryFiles files;
+  {
+    const auto file = files.create(kHeights);
+    meshhier::tests::TiffWriter tiff(*file, meshhier::tests::TiffWriter::Form::classic);
+    meshhier::tests::put_tiff_image<std::int16_t>(tiff, {.tile = 16}, kColumns,
+                                                  slope<std::int16_t>());
+    std::vector<std::uint8_t> seen(kColumns * kRows, 255);
+    seen[kColumns + 3] = seen.back() = 0;
+    meshhier::tests::know_tags_again(tiff.handle());
+    meshhier::tests::put_tiff_image<std::uint8_t>(tiff,
+                                                  {.rows_of_strip = 5,
+                                                   .compression = COMPRESSION_ADOBE_DEFLATE,
+                                                   .photometric = PHOTOMETRIC_MASK,
+                                                   .subfile = FILETYPE_MASK},
+                                                  kColumns, seen);
+  }
+  const Mosaic mosaic(files, {kHeights});
+  EXPECT_TRUE(mosaic.may_have_voids());
+  EXPECT_THAT(mosaic.warnings(), testing::IsEmpty());
+  const auto heights = all_heights(mosaic);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const bool is_hidden = i == kColumns + 3 || i + 1 == heights.size();
+    ASSERT_EQ(std::isnan(heights[i]), is_hidden) << i;
+    if (!is_hidden) {
+      ASSERT_EQ(heights[i], slope<std::int16_t>()[i]);
+    }
+  }
+}
+
+TEST(HeightRaster, WhatAnAlphaHidesHasNoHeight) {
+  MemoryFiles files;
+  const std::vector<float> samples{1, 255, 2, 0, 3, 1, 4, 255};
+  put_tiff<float>(files, kHeights, {.bands = 2, .has_alpha = true}, 2, samples);
+  const auto heights = all_heights(Mosaic(files, {kHeights}));
+  EXPECT_THAT(heights, ElementsAre(1, testing::IsNan(), 3, 4));
+}
+
+TEST(HeightRaster, FilesBesideSayWhereItLies) {
+  MemoryFiles files;
+  TiffForm bare{.keys = {}, .has_place = false};
+  put_tiff<float>(files, kHeights, bare, kColumns, slope<float>());
+  EXPECT_THAT(raster_refusal(files), HasSubstr("does not say where its cells lie"));
+  files.put("/models/heights.tifw", "2\r\n0.5\r\n0.5\r\n-2\r\n100\r\n200\r\n");
+  files.put("/models/heights.prj", "PROJCS[\"Somewhere\",UNIT[\"Meter\",1.0]]");
+  const Mosaic mosaic(files, {kHeights});
+  EXPECT_EQ(mosaic.map().at(1, 2), (MapPoint{103, 196.5}));
+  EXPECT_EQ(mosaic.keys().kind, geodesy::MapKind::lengths);
+  EXPECT_THAT(mosaic.keys().crs, HasSubstr("Somewhere"));
+  files.put("/models/heights.tifw", "2 0.5 0.5 -2 100");
+  EXPECT_THAT(raster_refusal(files), HasSubstr("heights.tifw: expected the six numbers"));
+  put_tiff<float>(files, kHeights, {}, kColumns, slope<float>());  // what the file says counts
+  EXPECT_EQ(Mosaic(files, {kHeights}).map().at(0, 0), (MapPoint{500005, 5299995}));
 }
 
 TEST(HeightRaster, FlippedBytesAndCutFilesDoNoHarm) {
@@ -192,6 +250,38 @@ TEST(HeightRaster, FilesOfSrtmAreKnownByNameAndSize) {
   EXPECT_EQ(mosaic.map().at(0, 0), (MapPoint{-1, 0}));
   EXPECT_NEAR(mosaic.map().at(1200, 1200).y, -1, 1e-12);
   EXPECT_EQ(mosaic.keys().crs, "EPSG:4326+5773");
+}
+
+TEST(HeightRaster, FilesOfSrtmMayBePacked) {
+  MemoryFiles files;
+  std::string bytes(2 * 1201 * 1201, '\0');
+  for (std::size_t i = 1; i < bytes.size(); i += 2)
+    bytes[i] = static_cast<char>(i * 7919 % 251);
+  files.put("/models/N01E001.hgt", bytes);
+  const std::string packed = meshhier::tests::gzip(bytes);
+  files.put("/models/N01E001.HGT.gz", packed);
+  const Mosaic plain(files, {"/models/N01E001.hgt"}), mosaic(files, {"/models/N01E001.HGT.gz"});
+  EXPECT_EQ(all_heights(mosaic).size(), 1201U * 1201);
+  std::vector<double> expected(1201), found(1201);
+  for (const std::uint32_t row : {1200U, 3U, 700U, 701U, 1100U, 0U}) {  // there and back
+    mosaic.release();
+    plain.read(row, 0, expected);
+    mosaic.read(row, 0, found);
+    EXPECT_EQ(found[5], expected[5]);
+    EXPECT_EQ(std::isnan(found[5]), std::isnan(expected[5]));
+  }
+  const auto refusal = [&](const std::string& content) {
+    files.put("/models/N01E001.HGT.gz", content);
+    return raster_refusal(files, {"/models/N01E001.HGT.gz"});
+  };
+  std::string broken = packed;
+  broken[packed.size() / 2] = static_cast<char>(~broken[packed.size() / 2]);
+  EXPECT_NE(refusal(broken), "");
+  broken = packed;
+  broken[packed.size() - 6] = static_cast<char>(~broken[packed.size() - 6]);  // the checksum
+  EXPECT_THAT(refusal(broken), HasSubstr("damaged"));
+  broken = packed.substr(0, packed.size() / 2) + packed.substr(packed.size() - 4);
+  EXPECT_NE(refusal(broken), "");
 }
 
 TEST(HeightRaster, TextGridsAreReadWithTheirCrs) {

@@ -1,8 +1,8 @@
 // TIFF files of any form, made with the library.
 #pragma once
 
-#include "images/tiff_file.h"
 #include "support/memory_files.h"
+#include "support/tiff_writer.h"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ struct TiffForm {
   std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
   std::uint16_t bands = 1;
   bool has_alpha = false;  ///< the last band
-  images::TiffFile::Form form = images::TiffFile::Form::classic;
+  TiffWriter::Form form = TiffWriter::Form::classic;
   std::string nodata{}, metadata{};
   std::vector<double> matrix{};  ///< ModelTransformation; else the two that follow
   std::array<double, 3> scale{10, 10, 0};
@@ -34,6 +34,7 @@ struct TiffForm {
   /// UTM zone 33 N, in metres, places of corners.
   std::vector<std::uint16_t> keys{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633};
   std::uint32_t subfile = 0;
+  bool has_place = true;  ///< else no tag says where it lies
 };
 
 template <class T>
@@ -88,7 +89,8 @@ void put_tiff_head(TIFF* tiff, const TiffForm& form, std::uint32_t width, std::u
     set(TIFFTAG_ROWSPERSTRIP, form.rows_of_strip);
   }
   const auto geo = [](images::GeoTag tag) { return static_cast<std::uint32_t>(tag); };
-  if (!form.matrix.empty()) {
+  if (!form.has_place) {
+  } else if (!form.matrix.empty()) {
     set(geo(images::GeoTag::transformation), static_cast<int>(form.matrix.size()),
         form.matrix.data());
   } else {
@@ -105,7 +107,7 @@ void put_tiff_head(TIFF* tiff, const TiffForm& form, std::uint32_t width, std::u
 
 /// Writes an image of `width` columns.
 template <class T>
-void put_tiff_image(images::TiffFile& file, const TiffForm& form, std::uint32_t width,
+void put_tiff_image(TiffWriter& file, const TiffForm& form, std::uint32_t width,
                     std::span<const T> samples) {
   const auto height = static_cast<std::uint32_t>(samples.size() / width / form.bands);
   TIFF* tiff = file.handle();
@@ -136,7 +138,7 @@ template <class T>
 void put_tiff(MemoryFiles& files, const std::filesystem::path& path, const TiffForm& form,
               std::uint32_t width, const std::vector<T>& samples) {
   const auto file = files.create(path);
-  images::TiffFile tiff(*file, form.form);
+  TiffWriter tiff(*file, form.form);
   put_tiff_image<T>(tiff, form, width, samples);
   tiff.check(TIFFFlush(tiff.handle()) == 1);
 }
