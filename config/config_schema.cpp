@@ -491,8 +491,9 @@ std::vector<ConfigKey> make_config_keys() {
           [](auto& c) -> auto& { return c.texture.use; })),
       deciding(path(
           {.path = "texture.drape",
-           .meaning = "an orthophoto (GeoTIFF) that heights of a raster show, by its own place and "
-                      "resolution; `--drape` of `build` sets it"},
+           .meaning =
+               "an orthophoto (GeoTIFF) that heights of a raster show, by its own place, CRS "
+               "and resolution; `--drape` of `build` sets it"},
           [](auto& c) -> auto& { return c.texture.drape; })),
       deciding(number(
           {.path = "texture.texels",
@@ -552,7 +553,7 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "placement.crs",
            .meaning = "instead of a place: the reference system (CRS) of a model in map "
                       "coordinates, as PROJ takes it: `EPSG:25832`, `EPSG:32633+5773`, WKT, a "
-                      "PROJ string",
+                      "PROJ string; heights in degrees are brought there",
            .excludes = {"longitude", "transform"}},
           [](auto& c) -> auto& { return c.placement.crs; })),
       deciding(numbers(

@@ -24,11 +24,13 @@ namespace meshhier::config {
 namespace {
 
 /// Whether a file of that name may have a place of its own: it is named so, or as no mesh.
-bool may_have_place(const std::filesystem::path& path) {
+bool may_have_place(const std::filesystem::path& named) {
+  const std::filesystem::path path =
+      storage::lower_extension(named) == ".gz" ? named.stem() : named.filename();
   return !mesh_io::is_mesh_name(path.filename().string()) ||
          std::ranges::any_of(mesh_io::format_rows(), [&](const mesh_io::FormatRow& row) {
            return row.ending == storage::lower_extension(path) &&
-                  (row.kind == mesh_io::MeshKind::osgb || mesh_io::row_of(row.kind).is_raster);
+                  mesh_io::row_of(row.kind).has_place;
          });
 }
 
@@ -56,18 +58,16 @@ struct Sources {
 
 void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path, Sources& found) {
   const auto kind = placing_kind(files, path);
-  if (kind == mesh_io::MeshKind::osgb) {
-    found.is_z_up = true;
-    if (found.maps.empty())
-      found.maps = mesh_io::osgb_maps(files, path);
-  } else if (kind == mesh_io::MeshKind::tileset) {
-    found.is_z_up = true;
-    if (!found.tileset)
-      found.tileset = path;
-  } else if (kind && mesh_io::row_of(*kind).is_raster) {
-    found.is_z_up = true;
+  if (!kind)
+    return;
+  const mesh_io::FormatRow& row = mesh_io::row_of(*kind);
+  found.is_z_up = found.is_z_up || row.has_place;
+  if (row.is_raster)
     found.rasters.push_back(path);
-  }
+  else if (kind == mesh_io::MeshKind::tileset)
+    found.tileset = found.tileset.value_or(path);
+  else if (row.has_place && found.maps.empty())
+    found.maps = mesh_io::osgb_maps(files, path);
 }
 
 Sources look_at(storage::FileSystem& files, const mesh_io::InputPaths& paths) {
@@ -97,6 +97,23 @@ auto about_crs(const std::filesystem::path& raster, const Work& work) {
   }
 }
 
+/// Returns the CRS of a map, without its heights if PROJ lacks the grid for these: then they count
+/// as above the ellipsoid, as those of degrees do.
+std::string usable_crs(const std::filesystem::path& raster, const std::string& crs) {
+  const std::string horizontal = geodesy::horizontal_code(crs);
+  if (horizontal != crs) {
+    try {
+      geodesy::MapProjection{crs};
+      return crs;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::usage)
+        throw;
+    }
+  }
+  about_crs(raster, [&] { return geodesy::MapProjection(horizontal).unit_metres(); });
+  return horizontal;
+}
+
 /// Returns a place on WGS 84, as PROJ changes the datum of a map in degrees.
 mesh_io::GlobePlace on_wgs84(mesh_io::GlobePlace place, const std::string& crs) {
   constexpr std::string_view kWgs84 = "EPSG:4326";
@@ -117,10 +134,10 @@ void place_terrain(storage::FileSystem& files, const std::vector<std::filesystem
   if (mosaic.is_in_metres() && !config.units)
     config.units = Unit::m;
   const auto middle = mesh_io::middle_of(mosaic);
-  if (middle && (place.crs || !place.metadata.empty())) {
+  if (middle && !place.metadata.empty()) {
     throw Error(ErrorCode::usage, rasters[0].string() +
-                                      " lies in degrees: it stands on the globe by itself, and on "
-                                      "the map of placement.crs after `gdalwarp -t_srs`");
+                                      " lies in degrees: it stands on the globe by itself, or on "
+                                      "the map of placement.crs, without placement.metadata");
   }
   if (is_placed(place))
     return;
@@ -129,8 +146,7 @@ void place_terrain(storage::FileSystem& files, const std::vector<std::filesystem
     place.longitude = there.longitude;
     place.latitude = there.latitude;
   } else if (!crs.empty()) {
-    about_crs(rasters[0], [&] { return geodesy::MapProjection(crs).unit_metres(); });
-    place.crs = crs;
+    place.crs = usable_crs(rasters[0], crs);
   }
 }
 

@@ -117,6 +117,10 @@ class Import {
       if (!picture.file.empty() && picture.bytes == 0)
         all.add({picture.file, InputPart::picture, input_.system().identity(picture.file)});
     }
+    if (facts_.terrain) {
+      for (const std::filesystem::path& path : facts_.terrain->beside)
+        all.add({path, InputPart::buffer, input_.system().identity(path)});
+    }
     all.await(mesh_.materials.companions().awaited());
     input_.set_companions(std::move(all));
     facts_.record =

@@ -106,6 +106,17 @@ void InputFiles::join_rasters() {
   mosaic_ = std::make_shared<const mesh_io::Mosaic>(files_, rasters);
   for (std::string& warning : mosaic_->warnings())
     warnings_.push_back(std::move(warning));
+  warn_of_heights();
+}
+
+void InputFiles::warn_of_heights() {
+  const std::string& crs = mosaic_->keys().crs;
+  if (crs == use_.crs || geodesy::horizontal_code(crs) != use_.crs)
+    return;
+  warnings_.push_back(mesh_io::file_message(
+      mosaic_->path(), "its heights are those of " + crs +
+                           ", for which PROJ has no grid, or which placement.crs leaves out: they "
+                           "are taken to be above the ellipsoid, which may be tens of metres off"));
 }
 
 bool InputFiles::asks_for_objects() const {

@@ -39,6 +39,9 @@ struct InputUse {
   std::filesystem::path drape{};  ///< an orthophoto on rasters of heights; empty: none
   mesh_io::ObjectChoice objects{};
   std::filesystem::path object_table{};  ///< rows of properties of objects; empty: none
+  /// The CRS that the mesh stands in. Rasters in degrees are brought there, others lie there,
+  /// whatever they say; empty: as they say.
+  std::string crs{};
 };
 
 /// Returns a file's name unpacked: "a.ply" for "a.ply.gz".
@@ -100,6 +103,8 @@ class InputFiles {
   std::filesystem::path drape() const {
     return use_.textures == Textures::use ? use_.drape : std::filesystem::path();
   }
+  /// Returns InputUse::crs.
+  const std::string& crs() const { return use_.crs; }
   const std::optional<BoundsD>& crop() const { return use_.crop; }
   const mesh_io::AttributeChoice& attributes() const { return use_.attributes; }
   /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
@@ -156,6 +161,7 @@ class InputFiles {
   void join_rasters();
   void add_object_table();
   void find_common_folder();
+  void warn_of_heights();
   void add_file(InputFileFacts facts);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);

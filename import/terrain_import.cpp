@@ -3,11 +3,11 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "import/terrain_drape.h"
+#include "import/terrain_map.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,29 +59,42 @@ void warn_of_differences(const mesh_io::SharedCells& shared, execution::Progress
       counted(shared.different, "heights"), shared.most));
 }
 
+/// Brings degrees to the map that the config asks for.
+void find_map(const InputFiles& input, execution::Progress& progress, Terrain& terrain) {
+  const mesh_io::Mosaic& mosaic = *input.mosaic();
+  if (input.crs().empty() || mosaic.keys().kind != geodesy::MapKind::degrees)
+    return;
+  TerrainMap map = bring_to_map(mosaic, input.crs());
+  for (const std::string& warning : map.warnings)
+    progress.warn(mesh_io::file_message(mosaic.path(), warning));
+  terrain.map = std::move(map.places);
+}
+
+/// Lays the picture onto the heights, if there is one.
+void find_drape(const InputFiles& input, execution::Progress& progress, Terrain& terrain) {
+  if (input.drape().empty())
+    return;
+  TerrainDrape drape = open_drape(input.system(), input.drape(), *input.mosaic(), input.crs());
+  for (const std::string& warning : drape.warnings)
+    progress.warn(warning);
+  terrain.drape = std::move(drape.texcoords);
+  terrain.materials = std::move(drape.materials);
+  terrain.beside = std::move(drape.beside);
+}
+
 }  // namespace
 
 TerrainImport import_terrain(const InputFiles& input, std::uint64_t bytes,
                              const ImportEnvironment& environment) {
-  const mesh_io::Mosaic& mosaic = *input.mosaic();
-  std::optional<TerrainDrape> drape;
-  if (!input.drape().empty())
-    drape = open_drape(input.system(), input.drape(), mosaic);
   require_room(input, environment);
   TerrainImport made;
   Terrain& terrain = made.terrain;
   terrain.mosaic = input.mosaic();
-  terrain.cells = count_cells(mosaic, bytes, environment);
-  made.counts = counts_of(mosaic, *terrain.cells);
+  find_map(input, environment.progress, terrain);
+  find_drape(input, environment.progress, terrain);
+  terrain.cells = count_cells(*terrain.mosaic, bytes, environment);
+  made.counts = counts_of(*terrain.mosaic, *terrain.cells);
   warn_of_differences(terrain.cells->shared(), environment.progress);
-  if (!drape)
-    return made;
-  if (drape->lies_beside) {
-    environment.progress.warn(
-        mesh_io::file_message(input.drape(), "lies beside the heights: nothing of them shows it"));
-  }
-  terrain.drape = drape->texcoords;
-  terrain.materials = std::move(drape->materials);
   return made;
 }
 

@@ -15,13 +15,21 @@ namespace {
 /// Numbers of a vertex that shows a picture: its place there, and the material, the only one.
 constexpr std::size_t kDrapeChannels = 3;
 
-void add_texcoords(const mesh_io::GridMap& drape, const TerrainCells::Run& run,
+/// The memory that stays with PROJ's libraries.
+constexpr std::uint64_t kProjBytes = std::uint64_t{8} << 20;
+
+/// What has no place in the picture shows its frame.
+float texcoord(double value) {
+  return std::isnan(value) ? 0 : static_cast<float>(value);
+}
+
+void add_texcoords(const mesh_io::CellPlaces& drape, const TerrainCells::Run& run,
                    std::span<const double> heights, std::vector<float>& to) {
+  std::vector<mesh_io::MapPoint> places(heights.size());
+  drape.read(run.row, run.first, places);
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    if (std::isnan(heights[i]))
-      continue;
-    const mesh_io::MapPoint at = drape.at(static_cast<double>(run.first + i), run.row);
-    to.insert(to.end(), {static_cast<float>(at.x), static_cast<float>(at.y), 0});
+    if (!std::isnan(heights[i]))
+      to.insert(to.end(), {texcoord(places[i].x), texcoord(places[i].y), 0});
   }
 }
 
@@ -29,7 +37,7 @@ class TerrainSource final : public mesh_io::MeshSource {
  public:
   explicit TerrainSource(Terrain terrain)
       : terrain_(std::move(terrain)),
-        frame_(*terrain_.mosaic),
+        frame_(*terrain_.mosaic, terrain_.map),
         squares_(*terrain_.mosaic, *terrain_.cells, frame_.is_mirrored()) {
     describe();
     plan_blocks();
@@ -69,11 +77,13 @@ class TerrainSource final : public mesh_io::MeshSource {
     description_.place_count = frame_.keeps_apart() ? cells().vertices() : 0;
     description_.face_count = cells().triangles();
     description_.attributes.texcoords = description_.attributes.material =
-        terrain_.drape.has_value();
+        terrain_.drape != nullptr;
     description_.wide_coordinates = true;
     description_.vertices_in_place = true;
     description_.held_bytes =
         terrain_.mosaic->held_bytes() + cells().held_bytes() + frame_.held_bytes();
+    if (terrain_.drape && terrain_.drape->is_changed())
+      description_.held_bytes += terrain_.drape->held_bytes() + kProjBytes;
   }
 
   /// Runs of a block have at most kBlockSize triangles together; a run has far fewer.

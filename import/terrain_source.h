@@ -8,11 +8,13 @@
 
 #include "images/material_list.h"
 #include "import/terrain_cells.h"
+#include "mesh_io/cell_places.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/mosaic.h"
 
+#include <filesystem>
 #include <memory>
-#include <optional>
+#include <vector>
 
 namespace meshhier::importing {
 
@@ -20,9 +22,12 @@ namespace meshhier::importing {
 struct Terrain {
   std::shared_ptr<const mesh_io::Mosaic> mosaic;
   std::shared_ptr<const TerrainCells> cells;
-  /// From a cell's column and row to the coordinates in its picture; none: there is no picture.
-  std::optional<mesh_io::GridMap> drape{};
-  images::MaterialList materials{};  ///< one, with the picture, or none
+  /// The places of cells on a map that was asked for, in metres; null: their own, or their frame.
+  std::shared_ptr<const mesh_io::CellPlaces> map{};
+  /// The coordinates of cells in their picture; null: there is no picture.
+  std::shared_ptr<const mesh_io::CellPlaces> drape{};
+  images::MaterialList materials{};             ///< one, with the picture, or none
+  std::vector<std::filesystem::path> beside{};  ///< files that say where the picture lies
 };
 
 /// Opens the mesh. Its vertices are in place, its checksum is of no file and means nothing.

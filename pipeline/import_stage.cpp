@@ -90,7 +90,8 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
            .attributes = config.attributes,
            .drape = config.texture.drape,
            .objects = config.objects.from,
-           .object_table = config.objects.table}};
+           .object_table = config.objects.table,
+           .crs = config.placement.crs.value_or("")}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {

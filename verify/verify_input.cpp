@@ -370,6 +370,7 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
     use.crop = config.crop_box();
     if (has_objects)
       use.objects = config.objects.from;
+    use.crs = config.placement.crs.value_or("");
   } catch (const Error&) {
   }
   return use;
