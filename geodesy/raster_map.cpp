@@ -158,7 +158,8 @@ MapKind kind_of(const Keys& keys) {
   const std::uint16_t model = keys.number(kModelType).value_or(0);
   if (model == kModelGeocentric)
     fail("its cells lie in geocentric coordinates, which is no map");
-  if (model == kModelProjected || (model == 0 && keys.number(kProjectedCrs)))
+  if (model == kModelProjected || (model == 0 && keys.number(kProjectedCrs)) ||
+      wkt_of(keys).starts_with("PROJCS"))  // ESRI's programs tell no model beside it
     return MapKind::lengths;
   return model == kModelDegrees || keys.number(kGeodeticCrs) ? MapKind::degrees : MapKind::unknown;
 }
@@ -191,11 +192,12 @@ RasterMap raster_map_of(const GeoKeyTags& tags) {
   found.unit = unit_of(keys, found.kind);
   const std::uint16_t code =
       keys.number(found.kind == MapKind::lengths ? kProjectedCrs : kGeodeticCrs).value_or(0);
+  const std::string wkt = wkt_of(keys);
   found.is_user_defined = code == kUserDefined;
   if (code > 0 && code <= kMostCode)
     found.crs = fmt::format("EPSG:{}", code);
-  else if (found.is_user_defined)
-    found.crs = wkt_of(keys);
+  else if (found.is_user_defined || !wkt.empty())
+    found.crs = wkt;
   take_heights(keys, found);
   return found;
 }

@@ -79,6 +79,26 @@ TEST(RasterMap, UserDefinedOnesHaveWktOrNone) {
   EXPECT_TRUE(none.is_user_defined);
 }
 
+/// So ESRI's programs write a projection that they have no code for.
+TEST(RasterMap, WktAloneTellsAProjection) {
+  const std::string text = "ESRI PE String = PROJCS[\"x\"]|";
+  const RasterMap keys =
+      SampleKeys{{1024, 0, 1, 32767, 2048, 0, 1, 32767,  //
+                  3073, 34737, static_cast<std::uint16_t>(text.size()), 0, 3076, 0, 1, 9001},
+                 {},
+                 text}
+          .parse();
+  EXPECT_EQ(keys.kind, MapKind::lengths);
+  EXPECT_EQ(keys.crs, "PROJCS[\"x\"]");
+  EXPECT_EQ(keys.unit, 1);
+}
+
+TEST(RasterMap, ACodeStandsWithoutItsHeights) {
+  EXPECT_EQ(horizontal_code("EPSG:32633+5773"), "EPSG:32633");
+  EXPECT_EQ(horizontal_code("EPSG:32633"), "EPSG:32633");
+  EXPECT_EQ(horizontal_code("PROJCS[\"a+b\"]"), "PROJCS[\"a+b\"]");
+}
+
 TEST(RasterMap, LiesAreToldOf) {
   EXPECT_THAT(SampleKeys({{3072, 0, 1, 32767, 3076, 0, 1, 32767, 3077, 34736, 1, 5}}).refusal(),
               HasSubstr("key 3077 names a number that is not there"));
