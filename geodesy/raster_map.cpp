@@ -120,21 +120,33 @@ std::string wkt_of(const Keys& keys) {
   return {};
 }
 
-/// Returns the EPSG code of a vertical CRS in metres; 0: heights are above the ellipsoid, or
-/// nobody knows above what. Old files have codes of ellipsoids and of datums.
-std::uint16_t vertical_code(std::uint16_t code) {
-  struct Other {
-    std::uint16_t code, in_metres;
-  };
-  constexpr std::array<Other, 4> kOthers{{{5102, 5702},    // datum of NGVD 29
-                                          {5103, 5703},    // datum of NAVD 88
-                                          {6360, 5703},    // NAVD 88 in US survey feet
-                                          {8228, 5703}}};  // NAVD 88 in feet
+/// A code for heights that are not in metres, or that is none of a CRS.
+struct VerticalRow {
+  std::uint16_t code = 0;
+  std::uint16_t in_metres = 0;  ///< the CRS of the same heights in metres; 0: there is none
+  std::uint16_t unit = 0;       ///< its code; 0: not told
+};
+constexpr std::uint16_t kMetre = 9001, kFoot = 9002, kSurveyFoot = 9003;
+constexpr std::array<VerticalRow, 10> kVerticals{{{5102, 7968, 0},  // the datum of NGVD 29
+                                                  {5103, 5703, 0},  // the datum of NAVD 88
+                                                  {5702, 7968, kSurveyFoot},  // NGVD 29
+                                                  {6130, 0, kFoot},           // the Caymans' three
+                                                  {6131, 0, kFoot},
+                                                  {6132, 0, kFoot},
+                                                  {6360, 5703, kSurveyFoot},  // NAVD 88
+                                                  {8050, 5714, kFoot},        // mean sea level
+                                                  {8052, 5714, kSurveyFoot},
+                                                  {8228, 5703, kFoot}}};  // NAVD 88
+
+/// Returns what a key of heights stands for. Code 0: above the ellipsoid, or nobody knows above
+/// what. Old files have codes of ellipsoids and of datums.
+VerticalRow vertical_of(std::uint16_t code) {
   constexpr std::uint16_t kFirstEllipsoid = 5001, kLastDatum = 5106;
-  const auto other = std::ranges::find(kOthers, code, &Other::code);
-  if (other != kOthers.end())
-    return other->in_metres;
-  return code > kMostCode || (code >= kFirstEllipsoid && code <= kLastDatum) ? 0 : code;
+  const auto known = std::ranges::find(kVerticals, code, &VerticalRow::code);
+  if (known != kVerticals.end())
+    return *known;
+  const bool is_none = code > kMostCode || (code >= kFirstEllipsoid && code <= kLastDatum);
+  return is_none || code == 0 ? VerticalRow{} : VerticalRow{code, code, kMetre};
 }
 
 double unit_of(const Keys& keys, MapKind kind) {
@@ -165,11 +177,11 @@ MapKind kind_of(const Keys& keys) {
 }
 
 void take_heights(const Keys& keys, RasterMap& found) {
-  if (const auto unit = keys.number(kVerticalUnit))
-    found.height_unit = metres_of_unit(*unit);
-  const std::uint16_t vertical = vertical_code(keys.number(kVerticalCrs).value_or(0));
-  if (vertical != 0 && found.crs.starts_with("EPSG:"))
-    found.crs += fmt::format("+{}", vertical);
+  const VerticalRow vertical = vertical_of(keys.number(kVerticalCrs).value_or(0));
+  if (const auto unit = keys.number(kVerticalUnit).value_or(vertical.unit); unit != 0)
+    found.height_unit = metres_of_unit(unit);
+  if (vertical.in_metres != 0 && found.crs.starts_with("EPSG:"))
+    found.crs += fmt::format("+{}", vertical.in_metres);
 }
 
 }  // namespace

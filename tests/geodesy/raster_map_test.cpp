@@ -64,6 +64,21 @@ TEST(RasterMap, FeetAndOldVerticalCodes) {
   EXPECT_EQ((SampleKeys{{3072, 0, 1, 32633, 4096, 0, 1, 5030}}.parse().crs), "EPSG:32633");
 }
 
+/// GDAL writes no unit beside it.
+TEST(RasterMap, AVerticalCrsTellsItsUnit) {
+  const auto keys_with = [](std::uint16_t vertical) {
+    return SampleKeys{{3072, 0, 1, 26910, 4096, 0, 1, vertical}}.parse();
+  };
+  EXPECT_EQ(keys_with(6360).crs, "EPSG:26910+5703");
+  EXPECT_EQ(keys_with(6360).height_unit, 1200.0 / 3937);
+  EXPECT_EQ(keys_with(8228).height_unit, 0.3048);
+  EXPECT_EQ(keys_with(5702).crs, "EPSG:26910+7968");
+  EXPECT_EQ(keys_with(6130).crs, "EPSG:26910");
+  EXPECT_EQ(keys_with(6130).height_unit, 0.3048);
+  EXPECT_EQ(keys_with(5703).height_unit, 1);
+  EXPECT_EQ(keys_with(5103).height_unit, std::nullopt);
+}
+
 TEST(RasterMap, UserDefinedOnesHaveWktOrNone) {
   const std::string text = "ESRI PE String = PROJCS[\"x\"]|";
   const RasterMap keys =

@@ -17,11 +17,15 @@ export const FORMATS = {
   "namesOthers": [
     ".obj",
     ".gltf",
+    ".tif",
     ".asc"
   ],
   "companions": [
     ".mtl",
     ".bin",
+    ".tfw",
+    ".tifw",
+    ".wld",
     ".prj",
     ".jpg",
     ".jpeg",
