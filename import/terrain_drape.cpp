@@ -160,10 +160,8 @@ bool lies_beside(const mesh_io::CellPlaces& texcoords, const mesh_io::Mosaic& he
   const std::array places{texcoords.at(0, 0), texcoords.at(right, 0), texcoords.at(0, bottom),
                           texcoords.at(right, bottom), texcoords.at(right / 2, bottom / 2)};
   const auto all = [&](const auto& is_beyond) { return std::ranges::all_of(places, is_beyond); };
-  return all([](MapPoint at) { return !(at.x >= 0); }) ||
-         all([](MapPoint at) { return !(at.x <= 1); }) ||
-         all([](MapPoint at) { return !(at.y >= 0); }) ||
-         all([](MapPoint at) { return !(at.y <= 1); });
+  return all([](MapPoint at) { return at.x < 0; }) || all([](MapPoint at) { return at.x > 1; }) ||
+         all([](MapPoint at) { return at.y < 0; }) || all([](MapPoint at) { return at.y > 1; });
 }
 
 PictureGrid picture_grid(const images::ImageInfo& head, mesh_io::GeoTiffPlace place) {
@@ -200,6 +198,51 @@ void drape_by_proj(const std::filesystem::path& path, const mesh_io::Mosaic& hei
   }
 }
 
+/// Returns the map of heights, with the CRS that the config says if they have none.
+RasterMap map_of(const mesh_io::Mosaic& heights, const std::string& crs) {
+  RasterMap own = heights.keys();
+  if (own.crs.empty() && own.kind != MapKind::degrees)
+    own.crs = crs;
+  return own;
+}
+
+/// Finds texture coordinates. `path`: the picture's.
+void lay(const std::filesystem::path& path, const PictureGrid& picture,
+         const mesh_io::Mosaic& heights, const std::string& crs, TerrainDrape& drape) {
+  const RasterMap own = map_of(heights, crs);
+  const std::string from = crs_of(own, crs);
+  if (!is_one_map(picture.keys, own)) {
+    if (picture.keys.crs.empty())
+      fail_without_crs(path, picture.keys, heights.path(), own);
+    if (from.empty())
+      fail_without_crs(heights.path(), own, path, picture.keys);
+    return drape_by_proj(path, heights, picture, from, drape);
+  }
+  drape.texcoords = std::make_shared<const mesh_io::CellPlaces>(within_map(heights, picture));
+  const bool is_bare = picture.keys.kind == MapKind::unknown;
+  const bool are_bare = own.kind == MapKind::unknown && own.crs.empty();
+  if (lies_beside(*drape.texcoords, heights)) {
+    if (is_bare && !are_bare)
+      fail_without_crs(path, picture.keys, heights.path(), own);
+    if (are_bare && !is_bare)
+      fail_without_crs(heights.path(), own, path, picture.keys);
+  } else if (is_bare && !are_bare) {
+    drape.warnings.push_back(mesh_io::file_message(
+        path, "does not say in which CRS it lies: it is taken to lie in that of the heights"));
+  }
+}
+
+images::MaterialList material_of(const std::filesystem::path& path) {
+  images::Material material;
+  material.name = "orthophoto";
+  material.image = 0;
+  material.wrap_u = material.wrap_v = Wrap::clamp;
+  images::MaterialList list;
+  list.materials.push_back(std::move(material));
+  list.images.push_back({.name = path.filename().string(), .file = path, .is_drape = true});
+  return list;
+}
+
 }  // namespace
 
 TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path& path,
@@ -211,37 +254,12 @@ TerrainDrape open_drape(storage::FileSystem& files, const std::filesystem::path&
   const auto all = images::tiff_directories(tiff);
   tiff.select(images::full_image(all)->offset);  // the picture above has one
   mesh_io::GeoTiffPlace place = mesh_io::read_place(tiff, files);
-  TerrainDrape drape;
-  drape.beside = std::move(place.beside);
-  const PictureGrid picture = picture_grid(head, std::move(place));
-  RasterMap own = heights.keys();
-  if (own.crs.empty() && own.kind != MapKind::degrees)
-    own.crs = crs;
-  const std::string from = crs_of(own, crs);
-  if (is_one_map(picture.keys, own)) {
-    drape.texcoords = std::make_shared<const mesh_io::CellPlaces>(within_map(heights, picture));
-    if (picture.keys.kind == MapKind::unknown && own.kind != MapKind::unknown) {
-      drape.warnings.push_back(mesh_io::file_message(
-          path, "does not say in which CRS it lies: it is taken to lie in that of the heights"));
-    }
-  } else if (picture.keys.crs.empty()) {
-    fail_without_crs(path, picture.keys, heights.path(), own);
-  } else if (from.empty()) {
-    fail_without_crs(heights.path(), own, path, picture.keys);
-  } else {
-    drape_by_proj(path, heights, picture, from, drape);
-  }
+  TerrainDrape drape{.materials = material_of(path), .beside = std::move(place.beside)};
+  lay(path, picture_grid(head, std::move(place)), heights, crs, drape);
   if (lies_beside(*drape.texcoords, heights)) {
     drape.warnings.push_back(
         mesh_io::file_message(path, "lies beside the heights: nothing of them shows it"));
   }
-  images::Material material;
-  material.name = "orthophoto";
-  material.image = 0;
-  material.wrap_u = material.wrap_v = Wrap::clamp;
-  drape.materials.materials.push_back(std::move(material));
-  drape.materials.images.push_back(
-      {.name = path.filename().string(), .file = path, .is_drape = true});
   return drape;
 }
 

@@ -15,11 +15,11 @@ namespace meshhier::importing {
 
 /// A picture, and where the cells of a grid lie in it.
 struct TerrainDrape {
-  images::MaterialList materials;  ///< one, that shows the picture
+  images::MaterialList materials{};  ///< one, that shows the picture
   /// Texture coordinates of cells, those of the picture with its frame.
-  std::shared_ptr<const mesh_io::CellPlaces> texcoords;
-  std::vector<std::filesystem::path> beside;  ///< files beside it that say where it lies
-  std::vector<std::string> warnings;          ///< a line each
+  std::shared_ptr<const mesh_io::CellPlaces> texcoords{};
+  std::vector<std::filesystem::path> beside{};  ///< files beside it that say where it lies
+  std::vector<std::string> warnings{};          ///< a line each
 };
 
 /// Looks at the head of an orthophoto, and finds where the cells of the heights lie in it; by PROJ,

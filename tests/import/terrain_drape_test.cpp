@@ -159,6 +159,17 @@ TEST(TerrainDrape, WhatLacksACrsIsNamed) {
   EXPECT_EQ(told.drape.texcoords->at(3, 4), same.drape.texcoords->at(3, 4));
 }
 
+/// Coordinates of no map are taken for those of the other one, unless they cannot be.
+TEST(TerrainDrape, WhatCannotLieInTheOthersMapNeedsACrs) {
+  TiffForm bare = kInZone33;
+  bare.keys.clear();
+  EXPECT_THAT(drape_of(bare, kInZone33).drape.warnings, IsEmpty());
+  EXPECT_THAT(drape_refusal(bare, kInDegrees),
+              HasSubstr("/models/heights.tif: does not say in which CRS it lies"));
+  EXPECT_THAT(drape_refusal(kInDegrees, bare),
+              HasSubstr("/models/picture.tif: does not say in which CRS it lies"));
+}
+
 TEST(TerrainDrape, APictureElsewhereIsToldOf) {
   TiffForm picture = kInDegrees;
   picture.tie[3] += 3;
