@@ -1,17 +1,16 @@
 #include "storage/io/zip_directory.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "storage/io/little_endian.h"
+#include "storage/io/zip_content.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
-#include <zlib.h>
-#include <zstd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -19,13 +18,12 @@ namespace {
 constexpr std::string_view kEndMark{"PK\5\6"}, kLocatorMark{"PK\6\7"}, kEnd64Mark{"PK\6\6"},
     kCentralMark{"PK\1\2"}, kLocalMark{"PK\3\4"};
 constexpr std::size_t kEndBytes = 22, kLocatorBytes = 20, kEnd64Bytes = 56, kCentralBytes = 46,
-                      kLocalBytes = 30, kLongestComment = 65535;
+                      kLocalBytes = 30, kLongestComment = 65535, kLongestName = 255;
 constexpr std::uint32_t kInExtra32 = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint16_t kInExtra16 = std::numeric_limits<std::uint16_t>::max();
 constexpr std::uint16_t kZip64Extra = 1, kEncrypted = 1;
-enum Method : std::uint16_t { kStored = 0, kDeflated = 8, kZstandard = 93 };
-/// Files up to this size are kept for the next one who opens them.
-constexpr std::size_t kMostKept = std::size_t{8} << 20;
+/// The directory is read in blocks; the longest header of a file fits.
+constexpr std::size_t kDirectoryBlock = std::size_t{1} << 20;
 
 template <class T>
 T number(std::span<const std::byte> bytes, std::size_t at) {
@@ -102,109 +100,47 @@ void take_extra(std::span<const std::byte> extra, ZipEntry& entry) {
   }
 }
 
-/// Reads the header at the beginning of `bytes` and removes it from them.
-ZipEntry take_entry(std::span<const std::byte>& bytes, const File& file) {
-  if (bytes.size() < kCentralBytes || !text_of(bytes).starts_with(kCentralMark))
+/// A header of the directory.
+struct CentralHeader {
+  std::string_view name;
+  std::span<const std::byte> extra;
+  std::size_t bytes = 0;  ///< with all that belongs to it
+};
+
+/// Returns nothing if `bytes` end before the header does.
+std::optional<CentralHeader> header_of(std::span<const std::byte> bytes, const File& file) {
+  if (bytes.size() < kCentralBytes)
+    return std::nullopt;
+  if (!text_of(bytes).starts_with(kCentralMark))
     fail(file, "has a broken directory");
   const std::size_t name = number<std::uint16_t>(bytes, 28);
   const std::size_t extra = number<std::uint16_t>(bytes, 30);
   const std::size_t all = kCentralBytes + name + extra + number<std::uint16_t>(bytes, 32);
   if (all > bytes.size())
-    fail(file, "has a broken directory");
-  ZipEntry entry{.name = std::string(text_of(bytes.subspan(kCentralBytes, name))),
-                 .header = number<std::uint32_t>(bytes, 42),
+    return std::nullopt;
+  return CentralHeader{text_of(bytes.subspan(kCentralBytes, name)),
+                       bytes.subspan(kCentralBytes + name, extra), all};
+}
+
+ZipEntry entry_of(std::span<const std::byte> bytes, const CentralHeader& header) {
+  ZipEntry entry{.header = number<std::uint32_t>(bytes, 42),
                  .packed = number<std::uint32_t>(bytes, 20),
                  .bytes = number<std::uint32_t>(bytes, 24),
                  .crc = number<std::uint32_t>(bytes, 16),
                  .flags = number<std::uint16_t>(bytes, 8),
                  .method = number<std::uint16_t>(bytes, 10)};
-  take_extra(bytes.subspan(kCentralBytes + name, extra), entry);
-  bytes = bytes.subspan(all);
+  take_extra(header.extra, entry);
   return entry;
 }
 
-bool inflate_whole(std::span<const std::byte> packed, std::span<std::byte> to) {
-  z_stream stream{};
-  constexpr int kRawWindow = -15;
-  if (inflateInit2(&stream, kRawWindow) != Z_OK)
-    throw Error(ErrorCode::internal, "zlib cannot begin");
-  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(packed.size());
-  stream.next_out = reinterpret_cast<Bytef*>(to.data());
-  stream.avail_out = static_cast<uInt>(to.size());
-  const int result = inflate(&stream, Z_FINISH);
-  const bool is_whole = result == Z_STREAM_END && stream.avail_out == 0;
-  inflateEnd(&stream);
-  return is_whole;
+/// Returns "a/b" for "./a/b", "/a/b" and, as programs of Windows write it, "a\b".
+std::string plain_name(std::string_view name) {
+  std::string plain(name);
+  std::ranges::replace(plain, '\\', '/');
+  while (plain.starts_with("./") || plain.starts_with('/'))
+    plain.erase(0, plain.find('/') + 1);
+  return plain;
 }
-
-bool unpack(std::uint16_t method, std::span<const std::byte> packed, std::span<std::byte> to) {
-  if (method == kDeflated)
-    return inflate_whole(packed, to);
-  return ZSTD_decompress(to.data(), to.size(), packed.data(), packed.size()) == to.size();
-}
-
-/// A file that cannot be written.
-class ZippedFile : public File {
- public:
-  ZippedFile(std::filesystem::path path, std::shared_ptr<const File> archive, std::uint64_t bytes)
-      : File(std::move(path)), archive_(std::move(archive)), bytes_(bytes) {}
-  std::uint64_t size() const override { return bytes_; }
-  FileVersion version() const override {
-    FileVersion version = archive_->version();
-    version.bytes = bytes_;
-    return version;
-  }
-  void sync() override {}
-  using File::sync;
-
- protected:
-  /// Reads a range that lies within the file.
-  virtual void read_within(std::uint64_t offset, std::span<std::byte> bytes) const = 0;
-  std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
-    const std::uint64_t left = bytes_ - std::min(offset, bytes_);
-    const std::size_t count = std::min<std::uint64_t>(bytes.size(), left);
-    if (count > 0)
-      read_within(offset, bytes.first(count));
-    return count;
-  }
-  std::size_t write_some(std::uint64_t, std::span<const std::byte>) override {
-    throw Error(ErrorCode::io,
-                fmt::format("cannot write {}: it lies in an archive", path().string()));
-  }
-  const File& archive() const { return *archive_; }
-
- private:
-  std::shared_ptr<const File> archive_;
-  std::uint64_t bytes_;
-};
-
-class StoredFile final : public ZippedFile {
- public:
-  StoredFile(std::filesystem::path path, std::shared_ptr<const File> archive, std::uint64_t begin,
-             std::uint64_t bytes)
-      : ZippedFile(std::move(path), std::move(archive), bytes), begin_(begin) {}
-
- private:
-  void read_within(std::uint64_t offset, std::span<std::byte> bytes) const override {
-    archive().read_exact(begin_ + offset, bytes);
-  }
-  std::uint64_t begin_;
-};
-
-class UnpackedFile final : public ZippedFile {
- public:
-  UnpackedFile(std::filesystem::path path, std::shared_ptr<const File> archive,
-               std::shared_ptr<const std::vector<std::byte>> content)
-      : ZippedFile(std::move(path), std::move(archive), content->size()),
-        content_(std::move(content)) {}
-
- private:
-  void read_within(std::uint64_t offset, std::span<std::byte> bytes) const override {
-    std::memcpy(bytes.data(), content_->data() + offset, bytes.size());
-  }
-  std::shared_ptr<const std::vector<std::byte>> content_;
-};
 
 }  // namespace
 
@@ -213,24 +149,64 @@ ZipDirectory::ZipDirectory(std::shared_ptr<const File> archive) : file_(std::mov
   if (end.bytes > kMostDirectory)
     fail(*file_, fmt::format("has a directory of {} bytes, up to {} are read; unpack it", end.bytes,
                              kMostDirectory));
-  const std::vector<std::byte> directory = read_part(*file_, end.offset, end.bytes);
-  for (std::span<const std::byte> left = directory; !left.empty();) {
-    entries_.push_back(take_entry(left, *file_));
-    if (entries_.back().name.ends_with('/'))
-      entries_.pop_back();
+  const std::uint64_t size = file_->size();
+  if (end.offset > size || end.bytes > size - end.offset)
+    fail(*file_, fmt::format("ends before byte {} (truncated?)", end.offset));
+  entries_.reserve(std::min(end.files, end.bytes / kCentralBytes));
+  std::vector<std::byte> block;
+  for (std::uint64_t at = end.offset, left = end.bytes; left > 0;) {
+    block.resize(std::min<std::uint64_t>(kDirectoryBlock, left));
+    file_->read_exact(at, block);
+    const std::size_t taken = take_entries(block);
+    if (taken == 0)
+      fail(*file_, "has a broken directory");
+    at += taken;
+    left -= taken;
   }
-  std::ranges::stable_sort(entries_, {}, &ZipEntry::name);
+  std::ranges::stable_sort(entries_, {}, [this](const ZipEntry& entry) { return name_of(entry); });
+  require_one_of_each();
+}
+
+/// Takes the headers that lie in a block as a whole; returns their bytes.
+std::size_t ZipDirectory::take_entries(std::span<const std::byte> block) {
+  std::size_t at = 0;
+  while (const auto header = header_of(block.subspan(at), *file_)) {
+    const std::string name = plain_name(header->name);
+    if (!name.ends_with('/')) {
+      entries_.push_back(storage::entry_of(block.subspan(at), *header));
+      entries_.back().name_at = static_cast<std::uint32_t>(names_.size());
+      entries_.back().name_bytes = static_cast<std::uint16_t>(name.size());
+      names_ += name;
+    }
+    at += header->bytes;
+  }
+  return at;
+}
+
+/// Of two files of one name some programs take the first, some the last one. The same file twice
+/// is one.
+void ZipDirectory::require_one_of_each() {
+  const auto is_same = [this](const ZipEntry& a, const ZipEntry& b) {
+    if (name_of(a) != name_of(b))
+      return false;
+    if (a.bytes != b.bytes || a.crc != b.crc)
+      fail(*file_, fmt::format("has two different files {}; unpack it, and build the one that is "
+                               "meant",
+                               plain_text(std::string(name_of(a)), kLongestName)));
+    return true;
+  };
+  const auto same = std::ranges::unique(entries_, is_same);
+  entries_.erase(same.begin(), same.end());
 }
 
 const ZipEntry* ZipDirectory::find(std::string_view name) const {
-  const auto found = std::ranges::lower_bound(entries_, name, {}, &ZipEntry::name);
-  return found != entries_.end() && found->name == name ? &*found : nullptr;
+  const auto name_of_entry = [this](const ZipEntry& entry) { return name_of(entry); };
+  const auto found = std::ranges::lower_bound(entries_, name, {}, name_of_entry);
+  return found != entries_.end() && name_of(*found) == name ? &*found : nullptr;
 }
 
 std::span<const ZipEntry> ZipDirectory::starting_with(std::string_view start) const {
-  const auto head = [&](const ZipEntry& entry) {
-    return std::string_view(entry.name).substr(0, start.size());
-  };
+  const auto head = [&](const ZipEntry& entry) { return name_of(entry).substr(0, start.size()); };
   return {std::ranges::lower_bound(entries_, start, {}, head),
           std::ranges::upper_bound(entries_, start, {}, head)};
 }
@@ -250,45 +226,20 @@ std::unique_ptr<File> ZipDirectory::open(const ZipEntry& entry,
   const std::uint64_t size = file_->size();
   if (begin > size || entry.packed > size - begin)
     refuse("reaches beyond the end of the archive (truncated?)");
-  if (entry.method == kStored) {
-    if (entry.packed != entry.bytes)
-      refuse("has two sizes in the archive's directory");
-    return std::make_unique<StoredFile>(path, file_, begin, entry.bytes);
-  }
-  if (entry.method != kDeflated && entry.method != kZstandard)
+  const ZipMethod method{entry.method};
+  if (method == ZipMethod::stored && entry.packed != entry.bytes)
+    refuse("has two sizes in the archive's directory");
+  if (method != ZipMethod::stored && method != ZipMethod::deflated &&
+      method != ZipMethod::zstandard)
     refuse(fmt::format("is packed by method {}; Deflate and Zstandard are read: unpack the archive",
                        entry.method));
-  if (std::max(entry.bytes, entry.packed) > kMostPacked)
+  if (method != ZipMethod::stored && std::max(entry.bytes, entry.packed) > kMostPacked)
     refuse(fmt::format("is packed from {} bytes, up to {} are read; unpack the archive",
                        entry.bytes, kMostPacked));
   constexpr std::uint64_t kMostDeflated = 1032;  // bytes that Deflate makes of one
-  if (entry.method == kDeflated && entry.bytes / kMostDeflated > entry.packed + 1)
+  if (method == ZipMethod::deflated && entry.bytes / kMostDeflated > entry.packed + 1)
     refuse("is damaged: Deflate cannot have packed it so small");
-  const Bytes bytes = unpacked(entry, begin);
-  if (bytes == nullptr)
-    refuse("is damaged: what is packed is not what the archive's directory says");
-  return std::make_unique<UnpackedFile>(path, file_, bytes);
-}
-
-ZipDirectory::Bytes ZipDirectory::unpacked(const ZipEntry& entry, std::uint64_t begin) const {
-  {
-    const std::lock_guard lock(mutex_);
-    if (last_ == &entry)
-      return last_bytes_;
-  }
-  const auto packed = read_part(*file_, begin, entry.packed);
-  auto content = std::make_shared<std::vector<std::byte>>(entry.bytes);
-  if (!unpack(entry.method, packed, *content))
-    return nullptr;
-  const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(content->data()), content->size());
-  if (sum != entry.crc)
-    return nullptr;
-  if (content->size() <= kMostKept) {
-    const std::lock_guard lock(mutex_);
-    last_ = &entry;
-    last_bytes_ = content;
-  }
-  return content;
+  return open_zip_content(path, file_, {method, begin, entry.packed, entry.bytes, entry.crc});
 }
 
 }  // namespace meshhier::storage

@@ -3,17 +3,20 @@
 //
 // The directory at the end of the archive is read once. From the end backwards:
 //
-//   end of directory   "PK\5\6"   files u16 at 10, bytes u32 at 12, offset u32 at 16, comment u16
-//   at 20 its zip64 locator  "PK\6\7"   right before it: offset u64 at 8 of zip64's end "PK\6\6"
-//   files u64 at 32, bytes u64 at 40, offset u64 at 48 directory          "PK\1\2"   a header of 46
-//   bytes a file: flags u16 at 8, method u16 at 10, CRC-32 at 16,
-//                                 packed u32 at 20, bytes u32 at 24, lengths u16 of name, extra and
-//                                 comment at 28, offset u32 at 42; then these. Extra 1 has u64s
-//                                 where a number is all ones
-//   before each file   "PK\3\4"   30 bytes, lengths of name and extra at 26; then these, then the
-//   content
+//   end of directory  "PK\5\6"  files u16 at 10, bytes u32 at 12, offset u32 at 16,
+//                               comment u16 at 20
+//   its zip64 locator "PK\6\7"  right before it: offset u64 at 8 of
+//   zip64's end       "PK\6\6"  files u64 at 32, bytes u64 at 40, offset u64 at 48
+//   directory         "PK\1\2"  a header of 46 bytes a file: flags u16 at 8, method u16 at 10,
+//                               CRC-32 at 16, packed u32 at 20, bytes u32 at 24, lengths u16 of
+//                               name, extra and comment at 28, offset u32 at 42; then these.
+//                               Extra 1 has u64s where a number is all ones
+//   before each file  "PK\3\4"  30 bytes, lengths of name and extra at 26; then these, then
+//                               the content
 //
-// Cost. 100 bytes of memory a file; one that is packed is unpacked whole when it is opened.
+// The directory alone counts: indexes that archives hold as files, as 3TZ has one, are not read.
+//
+// Cost. 40 bytes of memory a file, and its name.
 #pragma once
 
 #include "storage/io/file.h"
@@ -21,7 +24,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,10 +32,11 @@
 namespace meshhier::storage {
 
 struct ZipEntry {
-  std::string name;
   std::uint64_t header = 0;             ///< where its local header begins
   std::uint64_t packed = 0, bytes = 0;  ///< bytes in the archive, and unpacked
   std::uint32_t crc = 0;
+  std::uint32_t name_at = 0;  ///< ZipDirectory::name_of() returns the name
+  std::uint16_t name_bytes = 0;
   std::uint16_t flags = 0, method = 0;
 };
 
@@ -44,31 +47,33 @@ class ZipDirectory {
   static constexpr std::uint64_t kMostDirectory = std::uint64_t{256} << 20;
   static constexpr std::uint64_t kMostPacked = std::uint64_t{256} << 20;
 
-  /// Throws Error(input) naming the archive if it is no zip file, broken or larger; Error(io).
+  /// Throws Error(input) naming the archive if it is no zip file, broken or larger, or has two
+  /// different files of one name; Error(io).
   explicit ZipDirectory(std::shared_ptr<const File> archive);
 
+  /// Returns the name without "./" before it, and with "/" between folders.
+  std::string_view name_of(const ZipEntry& entry) const {
+    return std::string_view(names_).substr(entry.name_at, entry.name_bytes);
+  }
   /// Returns null if there is no file of that name. O(log n).
   const ZipEntry* find(std::string_view name) const;
   /// Returns the files whose names begin so, ascending.
   std::span<const ZipEntry> starting_with(std::string_view start) const;
 
-  /// Opens a file for reading; `path` is its name in messages. It keeps the archive open. Throws
-  /// Error(input) if it is damaged, encrypted, or packed otherwise than by Deflate or Zstandard, or
-  /// to more than kMostPacked; Error(io).
+  /// Opens a file for reading, as open_zip_content(); `path` is its name in messages. It keeps the
+  /// archive open. Throws Error(input) if it is damaged, encrypted, or packed otherwise than by
+  /// Deflate or Zstandard, or to more than kMostPacked; Error(io).
   std::unique_ptr<File> open(const ZipEntry& entry, const std::filesystem::path& path) const;
 
   const File& file() const { return *file_; }
 
  private:
-  using Bytes = std::shared_ptr<const std::vector<std::byte>>;
-  Bytes unpacked(const ZipEntry& entry, std::uint64_t begin) const;
+  std::size_t take_entries(std::span<const std::byte> block);
+  void require_one_of_each();
 
   std::shared_ptr<const File> file_;
   std::vector<ZipEntry> entries_;  ///< ascending by name
-  // The file that was unpacked last: its head, its buffers and itself are read one after another.
-  mutable std::mutex mutex_;
-  mutable const ZipEntry* last_ = nullptr;
-  mutable Bytes last_bytes_;
+  std::string names_;
 };
 
 }  // namespace meshhier::storage

@@ -21,19 +21,26 @@ bool is_3tz_name(const std::filesystem::path& path) {
   return small_letters(path.native()).ends_with(kEnding);
 }
 
-std::optional<ZipFiles::Inner> ZipFiles::inner_of(const std::filesystem::path& path) const {
+std::optional<std::filesystem::path> archive_around(FileSystem& files,
+                                                    const std::filesystem::path& path) {
   const std::string text = small_letters(path.native());
   for (std::size_t at = text.find(kEnding); at != std::string::npos; at = text.find(kEnding, at)) {
     at += kEnding.size();
     if (at >= text.size() || text[at] != '/')
       continue;
     std::filesystem::path archive(path.native().substr(0, at));
-    if (others().kind(archive) != FileKind::regular)
-      continue;
-    const std::filesystem::path name(path.native().substr(at + 1));
-    return Inner{std::move(archive), name.lexically_normal().generic_string()};
+    if (files.kind(archive) == FileKind::regular)
+      return archive;
   }
   return std::nullopt;
+}
+
+std::optional<ZipFiles::Inner> ZipFiles::inner_of(const std::filesystem::path& path) const {
+  auto archive = archive_around(others(), path);
+  if (!archive)
+    return std::nullopt;
+  const std::filesystem::path name(path.native().substr(archive->native().size() + 1));
+  return Inner{*std::move(archive), name.lexically_normal().generic_string()};
 }
 
 std::shared_ptr<const ZipDirectory> ZipFiles::directory_of(const std::filesystem::path& archive) {
@@ -107,7 +114,7 @@ std::vector<std::filesystem::path> ZipFiles::list(const std::filesystem::path& d
   const auto archive = directory_of(inner->archive);
   std::vector<std::filesystem::path> found;
   for (const ZipEntry& entry : archive->starting_with(inner->name == "." ? "" : inner->name))
-    found.push_back(inner->archive / entry.name);
+    found.push_back(inner->archive / archive->name_of(entry));
   return found;
 }
 

@@ -18,6 +18,11 @@ namespace meshhier::storage {
 /// Returns whether a file of that name is a 3D Tiles archive.
 bool is_3tz_name(const std::filesystem::path& path);
 
+/// Returns the archive in which a path lies: the file before it that is named so; nothing if there
+/// is none.
+std::optional<std::filesystem::path> archive_around(FileSystem& files,
+                                                    const std::filesystem::path& path);
+
 /// A file system in which files named .3tz are folders as well, for reading. What their directories
 /// say is known as long as they do not change. The other one does all else. Thread-safe as far as
 /// the other one is. Failures are those of ZipDirectory.

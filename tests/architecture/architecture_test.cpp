@@ -264,11 +264,11 @@ const std::vector<ThirdParty>& third_parties() {
       {"draco/", in({"mesh_io"})},
       {"zstd.h",
        [](const Source& s) {
-         return s.path == "storage/io/zip_directory.cpp" || s.is_in({"images"});
+         return s.path == "storage/io/zip_content.cpp" || s.is_in({"images"});
        }},
       {"zlib.h", of({"images/tiff_tile.cpp", "mesh_io/gzip_stream.cpp", "mesh_io/inflated_file.cpp",
                      "mesh_io/osgb/coded_picture.cpp", "storage/format/gzip.cpp",
-                     "storage/io/zip_directory.cpp"})},
+                     "storage/io/zip_content.cpp"})},
       {"meshoptimizer.h",
        [](const Source& s) {
          return s.path == "storage/format/meshopt_codec.cpp" || s.is_in({"mesh_io"});

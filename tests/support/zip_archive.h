@@ -40,7 +40,11 @@ inline std::uint32_t zip_crc(const std::string& text) {
 
 /// Text in a block of Deflate, or in a frame of Zstandard, that packs nothing.
 inline std::string deflated(const std::string& text) {
-  return "\x01" + u16(text.size()) + u16(~text.size()) + text;
+  constexpr std::size_t kMost = 65535;
+  if (text.size() <= kMost)
+    return "\x01" + u16(text.size()) + u16(~text.size()) + text;
+  return std::string(1, '\0') + u16(kMost) + u16(~kMost) + text.substr(0, kMost) +
+         deflated(text.substr(kMost));
 }
 inline std::string in_zstd(const std::string& text) {
   return "\x28\xB5\x2F\xFD\x20" + std::string(1, static_cast<char>(text.size())) +
