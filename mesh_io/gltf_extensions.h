@@ -20,7 +20,7 @@ std::span<const GltfExtension> harmless_extensions();
 /// Says how a file of glTF 1.0 becomes one of 2.0.
 inline constexpr std::string_view kUpgradeGltf =
     "convert the file to glTF 2.0 (`npx gltf-pipeline -i OLD.glb -o NEW.glb`), or all of a tileset "
-    "by `npx 3d-tiles-tools upgrade -i tileset.json -o FOLDER/tileset.json`";
+    "by `npx 3d-tiles-tools upgrade --targetVersion 1.1 -i tileset.json -o FOLDER/tileset.json`";
 
 /// Returns whether an extension is one of these. A file that requires another one may mean
 /// something else than what would be read of it.
