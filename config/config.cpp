@@ -10,7 +10,6 @@
 #include "mesh_io/output_name.h"
 #include "storage/io/json_text.h"
 #include "storage/io/paths.h"
-#include "storage/io/zip_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -196,8 +195,7 @@ std::filesystem::path beside(const std::filesystem::path& input, const std::stri
   const std::string name = mesh.filename().string();
   if (name.empty() || name == "." || name == "..")
     refuse("output is missing", "the folder has no name here; name the output by -o");
-  const std::string stem =
-      storage::is_3tz_name(mesh) ? mesh.stem().string() : mesh_io::mesh_stem(name);
+  const std::string stem = mesh_io::mesh_stem(name);
   return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
 }
 

@@ -73,16 +73,11 @@ void look_at_mesh(storage::FileSystem& files, const std::filesystem::path& path,
 Sources look_at(storage::FileSystem& files, const mesh_io::InputPaths& paths) {
   Sources found;
   for (const std::filesystem::path& named : paths) {
-    const std::filesystem::path path = mesh_io::tileset_of(files, named);
-    const auto folder = mesh_io::find_folder_mesh(files, path);
-    if (!folder) {
-      look_at_mesh(files, path, found);
-      continue;
-    }
-    found.is_z_up = found.is_z_up || folder->is_z_up;
+    const mesh_io::InputMeshes input = mesh_io::meshes_of(files, named);
+    found.is_z_up = found.is_z_up || input.is_z_up;
     if (found.maps.empty())
-      found.maps = folder->maps;
-    look_at_mesh(files, folder->meshes[0], found);
+      found.maps = input.maps;
+    look_at_mesh(files, input.meshes[0], found);
   }
   return found;
 }
@@ -163,8 +158,10 @@ Config with_input_frame(storage::FileSystem& files, Config config) {
   if (!sources.maps.empty())
     return with_maps(files.input(), std::move(config), sources.maps);
   if (sources.tileset) {
-    if (const auto frame =
-            mesh_io::globe_frame(files.input(), *sources.tileset, mesh_io::kTilesetBytes))
+    const mesh_io::TilesetRoom room = config.memory_budget
+                                          ? mesh_io::TilesetRoom::of(*config.memory_budget)
+                                          : mesh_io::TilesetRoom{};
+    if (const auto frame = mesh_io::globe_frame(files.input(), *sources.tileset, room))
       config.placement.transform = frame->matrix();
   }
   return config;

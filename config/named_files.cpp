@@ -7,7 +7,6 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_folder.h"
 #include "mesh_io/other_formats.h"
-#include "mesh_io/tileset.h"
 
 #include <algorithm>
 #include <string>
@@ -49,9 +48,7 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
   const bool is_json = path.extension() == ".json";
   if (files.is_directory(path))
     return is_json;
-  if (mesh_io::tileset_of(files, path) != path)
-    return false;  // in a 3D Tiles archive
-  if (mesh_io::is_model_metadata(path))
+  if (mesh_io::is_container(files, path))
     return false;
   const auto file = files.open(path);
   const auto format = mesh_io::find_format(*file);
@@ -76,10 +73,16 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
                           start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
 }
 
+/// Whether a path is that of a hierarchy, there or to be: a 3D Tiles archive of others is a mesh.
+bool is_output(storage::FileSystem& files, const fs::path& path) {
+  const std::string ending = path.extension().string();
+  return ending == ".hier" || (ending == ".3tz" && (!mesh_io::is_container(files, path) ||
+                                                    files.exists(path / "hierarchy.json")));
+}
+
 /// Throws if the output stands behind the meshes, as other programs take it.
-void require_no_output_among(const std::vector<fs::path>& named) {
-  const std::string ending = named.empty() ? "" : named.back().extension().string();
-  if (named.size() > 1 && (ending == ".hier" || ending == ".3tz")) {
+void require_no_output_among(storage::FileSystem& files, const std::vector<fs::path>& named) {
+  if (named.size() > 1 && is_output(files, named.back())) {
     throw Error(ErrorCode::usage,
                 named.back().string() + ": this is no mesh; the output is named by -o");
   }
@@ -89,7 +92,7 @@ void require_no_output_among(const std::vector<fs::path>& named) {
 
 Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
                   CommandLine words) {
-  require_no_output_among(named);
+  require_no_output_among(files.input(), named);
   const auto config =
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {

@@ -2,11 +2,11 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
-#include "execution/memory_gate.h"
 #include "execution/parallel.h"
+#include "images/ktx2_coder.h"
 #include "import/append_mesh.h"
 #include "import/crop_mesh.h"
-#include "import/gltf_import.h"
+#include "import/gltf_reader.h"
 #include "import/obj_import.h"
 #include "import/off_import.h"
 #include "import/osgb_import.h"
@@ -50,7 +50,7 @@ class FileReader::Impl {
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
         named_(input.system()),
         mesh_(mesh),
-        decoding_(decoding_bytes()) {}
+        gltf_(input, room_) {}
 
   /// Requires a kind that files have: the tiles of a tileset are files of their own.
   std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room) {
@@ -150,9 +150,6 @@ class FileReader::Impl {
     });
     return added;
   }
-
-  /// While a reader of glTF decodes no sort runs.
-  std::uint64_t decoding_bytes() const { return std::max(2 * room_.sort_bytes, 4 * kMiB); }
 
   std::uint32_t checked_base(const std::filesystem::path& path, std::uint64_t more) const {
     const std::uint64_t base = mesh_.vertex_count();
@@ -271,14 +268,19 @@ class FileReader::Impl {
 
   AddedFile read_gltf(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const AddedFile added = add_plain_gltf(facts, facts.content(input_.system()));
-      checksums_.push_back(checksum_of(facts.path));
+      const ReadContent content = gltf_.read(facts);
+      const AddedFile added = add_plain_gltf(facts, content.file);
+      note_checksum(facts, content.checksum);
       env_.progress.advance(facts.identity.bytes);
       return added;
     }
     TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
     unpack(facts, unpacked);
     return add_plain_gltf(facts, mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
+  }
+
+  void note_checksum(const InputFileFacts& facts, std::optional<std::uint64_t> known) {
+    checksums_.push_back(known ? *known : checksum_of(facts.path));
   }
 
   /// Returns the checksum of a file that may hold many meshes, for which it is asked again.
@@ -293,35 +295,9 @@ class FileReader::Impl {
     return checksum;
   }
 
-  static mesh_io::GltfContent content_of(const InputFileFacts& facts) {
-    if (facts.tile && facts.tile->data)
-      return mesh_io::GltfContent::fleeting;
-    return facts.format.is_gzip ? mesh_io::GltfContent::packed : mesh_io::GltfContent::stored;
-  }
-
   AddedFile add_plain_gltf(const InputFileFacts& facts,
                            std::shared_ptr<const storage::File> content) {
-    return note_gltf(import_plain_gltf(facts, std::move(content), mesh_));
-  }
-
-  /// Thread-safe for different meshes.
-  GltfImport import_plain_gltf(const InputFileFacts& facts,
-                               std::shared_ptr<const storage::File> content, RawMesh& mesh) {
-    const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
-    if (facts.tile && tile.offset + tile.bytes > content->size())
-      mesh_io::fail_file(facts.path, "ends within a tile (truncated?)");
-    const auto batch =
-        mesh.objects ? open_batch_table(content, tile.batch, decoding_bytes()) : nullptr;
-    if (facts.tile)
-      content = mesh_io::part_of(std::move(content), tile.offset, tile.bytes);
-    mesh_io::GltfFile file(std::move(content), facts.path.parent_path(),
-                           {input_.system(), env_.scratch, decoding_bytes(), content_of(facts),
-                            facts.path, [this] { env_.cancel.check(); }, tile.offset,
-                            [this](std::uint64_t bytes) { return decoding_.share(bytes); }});
-    const std::string name =
-        input_.all().size() > 1 ? input_.object_name(facts.path) + '/' : std::string();
-    return import_gltf(file, {tile.placement, facts.tile.has_value(), name, batch.get()}, mesh,
-                       input_.textures(), input_.attributes(), room_);
+    return note_gltf(gltf_.import(facts, std::move(content), mesh_));
   }
 
   AddedFile add_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement) {
@@ -343,13 +319,16 @@ class FileReader::Impl {
     explicit Apart(storage::ScratchFile& scratch) : mesh(scratch) {}
     RawMesh mesh;
     GltfImport import;
+    std::optional<std::uint64_t> checksum;
   };
 
   std::unique_ptr<Apart> read_apart(const InputFileFacts& facts) {
     auto apart = std::make_unique<Apart>(env_.scratch);
     if (mesh_.objects)
       apart->mesh.objects = std::make_unique<MeshObjects>(env_.scratch, mesh_.objects->choice);
-    apart->import = import_plain_gltf(facts, facts.content(input_.system()), apart->mesh);
+    const ReadContent content = gltf_.read(facts);
+    apart->import = gltf_.import(facts, content.file, apart->mesh);
+    apart->checksum = content.checksum;
     apart->mesh.layout = apart->import.layout;
     return apart;
   }
@@ -359,14 +338,14 @@ class FileReader::Impl {
     // Blocks of spools, windows, the buffers of a decoder.
     constexpr std::uint64_t kItemBytes = 4 * kMiB;
     execution::ordered_for(
-        files.size(), execution::useful_blocks(decoding_bytes(), kItemBytes), env_.cancel,
+        files.size(), execution::useful_blocks(gltf_.decoding_bytes(), kItemBytes), env_.cancel,
         [&](std::size_t i) { return read_apart(files[i]); },
         [&](std::size_t i, const std::unique_ptr<Apart>& apart) {
           const std::uint64_t vertices = apart->mesh.vertex_count();
           checked_base(files[i].path, vertices);
           append_mesh(std::move(apart->mesh), mesh_, env_.cancel);
           complete_objects(files[i]);
-          checksums_.push_back(checksum_of(files[i].path));
+          note_checksum(files[i], apart->checksum);
           env_.progress.advance(files[i].identity.bytes);
           AddedFile one = note_gltf(apart->import);
           one.vertices = vertices;
@@ -379,8 +358,8 @@ class FileReader::Impl {
     std::vector<AddedFile> all;
     const OsgbImport import = import_osgb(
         facts.path,
-        {input_.system(), env_.scratch, decoding_bytes(), mesh_io::GltfContent::packed, facts.path,
-         [this] { env_.cancel.check(); }},
+        {input_.system(), env_.scratch, gltf_.decoding_bytes(), mesh_io::GltfContent::packed,
+         facts.path, [this] { env_.cancel.check(); }},
         [&](mesh_io::GltfFile& file, const mesh_io::GltfTransform& place) {
           const std::uint64_t before = mesh_.vertex_count();
           AddedFile added = add_gltf(file, place);
@@ -523,7 +502,7 @@ class FileReader::Impl {
   ImportRoom room_;
   mesh_io::NamedFiles named_;
   RawMesh& mesh_;
-  execution::MemoryGate decoding_;  ///< what files of glTF decode at once
+  GltfReader gltf_;
   std::uint64_t near_apart_ = 0;
   std::vector<SourceCount> counts_;
   std::vector<std::uint64_t> checksums_;
@@ -568,6 +547,16 @@ std::size_t FileReader::run_of(std::span<const InputFileFacts> files) {
 void FileReader::read_run(std::span<const InputFileFacts> files,
                           const std::function<void(const AddedFile&)>& added) {
   impl_->read_run(files, added);
+}
+
+void FileReader::look_for_decoders() {
+  const bool may_lack = impl_->input_.textures() == Textures::use &&
+                        std::ranges::any_of(impl_->input_.all(), &InputFileFacts::names_ktx2) &&
+                        !images::missing_for_ktx2().empty();
+  for (const InputFileFacts& file : impl_->input_.all()) {
+    if (may_lack && file.names_ktx2)
+      impl_->gltf_.look_for_pictures(file);
+  }
 }
 
 Terrain FileReader::read_terrain() {

@@ -37,6 +37,10 @@ class FileReader {
   FileReader& operator=(const FileReader&) = delete;
   ~FileReader();
 
+  /// Looks for the pictures that files show and this machine cannot decode, before anything is
+  /// read. Throws Error(io) naming the first one, as best_picture(); Error(input) if its file is
+  /// broken.
+  void look_for_decoders();
   /// Appends the mesh of a file to that of all, but for its layouts, which it returns, of all its
   /// vertices in their order: join_layouts() brings them together. `room`: a path where the file
   /// may lie unpacked meanwhile. Throws as the reader of its format; Error(input) if the mesh gets

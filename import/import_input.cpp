@@ -38,6 +38,7 @@ class Import {
   }
 
   ImportFacts run(TemporaryFile& ply) {
+    reader_.look_for_decoders();
     env_.progress.stage("import", input_.bytes(), "bytes");
     if (input_.is_unpacked_only()) {
       reader_.unpack(input_.all()[0], ply);
@@ -362,12 +363,12 @@ std::string counts_text(const std::vector<SourceCount>& counts) {
   return text;
 }
 
-ImportMemory plan_import(std::uint64_t memory_budget) {
+ImportMemory plan_import(std::uint64_t memory_budget, std::uint64_t held_bytes) {
   // The program and its allocator, as memory_plan.cpp measured them; blocks and buffers of readers
   // and writers, 12 MiB.
   constexpr std::uint64_t kFixed = 30 * kImportMiB;
   constexpr std::uint64_t kAllocatorParts = 12;
-  const std::uint64_t taken = kFixed + memory_budget / kAllocatorParts;
+  const std::uint64_t taken = kFixed + held_bytes + memory_budget / kAllocatorParts;
   // A budget that is too small is refused when the mesh is known.
   const std::uint64_t rest = std::max(memory_budget, taken + 4 * kImportMiB) - taken;
   return {rest / 4, rest / 4};

@@ -88,8 +88,8 @@ struct ImportMemory {
   std::uint64_t pool_bytes = 0;
   std::uint64_t sort_bytes = 0;  ///< memory of each of two sorts, or of a table
 };
-/// Divides the budget.
-ImportMemory plan_import(std::uint64_t memory_budget);
+/// Divides the budget, but for `held_bytes`: InputFiles::held_bytes().
+ImportMemory plan_import(std::uint64_t memory_budget, std::uint64_t held_bytes = 0);
 
 /// Returns the most bytes of temporary files, about, the PLY included, by the files' sizes alone.
 std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory);

@@ -57,7 +57,8 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
                        const InputUse& use)
     : files_(files.input()), named_(paths), use_(use) {
   for (const std::filesystem::path& path : paths)
-    add_mesh(path);
+    std::ranges::for_each(mesh_io::meshes_of(files_, path).meshes,
+                          [this](const auto& mesh) { add_mesh(mesh); });
   join_rasters();
   add_object_table();
   find_common_folder();
@@ -65,18 +66,13 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
 }
 
 void InputFiles::add_mesh(const std::filesystem::path& path) {
-  if (const auto folder = mesh_io::find_folder_mesh(files_, path)) {
-    std::ranges::for_each(folder->meshes, [&](const auto& mesh) { add_mesh(mesh); });
-    return;
-  }
-  const std::filesystem::path mesh = mesh_io::tileset_of(files_, path);
-  const auto file = files_.open(mesh);
+  const auto file = files_.open(path);
   const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
   if (format.kind == mesh_io::MeshKind::tileset)
-    return add_tileset(mesh);
+    return add_tileset(path);
   if (format.kind == mesh_io::MeshKind::osgb)
     return add_osgb(path, format);
-  add_file({path, format, files_.identity(path)});
+  add_file({path, format, files_.identity(path)}, *file);
 }
 
 /// Adds a tile, and the files beside it that look like finer ones: an import tells which of them
@@ -84,7 +80,7 @@ void InputFiles::add_mesh(const std::filesystem::path& path) {
 void InputFiles::add_osgb(const std::filesystem::path& path, const mesh_io::MeshFormat& format) {
   if (const std::string missing = mesh_io::missing_for_osgb(); !missing.empty())
     throw Error(ErrorCode::io, mesh_io::file_message(path, missing));
-  add_file({path, format, files_.identity(path)});
+  all_.push_back({path, format, files_.identity(path)});
   for (const std::filesystem::path& tile : mesh_io::osgb_family(files_, path))
     companions_.add({tile, InputPart::tile, files_.identity(tile)});
 }
@@ -157,25 +153,39 @@ bool InputFiles::is_terrain() const {
   });
 }
 
-void InputFiles::add_file(InputFileFacts facts) {
-  const auto content = facts.content(files_);
+void InputFiles::add_file(InputFileFacts facts, const storage::File& file) {
   if (facts.format.kind == mesh_io::MeshKind::ply)
-    look_into_ply(*content, facts);
+    look_into_ply(file, facts);
+  const auto& outline = facts.format.row().outline;
+  add_outlined(std::move(facts), outline == nullptr ? mesh_io::MeshOutline() : outline(file));
+}
+
+/// Adds a file, and the buffers that it names and that are there.
+void InputFiles::add_outlined(InputFileFacts facts, const mesh_io::MeshOutline& outline) {
+  facts.names_ktx2 = outline.names_ktx2;
   all_.push_back(std::move(facts));
-  find_buffers(all_.back(), *content);
+  for (const std::filesystem::path& path : outline.buffers) {
+    if (files_.kind(path) == storage::FileKind::regular)
+      companions_.add({path, InputPart::buffer, files_.identity(path)});
+  }
 }
 
 void InputFiles::add_tileset(const std::filesystem::path& path) {
-  const mesh_io::Tileset tileset =
-      mesh_io::read_tileset(files_, path, frame_ ? &*frame_ : nullptr, mesh_io::kTilesetBytes);
+  mesh_io::Tileset tileset =
+      mesh_io::read_tileset(files_, path, frame_ ? &*frame_ : nullptr, use_.tileset);
   frame_ = tileset.frame;
   if (tileset.meshes.empty())
     mesh_io::fail_file(path, "is a tileset without a mesh in its finest tiles");
   companions_.add({path, InputPart::tileset, files_.identity(path)});
   for (const std::filesystem::path& document : tileset.documents)
     companions_.add({document, InputPart::tileset, files_.identity(document)});
-  for (const mesh_io::TilesetMesh& mesh : tileset.meshes)
-    add_file({mesh.file, mesh.format, files_.identity(mesh.file), false, mesh});
+  for (mesh_io::TilesetMesh& mesh : tileset.meshes) {
+    const mesh_io::MeshOutline outline = std::exchange(mesh.outline, {});
+    InputFileFacts facts{std::exchange(mesh.file, {}), mesh.format, {}};
+    facts.identity = files_.identity(facts.path);
+    facts.tile = std::move(mesh);
+    add_outlined(std::move(facts), outline);
+  }
   if (tileset.is_hierarchy) {
     warnings_.push_back(
         plain_text(path.string(), kLongestPath) +
@@ -192,6 +202,7 @@ void InputFiles::add_tileset(const std::filesystem::path& path) {
   note("coarser_tiles", tileset.coarser, nullptr);
   note("ignored_instanced_tiles", tileset.instanced, "i3dm tiles");
   note("ignored_point_tiles", tileset.points, "point tiles");
+  note("ignored_vector_tiles", tileset.vectors, "vector tiles");
 }
 
 void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts) {
@@ -247,16 +258,6 @@ std::vector<std::string> InputFiles::unused() const {
   if (unused_.size() > kMostUnused)
     names.push_back(fmt::format("{} more", unused_.size() - kMostUnused));
   return names;
-}
-
-void InputFiles::find_buffers(const InputFileFacts& file, const storage::File& content) {
-  const auto& buffers = file.format.row().buffers;
-  if (buffers == nullptr)
-    return;
-  for (const std::filesystem::path& path : buffers(content)) {
-    if (files_.kind(path) == storage::FileKind::regular)
-      companions_.add({path, InputPart::buffer, files_.identity(path)});
-  }
 }
 
 bool InputFiles::recall(const InputRecord& earlier) {
@@ -343,6 +344,19 @@ std::int64_t InputFiles::times() const {
     times.insert(times.end(), {file.modified_ns, file.changed_ns});
   });
   return std::bit_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(times))));
+}
+
+std::uint64_t InputFiles::held_bytes() const {
+  // Facts of a file, of its place in the record and in the joined mesh, as measured; its name in
+  // both, and in the directory of an archive.
+  constexpr std::uint64_t kFileBytes = 640;
+  constexpr std::uint64_t kNames = 3;
+  constexpr std::uint64_t kUncounted = std::uint64_t{1} << 20;
+  std::uint64_t bytes = 0;
+  for_each_file([&](const std::filesystem::path& path, InputPart, const auto&) {
+    bytes += kFileBytes + kNames * path.native().size();
+  });
+  return bytes < kUncounted ? 0 : bytes;
 }
 
 void InputFiles::check_unchanged() const {

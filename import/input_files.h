@@ -42,6 +42,7 @@ struct InputUse {
   /// The CRS that the mesh stands in. Rasters in degrees are brought there, others lie there,
   /// whatever they say; empty: as they say.
   std::string crs{};
+  mesh_io::TilesetRoom tileset{};
 };
 
 /// Returns a file's name unpacked: "a.ply" for "a.ply.gz".
@@ -55,8 +56,9 @@ struct InputFileFacts {
   mesh_io::MeshFormat format;
   storage::FileIdentity identity;
   bool has_corner_attributes = false;          ///< as importing::has_corner_attributes()
-  std::optional<mesh_io::TilesetMesh> tile{};  ///< place in the file, of a tileset's tile
+  std::optional<mesh_io::TilesetMesh> tile{};  ///< place in `path`, of a tileset's tile
   std::size_t face_values = 0;                 ///< values that faces have; a colour counts as one
+  bool names_ktx2 = false;                     ///< it uses pictures in KTX2
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// Opens the file, or the data that stand for it.
@@ -141,6 +143,8 @@ class InputFiles {
   std::uint64_t geometry_bytes() const;
   /// Returns one number for the times of all files: as long as it stays, so does their content.
   std::int64_t times() const;
+  /// Returns the memory that the lists of files take; 0 if they are few.
+  std::uint64_t held_bytes() const;
   /// Throws Error(input) if a file is not what it was any more.
   void check_unchanged() const;
   /// Returns SourceSummary's checksum. Reads all files.
@@ -162,10 +166,10 @@ class InputFiles {
   void add_object_table();
   void find_common_folder();
   void warn_of_heights();
-  void add_file(InputFileFacts facts);
+  void add_file(InputFileFacts facts, const storage::File& file);
+  void add_outlined(InputFileFacts facts, const mesh_io::MeshOutline& outline);
   void look_into_ply(const storage::File& file, InputFileFacts& facts);
   void look_for_picture(const InputFileFacts& facts);
-  void find_buffers(const InputFileFacts& file, const storage::File& content);
   std::uint64_t checksum_of(const std::filesystem::path& path,
                             const execution::CancelToken& cancel) const;
   /// Calls `visit(path, part, identity)` for each file, companions behind the meshes.

@@ -47,6 +47,7 @@ void MeshInput::import(const Place& place) {
                         {system_, scratch, place.sort_bytes, place.progress, place.cancel,
                          objects_ ? beside : place.objects});
   description_ = open_imported()->description();
+  description_.held_bytes += input_.held_bytes();
 }
 
 void MeshInput::note_unplaced() {
@@ -93,6 +94,8 @@ void MeshInput::recall(const mesh_io::MeshDescription& found) {
     description_ = found;
   if (input_.is_terrain())
     description_.held_bytes = input_.mosaic()->held_bytes();
+  if (needs_import())
+    description_.held_bytes += input_.held_bytes();
   description_.place_count = found.place_count;
 }
 

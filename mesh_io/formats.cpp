@@ -3,7 +3,7 @@
 #include "base/small_letters.h"
 #include "mesh_io/beside_raster.h"
 #include "mesh_io/geotiff_place.h"
-#include "mesh_io/gltf_buffer_files.h"
+#include "mesh_io/gltf_outline.h"
 #include "mesh_io/height_raster.h"
 #include "mesh_io/hgt_name.h"
 #include "mesh_io/inflated_file.h"
@@ -84,7 +84,7 @@ std::vector<FormatRow> make_rows() {
            [](MeshContent& c) {
              return sure_if(!has_length_of_stl(c) && c.kind_of_json() == MeshKind::gltf);
            },
-       .buffers = gltf_buffer_files,
+       .outline = outline_of_gltf,
        .in_metres = true,
        .names_features = true,
        .companions = {".bin"},
@@ -100,7 +100,7 @@ std::vector<FormatRow> make_rows() {
            [](MeshContent& c) {
              return sure_if(!has_length_of_stl(c) && c.start().starts_with("glTF"));
            },
-       .buffers = gltf_buffer_files,
+       .outline = outline_of_gltf,
        .in_metres = true,
        .names_features = true},
       {.kind = MeshKind::stl_binary,
@@ -128,6 +128,7 @@ std::vector<FormatRow> make_rows() {
       {.kind = MeshKind::tileset,
        .name = "3D Tiles",
        .format = "3D Tiles",
+       .ending = ".3tz",
        .look = [](MeshContent& c) { return sure_if(c.kind_of_json() == MeshKind::tileset); },
        .has_place = true,
        .kept = "1.0 and 1.1: the finest tiles of a `tileset.json` or in a `.3tz`, listed or "
@@ -137,6 +138,7 @@ std::vector<FormatRow> make_rows() {
       {.kind = MeshKind::b3dm,
        .name = "b3dm",
        .format = "3D Tiles",
+       .outline = outline_of_gltf,
        .in_metres = true,
        .names_features = true},
       {.kind = MeshKind::osgb,
@@ -153,7 +155,8 @@ std::vector<FormatRow> make_rows() {
        .format = "GeoTIFF",
        .ending = ".tif",
        .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_tiff(c.start())); },
-       .buffers = place_files_of,
+       .outline =
+           [](const storage::File& file) { return MeshOutline{.buffers = place_files_of(file)}; },
        .has_place = true,
        .is_raster = true,
        .companions = {".tfw", ".tifw", ".wld"},
@@ -179,7 +182,10 @@ std::vector<FormatRow> make_rows() {
        .format = "ESRI ASCII",
        .ending = ".asc",
        .look = [](MeshContent& c) { return sure_if(!c.is_gzip() && begins_as_asc(c)); },
-       .buffers = [](const storage::File& file) { return std::vector{crs_file_of(file.path())}; },
+       .outline =
+           [](const storage::File& file) {
+             return MeshOutline{.buffers = {crs_file_of(file.path())}};
+           },
        .has_place = true,
        .is_raster = true,
        .companions = {".prj"},
@@ -289,7 +295,9 @@ MeshFormat detect_format(const storage::File& file) {
 }
 
 std::string format_names() {
-  return alternatives(column(&FormatRow::format));
+  std::vector<std::string_view> names = column(&FormatRow::format);
+  std::erase(names, row_of(MeshKind::tileset).format);
+  return alternatives(names);
 }
 
 std::string mesh_endings_text() {

@@ -36,14 +36,19 @@ class MeshContent;  // recognition.h
 /// How sure it is that a file is of a kind. A kind that is sure wins over one that is likely.
 enum class Certainty : std::uint8_t { none, likely, sure };
 
+/// What a file names, found without its mesh being read.
+struct MeshOutline {
+  std::vector<std::filesystem::path> buffers{};  ///< files with its vertices and triangles
+  bool names_ktx2 = false;                       ///< it uses pictures in KTX2
+};
+
 struct FormatRow {
   MeshKind kind{};
   std::string_view name{};    ///< for people: "binary STL"
   std::string_view format{};  ///< the name that it shares with its siblings: "STL"
   std::string_view ending{};  ///< its files' ending: ".stl"; empty: the content alone tells
   Certainty (*look)(MeshContent&) = nullptr;  ///< null: lies within files of other kinds
-  /// Lists the files with vertices and triangles that a file names; null: it names none.
-  std::vector<std::filesystem::path> (*buffers)(const storage::File&) = nullptr;
+  MeshOutline (*outline)(const storage::File&) = nullptr;  ///< null: it names nothing
   bool in_metres = false;       ///< its coordinates are, by its specification
   bool has_place = false;       ///< its files may say where on the globe they stand; z is up
   bool is_raster = false;       ///< of heights: several are one mosaic
@@ -78,9 +83,10 @@ MeshFormat detect_format(const storage::File& file);
 /// Does the same; returns nothing if the file is no mesh.
 std::optional<MeshFormat> find_format(const storage::File& file);
 
-/// Return the formats of files with endings, and these endings, for sentences: "PLY, OBJ or STL",
-/// ".ply, .obj or .stl".
+/// Returns the formats of files with endings for sentences, "PLY, OBJ or STL"; without 3D Tiles,
+/// whose tileset.json sentences name beside them.
 std::string format_names();
+/// Returns all endings for sentences: ".ply, .obj or .stl".
 std::string mesh_endings_text();
 /// Returns the endings, each once.
 std::vector<std::string_view> mesh_endings();

@@ -46,13 +46,9 @@ TileCell child_of(const TileCell& cell, std::uint32_t child) {
 /// The expansion of one tile.
 class ImplicitTree {
  public:
-  ImplicitTree(TilesetDocument& document, const ImplicitTiling& tiling, std::uint64_t most_tiles,
-               std::uint64_t most_bytes, const OpenNamed& open)
-      : document_(document),
-        tiling_(tiling),
-        most_tiles_(most_tiles),
-        most_bytes_(most_bytes),
-        open_(open) {
+  ImplicitTree(TilesetDocument& document, const ImplicitTiling& tiling, const TilesetRoom& room,
+               const OpenNamed& open)
+      : document_(document), tiling_(tiling), room_(room), open_(open) {
     TilesetTile& root = document_.tiles[tiling_.tile];
     templates_.assign(document_.contents.begin() + root.first_content,
                       document_.contents.begin() + root.end_content);
@@ -94,7 +90,7 @@ class ImplicitTree {
     const auto file = open_(document_.path.parent_path(), uri,
                             place_of(document_, {{}, tiling_.tile, kSubtreesPlace}));
     const Subtree subtree =
-        read_subtree(*file, tiling_.shape, templates_.size(), most_bytes_, open_);
+        read_subtree(*file, tiling_.shape, templates_.size(), room_.json_bytes, open_);
     if (!subtree.tiles.at(0))
       fail_file(file->path(), "is a subtree without its root");
     std::vector<Placed> level{{0, waiting.cell, add_root(waiting)}};
@@ -139,8 +135,8 @@ class ImplicitTree {
 
   /// Each subtree that waits makes a tile.
   void require_room() const {
-    if (document_.tiles.size() + waiting_.size() > most_tiles_)
-      fail_file(document_.path, fmt::format("has more than {} tiles", most_tiles_));
+    if (document_.tiles.size() + waiting_.size() > room_.tiles)
+      room_.refuse(document_.path, fmt::format("has more than {} tiles", room_.tiles));
   }
 
   std::uint32_t add_tile(const TileCell& cell, std::uint32_t parent, std::uint32_t child) {
@@ -161,8 +157,8 @@ class ImplicitTree {
       if (name.uri)
         name.uri = name_of_cell(*std::move(name.uri), placed.cell);
       name.tile = placed.tile;
-      if (document_.contents.size() >= most_tiles_)
-        fail_file(document_.path, fmt::format("has more than {} contents", most_tiles_));
+      if (document_.contents.size() >= room_.tiles)
+        room_.refuse(document_.path, fmt::format("has more than {} contents", room_.tiles));
       document_.contents.push_back(std::move(name));
     }
     tile.end_content = static_cast<std::uint32_t>(document_.contents.size());
@@ -170,7 +166,7 @@ class ImplicitTree {
 
   TilesetDocument& document_;
   const ImplicitTiling& tiling_;
-  std::uint64_t most_tiles_, most_bytes_;
+  TilesetRoom room_;
   const OpenNamed& open_;
   std::vector<TileContentName> templates_;
   std::deque<Waiting> waiting_;
@@ -178,10 +174,10 @@ class ImplicitTree {
 
 }  // namespace
 
-void expand_implicit_tiles(TilesetDocument& document, std::uint64_t most_tiles,
-                           std::uint64_t most_bytes, const OpenNamed& open) {
+void expand_implicit_tiles(TilesetDocument& document, const TilesetRoom& room,
+                           const OpenNamed& open) {
   for (const ImplicitTiling& tiling : document.implicit)
-    ImplicitTree(document, tiling, most_tiles, most_bytes, open).expand();
+    ImplicitTree(document, tiling, room, open).expand();
 }
 
 }  // namespace meshhier::mesh_io

@@ -16,15 +16,14 @@
 #pragma once
 
 #include "mesh_io/tileset_document.h"
-
-#include <cstdint>
+#include "mesh_io/tileset_room.h"
 
 namespace meshhier::mesh_io {
 
-/// Adds the implicit tiles of a document to its list. `most_bytes`: memory for a subtree's JSON;
-/// `open`: opens the files that it names. Throws Error(input) naming file and place if a subtree is
-/// missing or broken, or if the document gets more than `most_tiles`; as read_subtree().
-void expand_implicit_tiles(TilesetDocument& document, std::uint64_t most_tiles,
-                           std::uint64_t most_bytes, const OpenNamed& open);
+/// Adds the implicit tiles of a document to its list. `open`: opens the files that it names. Throws
+/// Error(input) naming file and place if a subtree is missing or broken, or if the document gets
+/// more than `room` has; as read_subtree().
+void expand_implicit_tiles(TilesetDocument& document, const TilesetRoom& room,
+                           const OpenNamed& open);
 
 }  // namespace meshhier::mesh_io

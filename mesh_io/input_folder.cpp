@@ -3,10 +3,12 @@
 #include "base/error.h"
 #include "base/small_letters.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/tileset_archive.h"
 #include "storage/io/paths.h"
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -40,12 +42,12 @@ struct Place {
 struct FolderRow {
   std::string_view sign;  ///< a file by which it is known
   std::string_view name;  ///< for people
-  std::optional<FolderMesh> (*look)(const Place&);
+  std::optional<InputMeshes> (*look)(const Place&);
 };
 
 /// An ODM project, or the folder of textured models in one. Coordinates of a model without "_geo"
 /// are of no map.
-std::optional<FolderMesh> look_for_odm(const Place& place) {
+std::optional<InputMeshes> look_for_odm(const Place& place) {
   constexpr auto kFolders =
       std::to_array<std::string_view>({"odm_texturing", "odm_texturing_25d", ""});
   constexpr auto kMaps = std::to_array<std::string_view>(
@@ -57,7 +59,7 @@ std::optional<FolderMesh> look_for_odm(const Place& place) {
           Path(folder) / (is_geo ? "odm_textured_model_geo.obj" : "odm_textured_model.obj");
       if (!place.has(name))
         continue;
-      FolderMesh found{.meshes = {place.folder / name}};
+      InputMeshes found{.meshes = {place.folder / name}};
       if (is_geo)
         Place{place.files, project / "odm_georeferencing"}.add_present(kMaps, found.maps);
       return found;
@@ -66,11 +68,18 @@ std::optional<FolderMesh> look_for_odm(const Place& place) {
   return std::nullopt;
 }
 
-/// A tileset, but not that of a hierarchy, whose folder is what commands for hierarchies take.
-std::optional<FolderMesh> look_for_tileset(const Place& place) {
-  if (!place.has("tileset.json") || place.has("hierarchy.json"))
+/// A tileset, in the folder or in the one folder there that has one; but not that of a hierarchy,
+/// whose folder is what commands for hierarchies take.
+std::optional<InputMeshes> look_for_tileset(const Place& place) {
+  if (place.has("hierarchy.json"))
     return std::nullopt;
-  return FolderMesh{.meshes = {place.folder / "tileset.json"}};
+  std::vector<Path> found = tilesets_in(place.files, place.folder);
+  if (found.size() > 1)
+    throw Error(ErrorCode::io,
+                fmt::format("{} holds several tilesets, the first are {} and {}; name those to "
+                            "build",
+                            place.folder.string(), found[0].string(), found[1].string()));
+  return found.empty() ? std::nullopt : std::optional(InputMeshes{.meshes = std::move(found)});
 }
 
 /// Returns the tiles of a folder of OSGB: NAME/NAME.osgb each, or the one of its own name.
@@ -88,12 +97,12 @@ std::vector<Path> osgb_tiles(const Place& place) {
 }
 
 /// The folder Data of ContextCapture, DJI Terra and Smart3D, or the one around it, or a tile's.
-std::optional<FolderMesh> look_for_osgb(const Place& place) {
+std::optional<InputMeshes> look_for_osgb(const Place& place) {
   for (const char* inner : {"Data", ""}) {
     const Path folder = *inner == '\0' ? place.folder : place.folder / inner;
     if (!place.files.is_directory(folder) || !place.files.can_list(folder))
       continue;
-    FolderMesh found{.meshes = osgb_tiles({place.files, folder})};
+    InputMeshes found{.meshes = osgb_tiles({place.files, folder})};
     if (found.meshes.empty())
       continue;
     found.maps = osgb_maps(place.files, found.meshes.front());
@@ -120,7 +129,7 @@ std::string listed(const Text& text_of) {
 }
 
 /// Returns the meshes that lie with a metadata.xml, which places them.
-FolderMesh meshes_of_metadata(storage::FileSystem& files, const Path& path) {
+InputMeshes meshes_of_metadata(storage::FileSystem& files, const Path& path) {
   const Path folder = path.parent_path().empty() ? Path(".") : path.parent_path();
   auto found = look_for_osgb({files, folder});
   if (!found) {
@@ -148,14 +157,20 @@ std::vector<Path> osgb_maps(storage::FileSystem& files, const Path& tile) {
   return {};
 }
 
-std::optional<FolderMesh> find_folder_mesh(storage::FileSystem& files, const Path& path) {
-  if (is_model_metadata(path) && files.kind(path) == storage::FileKind::regular)
-    return meshes_of_metadata(files, path);
+bool is_container(storage::FileSystem& files, const Path& path) {
+  return files.is_directory(path) || is_tileset_archive(files, path) ||
+         (is_model_metadata(path) && files.kind(path) == storage::FileKind::regular);
+}
+
+InputMeshes meshes_of(storage::FileSystem& files, const Path& path) {
+  if (!is_container(files, path))
+    return {.meshes = {path}, .is_z_up = false};
   if (!files.is_directory(path))
-    return std::nullopt;
+    return is_model_metadata(path) ? meshes_of_metadata(files, path)
+                                   : InputMeshes{.meshes = {tileset_of_archive(files, path)}};
   for (const FolderRow& row : kRows) {
     if (auto found = row.look({files, path}))
-      return found;
+      return *found;
   }
   throw Error(ErrorCode::io,
               fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json), or give a "

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,8 +71,10 @@ class TileFileReader {
       ++found_.instanced;
     } else if (magic == "pnts") {
       ++found_.points;
+    } else if (magic == "vctr" || magic == "geom") {  // of drafts that Cesium reads
+      ++found_.vectors;
     } else if (magic == "glTF") {
-      found_.meshes.push_back({MeshKind::glb, tile.begin, tile.bytes(), {}});
+      add_mesh(MeshKind::glb, tile);
     } else {
       read_json(tile);
     }
@@ -82,11 +85,18 @@ class TileFileReader {
     if (format && format->kind == MeshKind::tileset)
       found_.is_tileset = true;
     else if (format && format->kind == MeshKind::gltf)
-      found_.meshes.push_back({MeshKind::gltf, tile.begin, tile.bytes(), {}});
+      add_mesh(MeshKind::gltf, tile);
     else
       fail_at_byte(file_.path(), tile.begin,
                    "expected a tile of 3D Tiles (b3dm, cmpt, glTF or GLB) or a tileset, found " +
                        in_quotes(text(tile.begin, std::min<std::uint64_t>(16, tile.bytes()))));
+  }
+
+  void add_mesh(MeshKind kind, Extent gltf, Vec3d centre = {}, const BatchTablePlace& batch = {}) {
+    const std::shared_ptr<const storage::File> file(std::shared_ptr<void>(), &file_);
+    found_.meshes.push_back(
+        {kind, gltf.begin, gltf.bytes(), centre, batch,
+         row_of(kind).outline(*mesh_io::part_of(file, gltf.begin, gltf.bytes()))});
   }
 
   /// The tile as long as it says.
@@ -119,12 +129,9 @@ class TileFileReader {
                    "the tables of the b3dm reach beyond its end (truncated?)");
     }
     const std::uint64_t gltf = tile.begin + parts.before_gltf();
-    found_.meshes.push_back(
-        {MeshKind::b3dm,
-         gltf,
-         tile.end - gltf,
-         centre_of(tile.begin, parts),
-         {gltf - parts.bytes[2] - parts.bytes[3], parts.bytes[2], parts.bytes[3]}});
+    const BatchTablePlace batch{gltf - parts.bytes[2] - parts.bytes[3], parts.bytes[2],
+                                parts.bytes[3]};
+    add_mesh(MeshKind::b3dm, {gltf, tile.end}, centre_of(tile.begin, parts), batch);
   }
 
   /// Before 3D Tiles 1.0 headers were shorter: their words are followed by the JSON of the batch

@@ -23,18 +23,20 @@ struct TileGltf {
   std::uint64_t offset = 0, bytes = 0;  ///< the glTF's place in the file
   Vec3d centre;                         ///< added to positions, z-up (RTC_CENTER)
   BatchTablePlace batch{};
+  MeshOutline outline{};
 };
 
 struct TileFile {
   std::vector<TileGltf> meshes{};
-  std::uint64_t instanced = 0, points = 0;  ///< tiles of these kinds, which are no meshes
-  bool is_tileset = false;                  ///< the JSON of another one
-  bool is_packed = false;                   ///< in gzip: offsets count in its content
+  std::uint64_t instanced = 0, points = 0, vectors = 0;  ///< tiles that are no meshes
+  bool is_tileset = false;                               ///< the JSON of another one
+  bool is_packed = false;                                ///< in gzip: offsets count in its content
 };
 
-/// Reads headers and feature tables of a file, packed by gzip or not. Throws Error(input) if the
-/// file is none of these, if it is truncated, or if tiles lie in each other deeper than 8 levels or
-/// are more than 65,536; Error(budget) if a feature table takes more than `most_bytes` of memory.
+/// Reads headers, feature tables and outlines of a file, packed by gzip or not. Throws Error(input)
+/// if the file is none of these, if it is truncated, or if tiles lie in each other deeper than 8
+/// levels or are more than 65,536; Error(budget) if a feature table takes more than `most_bytes` of
+/// memory.
 TileFile read_tile_file(const storage::File& file, std::uint64_t most_bytes);
 
 }  // namespace meshhier::mesh_io

@@ -99,6 +99,7 @@ void add_meshes(const ShownContent& shown, Tileset& to) {
   const TileFile& tile = shown.content.tile;
   to.instanced += tile.instanced;
   to.points += tile.points;
+  to.vectors += tile.vectors;
   for (const TileGltf& gltf : tile.meshes) {
     GltfTransform moved;
     moved.offset = gltf.centre;
@@ -107,6 +108,7 @@ void add_meshes(const ShownContent& shown, Tileset& to) {
                          gltf.offset,
                          gltf.bytes,
                          shown.placement * moved * shown.axes,
+                         gltf.outline,
                          shown.content.data,
                          gltf.batch});
   }
@@ -115,16 +117,16 @@ void add_meshes(const ShownContent& shown, Tileset& to) {
 }  // namespace
 
 std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::filesystem::path& path,
-                                      std::uint64_t most_bytes) {
-  const TilesetDocument document = read_tileset_document(*files.open(path), most_bytes);
+                                      const TilesetRoom& room) {
+  const TilesetDocument document = read_tileset_document(*files.open(path), room.json_bytes);
   if (const RootFrame said = frame_of_root(document); said.is_known)
     return said.frame;
-  return frame_of(TilesetTree(files, path, most_bytes));
+  return frame_of(TilesetTree(files, path, room));
 }
 
 Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
-                     const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes) {
-  const TilesetTree tree(files, path, most_bytes);
+                     const std::optional<GlobeFrame>* frame, const TilesetRoom& room) {
+  const TilesetTree tree(files, path, room);
   Tileset found;
   found.documents = tree.external();
   found.is_hierarchy = tree.root().is_hierarchy;

@@ -9,6 +9,7 @@
 #include "mesh_io/globe_frame.h"
 #include "mesh_io/gltf_transform.h"
 #include "mesh_io/tile_file.h"
+#include "mesh_io/tileset_room.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -19,20 +20,13 @@
 
 namespace meshhier::mesh_io {
 
-/// Memory that the JSON of a tileset may take: 30 MB of text, a hundred thousand tiles.
-inline constexpr std::uint64_t kTilesetBytes = std::uint64_t{256} << 20;
-
-/// Returns the tileset.json of a 3D Tiles archive, which FileSystem::input() shows as a folder; of
-/// any other file itself.
-std::filesystem::path tileset_of(storage::FileSystem& files, const std::filesystem::path& path);
-
 /// Returns the local frame of a tileset: the transform of the root, if it is such a frame; else the
 /// frame at the middle of the root's bounding volume, rounded to metres. A volume as large as the
 /// globe or a continent says little: then the tiles that are shown decide, by the transform of all,
 /// if it is such a frame, else by the middle of their places. Nothing if that does not lie on the
 /// globe. Throws as read_tileset().
 std::optional<GlobeFrame> globe_frame(storage::FileSystem& files, const std::filesystem::path& path,
-                                      std::uint64_t most_bytes);
+                                      const TilesetRoom& room);
 
 /// A tile's glTF.
 struct TilesetMesh {
@@ -41,6 +35,7 @@ struct TilesetMesh {
   /// The glTF's place in the file, or in its content if that is gzip.
   std::uint64_t offset = 0, bytes = 0;
   GltfTransform placement;  ///< from the coordinates of its scene to the frame's
+  MeshOutline outline{};
   /// The bytes that stand for the file, if it holds the tile as a data URI.
   std::shared_ptr<const std::vector<std::byte>> data{};
   BatchTablePlace batch{};
@@ -52,18 +47,19 @@ struct Tileset {
   std::optional<GlobeFrame> frame;               ///< none: coordinates are those of the tileset
   bool is_hierarchy = false;                     ///< a build made it
   std::uint64_t coarser = 0;                     ///< contents that finer ones replace
-  std::uint64_t instanced = 0, points = 0;       ///< tiles that are no meshes
+  std::uint64_t instanced = 0, points = 0, vectors = 0;  ///< tiles that are no meshes
 };
 
 /// Reads the tileset and all external ones, and the headers of tiles, each once. Tiles that refine
 /// by replacement are taken if they have no children, all others always; a tile, and the root of an
 /// external tileset, that says nothing refines as its parent. Contents are files below the folder
 /// of `path`, packed by gzip or not, or data URIs. `frame`: that of another tileset, so that both
-/// stand in one; null: its own, as globe_frame() returns it. `most_bytes`: memory for a JSON.
+/// stand in one; null: its own, as globe_frame() returns it.
 /// Throws Error(input) naming file and place if a document is no tileset, if a subtree
 /// of implicit tiles is missing or broken, if a content is on the web, not there or no tile, if
-/// tilesets hold each other, or if they have more than kMostTiles tiles; Error(budget), Error(io).
+/// tilesets hold each other, or if they have more tiles than there is room for; Error(budget),
+/// Error(io).
 Tileset read_tileset(storage::FileSystem& files, const std::filesystem::path& path,
-                     const std::optional<GlobeFrame>* frame, std::uint64_t most_bytes);
+                     const std::optional<GlobeFrame>* frame, const TilesetRoom& room);
 
 }  // namespace meshhier::mesh_io

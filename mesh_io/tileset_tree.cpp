@@ -8,10 +8,10 @@
 #include "mesh_io/input_stream.h"
 #include "mesh_io/part_of_file.h"
 #include "mesh_io/tileset.h"
+#include "mesh_io/tileset_archive.h"
 #include "storage/io/zip_files.h"
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <utility>
 
@@ -51,43 +51,35 @@ std::vector<std::byte> unpacked_bytes(const fs::path& path, std::vector<std::byt
   return content;
 }
 
-/// Returns whether it has the name and the beginning of a 3D Tiles archive.
-bool is_3tz(storage::FileSystem& files, const fs::path& path) {
-  if (!storage::is_3tz_name(path) || files.kind(path) != storage::FileKind::regular)
-    return false;
-  std::array<std::byte, 2> start{};
-  files.open(path)->read_at(0, start);
-  return start == std::array{std::byte{'P'}, std::byte{'K'}};
+/// Returns the folder below which all files lie: that of the document, or of its archive.
+fs::path place_of_document(storage::FileSystem& files, const fs::path& path) {
+  return storage::archive_around(files, path).value_or(path).parent_path().lexically_normal();
 }
 
 }  // namespace
 
-fs::path tileset_of(storage::FileSystem& files, const fs::path& path) {
-  return is_3tz(files, path) ? path / "tileset.json" : path;
-}
-
-TilesetTree::TilesetTree(storage::FileSystem& files, const fs::path& path, std::uint64_t most_bytes)
-    : files_(files), place_(path.parent_path().lexically_normal()), most_bytes_(most_bytes) {
+TilesetTree::TilesetTree(storage::FileSystem& files, const fs::path& path, const TilesetRoom& room)
+    : files_(files), place_(place_of_document(files, path)), room_(room) {
   add_document(*files_.open(path));
   known_.emplace(path.lexically_normal(), static_cast<std::uint32_t>(contents_.size()));
   contents_.push_back({.file = path, .tile = {.is_tileset = true}, .document = 0});
   const std::uint64_t tiles = size_of(0, false, 0).tiles;
-  if (tiles <= kMostTiles)
+  if (tiles <= room_.tiles)
     return;
-  fail_file(path, fmt::format("is a tileset of {}{} tiles, as its {} name each other; up to {} are "
-                              "read",
-                              tiles == kMostCounted ? "more than " : "", tiles,
-                              counted(documents_.size(), "documents"), kMostTiles));
+  room_.refuse(path,
+               fmt::format("is a tileset of {}{} tiles, as its {} name each other; up to {} are "
+                           "read",
+                           tiles == kMostCounted ? "more than " : "", tiles,
+                           counted(documents_.size(), "documents"), room_.tiles));
 }
 
 std::uint32_t TilesetTree::add_document(const storage::File& file) {
-  Part part{read_tileset_document(file, most_bytes_), {}};
+  Part part{read_tileset_document(file, room_.json_bytes), {}};
   add_implicit_tiles(part.document);
   read_ += std::max(part.document.tiles.size(), part.document.contents.size());
-  if (read_ > kMostTiles) {
-    fail_file(file.path(),
-              fmt::format("and the tilesets before it have more than {} tiles", kMostTiles));
-  }
+  if (read_ > room_.tiles)
+    room_.refuse(file.path(),
+                 fmt::format("and the tilesets before it have more than {} tiles", room_.tiles));
   part.contents.resize(part.document.contents.size());
   documents_.push_back(std::move(part));
   return static_cast<std::uint32_t>(documents_.size() - 1);
@@ -95,7 +87,7 @@ std::uint32_t TilesetTree::add_document(const storage::File& file) {
 
 void TilesetTree::add_implicit_tiles(TilesetDocument& document) {
   expand_implicit_tiles(
-      document, kMostTiles, most_bytes_,
+      document, room_,
       [&](const fs::path& folder, const std::string& uri, const std::string& place) {
         external_.push_back(file_of(document.path, folder, uri, place));
         return files_.open(external_.back());
@@ -157,9 +149,10 @@ std::uint32_t TilesetTree::content_of(std::uint32_t document, std::uint32_t numb
     const auto file = file_of_bytes(content.file, content.data);
     found = add_content(std::move(content), *file);
   } else {
-    const fs::path path =
-        tileset_of(files_, file_of(part.document.path, part.document.path.parent_path(), *name.uri,
-                                   place_of(part.document, name)));
+    fs::path path = file_of(part.document.path, part.document.path.parent_path(), *name.uri,
+                            place_of(part.document, name));
+    if (is_tileset_archive(files_, path))
+      path = tileset_of_archive(files_, path);
     const auto known = known_.find(path);
     found = known != known_.end() ? known->second
                                   : add_content({.file = path, .tile = {}}, *files_.open(path));
@@ -171,7 +164,7 @@ std::uint32_t TilesetTree::content_of(std::uint32_t document, std::uint32_t numb
 
 /// `file`: its bytes.
 std::uint32_t TilesetTree::add_content(TileContent content, const storage::File& file) {
-  content.tile = read_tile_file(file, most_bytes_);
+  content.tile = read_tile_file(file, room_.json_bytes);
   if (content.tile.is_tileset) {
     if (!content.data)
       external_.push_back(content.file);
@@ -206,16 +199,28 @@ fs::path TilesetTree::file_of(const fs::path& document, const fs::path& folder,
   const auto fail = [&](const std::string& message) { fail_file(document, place + " " + message); };
   if (uri.find("://") != std::string::npos || uri.starts_with("//"))
     fail("is on the web (" + shown + "); fetch the whole tileset first");
+  if (auto found = find_file(folder, uri))
+    return *std::move(found);
+  // Archives name each other as if their files lay beside them.
+  if (const auto archive = storage::archive_around(files_, folder / "")) {
+    if (auto found = find_file(archive->parent_path() / folder.lexically_relative(*archive), uri))
+      return *std::move(found);
+  }
+  fail(fmt::format("is {}, which is no file below the folder of the tileset", shown));
+  return {};
+}
+
+std::optional<fs::path> TilesetTree::find_file(const fs::path& folder,
+                                               const std::string& uri) const {
   for (std::string name : names_of_uri(uri)) {
     for (int i = 0; i < 2; ++i) {
-      const fs::path path = (folder / name).lexically_normal();
+      fs::path path = (folder / name).lexically_normal();
       if (is_below_place(path) && files_.kind(path) == storage::FileKind::regular)
         return path;
       name.resize(std::min(name.find_first_of("?#"), name.size()));  // as a server would
     }
   }
-  fail(fmt::format("is {}, which is no file below the folder of the tileset", shown));
-  return {};
+  return std::nullopt;
 }
 
 bool TilesetTree::is_below_place(const fs::path& path) const {

@@ -4,6 +4,7 @@
 #include "mesh_io/globe_frame.h"
 #include "mesh_io/tile_file.h"
 #include "mesh_io/tileset_document.h"
+#include "mesh_io/tileset_room.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -18,9 +19,6 @@
 
 namespace meshhier::mesh_io {
 
-/// The most tiles and contents that are read, each counted as often as it is shown: documents that
-/// name each other would else make any number. A mesh has up to 2^32 vertices: 4,096 for each tile.
-inline constexpr std::uint64_t kMostTiles = std::uint64_t{1} << 20;
 /// The most memory for contents that documents hold as data.
 inline constexpr std::uint64_t kMostTileData = std::uint64_t{64} << 20;
 
@@ -48,7 +46,7 @@ class TilesetTree {
   /// Reads the documents, and the headers of the contents that are shown. Throws as
   /// read_tileset().
   TilesetTree(storage::FileSystem& files, const std::filesystem::path& path,
-              std::uint64_t most_bytes);
+              const TilesetRoom& room);
 
   const TilesetDocument& root() const { return documents_[0].document; }
   /// Returns the files of external tilesets, but for those that are data, and of subtrees.
@@ -90,6 +88,9 @@ class TilesetTree {
   std::filesystem::path file_of(const std::filesystem::path& document,
                                 const std::filesystem::path& folder, const std::string& uri,
                                 const std::string& place) const;
+  /// Returns a file below the place of all; nothing if there is none.
+  std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                                 const std::string& uri) const;
   bool is_below_place(const std::filesystem::path& path) const;
   static Stand stand_of(const TilesetDocument& document, const TilesetTile& tile,
                         const Stand& parent, const std::optional<GlobeFrame>& frame);
@@ -98,7 +99,7 @@ class TilesetTree {
 
   storage::FileSystem& files_;
   std::filesystem::path place_;
-  std::uint64_t most_bytes_;
+  TilesetRoom room_;
   std::uint64_t data_bytes_ = 0;
   std::uint64_t read_ = 0;       ///< tiles and contents of the documents
   std::vector<Part> documents_;  ///< the root first

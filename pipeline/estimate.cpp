@@ -73,7 +73,7 @@ namespace {
 void count_by_reading(const config::Config& config, importing::MeshInput& input,
                       storage::FileSystem& files, storage::MemoryPool& pool,
                       const execution::CancelToken& cancel) {
-  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
+  const importing::ImportMemory memory = import_memory(input, config);
   check_import_disk(import_disk(input, config), config.output, files);
   const std::filesystem::path beside =
       storage::existing_directory(files, config.output) / config.output.filename();
@@ -146,7 +146,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
                          .output = config.output,
                          .placement = {}};
   if (input.needs_import())
-    describe_import(input.files(), importing::plan_import(memory_budget(config)), estimate);
+    describe_import(input.files(), import_memory(input, config), estimate);
   estimate.placement = placement_of(config, input, cancel);
   input.drop();
   storage::check_output(files, {config.output, config.storage.container}, force);

@@ -35,8 +35,13 @@ bool is_to_be_looked_at(const config::Config& config) {
 
 }  // namespace
 
+importing::ImportMemory import_memory(const importing::MeshInput& input,
+                                      const config::Config& config) {
+  return importing::plan_import(memory_budget(config), input.files().held_bytes());
+}
+
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
-  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
+  const importing::ImportMemory memory = import_memory(input, config);
   const std::uint64_t imported =
       input.needs_import() ? importing::predict_import(input.files(), memory) : 0;
   if (!is_to_be_looked_at(config))
@@ -91,7 +96,8 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
            .drape = config.texture.drape,
            .objects = config.objects.from,
            .object_table = config.objects.table,
-           .crs = config.placement.crs.value_or("")}};
+           .crs = config.placement.crs.value_or(""),
+           .tileset = mesh_io::TilesetRoom::of(memory_budget(config))}};
 }
 
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {
@@ -143,7 +149,7 @@ BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materi
 BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
                         storage::MemoryPool& pool, const config::Config& config,
                         const BuildEnvironment& environment) {
-  const importing::ImportMemory memory = importing::plan_import(memory_budget(config));
+  const importing::ImportMemory memory = import_memory(input, config);
   pool.set_capacity(memory.pool_bytes);
   environment.progress.expect(import_time(input, config));
   read_once(input, config, place_of(directory, pool, memory.sort_bytes, environment));
@@ -175,8 +181,7 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
                   storage::MemoryPool& pool, const StageContext& context) {
   const mesh_io::MeshDescription recalled = input.description();
   const std::uint64_t sort_bytes =
-      std::min(importing::plan_import(memory_budget(context.config)).sort_bytes,
-               context.memory().work_bytes / 4);
+      std::min(import_memory(input, context.config).sort_bytes, context.memory().work_bytes / 4);
   read_once(
       input, context.config,
       place_of(work.path(), pool, sort_bytes, {context.files, context.progress, context.cancel}));

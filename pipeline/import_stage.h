@@ -17,6 +17,10 @@ namespace meshhier::pipeline {
 /// Opens the meshes of a config as a build of it reads them. Throws as MeshInput.
 importing::MeshInput open_input(const config::Config& config, storage::FileSystem& files);
 
+/// Returns how the budget is divided while the stage runs.
+importing::ImportMemory import_memory(const importing::MeshInput& input,
+                                      const config::Config& config);
+
 /// Returns about how many bytes the stage has in temporary files at most, before it is known what
 /// is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);

@@ -1,6 +1,7 @@
 // Inputs of a build: meshes, configs, settings, and files that they name.
 #include "tests/app/command_line.h"
 #include "tests/support/gzip.h"
+#include "tests/support/zip_archive.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -291,6 +292,38 @@ TEST_F(CommandLine, ADamagedManifestIsToldWithoutTheParsersName) {
   write_text(work() / "a.hier" / "hierarchy.json", "{\"a\": ]");
   EXPECT_THAT(run({"inspect", hierarchy()}).messages,
               AllOf(HasSubstr("is not valid JSON: line 1"), Not(HasSubstr("json.exception"))));
+}
+
+/// Returns an archive of a tileset with one triangle of one glTF.
+std::string town(const std::string& x) {
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
+      R"("translation":[)" +
+      x +
+      R"(,0,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":)"
+      R"("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  return tests::zip_of({{"tileset.json", R"({"asset":{"version":"1.0"},"geometricError":1,"root":)"
+                                         R"({"geometricError":0,"content":{"uri":"a.gltf"},)"
+                                         R"("boundingVolume":{"sphere":[0,0,0,9]}}})"},
+                        {"a.gltf", gltf, 8}});
+}
+
+TEST_F(CommandLine, SeveralArchivesAreJoinedAndAHierarchyIsTheOutput) {
+  write_text(work() / "a.3tz", town("0"));
+  write_text(work() / "b.3tz", town("5"));
+  const std::string a = (work() / "a.3tz").string(), b = (work() / "b.3tz").string();
+  ASSERT_EQ(run({"build", a, b, "-o", hierarchy()}).code, 0);
+  EXPECT_EQ(run({"verify", hierarchy(), "--input", a, "--input", b}).code, 0);
+  EXPECT_THAT(run({"inspect", hierarchy()}).out, HasSubstr("2 triangles"));
+  const std::string made = (work() / "made.3tz").string();
+  ASSERT_EQ(run({"build", a, "-o", made}).code, 0);
+  for (const std::string& output : {made, (work() / "new.3tz").string()}) {
+    const Outcome outcome = run({"build", a, output});
+    EXPECT_EQ(outcome.code, kUsage);
+    EXPECT_THAT(outcome.messages, HasSubstr("the output is named by -o"));
+  }
 }
 
 }  // namespace

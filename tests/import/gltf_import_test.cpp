@@ -710,6 +710,15 @@ TEST_F(PictureFormsTest, WithoutTheProgramForItsBlocksTheFileIsRefused) {
   ASSERT_EQ(::setenv("MESHHIER_KTX2", "/nowhere", 1), 0);
   EXPECT_THAT(failure(gltf_, ErrorCode::io),
               HasSubstr("b.ktx2: pictures in KTX2 as ETC1S are coded by Node.js"));
+  put("broken.glb", "glTF");
+  mesh_io::InputPaths inputs("w/broken.glb");
+  inputs.emplace_back("w/a.glb");
+  try {
+    tests::import_files(files_, inputs);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io) << "before any mesh is read: " << error.what();
+  }
   put("b.ktx2", picture_file(ImageFormat::ktx2, 8));
   EXPECT_EQ(shown(), "b.ktx2") << "UASTC needs none";
   ASSERT_EQ(::unsetenv("MESHHIER_KTX2"), 0);

@@ -4,6 +4,7 @@
 #include "import/imported.h"
 #include "import/open_picture.h"
 #include "mesh_io/tileset.h"
+#include "storage/io/forwarding_files.h"
 #include "storage/io/zip_files.h"
 #include "support/gltf_builder.h"
 #include "tests/support/gzip.h"
@@ -13,6 +14,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -187,15 +191,19 @@ TEST_F(TilesetImportTest, OlderHeadersOfB3dm) {
 TEST_F(TilesetImportTest, TilesWithinTiles) {
   put("a.cmpt",
       cmpt({b3dm(triangle().glb()), cmpt({triangle(3).glb(), "i3dm" + word(1) + word(12)}),
-            "pnts" + word(1) + word(12)}));
+            "pnts" + word(1) + word(12), "vctr" + word(1) + word(12),
+            "geom" + word(1) + word(12)}));
   const Imported mesh = import(tile_of("a.cmpt"));
   EXPECT_EQ(mesh.triangles.size(), 2);
   EXPECT_EQ(mesh.positions[3], (Vec3d{3, 0, 0}));
   EXPECT_EQ(mesh.count("ignored_instanced_tiles"), 1);
   EXPECT_EQ(mesh.count("ignored_point_tiles"), 1);
-  EXPECT_THAT(mesh.warnings,
-              ElementsAre("w/tileset.json: 1 i3dm tile left out: only tiles of meshes are read",
-                          "w/tileset.json: 1 point tile left out: only tiles of meshes are read"));
+  EXPECT_EQ(mesh.count("ignored_vector_tiles"), 2);
+  EXPECT_THAT(
+      mesh.warnings,
+      ElementsAre("w/tileset.json: 1 i3dm tile left out: only tiles of meshes are read",
+                  "w/tileset.json: 1 point tile left out: only tiles of meshes are read",
+                  "w/tileset.json: 2 vector tiles left out: only tiles of meshes are read"));
 
   std::string deep = cmpt({triangle().glb()});
   for (int i = 0; i < 8; ++i)
@@ -683,8 +691,91 @@ TEST_F(TilesetImportTest, ArchivesAreReadAsTheFoldersThatWerePacked) {
   put("part.3tz", inner);
   put("tileset.json", tileset_of(tile_of("part.3tz")));
   EXPECT_EQ(tests::import_files(zip, fs::path("w/tileset.json")).positions[0].x, 4);
+  // Archives that lie beside each other name each other.
+  put("parts/chain.3tz", tests::zip_of({{"tileset.json", tileset_of(tile_of("../part.3tz"))}}));
+  put("tileset.json", tileset_of(tile_of("parts/chain.3tz")));
+  EXPECT_EQ(tests::import_files(zip, fs::path("w/tileset.json")).positions[0].x, 4);
+  put("chain.3tz", tests::zip_of({{"tileset.json", tileset_of(tile_of("part.3tz/2.glb"))}}));
+  EXPECT_EQ(tests::import_files(zip, fs::path("w/chain.3tz")).positions[0].x, 4);
+  put("parts/chain.3tz", tests::zip_of({{"tileset.json", tileset_of(tile_of("../../x.3tz"))}}));
+  EXPECT_THROW(tests::import_files(zip, fs::path("w/parts/chain.3tz")), Error);
   put("other.3tz", "a mesh of another format");
   EXPECT_THROW(tests::import_files(zip, fs::path("w/other.3tz")), Error);
+}
+
+/// The index of an archive, which tells other programs where its files lie, counts for nothing.
+TEST_F(TilesetImportTest, WhatArchivesHoldBesideTheirDirectoryDoesNotCount) {
+  put("town.3tz", tests::zip_of({{"./town/0.glb", triangle(3).glb()},
+                                 {"./town/tileset.json", tileset_of(tile_of("0.glb"))},
+                                 {"@3dtilesIndex1@", std::string(24, '\xff')}}));
+  storage::ZipFiles zip(files_);
+  EXPECT_EQ(tests::import_files(zip, fs::path("w/town.3tz")).positions[0].x, 3)
+      << "one folder down, below names that begin with a dot";
+}
+
+TEST_F(TilesetImportTest, ArchivesAndFoldersWithoutOneTilesetAreTold) {
+  const auto failure_of = [&](const char* path, ErrorCode code) {
+    storage::ZipFiles zip(files_);
+    try {
+      tests::import_files(zip, fs::path(path));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string tileset = tileset_of(tile_of("0.glb"));
+  put("none.3tz", tests::zip_of({{"0.glb", "g"}}));
+  EXPECT_THAT(failure_of("w/none.3tz", ErrorCode::input),
+              HasSubstr("w/none.3tz: holds no tileset.json"));
+  put("two.3tz", tests::zip_of({{"a/tileset.json", tileset}, {"b/tileset.json", tileset}}));
+  EXPECT_THAT(failure_of("w/two.3tz", ErrorCode::input),
+              HasSubstr("are w/two.3tz/a/tileset.json and w/two.3tz/b/tileset.json"));
+  put("cut.3tz", tests::zip_of({{"tileset.json", tileset}}).substr(0, 60));
+  EXPECT_THAT(failure_of("w/cut.3tz", ErrorCode::input),
+              HasSubstr("w/cut.3tz: the archive has no"));
+  put("site/one/tileset.json", tileset);
+  put("site/one/0.glb", triangle(8).glb());
+  put("site/made/hierarchy.json", "{}");
+  put("site/made/tileset.json", tileset);
+  EXPECT_EQ(tests::import_files(files_, fs::path("w/site")).positions[0].x, 8);
+  put("site/two/tileset.json", tileset);
+  EXPECT_THAT(failure_of("w/site", ErrorCode::io),
+              HasSubstr("the first are w/site/one/tileset.json and w/site/two/tileset.json; name"));
+}
+
+/// Counts how often each file is opened.
+class OpenedFiles final : public storage::ForwardingFiles {
+ public:
+  using ForwardingFiles::ForwardingFiles;
+  std::unique_ptr<storage::File> open(const fs::path& path) override {
+    const std::lock_guard lock(mutex_);
+    ++opened[path.filename().string()];
+    return others().open(path);
+  }
+  std::map<std::string, int> opened;
+
+ private:
+  std::mutex mutex_;
+};
+
+TEST_F(TilesetImportTest, EachTileIsOpenedForItsHeadAndForItsMesh) {
+  GltfJson root = tile_of("0.glb");
+  root["refine"] = "ADD";
+  for (int i = 0; i < 8; ++i)
+    put(std::to_string(i) + ".glb", triangle(static_cast<float>(2 * i)).glb());
+  for (int i = 1; i < 8; ++i)
+    root["children"].push_back(tile_of(std::to_string(i) + ".glb"));
+  put("tileset.json", tileset_of(root));
+  OpenedFiles counted(files_);
+  const Imported once = tests::import_files(counted, fs::path("w/tileset.json"));
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(counted.opened[std::to_string(i) + ".glb"], 2) << i;
+  // Without room each is read where it lies, and again for its checksum.
+  const Imported tight =
+      tests::import_files(files_, fs::path("w/tileset.json"), {.memory = tests::kTight});
+  EXPECT_EQ(once.positions, tight.positions);
+  EXPECT_EQ(once.summary.checksum, tight.summary.checksum);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The parts of glTF reading that need no whole file: URIs, transforms, buffers' files, formats.
 #include "mesh_io/formats.h"
-#include "mesh_io/gltf_buffer_files.h"
+#include "mesh_io/gltf_outline.h"
 #include "mesh_io/gltf_transform.h"
 #include "mesh_io/gltf_uri.h"
 #include "support/gltf_builder.h"
@@ -67,7 +67,7 @@ std::vector<std::string> buffer_files(const std::string& content) {
   tests::MemoryFiles files;
   files.put("w/mesh", content);
   std::vector<std::string> names;
-  for (const std::filesystem::path& path : gltf_buffer_files(*files.open("w/mesh")))
+  for (const std::filesystem::path& path : outline_of_gltf(*files.open("w/mesh")).buffers)
     names.push_back(path.string());
   return names;
 }
