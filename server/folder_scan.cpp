@@ -5,9 +5,11 @@
 #include "storage/format/layout.h"
 #include "storage/io/paths.h"
 #include "storage/io/system_failure.h"
+#include "storage/io/zip_directory.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace meshhier::server {
@@ -84,6 +86,15 @@ std::string joined(const std::string& directory, const std::string& name) {
 
 bool is_archive_name(std::string_view path) {
   return storage::lower_extension(path) == ".3tz";
+}
+
+bool is_hierarchy(std::shared_ptr<const storage::File> archive) {
+  try {
+    return storage::ZipDirectory(std::move(archive)).find(storage::manifest_path({}).string()) !=
+           nullptr;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace meshhier::server

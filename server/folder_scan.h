@@ -1,8 +1,10 @@
 // Looks for hierarchies below a folder.
 #pragma once
 
+#include "storage/io/file.h"
 #include "storage/io/folder.h"
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,5 +27,8 @@ std::string joined(const std::string& directory, const std::string& name);
 
 /// Whether a file of that name is taken for an archive.
 bool is_archive_name(std::string_view path);
+
+/// Returns whether an archive holds a hierarchy; false if it is broken.
+bool is_hierarchy(std::shared_ptr<const storage::File> archive);
 
 }  // namespace meshhier::server

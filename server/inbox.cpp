@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/other_formats.h"
+#include "server/folder_scan.h"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +25,9 @@ std::vector<InboxFile> Inbox::look() {
     } else if (mesh_io::is_mesh_name(entry.name)) {
       const InputVersion version{entry.version, options_.mark(entry.name)};
       const Time since = note(entry.name, version, now, seen);
-      files.push_back({entry.name, version, now - since >= options_.settle});
+      const bool is_whole = now - since >= options_.settle;
+      if (!is_whole || !is_archived_hierarchy(*inbox, entry.name, seen))
+        files.push_back({entry.name, version, is_whole});
     }
   }
   seen_ = std::move(seen);
@@ -37,8 +40,21 @@ Inbox::Time Inbox::note(const std::string& name, const InputVersion& version, Ti
   const auto before = seen_.find(name);
   const bool is_same = before != seen_.end() && before->second.version == version;
   const Time since = is_same ? before->second.since : now;
-  seen[name] = {version, since};
+  seen[name] = {version, since, is_same ? before->second.is_hierarchy : std::nullopt};
   return since;
+}
+
+/// Whether a file needs no build, as it is an archive of what a build makes. Looks into it once.
+bool Inbox::is_archived_hierarchy(const storage::Folder& inbox, const std::string& name,
+                                  SeenFiles& seen) {
+  if (!is_archive_name(name))
+    return false;
+  std::optional<bool>& known = seen[name].is_hierarchy;
+  if (!known) {
+    auto file = inbox.open(name);
+    known = file != nullptr && is_hierarchy(std::move(file));
+  }
+  return *known;
 }
 
 /// Returns the mesh in a folder; nothing if it is no mesh's folder. One that may not be read

@@ -50,7 +50,7 @@ class Inbox {
   Inbox(std::filesystem::path directory, Options options);
 
   /// Returns the mesh files that are there now. One in a folder is whole when all files there are.
-  /// Links are left out. Throws Error(io).
+  /// Links are left out, and archives that hold hierarchies. Throws Error(io).
   std::vector<InboxFile> look();
   /// Opens a file, without following it if it has become a link. Null if it is not there, or of
   /// another version. Throws Error(io).
@@ -61,10 +61,13 @@ class Inbox {
   struct Seen {
     InputVersion version;
     Time since;
+    std::optional<bool> is_hierarchy{};  ///< an archive, if it was looked into
   };
   using SeenFiles = std::map<std::string, Seen>;
 
   Time note(const std::string& name, const InputVersion& version, Time now, SeenFiles& seen) const;
+  static bool is_archived_hierarchy(const storage::Folder& inbox, const std::string& name,
+                                    SeenFiles& seen);
   std::optional<InboxFile> look_into(const storage::Folder& inbox, const std::string& folder,
                                      Time now, SeenFiles& seen) const;
 

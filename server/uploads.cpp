@@ -6,6 +6,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/other_formats.h"
 #include "server/build_target.h"
+#include "server/folder_scan.h"
 #include "server/multipart.h"
 #include "server/staged_upload.h"
 #include "server/text.h"
@@ -289,6 +290,8 @@ Reply Uploads::take_file(Body& body, const std::string& name) {
         [&](std::span<std::byte> bytes) { return body.read(bytes); });
   if (auto refused = refuse_end(body))
     return std::move(*refused);
+  if (is_archive_name(name) && is_hierarchy(files_.open(staged.path())))
+    return text_reply(400, "It is a hierarchy already: put it into the folder that is served.");
   return publish(staged, name);
 }
 

@@ -1,6 +1,7 @@
 #include "server/inbox.h"
 
 #include "tests/server/served_folder.h"
+#include "tests/support/zip_archive.h"
 
 #include <chrono>
 #include <string>
@@ -45,6 +46,18 @@ TEST_F(InboxTest, AFileIsWholeWhenItHasSettled) {
   EXPECT_THAT(whole_after(milliseconds(1999)), IsEmpty());
   EXPECT_THAT(whole_after(milliseconds(1)), ElementsAre("a.ply"));
   EXPECT_THAT(whole_after(milliseconds(1000)), ElementsAre("a.ply"));
+}
+
+TEST_F(InboxTest, AnArchiveOfAHierarchyIsNoMesh) {
+  write_text(directory_.path() / "a.3tz", tests::zip_of({{"tileset.json", "{}"}}));
+  write_text(directory_.path() / "b.3tz", tests::zip_of({{"hierarchy.json", "{}"}}));
+  write_text(directory_.path() / "c.3tz", "no archive, as a build tells");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.3tz", "c.3tz"));
+  write_text(directory_.path() / "b.3tz", tests::zip_of({{"tileset.json", "{ }"}}));
+  EXPECT_THAT(whole_after(milliseconds(0)), ElementsAre("a.3tz", "c.3tz"));
+  EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.3tz", "b.3tz", "c.3tz"));
 }
 
 TEST_F(InboxTest, AFileThatGrowsBeginsAnew) {

@@ -8,6 +8,7 @@
 #include "tests/server/served_folder.h"
 #include "tests/server/text_body.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/zip_archive.h"
 
 #include <map>
 #include <memory>
@@ -90,6 +91,14 @@ TEST_F(UploadsTest, AMeshIsThereAsItWasSent) {
   EXPECT_EQ(reply.text, "My scan.ply.gz is in the inbox.\n");
   EXPECT_THAT(contents(), ElementsAre(testing::Pair("My scan.ply.gz", text)));
   EXPECT_EQ(put(std::string(200, 'n') + ".ply", "x").status, 201) << "204 bytes";
+}
+
+TEST_F(UploadsTest, AnArchiveIsTakenUnlessItIsAHierarchy) {
+  const Reply reply = put("made.3tz", tests::zip_of({{"hierarchy.json", "{}"}}));
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_THAT(reply.text, HasSubstr("is a hierarchy already"));
+  expect_nothing_left("made.3tz");
+  EXPECT_EQ(put("town.3tz", tests::zip_of({{"tileset.json", "{}"}})).status, 201);
 }
 
 TEST_F(UploadsTest, ItHasItsNameOnlyWhenItIsWhole) {
