@@ -17,6 +17,8 @@ namespace meshhier::storage {
 namespace {
 
 constexpr std::size_t kUnpackedBlock = std::size_t{1} << 16;
+/// Files up to this size are kept when they are read backwards.
+constexpr std::uint64_t kMostKept = std::uint64_t{16} << 20;
 /// Levels up to 19 take windows of up to 8 MiB.
 constexpr int kWindowLog = 23;
 
@@ -177,6 +179,8 @@ class PackedFile final : public ZippedFile {
   }
 
   void begin() const {
+    if (unpacking_ && size() <= kMostKept)
+      block_bytes_ = size();
     PackedBytes packed(archive(), range());
     if (range().method == ZipMethod::deflated)
       unpacking_ = std::make_unique<Inflating>(std::move(packed));
@@ -190,7 +194,7 @@ class PackedFile final : public ZippedFile {
   void unpack_block() const {
     block_at_ += block_.size();
     const std::uint64_t left = size() - block_at_;
-    block_.resize(std::min<std::uint64_t>(kUnpackedBlock, left));
+    block_.resize(std::min<std::uint64_t>(block_bytes_, left));
     if (unpacking_->next(block_) < block_.size())
       fail();
     crc_ = static_cast<std::uint32_t>(
@@ -210,6 +214,7 @@ class PackedFile final : public ZippedFile {
 
   mutable std::mutex mutex_;
   mutable std::unique_ptr<Unpacking> unpacking_;  ///< has unpacked up to the end of the block
+  mutable std::uint64_t block_bytes_ = kUnpackedBlock;
   mutable std::vector<std::byte> block_;
   mutable std::uint64_t block_at_ = 0;
   mutable std::uint32_t crc_ = 0;  ///< of all up to the end of the block

@@ -12,7 +12,8 @@
 // Invariant. Who reads up to the end has the CRC-32 of all checked.
 //
 // Cost. 64 KiB, and the window: 32 KiB of Deflate, up to 8 MiB of Zstandard. A read backwards
-// unpacks again from the beginning, so readers of much take it in order.
+// unpacks again from the beginning, so readers of much take it in order; a file of up to 16 MiB is
+// one block from then on.
 #pragma once
 
 #include "storage/io/file.h"
