@@ -47,9 +47,9 @@ class OutlineVisitor final : public storage::JsonVisitor {
 };
 
 /// A file that is not packed, of which no more is read than is asked for.
-class PlainStream final : public InputStream {
+class AskedStream final : public InputStream {
  public:
-  explicit PlainStream(const storage::File& file) : file_(file) {}
+  explicit AskedStream(const storage::File& file) : file_(file) {}
   std::size_t read(std::span<std::byte> to) override {
     const std::size_t count = file_.read_at(at_, to);
     at_ += count;
@@ -64,7 +64,7 @@ class PlainStream final : public InputStream {
 std::unique_ptr<InputStream> open_json(const storage::File& file) {
   if (is_gzip(file))
     return open_stream({file, file.size()}, {});
-  return std::make_unique<PlainStream>(file);
+  return std::make_unique<AskedStream>(file);
 }
 
 }  // namespace
