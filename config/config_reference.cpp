@@ -210,12 +210,14 @@ std::string wrapped(std::string_view text, const std::string& indent) {
 /// Returns the endings of all kinds of a format, as code of Markdown: "`.gltf`, `.glb`".
 std::string endings_of(std::string_view format) {
   std::vector<std::string> all;
+  if (format == mesh_io::row_of(mesh_io::MeshKind::tileset).format)
+    all.emplace_back("`tileset.json`");  // a name, and no ending
   for (const mesh_io::FormatRow& row : mesh_io::format_rows()) {
     std::string ending = fmt::format("`{}`", row.ending);
     if (row.format == format && !row.ending.empty() && !has(all, ending))
       all.push_back(std::move(ending));
   }
-  return all.empty() ? "`tileset.json`" : fmt::format("{}", fmt::join(all, ", "));
+  return fmt::format("{}", fmt::join(all, ", "));
 }
 
 /// Returns a value in one line: { "vertices": 8192, "axis": "compactness" }

@@ -20,7 +20,7 @@ namespace meshhier::mesh_io {
 namespace {
 
 constexpr std::size_t kMostBufferFiles = 65536;
-/// Takes buffers[...].uri, and looks for a name in extensionsUsed.
+/// Takes buffers[...].uri, and looks for a name among the extensions.
 class OutlineVisitor final : public storage::JsonVisitor {
  public:
   std::vector<std::string> uris;
@@ -36,7 +36,7 @@ class OutlineVisitor final : public storage::JsonVisitor {
   bool key(string_t& value) override {
     if (depth() == 1) {
       in_buffers_ = value == "buffers";
-      in_extensions_ = value == "extensionsUsed";
+      in_extensions_ = value == "extensionsUsed" || value == "extensionsRequired";
     }
     is_uri_ = value == "uri";
     return true;

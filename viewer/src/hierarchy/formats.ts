@@ -8,6 +8,7 @@ export const FORMATS = {
     ".glb",
     ".stl",
     ".off",
+    ".3tz",
     ".osgb",
     ".tif",
     ".tiff",
