@@ -744,6 +744,25 @@ TEST_F(TilesetImportTest, ArchivesAndFoldersWithoutOneTilesetAreTold) {
               HasSubstr("the first are w/site/one/tileset.json and w/site/two/tileset.json; name"));
 }
 
+TEST_F(TilesetImportTest, MoreTilesThanTheBudgetHoldsAreRefused) {
+  put("a.glb", triangle().glb());
+  GltfJson root = tile_of("a.glb");
+  root["refine"] = "ADD";
+  root["children"] = {tile_of("a.glb"), tile_of("a.glb"), tile_of("a.glb")};
+  put("tileset.json", tileset_of(root));
+  mesh_io::TilesetRoom room{.tiles = 4};
+  EXPECT_EQ(mesh_io::read_tileset(files_, "w/tileset.json", nullptr, room).meshes.size(), 4);
+  room.tiles = 3;
+  try {
+    mesh_io::read_tileset(files_, "w/tileset.json", nullptr, room);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::budget);
+    EXPECT_THAT(error.what(), HasSubstr("more than 3 tiles; give a larger memory_budget"));
+  }
+  EXPECT_EQ(mesh_io::TilesetRoom::of(256 << 20).tiles, 131072);
+}
+
 /// Counts how often each file is opened.
 class OpenedFiles final : public storage::ForwardingFiles {
  public:
