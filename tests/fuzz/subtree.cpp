@@ -42,8 +42,7 @@ void subtree(Bytes input) {
   files.put("b.bin", std::string(1024, '\x55'));
   files.put("a.glb", std::string(kEmptyGlb));
   refusal({ErrorCode::input, ErrorCode::budget}, "", [&] {
-    const mesh_io::Tileset found =
-        mesh_io::read_tileset(files, "t.json", nullptr, {});
+    const mesh_io::Tileset found = mesh_io::read_tileset(files, "t.json", nullptr, {});
     require(found.meshes.size() <= 2 * 4681, "no more than there is room for");
     require(!found.documents.empty(), "the subtree is noted");
   });
