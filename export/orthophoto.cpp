@@ -326,10 +326,12 @@ void write_rasters(const Pyramids& pyramids, const PlanView& view, const std::st
         images::tiff_text(tag(images::GeoTag::gdal_nodata), fmt::format("{}", kNoHeight)));
     pyramids.heights->write(*outputs.heights->file.file(), fields, cancel);
   }
+  std::vector<storage::OutputFile*> files;
   for (RasterOutput* output : {outputs.picture.get(), outputs.heights.get()}) {
     if (output != nullptr)
-      output->file.publish();
+      files.push_back(&output->file);
   }
+  storage::publish_all(files);
 }
 
 /// What was drawn, for people.

@@ -193,26 +193,83 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::publish() {
+  force();
+  give_name();
+  settle();
+}
+
+/// Forces the file to the disk, or closes a stream.
+void OutputFile::force() {
   if (target_.empty())
     return file_.reset();
   file_->sync(check_);
-  if (!files_.rename_new(temporary_, target_))
-    rename_over();
+}
+
+void OutputFile::give_name() {
+  if (target_.empty() || files_.rename_new(temporary_, target_))
+    return;
+  require_replaceable();
+  files_.rename(temporary_, target_);
+}
+
+/// Gives the file its name so that take_name_back() can undo it, where the system can.
+void OutputFile::give_name_for_now() {
+  if (target_.empty() || files_.rename_new(temporary_, target_))
+    return;
+  require_replaceable();
+  has_replaced_ = files_.exchange(temporary_, target_);
+  if (!has_replaced_)
+    files_.rename(temporary_, target_);
+}
+
+void OutputFile::take_name_back() {
+  if (target_.empty())
+    return;
+  try {
+    if (std::exchange(has_replaced_, false))
+      files_.exchange(temporary_, target_);
+    else
+      files_.rename(target_, temporary_);
+  } catch (const Error&) {  // the failure that brought us here is the one to report
+  }
+}
+
+/// Forces the name to the disk and lets go of all else.
+void OutputFile::settle() {
+  if (target_.empty())
+    return;
+  if (has_replaced_)
+    files_.remove_all(temporary_);
   temporary_.clear();
   file_.reset();
   files_.sync_directory(target_.parent_path());
   lock_.reset();
 }
 
-void OutputFile::rename_over() {
+void OutputFile::require_replaceable() const {
   if (!replace_ || files_.kind(target_) != FileKind::regular)
     throw already_there(target_, "appeared meanwhile");
-  files_.rename(temporary_, target_);
 }
 
 void OutputFile::publish(std::span<const std::byte> bytes) {
   file_->write_at(0, bytes);
   publish();
+}
+
+void publish_all(std::span<OutputFile* const> outputs) {
+  for (OutputFile* output : outputs)
+    output->force();
+  std::size_t named = 0;
+  try {
+    for (; named < outputs.size(); ++named)
+      outputs[named]->give_name_for_now();
+  } catch (const Error&) {
+    while (named > 0)
+      outputs[--named]->take_name_back();
+    throw;
+  }
+  for (OutputFile* output : outputs)
+    output->settle();
 }
 
 }  // namespace meshhier::storage

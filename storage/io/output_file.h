@@ -65,19 +65,32 @@ class OutputFile {
   void publish(std::span<const std::byte> bytes);
 
  private:
+  friend void publish_all(std::span<OutputFile* const> outputs);
+
   void open_stream(const std::filesystem::path& path);
   void open_regular(const OutputRequest& request);
-  void rename_over();
+  void force();
+  void give_name();
+  void give_name_for_now();
+  void take_name_back();
+  void settle();
+  void require_replaceable() const;
 
   FileSystem& files_;
   std::function<void()> check_;
   bool replace_;
   std::filesystem::path target_;     ///< empty: a stream
   std::filesystem::path temporary_;  ///< its name until it is published
+  bool has_replaced_ = false;        ///< the temporary one is what it has replaced
   std::filesystem::path scratch_;
   std::filesystem::path own_directory_;  ///< a stream's, in the system's for temporary files
   std::unique_ptr<FileLock> lock_;
   std::shared_ptr<File> file_;
 };
+
+/// Publishes files that belong together: all get their names, or none and what they would replace
+/// stays. Only a process that ends between two renames, or a file system that cannot exchange
+/// files, leaves some of them. Throws as OutputFile::publish().
+void publish_all(std::span<OutputFile* const> outputs);
 
 }  // namespace meshhier::storage

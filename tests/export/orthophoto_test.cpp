@@ -282,6 +282,14 @@ TEST_F(OrthophotoTest, AFailureLeavesNothing) {
   options.picture = path("o.tif");
   EXPECT_THROW(export_rasters(*files_, path("a.hier"), options, progress, cancelled), Error);
   EXPECT_EQ(names(), before);
+  // Of the two files neither is there when one cannot get its name.
+  for (const tests::Call call : {tests::Call::rename, tests::Call::sync}) {
+    tests::FaultyFileSystem faulty;
+    faulty.fail(call, 2);
+    const execution::CancelToken going;
+    EXPECT_THROW(export_rasters(faulty, path("a.hier"), options, progress, going), Error);
+    EXPECT_EQ(names(), before);
+  }
 }
 
 TEST_F(OrthophotoTest, PointsHaveNoSurface) {

@@ -145,6 +145,43 @@ TEST_F(OutputFileTest, ADirectoryThatAppearsMeanwhileStays) {
   EXPECT_EQ(names(), std::set<std::string>{"a.json"});
 }
 
+TEST_F(OutputFileTest, FilesThatBelongTogetherComeTogether) {
+  FaultyFileSystem faulty;
+  const fs::path other = parent_ / "b.json";
+  bool is_done = false;
+  for (const bool is_there : {false, true}) {
+    is_done = false;
+    for (std::uint64_t call = 1; !is_done; ++call) {
+      SCOPED_TRACE(call);
+      fs::remove(path_);
+      fs::remove(other);
+      if (is_there) {
+        put(path_, "old");
+        put(other, "old");
+      }
+      {
+        OutputFile first(faulty, {path_, is_there}), second(faulty, {other, is_there});
+        first.file()->write_at(0, bytes_of("new"));
+        second.file()->write_at(0, bytes_of("new"));
+        faulty.fail(Call::any, call);
+        try {
+          publish_all(std::array{&first, &second});
+          is_done = true;
+        } catch (const Error&) {
+        }
+        faulty.fail(Call::any, 1, 0);
+      }
+      ASSERT_EQ(fs::exists(path_), fs::exists(other));
+      if (fs::exists(path_)) {
+        ASSERT_EQ(text(path_), text(other));
+      }
+      for (const auto& entry : fs::directory_iterator(parent_))
+        ASSERT_FALSE(entry.path().string().ends_with("-part")) << entry.path();
+    }
+    EXPECT_EQ(text(), "new");
+  }
+}
+
 TEST_F(OutputFileTest, AStreamsScratchIsItsOwnAndGoes) {
   fs::path scratch;
   {
