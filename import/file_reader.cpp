@@ -53,22 +53,20 @@ class FileReader::Impl {
         gltf_(input, room_) {}
 
   /// Requires a kind that files have: the tiles of a tileset are files of their own.
-  std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room) {
-    std::vector<AddedFile> added = read_by_kind(facts, room);
+  AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room) {
+    AddedFile added = read_by_kind(facts, room);
     complete_objects(facts);
     return added;
   }
 
-  std::vector<AddedFile> read_by_kind(const InputFileFacts& facts, const Path& room) {
-    if (facts.format.kind == MeshKind::osgb)
-      return read_osgb(facts);
+  AddedFile read_by_kind(const InputFileFacts& facts, const Path& room) {
     const std::uint64_t before = mesh_.vertex_count();
     for (const Reader& reader : readers()) {
       if (reader.kind != facts.format.kind)
         continue;
       AddedFile added = (this->*reader.read)(facts, room);
       added.vertices = mesh_.vertex_count() - before;
-      return {std::move(added)};
+      return added;
     }
     throw Error(ErrorCode::internal, facts.path.string() + " is of a format without a reader");
   }
@@ -300,11 +298,6 @@ class FileReader::Impl {
     return note_gltf(gltf_.import(facts, std::move(content), mesh_));
   }
 
-  AddedFile add_gltf(mesh_io::GltfFile& file, const mesh_io::GltfTransform& placement) {
-    return note_gltf(
-        import_gltf(file, {placement, true}, mesh_, input_.textures(), input_.attributes(), room_));
-  }
-
   AddedFile note_gltf(const GltfImport& import) {
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
@@ -314,18 +307,15 @@ class FileReader::Impl {
             import.material_colours, import.is_painted};
   }
 
-  /// A file of glTF that was read apart.
-  struct Apart {
-    explicit Apart(storage::ScratchFile& scratch) : mesh(scratch) {}
-    RawMesh mesh;
-    GltfImport import;
-    std::optional<std::uint64_t> checksum;
-  };
-
-  std::unique_ptr<Apart> read_apart(const InputFileFacts& facts) {
-    auto apart = std::make_unique<Apart>(env_.scratch);
+  std::unique_ptr<MeshApart> make_apart() {
+    auto apart = std::make_unique<MeshApart>(env_.scratch);
     if (mesh_.objects)
       apart->mesh.objects = std::make_unique<MeshObjects>(env_.scratch, mesh_.objects->choice);
+    return apart;
+  }
+
+  std::unique_ptr<MeshApart> read_apart(const InputFileFacts& facts) {
+    std::unique_ptr<MeshApart> apart = make_apart();
     const ReadContent content = gltf_.read(facts);
     apart->import = gltf_.import(facts, content.file, apart->mesh);
     apart->checksum = content.checksum;
@@ -333,47 +323,75 @@ class FileReader::Impl {
     return apart;
   }
 
+  /// Moves a mesh behind all others.
+  AddedFile append_apart(MeshApart& apart, const Path& path) {
+    const std::uint64_t vertices = apart.mesh.vertex_count();
+    checked_base(path, vertices);
+    append_mesh(std::move(apart.mesh), mesh_, env_.cancel);
+    AddedFile added = note_gltf(apart.import);
+    added.vertices = vertices;
+    return added;
+  }
+
   void read_run(std::span<const InputFileFacts> files,
                 const std::function<void(const AddedFile&)>& added) {
+    if (files[0].format.kind == MeshKind::osgb)
+      return read_osgb(files, added);
     // Blocks of spools, windows, the buffers of a decoder.
     constexpr std::uint64_t kItemBytes = 4 * kMiB;
     execution::ordered_for(
         files.size(), execution::useful_blocks(gltf_.decoding_bytes(), kItemBytes), env_.cancel,
         [&](std::size_t i) { return read_apart(files[i]); },
-        [&](std::size_t i, const std::unique_ptr<Apart>& apart) {
-          const std::uint64_t vertices = apart->mesh.vertex_count();
-          checked_base(files[i].path, vertices);
-          append_mesh(std::move(apart->mesh), mesh_, env_.cancel);
+        [&](std::size_t i, const std::unique_ptr<MeshApart>& apart) {
+          const AddedFile one = append_apart(*apart, files[i].path);
           complete_objects(files[i]);
           note_checksum(files[i], apart->checksum);
           env_.progress.advance(files[i].identity.bytes);
-          AddedFile one = note_gltf(apart->import);
-          one.vertices = vertices;
           added(one);
         });
   }
 
-  /// Reads a tile with the finer ones that it names. Runs of equal layout are one.
-  std::vector<AddedFile> read_osgb(const InputFileFacts& facts) {
-    std::vector<AddedFile> all;
-    const OsgbImport import = import_osgb(
-        facts.path,
-        {input_.system(), env_.scratch, gltf_.decoding_bytes(), mesh_io::GltfContent::packed,
-         facts.path, [this] { env_.cancel.check(); }},
-        [&](mesh_io::GltfFile& file, const mesh_io::GltfTransform& place) {
-          const std::uint64_t before = mesh_.vertex_count();
-          AddedFile added = add_gltf(file, place);
-          added.vertices = mesh_.vertex_count() - before;
-          append_run(all, std::move(added));
-        },
-        [this](std::uint64_t bytes) { env_.progress.advance(bytes); });
-    checksums_.push_back(checksum_of(facts.path));
-    tiles_.add_all(import.tiles);
-    for (const SourceCount& one : import.counts)
+  /// Reads tiles with the finer ones that they name. Of a tile, runs of equal layout are one.
+  void read_osgb(std::span<const InputFileFacts> files,
+                 const std::function<void(const AddedFile&)>& added) {
+    const mesh_io::GltfRoom room{input_.system(),
+                                 env_.scratch,
+                                 gltf_.decoding_bytes(),
+                                 mesh_io::GltfContent::packed,
+                                 {},
+                                 [this] { env_.cancel.check(); }};
+    std::vector<AddedFile> runs;
+    std::size_t next = 0;
+    import_osgb(files, {room, gltf_.decoding(), env_.cancel},
+                {.read =
+                     [&](mesh_io::GltfFile& file, const mesh_io::GltfTransform& place) {
+                       std::unique_ptr<MeshApart> apart = make_apart();
+                       apart->import = import_gltf(file, {place, true}, apart->mesh,
+                                                   input_.textures(), input_.attributes(), room_);
+                       apart->mesh.layout = apart->import.layout;
+                       return apart;
+                     },
+                 .add =
+                     [&](std::unique_ptr<MeshApart> apart) {
+                       append_run(runs, append_apart(*apart, files[next].path));
+                     },
+                 .told =
+                     [&](std::size_t i, const OsgbFacts& facts) {
+                       next = i + 1;
+                       note_osgb(files[i].path, facts);
+                       complete_objects(files[i]);
+                       std::ranges::for_each(std::exchange(runs, {}), added);
+                     },
+                 .advance = [this](std::uint64_t bytes) { env_.progress.advance(bytes); }});
+  }
+
+  void note_osgb(const Path& path, const OsgbFacts& facts) {
+    checksums_.push_back(checksum_of(path));
+    tiles_.add_all(facts.tiles);
+    for (const SourceCount& one : facts.counts)
       count(one.name, one.count);
-    for (const std::string& warning : import.warnings)
+    for (const std::string& warning : facts.warnings)
       env_.progress.warn(warning);
-    return all;
   }
 
   static void append_run(std::vector<AddedFile>& all, AddedFile added) {
@@ -532,16 +550,22 @@ FileReader::FileReader(InputFiles& input, const ImportEnvironment& environment, 
 
 FileReader::~FileReader() = default;
 
-std::vector<AddedFile> FileReader::read(const InputFileFacts& facts,
-                                        const std::filesystem::path& room) {
+AddedFile FileReader::read(const InputFileFacts& facts, const std::filesystem::path& room) {
   return impl_->read(facts, room);
 }
 
 std::size_t FileReader::run_of(std::span<const InputFileFacts> files) {
+  const auto is_tile = [](const InputFileFacts& file) {
+    return file.format.kind == MeshKind::osgb;
+  };
   const auto is_apart = [](const InputFileFacts& file) {
     return file.format.row().names_features && !file.format.is_gzip;
   };
-  return static_cast<std::size_t>(std::ranges::find_if_not(files, is_apart) - files.begin());
+  const auto begin = files.begin(), end = files.end();
+  if (const auto tiles = std::find_if_not(begin, end, is_tile); tiles != begin)
+    return static_cast<std::size_t>(tiles - begin);
+  const auto run = static_cast<std::size_t>(std::find_if_not(begin, end, is_apart) - begin);
+  return run > 1 ? run : 0;
 }
 
 void FileReader::read_run(std::span<const InputFileFacts> files,

@@ -44,13 +44,14 @@ class FileReader {
   /// Appends the mesh of a file to that of all, but for its layouts, which it returns, of all its
   /// vertices in their order: join_layouts() brings them together. `room`: a path where the file
   /// may lie unpacked meanwhile. Throws as the reader of its format; Error(input) if the mesh gets
-  /// 2^32 vertices or more; Error(io), Error(interrupted).
-  std::vector<AddedFile> read(const InputFileFacts& facts, const std::filesystem::path& room);
-  /// Returns how many files from the first one on read_run() can read: 0 or 1 if it is none.
+  /// 2^32 vertices or more; Error(io), Error(interrupted). Requires that run_of() says 0.
+  AddedFile read(const InputFileFacts& facts, const std::filesystem::path& room);
+  /// Returns how many files from the first one on are for read_run(): none, several, or a tile
+  /// that names others.
   static std::size_t run_of(std::span<const InputFileFacts> files);
-  /// Does what read() does for each of the files, and calls `added` for each in order. The files
-  /// are read in parallel, each to a mesh of its own, which then moves behind those before.
-  /// Requires as many as run_of() says.
+  /// Does what read() does for each of the files, and calls `added` for each in order, or several
+  /// times. The files are read in parallel, each to a mesh of its own, which then moves behind
+  /// those before. Requires as many as run_of() says.
   void read_run(std::span<const InputFileFacts> files,
                 const std::function<void(const AddedFile&)>& added);
   /// Reads the rasters of an input that has nothing else, and counts their cells. Their picture, if

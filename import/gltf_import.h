@@ -8,6 +8,7 @@
 #include "mesh_io/zeroed.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace meshhier::importing {
@@ -21,6 +22,14 @@ struct GltfImport {
   std::uint64_t degenerate_triangles = 0;
   std::vector<SourceCount> counts;  ///< things that were filled in, left out or ignored
   mesh_io::ZeroedCounts zeroed;
+};
+
+/// A file that was read apart, to a mesh of its own.
+struct MeshApart {
+  explicit MeshApart(storage::ScratchFile& scratch) : mesh(scratch) {}
+  RawMesh mesh;
+  GltfImport import{};
+  std::optional<std::uint64_t> checksum{};  ///< of the file, if all of it was read
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout, with its scene at `place`:

@@ -30,6 +30,8 @@ class GltfReader {
 
   /// Returns the memory for all that is decoded at once: while a reader decodes, no sort runs.
   std::uint64_t decoding_bytes() const;
+  /// The gate of that memory.
+  execution::MemoryGate& decoding() { return decoding_; }
 
  private:
   mesh_io::GltfFile open(const InputFileFacts& facts, std::shared_ptr<const storage::File> content);

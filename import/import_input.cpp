@@ -186,11 +186,10 @@ class Import {
                  });
     while (!left.empty()) {
       const std::size_t run = FileReader::run_of(left);
-      if (run > 1)
+      if (run > 0)
         reader_.read_run(left.first(run), [&](const AddedFile& added) { note(added); });
       else
-        std::ranges::for_each(reader_.read(left[0], ply.path()),
-                              [&](const AddedFile& added) { note(added); });
+        note(reader_.read(left[0], ply.path()));
       left = left.subspan(std::max<std::size_t>(run, 1));
     }
   }

@@ -37,15 +37,39 @@ ByteSource bytes_of(std::span<const std::byte> data, std::shared_ptr<const void>
   };
 }
 
-/// A picture within what is made of an OSGB file to read it.
+/// A picture within what is made of an OSGB file to read it: its start, then all of it. Its texels
+/// are decoded when they are asked for.
+class OsgbPicture {
+ public:
+  OsgbPicture(const images::ImageSource& source, storage::FileSystem& files)
+      : offset_(source.offset), read_(mesh_io::OsgbTiles(files, kMost).read(source.file)) {
+    const auto& glb = *read_.tile.glb;
+    if (source.offset > glb.size() || source.bytes > glb.size() - source.offset)
+      mesh_io::fail_file(source.file, "does not have its picture any more");
+    const std::span start = std::span(glb).subspan(source.offset, source.bytes);
+    bytes_.assign(start.begin(), start.end());
+    read_.tile.glb.reset();
+  }
+
+  std::size_t read(std::uint64_t at, std::span<std::byte> into) {
+    if (at >= bytes_.size() && !std::exchange(is_whole_, true))
+      bytes_ = mesh_io::picture_of(read_, offset_);
+    return bytes_of(bytes_)(at, into);
+  }
+
+ private:
+  static constexpr std::uint64_t kMost = std::uint64_t{1}
+                                         << 31;  // the import has read it with less
+
+  std::uint64_t offset_;
+  mesh_io::OsgbRead read_;
+  std::vector<std::byte> bytes_;
+  bool is_whole_ = false;
+};
+
 ByteSource of_osgb(const images::ImageSource& source, storage::FileSystem& files) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 31;  // the import has read it with less
-  const auto glb = mesh_io::OsgbTiles(files, kMost).tile(source.file).glb;
-  if (source.offset > glb->size() || source.bytes > glb->size() - source.offset)
-    mesh_io::fail_file(source.file, "does not have its picture any more");
-  const std::span part = std::span(*glb).subspan(source.offset, source.bytes);
-  const auto bytes = std::make_shared<std::vector<std::byte>>(part.begin(), part.end());
-  return bytes_of(*bytes, bytes);
+  const auto picture = std::make_shared<OsgbPicture>(source, files);
+  return [picture](std::uint64_t at, std::span<std::byte> into) { return picture->read(at, into); };
 }
 
 /// A picture within a file in gzip, as it is coded.

@@ -31,7 +31,8 @@ struct OsgbFiner {
 };
 
 struct OsgbTile {
-  /// With the coordinates of the file: no axis is turned.
+  /// With the coordinates of the file: no axis is turned. Of pictures that are made of texels it
+  /// has the first bytes, which tell their sizes.
   std::shared_ptr<const std::vector<std::byte>> glb;
   std::uint64_t triangles = 0;
   std::vector<OsgbFiner> finer{};
@@ -39,6 +40,10 @@ struct OsgbTile {
   std::uint64_t others = 0;   ///< parts that are no triangles
   std::uint64_t unknown = 0;  ///< parts of kinds that the library does not know
 };
+
+/// Returns the memory that reading a file of that size takes, here and in the program beside this
+/// one, texels left out.
+std::uint64_t osgb_reading_bytes(std::uint64_t file_bytes);
 
 /// An OSGB file in memory. Reading starts a process, or asks one that waits; thread-safe.
 class OsgbFile {
@@ -53,6 +58,9 @@ class OsgbFile {
   /// Returns its finest parts where the files with a 1 in `present` are there. Throws as names();
   /// Error(budget) if they take more than `most_bytes`.
   OsgbTile tile(std::span<const std::byte> present) const;
+  /// Returns a picture as a file: the one that begins at `offset` of the GLB which tile() returns
+  /// for the same `present`. Throws as tile().
+  std::vector<std::byte> picture(std::span<const std::byte> present, std::uint64_t offset) const;
   /// Returns the bytes of the file, unpacked.
   std::span<const std::byte> bytes() const { return bytes_; }
   bool is_packed() const { return is_packed_; }  ///< in gzip

@@ -2,14 +2,13 @@
 
 #include "images/image_codec.h"
 #include "mesh_io/osgb/kept_scene.h"
+#include "mesh_io/osgb/stored_png.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
-
-#include <zlib.h>
 
 namespace meshhier::mesh_io::osgb {
 namespace {
@@ -135,76 +134,70 @@ images::Image from_dxt(const osg::Image& image, const DxtRow& row) {
   return made;
 }
 
-images::Image decoded(const osg::Image& image) {
+/// The format of an image's texels: one of the two.
+struct Format {
+  const TexelRow* texels = nullptr;
+  const DxtRow* dxt = nullptr;
+  std::uint32_t channels() const { return dxt != nullptr ? dxt->channels : texels->channels; }
+};
+
+Format format_of(const osg::Image& image) {
   const auto dxt = std::ranges::find(kDxt, image.getPixelFormat(), &DxtRow::format);
   if (dxt != kDxt.end())
-    return from_dxt(image, *dxt);
+    return {nullptr, &*dxt};
   const auto texels = std::ranges::find(kTexels, image.getPixelFormat(), &TexelRow::format);
   if (texels == kTexels.end() || image.getDataType() != GL_UNSIGNED_BYTE)
     throw std::runtime_error("a picture has texels of a format that is not read");
-  return plain(image, *texels);
+  return {&*texels, nullptr};
 }
 
-// ---- PNG, packed as little as is quick: it is unpacked at once
-
-/// Appends a number, the first byte the highest.
-void append_big(std::string& to, std::uint32_t number) {
-  for (int shift = 24; shift >= 0; shift -= 8)
-    to += static_cast<char>(number >> shift);
+images::Image decoded(const osg::Image& image) {
+  const Format format = format_of(image);
+  return format.dxt != nullptr ? from_dxt(image, *format.dxt) : plain(image, *format.texels);
 }
 
-void append_chunk(std::string& to, const std::string& kind_and_data) {
-  append_big(to, static_cast<std::uint32_t>(kind_and_data.size() - 4));
-  to += kind_and_data;
-  const auto* const bytes = reinterpret_cast<const Bytef*>(kind_and_data.data());
-  append_big(to,
-             static_cast<std::uint32_t>(crc32(0, bytes, static_cast<uInt>(kind_and_data.size()))));
+// ---- what an image of the library is
+
+struct Source {
+  std::string file{};  ///< as it lies in the OSGB; empty: it has texels
+  osg::ref_ptr<const osg::Image> texels{};
+};
+
+bool is_side(int side) {
+  return side > 0 && static_cast<std::uint32_t>(side) <= images::kMaxSourceSide;
 }
 
-std::string packed_rows(const images::Image& image) {
-  const std::size_t row_bytes = std::size_t{image.width} * image.channels;
-  std::string rows;
-  rows.reserve((row_bytes + 1) * image.height);
-  for (std::uint32_t y = 0; y < image.height; ++y) {
-    rows += '\0';  // no filter
-    rows.append(reinterpret_cast<const char*>(image.at(0, y)), row_bytes);
-  }
-  uLongf size = compressBound(rows.size());
-  std::string packed(size, '\0');
-  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                reinterpret_cast<const Bytef*>(rows.data()), rows.size(), Z_BEST_SPEED) != Z_OK)
-    throw std::runtime_error("a picture cannot be packed");
-  packed.resize(size);
-  return packed;
+Source source_of(const osg::Image& image) {
+  const auto* const kept = dynamic_cast<const KeptImage*>(&image);
+  if (kept == nullptr)
+    return {{}, &image};
+  const osg::ref_ptr<osg::Image> dds = decode_dds(kept->bytes);
+  return dds ? Source{{}, dds} : Source{kept->bytes, {}};
 }
 
-std::string png_of(const images::Image& image) {
-  constexpr char kDepth = 8, kRgb = 2, kRgba = 6;
-  std::string head = "IHDR";
-  append_big(head, image.width);
-  append_big(head, image.height);
-  head += {kDepth, image.channels == 4 ? kRgba : kRgb, 0, 0, 0};
-  std::string png = "\x89PNG\r\n\x1a\n";
-  append_chunk(png, head);
-  append_chunk(png, "IDAT" + packed_rows(image));
-  append_chunk(png, "IEND");
-  return png;
+bool has_texels(const osg::Image& image) {
+  return image.data() != nullptr && is_side(image.s()) && is_side(image.t());
+}
+
+PngSize size_of(const osg::Image& image) {
+  return {static_cast<std::uint32_t>(image.s()), static_cast<std::uint32_t>(image.t()),
+          format_of(image).channels()};
 }
 
 }  // namespace
 
+std::string picture_start(const osg::Image& image) {
+  const Source source = source_of(image);
+  if (!source.texels)
+    return source.file;
+  return has_texels(*source.texels) ? png_start(size_of(*source.texels)) : "";
+}
+
 std::string coded_picture(const osg::Image& image) {
-  const auto* const kept = dynamic_cast<const KeptImage*>(&image);
-  if (kept != nullptr) {
-    const osg::ref_ptr<osg::Image> dds = decode_dds(kept->bytes);
-    return dds ? coded_picture(*dds) : kept->bytes;
-  }
-  const auto is_side = [](int side) {
-    return side > 0 && static_cast<std::uint32_t>(side) <= images::kMaxSourceSide;
-  };
-  if (image.data() == nullptr || !is_side(image.s()) || !is_side(image.t()))
-    return "";
-  return png_of(decoded(image));
+  const Source source = source_of(image);
+  if (!source.texels)
+    return source.file;
+  return has_texels(*source.texels) ? png_of(decoded(*source.texels)) : "";
 }
 
 }  // namespace meshhier::mesh_io::osgb

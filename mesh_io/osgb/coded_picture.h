@@ -12,4 +12,8 @@ namespace meshhier::mesh_io::osgb {
 /// Throws std::runtime_error if it has a format that is not read.
 std::string coded_picture(const osg::Image& image);
 
+/// Returns the first bytes of that file, which tell its size, or all of it if it is not made:
+/// nothing is decoded. Empty and throws as coded_picture().
+std::string picture_start(const osg::Image& image);
+
 }  // namespace meshhier::mesh_io::osgb

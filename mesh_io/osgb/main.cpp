@@ -3,6 +3,7 @@
 // The library is not trusted with bytes of others. So it works in this process, which meshhier
 // starts: it gets a file's bytes through a socket, opens nothing, and has memory and time by the
 // file's size. If it ends, meshhier names the file.
+#include "mesh_io/osgb/coded_picture.h"
 #include "mesh_io/osgb/finest_parts.h"
 #include "mesh_io/osgb/kept_scene.h"
 #include "mesh_io/osgb/protocol.h"
@@ -20,6 +21,7 @@
 #include <new>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -86,29 +88,61 @@ Bytes names_answer(const KeptScene& scene) {
   return answer;
 }
 
-Bytes tile_answer(const KeptScene& scene, std::span<const std::byte> choice) {
-  std::map<std::string, std::size_t> present;
-  std::size_t number = 0;
-  for (const std::string& name : names_in(*scene.root)) {
-    if (number < choice.size() && choice[number] != std::byte{0})
-      present.emplace(name, number);
-    ++number;
+/// The finest parts of a scene, and their GLB. `choice`: a byte a name, 1 if that file is there.
+struct Tile {
+  Tile(const KeptScene& scene, std::span<const std::byte> choice)
+      : found(finest_parts(*scene.root, present(scene, choice))), glb(scene_glb(found.parts)) {}
+
+  static std::map<std::string, std::size_t> present(const KeptScene& scene,
+                                                    std::span<const std::byte> choice) {
+    std::map<std::string, std::size_t> present;
+    std::size_t number = 0;
+    for (const std::string& name : names_in(*scene.root)) {
+      if (number < choice.size() && choice[number] != std::byte{0})
+        present.emplace(name, number);
+      ++number;
+    }
+    return present;
   }
-  const FinestParts found = finest_parts(*scene.root, present);
-  const SceneGlb glb = scene_glb(found.parts);
+
+  FinestParts found;
+  SceneGlb glb;
+};
+
+Bytes tile_answer(const KeptScene& scene, std::span<const std::byte> choice) {
+  const Tile tile(scene, choice);
   Bytes answer;
-  append_word(answer, found.finer.size());
-  append_word(answer, found.missing);
-  append_word(answer, found.others + glb.without);
+  append_word(answer, tile.found.finer.size());
+  append_word(answer, tile.found.missing);
+  append_word(answer, tile.found.others + tile.glb.without);
   append_word(answer, scene.unknown);
-  append_word(answer, glb.triangles);
-  for (const FinerFile& finer : found.finer) {
+  append_word(answer, tile.glb.triangles);
+  for (const FinerFile& finer : tile.found.finer) {
     append_word(answer, finer.name);
     for (std::size_t i = 0; i < 16; ++i)
       storage::append_little(answer, finer.place.ptr()[i]);
   }
-  append_text(answer, glb.bytes);
+  append_text(answer, tile.glb.bytes);
   return answer;
+}
+
+Bytes picture_answer(const KeptScene& scene, std::span<const std::byte> choice) {
+  constexpr std::size_t kWord = 4;
+  if (choice.size() < kWord)
+    throw std::runtime_error("no picture is asked for");
+  const Tile tile(scene, choice.subspan(kWord));
+  const auto picture = tile.glb.pictures.find(storage::load_little<std::uint32_t>(choice.data()));
+  if (picture == tile.glb.pictures.end())
+    throw std::runtime_error("it has no such picture");
+  Bytes answer;
+  append_text(answer, coded_picture(*picture->second));
+  return answer;
+}
+
+Bytes answer_to(std::uint32_t kind, const KeptScene& scene, std::span<const std::byte> choice) {
+  return kind == kNames  ? names_answer(scene)
+         : kind == kTile ? tile_answer(scene, choice)
+                         : picture_answer(scene, choice);
 }
 
 /// Answers a question. Returns false if there is none any more, or none is to come.
@@ -129,7 +163,7 @@ bool answer_next(LastScene& last) {
       return false;
     const std::span all(question);
     const KeptScene& scene = last.of(all.subspan(word(1)));
-    answer = word(0) == kNames ? names_answer(scene) : tile_answer(scene, all.first(word(1)));
+    answer = answer_to(word(0), scene, all.first(word(1)));
   } catch (const std::bad_alloc&) {
     status = 1;
     append_text(answer, "it takes more memory than a file of its size may");

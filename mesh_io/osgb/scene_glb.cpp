@@ -147,7 +147,10 @@ class GlbWriter {
     append_word(2);
     append_word(static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + bin_.size()));
     chunk(kJson, text);
+    const std::size_t begin = made_.bytes.size() + 8;
     chunk(kBin, bin_);
+    for (const auto& [offset, image] : pictures_)
+      made_.pictures.emplace(begin + offset, image);
     return std::move(made_);
   }
 
@@ -243,9 +246,10 @@ class GlbWriter {
     if (kept != nullptr && kept->bytes.empty()) {
       entry["uri"] = kept->name;
     } else {
-      const std::string bytes = coded_picture(image);
+      const std::string bytes = picture_start(image);
       if (bytes.empty())
         return std::nullopt;
+      pictures_.emplace(bin_.size(), &image);
       json_["bufferViews"].push_back(
           {{"buffer", 0}, {"byteOffset", bin_.size()}, {"byteLength", bytes.size()}});
       entry["bufferView"] = json_["bufferViews"].size() - 1;
@@ -267,6 +271,7 @@ class GlbWriter {
   std::string bin_;
   std::map<std::tuple<Look, bool>, std::size_t> materials_;
   std::map<const osg::Image*, std::size_t> images_;
+  std::map<std::size_t, const osg::Image*> pictures_;  ///< by where they begin in bin_
   SceneGlb made_;
 };
 

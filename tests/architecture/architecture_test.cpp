@@ -267,7 +267,7 @@ const std::vector<ThirdParty>& third_parties() {
          return s.path == "storage/io/zip_content.cpp" || s.is_in({"images"});
        }},
       {"zlib.h", of({"images/tiff_tile.cpp", "mesh_io/gzip_stream.cpp", "mesh_io/inflated_file.cpp",
-                     "mesh_io/osgb/coded_picture.cpp", "storage/format/gzip.cpp",
+                     "mesh_io/osgb/stored_png.cpp", "storage/format/gzip.cpp",
                      "storage/io/zip_content.cpp"})},
       {"meshoptimizer.h",
        [](const Source& s) {

@@ -26,6 +26,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 namespace meshhier::importing {
 namespace {
@@ -219,8 +220,12 @@ TEST_F(Osgb, PicturesInMemoryAndPackedFilesAreRead) {
     const Imported mesh = import(tile());
     EXPECT_THAT(mesh.triangles, SizeIs(2 * kSide * kSide)) << options;
     ASSERT_THAT(mesh.materials.images, SizeIs(4)) << options;
-    for (const images::ImageSource& image : mesh.materials.images)
+    for (const images::ImageSource& image : mesh.materials.images) {
       EXPECT_TRUE(image.is_packed) << options;
+      if (std::string(options).find("pictures") != std::string::npos) {
+        EXPECT_LT(image.bytes, 64U) << "its start: it is decoded when its rows are read";
+      }
+    }
     expect_texcoords(mesh);
     expect_picture(mesh, *files_, std::string(options).find("dxt") == std::string::npos ? 8 : 40);
   }
@@ -252,6 +257,26 @@ TEST_F(Osgb, WhereAFinerFileIsMissingTheCoarserPartStands) {
   EXPECT_THAT(mesh.companions(), testing::Contains("no " + tile("_L2_5").string()));
   fs::remove(tile("_L1_0"));
   EXPECT_EQ(import(tile()).count("unnamed_tiles"), 4U) << "those that it named";
+}
+
+TEST_F(Osgb, TheOrderDoesNotDependOnThreads) {
+  make("--tiles 2 --levels 2");
+  const auto import_by = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return import(folder_ / "site");
+  };
+  const Imported one = import_by(1), many = import_by(5);
+  EXPECT_EQ(one.positions, many.positions);
+  EXPECT_EQ(one.triangles, many.triangles);
+  EXPECT_EQ(one.materials, many.materials);
+  EXPECT_EQ(one.companions(), many.companions());
+}
+
+TEST_F(Osgb, TheFirstFailureInTheOrderOfTheTreeIsTold) {
+  make("--levels 2");
+  for (const char* ending : {"_L1_2", "_L2_3"})  // the one of L1_0, which is read before L1_2
+    write(tile(ending), "nothing");
+  EXPECT_THAT(failure(tile()), HasSubstr("_L2_3.osgb"));
 }
 
 TEST_F(Osgb, FilesInACircleAreRefused) {
