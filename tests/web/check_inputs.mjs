@@ -1,4 +1,5 @@
-// Compares what meshhier makes of mesh files with what other readers say of them: three.js's loaders (PLY, OBJ, STL) and assimp.
+// Compares what meshhier makes of mesh files with what other readers say of them: three.js's loaders (PLY, OBJ, STL), assimp, osgconv (OSGB)
+// and gdal (rasters of heights).
 //
 //   node check_inputs.mjs MESHHIER REASONS ROOT=NAME...
 //
@@ -15,7 +16,10 @@ import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
 
 const run = promisify(execFile);
-const KINDS = /\.(ply|obj|stl|off|gltf|glb)$/i;
+const RASTERS = /\.(tiff?|cog|hgt|asc)$/i;
+const OSGB = /\.osgb$/i;
+const KINDS = /\.(ply|obj|stl|off|gltf|glb|osgb|tiff?|cog|hgt|asc)$/i;
+const ODM = /(^|\/)odm_texturing\/odm_textured_model_geo\.obj$/;
 const SECONDS = 120;
 const FLOAT = 2 ** -23; // a float's relative rounding, there and back
 const PART = 1e-5; // of a measure: sums in another order, numbers written with few digits
@@ -92,6 +96,7 @@ const READERS = {
     return soups;
   },
   assimp: async (file, work) => {
+    if (RASTERS.test(file) || OSGB.test(file)) return null;
     const stl = path.join(work, 'assimp.stl');
     await rm(stl, { force: true });
     await run('assimp', ['export', file, stl, '-fstlb', '-ptv'], { timeout: 1000 * SECONDS });
@@ -103,7 +108,71 @@ const READERS = {
     }
     return [{ places, colours: null }];
   },
+  osgconv: async (file, work) => {
+    if (!OSGB.test(file)) return null;
+    const obj = path.join(work, 'osgconv.obj');
+    await rm(obj, { force: true });
+    await run('osgconv', [file, obj], { timeout: 1000 * SECONDS });
+    return READERS.three(obj);
+  },
 };
+
+// ---- rasters: the judge tells heights, and of a square both ways to cut it
+
+const MOST_CELLS = 4e6;
+
+/// Returns the cells of a raster as gdal reads them; null where they are no heights.
+async function cellsOf(file, work) {
+  const info = JSON.parse((await run('gdalinfo', ['-json', file], { timeout: 1000 * SECONDS })).stdout);
+  const [columns, rows] = info.size;
+  const [band] = info.bands;
+  if (info.bands.length > 1 || columns * rows > MOST_CELLS || /^(C|Byte)/.test(band.type)) return null;
+  const raw = path.join(work, 'gdal.raw');
+  await run('gdal_translate', ['-q', '-ot', 'Float64', '-unscale', '-of', 'ENVI', file, raw], { timeout: 1000 * SECONDS });
+  const heights = new Float64Array(await bytesOf(raw));
+  const asStored = band.type === 'Float32' ? Math.fround : (value) => value;
+  const nodata = band.noDataValue === undefined ? NaN : asStored(Number(band.noDataValue)) * (band.scale ?? 1) + (band.offset ?? 0);
+  const onGlobe = /^(GEOGCRS|GEODCRS|BOUNDCRS\[\s*SOURCECRS\[\s*GEOGCRS)/.test(info.coordinateSystem?.wkt ?? '');
+  return { heights: heights.map((h) => (h === nodata || !Number.isFinite(h) ? NaN : h)), columns, rows, to: info.geoTransform ?? [0, 1, 0, 0, 0, 1], onGlobe };
+}
+
+/// Measures the surface over the cells: its area lies between that of the shorter and that of the longer cuts.
+function measureCells({ heights, columns, rows, to, onGlobe }) {
+  const found = { ...measure([]), least: 0, most: 0, onGlobe };
+  const place = (x, y) => [to[0] + (x + 0.5) * to[1] + (y + 0.5) * to[2], to[3] + (x + 0.5) * to[4] + (y + 0.5) * to[5], heights[y * columns + x]];
+  const area = (a, b, c) => Math.hypot(...cross(subtract(b, a), subtract(c, a))) / 2;
+  for (let y = 0; y + 1 < rows; ++y) {
+    for (let x = 0; x + 1 < columns; ++x) {
+      const corners = [place(x, y), place(x + 1, y), place(x + 1, y + 1), place(x, y + 1)];
+      const there = corners.filter(([, , h]) => !Number.isNaN(h));
+      if (there.length < 3) continue;
+      const [a, b, c, d] = there;
+      const cuts = d ? [area(a, b, c) + area(a, c, d), area(a, b, d) + area(b, c, d)] : [area(a, b, c)];
+      found.triangles += there.length - 2;
+      found.least += Math.min(...cuts);
+      found.most += Math.max(...cuts);
+      for (const corner of there) {
+        corner.forEach((value, axis) => {
+          found.min[axis] = Math.min(found.min[axis], value);
+          found.max[axis] = Math.max(found.max[axis], value);
+        });
+      }
+    }
+  }
+  found.area = found.most;
+  return found;
+}
+
+async function measureRaster(file, work) {
+  const cells = RASTERS.test(file) ? await cellsOf(file, work) : null;
+  return cells && measureCells(cells);
+}
+
+const measureSoups = (read) => async (file, work) => {
+  const soups = await read(file, work);
+  return soups && measure(soups);
+};
+const JUDGES = { ...Object.fromEntries(Object.entries(READERS).map(([name, read]) => [name, measureSoups(read)])), gdal: measureRaster };
 
 /// Throws the first line that meshhier says.
 async function built(meshhier, file, work) {
@@ -135,8 +204,15 @@ function difference(ours, theirs) {
   const compare = (name, a, b, most) => {
     if (!(Math.abs(a - b) <= most)) told.push(`${name} ${rounded(a)}, there ${rounded(b)}`);
   };
-  compare('area', ours.area, theirs.area, PART * theirs.area + rounding * theirs.edges);
-  compare('volume', ours.volume, theirs.volume, (PART * size + 4 * rounding) * theirs.area);
+  if (theirs.least !== undefined) {
+    compare('triangles', ours.triangles, theirs.triangles, 0);
+    if (theirs.onGlobe) return told.join('; '); // it stands in a local frame
+    const clamped = Math.min(Math.max(ours.area, theirs.least), theirs.most);
+    compare('area', ours.area, clamped, PART * theirs.area + rounding * ours.edges);
+  } else {
+    compare('area', ours.area, theirs.area, PART * theirs.area + rounding * theirs.edges);
+    compare('volume', ours.volume, theirs.volume, (PART * size + 4 * rounding) * theirs.area);
+  }
   for (const end of ['min', 'max']) {
     for (let axis = 0; axis < 3; ++axis) compare(`${end} ${'xyz'[axis]}`, ours[end][axis], theirs[end][axis], 2 * rounding + PART * size);
   }
@@ -156,20 +232,19 @@ async function check(name, file, meshhier, reasons, work) {
   let ours = null;
   let refusal = '';
   try {
-    ours = await built(meshhier, file, work);
+    ours = await built(meshhier, ODM.test(file) ? path.resolve(path.dirname(file), '..') : file, work);
   } catch (error) {
     refusal = error.message;
   }
   const lines = [];
-  for (const [reader, read] of Object.entries(READERS)) {
-    let soups = null;
+  for (const [reader, judge] of Object.entries(JUDGES)) {
+    let theirs = null;
     try {
-      soups = await read(file, work);
+      theirs = await judge(file, work);
     } catch {
       // what others refuse says nothing
     }
-    if (soups === null) continue;
-    const theirs = measure(soups);
+    if (theirs === null) continue;
     const found = ours ? difference(ours, theirs) : theirs.area > 0 ? `refused: ${refusal}` : '';
     const reason = reasons[name]?.[reader];
     if (found !== '') lines.push([reason ? 'known' : 'FAIL', `${name} (${reader}): ${found}${reason ? `; ${reason}` : ''}`]);
