@@ -1,5 +1,5 @@
-// Compares what meshhier makes of mesh files with what other readers say of them: three.js's loaders (PLY, OBJ, STL), assimp, osgconv (OSGB)
-// and gdal (rasters of heights).
+// Compares what meshhier makes of mesh files with what other readers say of them: three.js's loaders (PLY, OBJ, STL), assimp, osgconv (OSGB),
+// gdal (rasters of heights) and 3d-tiles-tools (tilesets).
 //
 //   node check_inputs.mjs MESHHIER REASONS ROOT=NAME...
 //
@@ -18,7 +18,8 @@ import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
 const run = promisify(execFile);
 const RASTERS = /\.(tiff?|cog|hgt|asc)$/i;
 const OSGB = /\.osgb$/i;
-const KINDS = /\.(ply|obj|stl|off|gltf|glb|osgb|tiff?|cog|hgt|asc)$/i;
+const TILESET = /((^|\/)tileset\.json|\.3tz)$/;
+const KINDS = /(\.(ply|obj|stl|off|gltf|glb|osgb|tiff?|cog|hgt|asc|3tz)|(^|\/)tileset\.json)$/i;
 const ODM = /(^|\/)odm_texturing\/odm_textured_model_geo\.obj$/;
 const SECONDS = 120;
 const FLOAT = 2 ** -23; // a float's relative rounding, there and back
@@ -96,7 +97,7 @@ const READERS = {
     return soups;
   },
   assimp: async (file, work) => {
-    if (RASTERS.test(file) || OSGB.test(file)) return null;
+    if (RASTERS.test(file) || OSGB.test(file) || TILESET.test(file)) return null;
     const stl = path.join(work, 'assimp.stl');
     await rm(stl, { force: true });
     await run('assimp', ['export', file, stl, '-fstlb', '-ptv'], { timeout: 1000 * SECONDS });
@@ -168,11 +169,65 @@ async function measureRaster(file, work) {
   return cells && measureCells(cells);
 }
 
+// ---- tilesets: the finest tiles as 3d-tiles-tools walks them, their meshes as glTF-Transform reads them
+
+const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const Z_UP = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1];
+const times = (a, b) => a.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + (i % 4)] * b[4 * Math.floor(i / 4) + k], 0));
+const moved = (m, [x, y, z]) => [0, 1, 2].map((i) => m[i] * x + m[4 + i] * y + m[8 + i] * z + m[12 + i]);
+
+async function gltfReader() {
+  const [{ NodeIO }, { ALL_EXTENSIONS }, draco, { MeshoptDecoder }] = await Promise.all([import('@gltf-transform/core'), import('@gltf-transform/extensions'), import('draco3dgltf'), import('meshoptimizer')]);
+  await MeshoptDecoder.ready;
+  return new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({ 'draco3d.decoder': await draco.default.createDecoderModule(), 'meshopt.decoder': MeshoptDecoder });
+}
+
+/// Returns the triangles of a glTF's scene, moved by a matrix.
+function gltfSoups(document, to) {
+  const soups = [];
+  const scene = document.getRoot().getDefaultScene() ?? document.getRoot().listScenes()[0];
+  scene.traverse((node) => {
+    const matrix = times(times(to, Z_UP), node.getWorldMatrix());
+    for (const part of node.getMesh()?.listPrimitives() ?? []) {
+      const position = part.getAttribute('POSITION');
+      if (part.getMode() !== 4 || !position) continue;
+      const corners = part.getIndices()?.getArray() ?? Array.from({ length: position.getCount() }, (_, i) => i);
+      soups.push({ places: Float64Array.from([...corners].flatMap((i) => moved(matrix, position.getElement(i, [])))), colours: null });
+    }
+  });
+  return soups;
+}
+
+async function measureTileset(file) {
+  if (!TILESET.test(file)) return null;
+  const [{ TilesetTraverser, TilesetSources, TilesetSourceResourceResolver, TileFormats }, io] = await Promise.all([import('3d-tiles-tools'), gltfReader()]);
+  const source = await TilesetSources.createAndOpen(file);
+  const contents = [];
+  const traverser = new TilesetTraverser('.', new TilesetSourceResourceResolver('.', source), { depthFirst: true, traverseExternalTilesets: true });
+  await traverser.traverse(JSON.parse((await source.getValue('tileset.json')).toString()), async (tile) => {
+    const line = [];
+    for (let at = tile; at; at = at.getParent()) line.unshift(at.asFinalTile());
+    const adds = line.findLast(({ refine }) => refine)?.refine === 'ADD';
+    if (!adds && (await tile.getChildren()).length > 0) return true;
+    const to = line.reduce((matrix, { transform }) => (transform ? times(matrix, transform) : matrix), IDENTITY);
+    for (const { uri } of tile.getFinalContents()) contents.push([await tile.getResourceResolver().resolveData(uri), to]);
+    return true;
+  });
+  const soups = [];
+  for (const [bytes, to] of contents) {
+    const start = bytes?.toString('latin1', 0, 100) ?? '{';
+    if (/^(\s*\{|i3dm|pnts)/.test(start)) continue; // an external tileset; what is left out
+    const glbs = start.startsWith('glTF') ? [bytes] : await TileFormats.extractGlbBuffers(bytes, () => Promise.resolve(undefined));
+    for (const glb of glbs) soups.push(...gltfSoups(await io.readBinary(glb), to));
+  }
+  return { ...measure(soups), isTileset: true };
+}
+
 const measureSoups = (read) => async (file, work) => {
   const soups = await read(file, work);
   return soups && measure(soups);
 };
-const JUDGES = { ...Object.fromEntries(Object.entries(READERS).map(([name, read]) => [name, measureSoups(read)])), gdal: measureRaster };
+const JUDGES = { ...Object.fromEntries(Object.entries(READERS).map(([name, read]) => [name, measureSoups(read)])), gdal: measureRaster, '3d-tiles-tools': measureTileset };
 
 /// Throws the first line that meshhier says.
 async function built(meshhier, file, work) {
@@ -204,6 +259,11 @@ function difference(ours, theirs) {
   const compare = (name, a, b, most) => {
     if (!(Math.abs(a - b) <= most)) told.push(`${name} ${rounded(a)}, there ${rounded(b)}`);
   };
+  if (theirs.isTileset) {
+    compare('triangles', ours.triangles, theirs.triangles, 0);
+    compare('area', ours.area, theirs.area, PART * theirs.area + rounding * theirs.edges);
+    return told.join('; '); // it may stand in a local frame
+  }
   if (theirs.least !== undefined) {
     compare('triangles', ours.triangles, theirs.triangles, 0);
     if (theirs.onGlobe) return told.join('; '); // it stands in a local frame
