@@ -1,5 +1,6 @@
 #include "import/open_picture.h"
 
+#include "base/plain_text.h"
 #include "images/tiff_picture.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_error.h"
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,22 +69,57 @@ class OsgbPicture {
   bool is_whole_ = false;
 };
 
-ByteSource of_osgb(const images::ImageSource& source, storage::FileSystem& files) {
+/// A picture of which the decoder holds more than its format tells.
+class HungryReader : public images::ImageReader {
+ public:
+  HungryReader(std::unique_ptr<images::ImageReader> reader, std::uint64_t more_bytes)
+      : reader_(std::move(reader)), info_(reader_->info()) {
+    info_.decoder_bytes += more_bytes;
+  }
+  const images::ImageInfo& info() const override { return info_; }
+  std::string missing() const override { return reader_->missing(); }
+  void read_rows(std::uint8_t* rows, std::uint32_t count) override {
+    reader_->read_rows(rows, count);
+  }
+
+ private:
+  std::unique_ptr<images::ImageReader> reader_;
+  images::ImageInfo info_;
+};
+
+std::unique_ptr<images::ImageReader> open_osgb(const images::ImageSource& source,
+                                               storage::FileSystem& files, const std::string& name,
+                                               std::uint64_t file_bytes) {
   const auto picture = std::make_shared<OsgbPicture>(source, files);
-  return [picture](std::uint64_t at, std::span<std::byte> into) { return picture->read(at, into); };
+  auto reader = images::open_image(
+      [picture](std::uint64_t at, std::span<std::byte> into) { return picture->read(at, into); },
+      name);
+  // Here it is a file; the program beside this one has texels, rows, a file and an answer.
+  constexpr std::uint64_t kCopies = 5;
+  const images::ImageInfo& info = reader->info();
+  const std::uint64_t texels = std::uint64_t{info.width} * info.height * info.channels;
+  return std::make_unique<HungryReader>(std::move(reader),
+                                        mesh_io::osgb_reading_bytes(file_bytes) + kCopies * texels);
 }
 
 /// A picture within a file in gzip, as it is coded.
 ByteSource unpacked(const images::ImageSource& source, storage::FileSystem& files) {
   const auto file = files.open(source.file);
-  if (const auto format = mesh_io::find_format(*file);
-      format && format->kind == mesh_io::MeshKind::osgb)
-    return of_osgb(source, files);
   const auto stream = mesh_io::open_stream({*file, file->size()}, {});
   const auto bytes = std::make_shared<std::vector<std::byte>>(source.bytes);
   if (mesh_io::skip(*stream, source.offset) < source.offset || stream->read(*bytes) < bytes->size())
     mesh_io::fail_file(source.file, "ends before its picture (truncated?)");
   return bytes_of(*bytes, bytes);
+}
+
+/// Names a picture for messages by its file, or by the file that holds it: many tiles may have one
+/// of the same name.
+std::string name_with_file(const images::ImageSource& source) {
+  constexpr std::size_t kLongest = 300;
+  if (source.file.empty())
+    return source.name;
+  const std::string file = plain_text(source.file.string(), kLongest);
+  return source.bytes == 0 && !source.is_packed ? file : file + ": " + source.name;
 }
 
 ByteSource source_of(const images::ImageSource& source, storage::FileSystem& files) {
@@ -104,7 +141,14 @@ std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& sou
                                                   storage::FileSystem& files) {
   if (source.is_drape)
     return images::open_framed_tiff(files.open(source.file), source.name);
-  return images::open_image(source_of(source, files), source.name);
+  const std::string name = name_with_file(source);
+  if (source.is_packed) {
+    const auto file = files.open(source.file);
+    const auto format = mesh_io::find_format(*file);
+    if (format && format->kind == mesh_io::MeshKind::osgb)
+      return open_osgb(source, files, name, file->size());
+  }
+  return images::open_image(source_of(source, files), name);
 }
 
 }  // namespace meshhier::importing

@@ -11,7 +11,7 @@ namespace meshhier::importing {
 
 /// Opens a picture as images::open_image(); one within a file in gzip, or that is made of an
 /// OSGB, is held in memory, still coded. Throws Error(input) if that file is damaged or does not
-/// have it.
+/// have it. Messages name the file, and the picture in it.
 std::unique_ptr<images::ImageReader> open_picture(const images::ImageSource& source,
                                                   storage::FileSystem& files);
 
