@@ -173,6 +173,8 @@ struct PlacementConfig {
   /// transform is exact; else the middle of the input.
   std::optional<std::array<double, 3>> anchor;
   std::optional<Transform> transform;  ///< instead of all these
+  /// The file of the input that says that its coordinates belong to no map; else empty.
+  std::filesystem::path unplaced_by;
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 

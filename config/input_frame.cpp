@@ -7,6 +7,7 @@
 #include "mesh_io/formats.h"
 #include "mesh_io/input_folder.h"
 #include "mesh_io/mosaic.h"
+#include "mesh_io/osgb_folder.h"
 #include "mesh_io/terrain_frame.h"
 #include "mesh_io/tileset.h"
 #include "storage/io/paths.h"

@@ -1,6 +1,7 @@
 #include "config/map_file.h"
 
 #include "base/error.h"
+#include "base/small_letters.h"
 #include "base/text_mark.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
@@ -19,6 +20,7 @@ namespace {
 using Numbers = std::array<double, 3>;
 
 constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kModelMetadata = "<ModelMetadata";
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(ErrorCode::usage, what);
@@ -99,27 +101,37 @@ std::string without_entities(std::string_view text) {
   return plain;
 }
 
-/// Parses "ENU:latitude,longitude"; nothing if it is a CRS.
+/// Whether coordinates belong to no map: "LOCAL", "Local:0,0", nothing.
+bool is_local(std::string_view srs) {
+  return srs.empty() || small_letters(srs.substr(0, 5)) == "local";
+}
+
+/// Parses "ENU:latitude,longitude", perhaps with a height; nothing if it is a CRS.
 std::optional<MapPlace> find_place(std::string_view text) {
   constexpr std::string_view kMark = "ENU:";
   if (!text.starts_with(kMark))
     return std::nullopt;
-  const std::optional<Numbers> numbers = find_numbers(text.substr(kMark.size()));
+  const std::string_view place = text.substr(kMark.size());
+  const std::optional<Numbers> numbers = find_numbers(place);
   if (!numbers || !(std::abs((*numbers)[0]) <= 90) || !(std::abs((*numbers)[1]) <= 180))
     refuse("expected a latitude and a longitude in degrees, found " + mesh_io::in_quotes(text));
-  return MapPlace{(*numbers)[0], (*numbers)[1]};
+  const bool has_height = std::ranges::count(place, ',') > 1;
+  return MapPlace{(*numbers)[0], (*numbers)[1],
+                  has_height ? std::optional((*numbers)[2]) : std::nullopt};
 }
 
 MapFile parse_xml(std::string_view xml) {
   MapFile file;
-  if (const auto crs = find_element(xml, "SRS")) {
+  if (const auto crs = find_element(xml, "SRS"); crs && !is_local(*crs)) {
     file.place = find_place(*crs);
     if (!file.place)
       file.crs = without_entities(*crs);
+  } else {
+    file.is_local = crs || xml.find(kModelMetadata) != std::string_view::npos;
   }
   if (const auto origin = find_element(xml, "SRSOrigin"))
     file.offset = numbers_of(*origin, "in <SRSOrigin>");
-  if (!file.crs && !file.offset && !file.place)
+  if (!file.crs && !file.offset && !file.place && !file.is_local)
     refuse("expected XML with <SRS> and <SRSOrigin>, found neither");
   return file;
 }

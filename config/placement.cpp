@@ -50,8 +50,12 @@ void take_map_file(storage::FileSystem& files, const std::filesystem::path& path
     if (file.place) {
       place.longitude = file.place->longitude;
       place.latitude = file.place->latitude;
+      if (!place.height)
+        place.height = file.place->height;
     }
   }
+  if (file.is_local)
+    place.unplaced_by = path;
   if (!place.offset)
     place.offset = file.offset;
 }
@@ -209,6 +213,11 @@ Config with_maps(storage::FileSystem& files, Config config,
                  const std::vector<std::filesystem::path>& maps) {
   for (const std::filesystem::path& map : maps)
     take_map_file(files, map, config.placement);
+  if (!config.placement.crs && !config.placement.unplaced_by.empty()) {
+    config.placement.offset.reset();
+    return config;
+  }
+  config.placement.unplaced_by.clear();
   require_crs(maps.front(), config.placement);
   settle_place(config.placement, config.up_axis());
   return config;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -137,12 +138,15 @@ class Import {
   /// Adds the companions that were known before the import, but for tiles that it did not read: no
   /// file names them.
   void add_others(CompanionFiles& all) {
+    std::set<std::filesystem::path> meshes;
+    for (const InputFileFacts& file : input_.all())
+      meshes.insert(file.path);
     std::uint64_t unnamed = 0;
     std::string first;
     for (const CompanionFile& file : input_.companions().files()) {
       if (file.part != InputPart::tile) {
         all.add(file);
-      } else if (!all.has(file.path)) {
+      } else if (!all.has(file.path) && !meshes.contains(file.path)) {
         first = unnamed++ == 0 ? file.path.string() : first;
       }
     }

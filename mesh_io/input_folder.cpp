@@ -3,13 +3,14 @@
 #include "base/error.h"
 #include "base/small_letters.h"
 #include "mesh_io/formats.h"
+#include "mesh_io/osgb_folder.h"
 #include "mesh_io/tileset_archive.h"
-#include "storage/io/paths.h"
 
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,7 +20,6 @@ namespace {
 using Path = std::filesystem::path;
 
 constexpr const char* kMetadata = "metadata.xml";
-constexpr const char* kOsgbEnding = ".osgb";
 
 /// A folder that is looked at.
 struct Place {
@@ -82,33 +82,17 @@ std::optional<InputMeshes> look_for_tileset(const Place& place) {
   return found.empty() ? std::nullopt : std::optional(InputMeshes{.meshes = std::move(found)});
 }
 
-/// Returns the tiles of a folder of OSGB: NAME/NAME.osgb each, or the one of its own name.
-std::vector<Path> osgb_tiles(const Place& place) {
-  if (const Path own = storage::without_last_slash(place.folder.lexically_normal()).filename();
-      place.has(own.string() + kOsgbEnding))
-    return {place.folder / (own.string() + kOsgbEnding)};
-  std::vector<Path> tiles;
-  for (const Path& child : place.files.children(place.folder)) {
-    const Path name = child.filename() / (child.filename().string() + kOsgbEnding);
-    if (place.has(name))
-      tiles.push_back(place.folder / name);
-  }
-  return tiles;
+/// Returns what OSGB tiles stand for, if there are any.
+std::optional<InputMeshes> mesh_of_tiles(storage::FileSystem& files, std::vector<Path> tiles) {
+  if (tiles.empty())
+    return std::nullopt;
+  InputMeshes found{.meshes = std::move(tiles)};
+  found.maps = osgb_maps(files, found.meshes.front());
+  return found;
 }
 
-/// The folder Data of ContextCapture, DJI Terra and Smart3D, or the one around it, or a tile's.
 std::optional<InputMeshes> look_for_osgb(const Place& place) {
-  for (const char* inner : {"Data", ""}) {
-    const Path folder = *inner == '\0' ? place.folder : place.folder / inner;
-    if (!place.files.is_directory(folder) || !place.files.can_list(folder))
-      continue;
-    InputMeshes found{.meshes = osgb_tiles({place.files, folder})};
-    if (found.meshes.empty())
-      continue;
-    found.maps = osgb_maps(place.files, found.meshes.front());
-    return found;
-  }
-  return std::nullopt;
+  return mesh_of_tiles(place.files, find_osgb_tiles(place.files, place.folder));
 }
 
 constexpr auto kRows = std::to_array<FolderRow>({
@@ -148,15 +132,6 @@ bool is_model_metadata(const Path& path) {
   return small_letters(path.filename().string()) == kMetadata;
 }
 
-std::vector<Path> osgb_maps(storage::FileSystem& files, const Path& tile) {
-  for (const char* around : {".", "..", "../.."}) {
-    const Path map = (tile.parent_path() / around / kMetadata).lexically_normal();
-    if (files.kind(map) == storage::FileKind::regular)
-      return {map};
-  }
-  return {};
-}
-
 bool is_container(storage::FileSystem& files, const Path& path) {
   return files.is_directory(path) || is_tileset_archive(files, path) ||
          (is_model_metadata(path) && files.kind(path) == storage::FileKind::regular);
@@ -172,6 +147,8 @@ InputMeshes meshes_of(storage::FileSystem& files, const Path& path) {
     if (auto found = row.look({files, path}))
       return *found;
   }
+  if (auto found = mesh_of_tiles(files, osgb_tiles_below(files, path)))
+    return *found;
   throw Error(ErrorCode::io,
               fmt::format("{} is a folder; name the mesh in it ({}, or a tileset.json), or give a "
                           "folder that has {}",

@@ -27,18 +27,13 @@ struct InputMeshes {
 /// Returns whether a file has the name of those that place tiles: metadata.xml.
 bool is_model_metadata(const std::filesystem::path& path);
 
-/// Returns the file that places an OSGB tile: a metadata.xml beside it, or in one of the two
-/// folders above; none if there is none.
-std::vector<std::filesystem::path> osgb_maps(storage::FileSystem& files,
-                                             const std::filesystem::path& tile);
-
 /// Returns whether a path is a mesh because of what it is, whatever its content: a folder, an
 /// archive of a tileset, a metadata.xml.
 bool is_container(storage::FileSystem& files, const std::filesystem::path& path);
 
 /// Returns the meshes of a folder, of an archive, or of a metadata.xml that lies with them; of any
 /// other path the mesh itself, z-up only if its format says so elsewhere. Throws Error(io) if the
-/// folder is of no kind that is known, or cannot be read; Error(input) as tileset_of_archive().
+/// folder is of no kind that is known, or cannot be read; Error(input) as tileset_of_archive(); as osgb_tiles_below().
 InputMeshes meshes_of(storage::FileSystem& files, const std::filesystem::path& path);
 
 /// Returns the kinds of folders, for sentences: "OSGB tiles, an ODM project or …".

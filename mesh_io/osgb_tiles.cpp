@@ -1,7 +1,5 @@
 #include "mesh_io/osgb_tiles.h"
 
-#include "storage/io/paths.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -70,23 +68,6 @@ std::vector<Path> missing_places(const Path& path, const OsgbRead& read) {
     all.insert(all.end(), places.begin(), places.end());
   }
   return all;
-}
-
-std::vector<Path> osgb_family(storage::FileSystem& files, const Path& path) {
-  const Path folder = path.parent_path();
-  const Path looked = folder.empty() ? Path(".") : folder;
-  if (!files.can_list(looked))
-    return {};
-  const std::string stem = path.stem().string();
-  const bool is_own_folder = folder.filename() == stem;
-  std::vector<Path> family;
-  for (const Path& child : files.children(looked)) {
-    const std::string name = child.filename().string();
-    if (storage::lower_extension(child) == ".osgb" && name != path.filename() &&
-        (is_own_folder || name.starts_with(stem + '_')))
-      family.push_back(folder / name);
-  }
-  return family;
 }
 
 }  // namespace meshhier::mesh_io

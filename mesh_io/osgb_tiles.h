@@ -62,9 +62,4 @@ std::vector<OsgbFinerFile> finer_files(const OsgbRead& read);
 std::vector<std::filesystem::path> missing_places(const std::filesystem::path& path,
                                                   const OsgbRead& read);
 
-/// Returns the files that lie beside an OSGB file and belong to its tile by their names: all others
-/// in a folder of its name, else those that begin with its name.
-std::vector<std::filesystem::path> osgb_family(storage::FileSystem& files,
-                                               const std::filesystem::path& path);
-
 }  // namespace meshhier::mesh_io

@@ -147,7 +147,10 @@ bool has_area(const TileMesh& mesh) {
 }
 
 std::string placement_text(const storage::Manifest& made, const config::Config& config) {
-  return made.transform ? config::placement_text(config, made.source.bounds, *made.transform) : "";
+  if (made.transform)
+    return config::placement_text(config, made.source.bounds, *made.transform);
+  const std::filesystem::path& local = config.placement.unplaced_by;
+  return local.empty() ? "" : local.string() + " names no map: the model has no place\n";
 }
 
 std::string account_text(const SourceSummary& source, const BuildStats& stats) {

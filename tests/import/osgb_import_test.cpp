@@ -259,6 +259,37 @@ TEST_F(Osgb, WhereAFinerFileIsMissingTheCoarserPartStands) {
   EXPECT_EQ(import(tile()).count("unnamed_tiles"), 4U) << "those that it named";
 }
 
+TEST_F(Osgb, FoldersAreFoundAsProgramsLeaveThem) {
+  make("--tiles 2");
+  const auto expect_whole = [&](const fs::path& place) {
+    const Imported mesh = import(folder_ / place);
+    EXPECT_THAT(mesh.triangles, SizeIs(2 * kSide * kSide)) << place;
+    EXPECT_EQ(mesh.count("unnamed_tiles"), 0U) << place;
+  };
+  fs::create_directories(folder_ / "p/Productions");
+  fs::rename(folder_ / "site", folder_ / "p/Productions/Production_1");
+  expect_whole("p");
+  fs::create_directories(folder_ / "t");
+  fs::rename(folder_ / "p/Productions/Production_1/Data", folder_ / "t/terra_osgbs");
+  expect_whole("t");
+  expect_whole("t/terra_osgbs");
+  fs::remove(folder_ / "t/terra_osgbs" / kTile / (std::string(kTile) + ".osgb"));
+  expect_whole("t");
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "t/terra_osgbs")) {
+    if (entry.is_regular_file())
+      fs::copy(entry.path(), folder_ / "p" / entry.path().filename());
+  }
+  expect_whole("p");
+  fs::rename(folder_ / "t/terra_osgbs", folder_ / "p/two");
+  fs::create_directories(folder_ / "p/one/b");
+  fs::copy(folder_ / "p/Tile_+001_+001.osgb", folder_ / "p/one/b/b.osgb");
+  for (const auto& entry : fs::directory_iterator(folder_ / "p")) {
+    if (entry.is_regular_file())
+      fs::remove(entry.path());
+  }
+  EXPECT_THROW(import(folder_ / "p"), Error) << "in p/one and in p/two";
+}
+
 TEST_F(Osgb, TheOrderDoesNotDependOnThreads) {
   make("--tiles 2 --levels 2");
   const auto import_by = [&](std::size_t threads) {
@@ -370,6 +401,27 @@ TEST_F(Osgb, MetadataPlacesTiles) {
     EXPECT_EQ(placed.placement.crs, "EPSG:32632") << path;
     EXPECT_EQ(placed.placement.offset, (std::array<double, 3>{512345, 5401234, 100})) << path;
   }
+}
+
+TEST_F(Osgb, MetadataMaySayThatThereIsNoMap) {
+  make();
+  config::Config config;
+  config.input = folder_ / "site";
+  for (const char* srs : {"<SRS>LOCAL</SRS>", "<SRS></SRS>", ""}) {
+    write(folder_ / "site/metadata.xml",
+          fmt::format("<?xml version=\"1.0\"?>\n<ModelMetadata version=\"1\">{}"
+                      "<SRSOrigin>1,2,3</SRSOrigin></ModelMetadata>",
+                      srs));
+    const config::Config placed = config::with_input_frame(*files_, config);
+    EXPECT_EQ(placed.placement.unplaced_by, folder_ / "site/metadata.xml");
+    EXPECT_FALSE(placed.placement.offset || placed.placement.crs);
+  }
+  write(folder_ / "site/metadata.xml",
+        "<ModelMetadata><SRS>ENU:48.1,11.6,520</SRS><SRSOrigin>0,0,0</SRSOrigin></ModelMetadata>");
+  const config::Config placed = config::with_input_frame(*files_, config);
+  EXPECT_EQ(placed.placement.latitude, 48.1);
+  EXPECT_EQ(placed.placement.longitude, 11.6);
+  EXPECT_EQ(placed.placement.height, 520);
 }
 
 TEST(OsgbFile, WithoutTheProgramOneLineSaysWhatToInstall) {
