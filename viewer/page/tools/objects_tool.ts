@@ -53,7 +53,7 @@ export class ObjectsTool implements Tool {
     view.registerPlugin(this.objects);
     this.objects.addEventListener('change', () => { this.show(); });
     this.objects.addEventListener('problem', ({ message }) => { this.problem = message; this.show(); });
-    const hide = textButton(text.hide, () => { this.draw({ hidden: [...this.objects.choice.hidden, this.scope.value] }); });
+    const hide = textButton(text.hide, () => { this.draw({ hidden: [...new Set([...this.objects.choice.hidden, this.scope.value])] }); });
     const only = textButton(text.only, () => { this.draw({ only: [this.scope.value] }); });
     const go = textButton(text.go, () => { this.objects.go(); });
     this.acts = element('div', { class: 'object-acts' }, element('label', { class: 'tool-field' }, text.scope, this.scope), go, hide, only);
@@ -63,6 +63,7 @@ export class ObjectsTool implements Tool {
   }
 
   choose(right: number, up: number): void {
+    this.problem = '';
     void this.pick(right, up);
   }
 
@@ -90,6 +91,7 @@ export class ObjectsTool implements Tool {
   }
 
   private async suggest(text: string, most: number): Promise<readonly ObjectRow[]> {
+    this.problem = '';
     try {
       return this.table === null ? [] : await fittingNames(this.table, text, most);
     } catch (problem) {
@@ -114,6 +116,7 @@ export class ObjectsTool implements Tool {
   }
 
   private draw(choice: Partial<ObjectChoice>): void {
+    this.problem = '';
     void this.objects.draw(choice);
   }
 
@@ -130,11 +133,10 @@ export class ObjectsTool implements Tool {
     const { picked, choice: { hidden, only } } = this.objects;
     this.list.replaceChildren(...(picked === null ? [] : figures(this.rowsOf(picked))));
     this.acts.hidden = picked === null;
-    if (picked !== null && picked !== this.scoped) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name)));
+    if (picked !== null && picked !== this.scoped) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name === '' ? words.objects.noName : name)));
     this.scoped = picked;
     this.all.hidden = hidden.length + only.length === 0;
     this.note.textContent = this.problem !== '' ? this.problem : picked === null ? words.objects.hint(formatCount(this.table?.count ?? 0)) : '';
-    this.problem = '';
     if (this.following === 0) this.shop.objectLink.write(formatObjectLink({ picked: picked?.name ?? null, hidden, only }));
     this.shop.bench.redraw();
   }
