@@ -4,7 +4,7 @@ import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { Scene, Vector3, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
-import { CameraPose, type Stage } from '../src/index.js';
+import { CameraPose, rampColour, type Stage } from '../src/index.js';
 import { ObjectShading } from '../src/plugins/object_shading.js';
 import { Objects } from '../src/plugins/objects.js';
 import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
@@ -90,6 +90,23 @@ describe.skipIf(!hasProgram)('objects of a view', () => {
     expect([objects.shading.draws(1 + 5 * 12), objects.shading.draws(6 * 12), objects.shading.draws(object)]).toEqual([true, true, false]);
     await objects.draw({ hidden: ['street 05/house 00'] });
     expect([objects.shading.draws(1 + 5 * 12), objects.shading.draws(2 + 5 * 12)]).toEqual([false, true]);
+  });
+
+  it('have colours by a property', async () => {
+    await above(1);
+    await objects.colourBy('storeys');
+    expect(objects.legend).toMatchObject({ property: { name: 'storeys' }, range: [1, 5], values: [] });
+    const bytes = objects.shading.uniforms.objectColours.value!.image.data as Uint8Array;
+    const colourOf = (object: number): number[] => [...bytes.slice(4 * object, 4 * object + 4)];
+    const withStoreys = (storeys: number): number => town.rows.findIndex(({ values }) => values[0] === storeys);
+    expect([colourOf(0), colourOf(withStoreys(1)), colourOf(withStoreys(5))]).toEqual([[0, 0, 0, 0], [...rampColour('viridis', 0), 255], [...rampColour('viridis', 1), 255]]);
+    await objects.colourBy('school');
+    expect(objects.legend?.values.map(({ value, count }) => [value, count])).toEqual([[false, 130], [true, 14]]);
+    await objects.colourBy('no such property');
+    expect(objects.legend).toBeNull();
+    await objects.colourBy('school');
+    await objects.colourBy(null);
+    expect([objects.legend, objects.shading.uniforms.coloursObjects.value]).toEqual([null, false]);
   });
 
   it('tell what could not be read', async () => {

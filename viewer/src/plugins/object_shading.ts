@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shows one object in another colour, and leaves objects out: all corners of a triangle have its object.
-import { Color, DataTexture, NearestFilter, RedFormat, UnsignedByteType, type BufferGeometry } from 'three';
+import { Color, DataTexture, NearestFilter, RedFormat, RGBAFormat, SRGBColorSpace, UnsignedByteType, type BufferGeometry } from 'three';
 import type { ObjectRange } from '../hierarchy/object_table.js';
 import { objectIndex, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
@@ -22,7 +22,23 @@ if (leavesObjectsOut) {
   int object = int(vObject + 0.5);
   if (texelFetch(leftOutObjects, ivec2(object & ${ROW - 1}, object >> 12), 0).r > 0.5) discard;
 }
+if (coloursObjects) {
+  int object = int(vObject + 0.5);
+  vec4 colour = texelFetch(objectColours, ivec2(object & ${ROW - 1}, object >> 12), 0);
+  if (colour.a > 0.5) diffuseColor.rgb = colour.rgb;
+}
 if (abs(vObject - markedObject) < 0.5) diffuseColor.rgb = mix(diffuseColor.rgb, objectMark, 0.45);`;
+
+function rowsOf(objects: number): number {
+  return Math.max(1, Math.ceil(objects / ROW));
+}
+
+function texture(bytes: Uint8Array<ArrayBuffer>, rows: number, format: typeof RedFormat | typeof RGBAFormat): DataTexture {
+  const made = new DataTexture(bytes, ROW, rows, format, UnsignedByteType);
+  made.minFilter = made.magFilter = NearestFilter;
+  made.needsUpdate = true;
+  return made;
+}
 
 export class ObjectShading implements Shading {
   /// Pictures that have their light already show it, too.
@@ -32,6 +48,8 @@ export class ObjectShading implements Shading {
     objectMark: { value: new Color(MARK) },
     leavesObjectsOut: { value: false },
     leftOutObjects: { value: null as DataTexture | null },
+    coloursObjects: { value: false },
+    objectColours: { value: null as DataTexture | null },
   };
   /// The place of the object among a vertex's values; -1: the model has none, or it is not known yet.
   private index = -1;
@@ -46,7 +64,7 @@ export class ObjectShading implements Shading {
     replaceChunk(shader, 'vertexShader', 'begin_vertex', OBJECT);
     replaceChunk(shader, 'fragmentShader', 'color_fragment', SHOWN);
     shader.vertexShader = `attribute float object;\nflat varying float vObject;\n${shader.vertexShader}`;
-    shader.fragmentShader = `uniform float markedObject;\nuniform vec3 objectMark;\nuniform bool leavesObjectsOut;\nuniform highp sampler2D leftOutObjects;\nflat varying float vObject;\n${shader.fragmentShader}`;
+    shader.fragmentShader = `uniform float markedObject;\nuniform vec3 objectMark;\nuniform bool leavesObjectsOut;\nuniform highp sampler2D leftOutObjects;\nuniform bool coloursObjects;\nuniform highp sampler2D objectColours;\nflat varying float vObject;\n${shader.fragmentShader}`;
   };
 
   show(_: Look, attributes: readonly ScalarAttribute[]): void {
@@ -69,13 +87,25 @@ export class ObjectShading implements Shading {
     leavesObjectsOut.value = ranges !== null;
     if (ranges === null) return;
     this.isUsed = true;
-    const rows = Math.max(1, Math.ceil(count / ROW));
-    const states = new Uint8Array(ROW * rows).fill(areShown ? 255 : 0);
+    const states = new Uint8Array(ROW * rowsOf(count)).fill(areShown ? 255 : 0);
     for (const { begin, end } of ranges) states.fill(areShown ? 0 : 255, begin, end);
     leftOutObjects.value?.dispose();
-    leftOutObjects.value = new DataTexture(states, ROW, rows, RedFormat, UnsignedByteType);
-    leftOutObjects.value.minFilter = leftOutObjects.value.magFilter = NearestFilter;
-    leftOutObjects.value.needsUpdate = true;
+    leftOutObjects.value = texture(states, rowsOf(count), RedFormat);
+  }
+
+  /// Gives each object a colour of a screen, four bytes each; the fourth is 0 where it has none. Null: they look as they are.
+  colour(bytes: Uint8Array | null): void {
+    const { coloursObjects, objectColours } = this.uniforms;
+    coloursObjects.value = bytes !== null;
+    objectColours.value?.dispose();
+    objectColours.value = null;
+    if (bytes === null) return;
+    this.isUsed = true;
+    const rows = rowsOf(bytes.length / 4);
+    const padded = new Uint8Array(4 * ROW * rows);
+    padded.set(bytes);
+    objectColours.value = texture(padded, rows, RGBAFormat);
+    objectColours.value.colorSpace = SRGBColorSpace;
   }
 
   /// An object is marked, and drawn.
@@ -100,6 +130,7 @@ export class ObjectShading implements Shading {
     this.uniforms.leftOutObjects.value?.dispose();
     this.uniforms.leftOutObjects.value = null;
     this.uniforms.leavesObjectsOut.value = false;
+    this.colour(null);
     this.uniforms.markedObject.value = NONE;
   }
 }

@@ -4,7 +4,9 @@ import { Color, EventDispatcher, NoColorSpace, type Vector3 } from 'three';
 import type { ObjectRow } from '../hierarchy/object_blocks.js';
 import type { ObjectRange, ObjectTable } from '../hierarchy/object_table.js';
 import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
+import type { RampName } from '../scene/ramps.js';
 import { Coordinates } from '../tools/coordinates.js';
+import { colourObjects, type ObjectLegend } from '../tools/object_colours.js';
 import { cornersInWorld, poseOfObject } from '../tools/object_pose.js';
 import type { PickedPoint } from '../tools/picked_point.js';
 import { Pointing } from '../tools/pointing.js';
@@ -25,6 +27,9 @@ export interface ObjectChoice {
   readonly only: readonly string[];
 }
 
+/// All of a table is read for colours: about 6 MB.
+const MOST_COLOURED = 2 ** 17;
+
 const ALL: ObjectChoice = { hidden: [], only: [] };
 
 /// Event `change`: another object is picked, or others are drawn. `problem`: what was asked for could not be read.
@@ -40,6 +45,8 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
   private outline: ObjectOutline | null = null;
   private asking = new AbortController();
   private asked = 0; // choices of what is drawn
+  private coloursAsked = 0;
+  private coloured: ObjectLegend | null = null;
 
   constructor(private readonly options: ObjectsOptions = {}) {
     super();
@@ -121,6 +128,27 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
     this.changed();
   }
 
+  /// Colours objects by a property: numbers along a ramp, other values each by its own. Null: they look as they are. Nothing happens where there is
+  /// no such property; a table of more than 2^17 objects is refused, as a problem.
+  async colourBy(name: string | null, ramp: RampName = 'viridis'): Promise<void> {
+    const asked = ++this.coloursAsked;
+    const coloured = name === null ? null : await this.read(async (table) => {
+      const at = table.properties.findIndex((each) => each.name === name);
+      if (at < 0) return null;
+      if (table.count > MOST_COLOURED) throw new Error(`${table.count} objects are too many to be coloured; ${MOST_COLOURED} can be`);
+      return colourObjects(await table.rows({ begin: 0, end: table.count }), table.properties[at], at, ramp);
+    });
+    if (asked !== this.coloursAsked || this.view === null) return;
+    this.coloured = coloured?.legend ?? null;
+    this.shading.colour(coloured?.bytes ?? null);
+    this.changed();
+  }
+
+  /// What the colours mean; null: objects look as they are.
+  get legend(): ObjectLegend | null {
+    return this.coloured;
+  }
+
   /// The model may have become another one.
   drawn(): void {
     const table = this.view?.objects ?? null;
@@ -130,6 +158,7 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
     if (before === null) return;
     if (this.row !== null) void this.chooseNamed(this.row.name);
     if (this.chosen !== ALL) void this.draw({});
+    if (this.coloured !== null) void this.colourBy(this.coloured.property.name);
   }
 
   /// A line around the picked object; in pictures that a plug-in has painted it has its colour alone.
@@ -147,6 +176,8 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
   dispose(): void {
     this.asking.abort();
     ++this.asked;
+    ++this.coloursAsked;
+    this.coloured = null;
     this.shading.dispose();
     this.outline?.dispose();
     this.outline = null;
