@@ -103,6 +103,10 @@ async function checkHand(visitor) {
   visitor.check('alone in the link', await until(page, async () => page.url().includes(`only=${encodeURIComponent(branch)}`)), branch);
   await settle(page);
   await visitor.picture(page, 'alone');
+  await page.locator('.object-legend').locator('..').locator('select').selectOption({ index: 1 });
+  visitor.check('colours', await until(page, async () => page.url().includes('by=') && (await page.locator('.object-legend').innerText()) !== ''), await page.locator('.object-legend').innerText());
+  await settle(page);
+  await visitor.picture(page, 'colours');
   await checkLink(visitor, page, name);
   await button(page, 'Show everything').click();
   visitor.check('everything', await until(page, async () => !/hide=|only=/.test(page.url())), page.url().replace(/.*#/, ''));

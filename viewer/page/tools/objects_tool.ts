@@ -8,6 +8,7 @@ import { fittingNames } from '../../src/tools/object_names.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
+import { ObjectColouring } from './object_colouring.js';
 import { formatObjectLink, parseObjectLink } from './object_link.js';
 import { ObjectSearch } from './object_search.js';
 import type { Tool } from './tool.js';
@@ -41,6 +42,7 @@ export class ObjectsTool implements Tool {
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly scope = element('select', { class: 'tool-select', 'aria-label': words.objects.scope });
   private readonly acts: HTMLElement;
+  private readonly colouring: ObjectColouring;
   private readonly all = textButton(words.objects.all, () => { this.draw({ hidden: [], only: [] }); });
   private tapped = { at: -Infinity, right: 0, up: 0 };
   private problem = '';
@@ -53,11 +55,12 @@ export class ObjectsTool implements Tool {
     view.registerPlugin(this.objects);
     this.objects.addEventListener('change', () => { this.show(); });
     this.objects.addEventListener('problem', ({ message }) => { this.problem = message; this.show(); });
+    this.colouring = new ObjectColouring(view.objects?.properties ?? [], (name) => void this.objects.colourBy(name));
     const hide = textButton(text.hide, () => { this.draw({ hidden: [...new Set([...this.objects.choice.hidden, this.scope.value])] }); });
     const only = textButton(text.only, () => { this.draw({ only: [this.scope.value] }); });
     const go = textButton(text.go, () => { this.objects.go(); });
     this.acts = element('div', { class: 'object-acts' }, element('label', { class: 'tool-field' }, text.scope, this.scope), go, hide, only);
-    this.root = element('div', {}, this.search.root, this.note, this.list, this.acts, this.all);
+    this.root = element('div', {}, this.search.root, this.note, this.list, this.acts, this.all, this.colouring.root);
     objectLink.onFollow(() => void this.follow());
     void this.follow();
   }
@@ -122,22 +125,23 @@ export class ObjectsTool implements Tool {
 
   /// As a link says, which stays as it is meanwhile.
   private async follow(): Promise<void> {
-    const { picked, hidden, only } = parseObjectLink(this.shop.objectLink.text);
+    const { picked, by, hidden, only } = parseObjectLink(this.shop.objectLink.text);
     ++this.following;
-    await Promise.all([this.objects.draw({ hidden, only }), picked === null ? this.objects.choose(null) : this.objects.chooseNamed(picked)]);
+    await Promise.all([this.objects.draw({ hidden, only }), this.objects.colourBy(by), picked === null ? this.objects.choose(null) : this.objects.chooseNamed(picked)]);
     --this.following;
     this.show();
   }
 
   private show(): void {
-    const { picked, choice: { hidden, only } } = this.objects;
+    const { picked, legend, choice: { hidden, only } } = this.objects;
     this.list.replaceChildren(...(picked === null ? [] : figures(this.rowsOf(picked))));
     this.acts.hidden = picked === null;
     if (picked !== null && picked !== this.scoped) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name === '' ? words.objects.noName : name)));
     this.scoped = picked;
+    this.colouring.show(legend);
     this.all.hidden = hidden.length + only.length === 0;
     this.note.textContent = this.problem !== '' ? this.problem : picked === null ? words.objects.hint(formatCount(this.table?.count ?? 0)) : '';
-    if (this.following === 0) this.shop.objectLink.write(formatObjectLink({ picked: picked?.name ?? null, hidden, only }));
+    if (this.following === 0) this.shop.objectLink.write(formatObjectLink({ picked: picked?.name ?? null, by: legend?.property.name ?? null, hidden, only }));
     this.shop.bench.redraw();
   }
 

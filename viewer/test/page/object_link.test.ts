@@ -3,11 +3,11 @@ import { describe, expect, it } from 'vitest';
 import { formatObjectLink, objectsOfChoices, parseObjectLink, type ObjectLink } from '../../page/tools/object_link.js';
 import { ObjectLinkStore } from '../../page/tools/object_link_store.js';
 
-const NOTHING: ObjectLink = { picked: null, hidden: [], only: [] };
+const NOTHING: ObjectLink = { picked: null, by: null, hidden: [], only: [] };
 
 describe('a link to objects', () => {
   it.each<ObjectLink>([
-    NOTHING, { ...NOTHING, picked: 'street 01/house 02' }, { ...NOTHING, picked: '' }, { picked: 'a+b & c=d, é #%41', hidden: ['x,y', 'storey/', ''], only: ['\u{1f3e0}/'] },
+    NOTHING, { ...NOTHING, picked: 'street 01/house 02' }, { ...NOTHING, picked: '' }, { picked: 'a+b & c=d, é #%41', by: 'is & was', hidden: ['x,y', 'storey/', ''], only: ['\u{1f3e0}/'] },
   ])('tells what it was made of: %j', (link) => { expect(parseObjectLink(formatObjectLink(link))).toEqual(link); });
 
   it('is nothing where nothing is chosen', () => { expect(formatObjectLink(NOTHING)).toBeNull(); });
