@@ -113,7 +113,7 @@ describe('readTile', () => {
     ['a map that is not there', {}, { normalMap: -1 }, 'is no file'],
     ['a map of another size', { normalMap: { ...MAP, file: jpeg(64, 33) } }, {}, 'has another size'],
     ['a picture of another size than the map', { picture: PICTURE }, { imageHeight: 16 }, 'have different sides'],
-    ['a newer version', {}, { version: 7 }, 'version 7 of MESHHIER_tile is not known'],
+    ['a newer version', {}, { version: 8 }, 'version 8 of MESHHIER_tile is not known'],
   ])('refuses %s', async (_, parts, change, problem) => {
     const refused = read({ ...ROOT, ...parts }, change);
     await expect(refused).rejects.toBeInstanceOf(HierarchyProblem);
