@@ -126,14 +126,22 @@ async function checkLink(visitor, page, name) {
   await other.close();
 }
 
+/// Turns until an object is in the middle, and takes it. False: none came there.
+async function pickMiddle(page) {
+  for (let i = 0; i < TRIES && (await pickedName(page)) === ''; ++i) {
+    await page.keyboard.press(i % 2 === 0 ? 'ArrowRight' : 'ArrowUp');
+    await settle(page);
+    await page.keyboard.press('Enter');
+    await page.waitForTimeout(700);
+  }
+  return (await pickedName(page)) !== '';
+}
+
 async function checkKeys(visitor) {
   const page = await visitor.open();
   await page.keyboard.press('j');
   await page.locator('.tool-card', { hasText: 'Objects' }).waitFor();
-  await page.keyboard.press('ArrowRight');
-  await settle(page);
-  await page.keyboard.press('Enter');
-  visitor.check('key of the middle', await nameIs(page, (name) => name !== ''), await pickedName(page));
+  visitor.check('key of the middle', await pickMiddle(page), await pickedName(page));
   const [first] = await page.evaluate(async () => (await window.meshhier.view.objects.rows({ begin: window.meshhier.view.objects.count - 1, end: window.meshhier.view.objects.count })).map(({ name }) => name));
   const field = page.getByRole('combobox', { name: 'Name of an object' });
   await field.focus();
