@@ -61,6 +61,8 @@ export class ObjectsTool implements Tool {
     const go = textButton(text.go, () => { this.objects.go(); });
     this.acts = element('div', { class: 'object-acts' }, element('label', { class: 'tool-field' }, text.scope, this.scope), go, hide, only);
     this.root = element('div', {}, this.search.root, this.note, this.list, this.acts, this.all, this.colouring.root);
+    // The browser tells a double click from two also while frames take long.
+    shop.bench.surface.addEventListener('dblclick', () => { if (this.root.isConnected) this.objects.go(); }, { signal: shop.bench.signal });
     objectLink.onFollow(() => void this.follow());
     void this.follow();
   }
