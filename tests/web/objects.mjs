@@ -54,10 +54,10 @@ function nameIs(page, good) {
   return until(page, async () => good(await pickedName(page)));
 }
 
-/// Clicks here and there until an object with a name of parts is picked. Returns its place.
+/// Clicks here and there, beside the card, until an object with a name of parts is picked. Returns its place.
 async function clickObject(page) {
   for (let i = 0; i < TRIES; ++i) {
-    const place = { x: VIEWPORT.width * (0.55 + 0.25 * Math.sin(7 * i)), y: VIEWPORT.height * (0.5 + 0.2 * Math.cos(5 * i)) };
+    const place = { x: VIEWPORT.width * (0.66 + 0.22 * Math.sin(7 * i)), y: VIEWPORT.height * (0.5 + 0.2 * Math.cos(5 * i)) };
     await page.mouse.click(place.x, place.y);
     await page.waitForTimeout(700); // two taps are not one
     if ((await pickedName(page)).includes('/')) return place;
