@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "execution/allocator.h"
+#include "hierarchy/value_channels.h"
 #include "import/find_copies.h"
 #include "import/import_input.h"
 #include "pipeline/journal/workshop.h"
@@ -157,13 +158,26 @@ BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path
   return plan_of(input, input.materials(), config, environment.files);
 }
 
+namespace {
+
+/// Returns whether the table of the mesh's objects is gone.
+bool lacks_objects(const mesh_io::MeshDescription& mesh, const storage::WorkDirectory& work,
+                   storage::FileSystem& files) {
+  return placed_object(mesh.attributes) &&
+         files.kind(storage::imported_objects_path(work.path())) != storage::FileKind::regular;
+}
+
+}  // namespace
+
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
                           storage::MemoryPool& pool, const config::Config& config,
                           const BuildEnvironment& environment) {
   const auto earlier = find_earlier_build(environment.files, work.path());
   work.keep(earlier.has_value());
-  const auto recalled =
+  auto recalled =
       earlier ? recall_import(*earlier, input, config, environment.cancel) : std::nullopt;
+  if (recalled && lacks_objects(*recalled, work, environment.files))
+    recalled.reset();
   const auto make_plan = [&] {
     if (!recalled)
       return read_and_plan(input, work.path(), pool, config, environment);

@@ -149,7 +149,9 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
       !is(made_of, "input_bytes", files.bytes()) || config == made_of.end() ||
       !is(*config, "weld", files.weld()) ||
       !is(*config, "topology", config::resolved_json(asked).at("topology")) ||
-      !is(config->value("texture", nlohmann::json::object()), "use", asked.texture.use))
+      !is(config->value("texture", nlohmann::json::object()), "use", asked.texture.use) ||
+      config->value("objects", nlohmann::json()) !=
+          nlohmann::json(config::resolved_json(asked)).value("objects", nlohmann::json()))
     return std::nullopt;
   if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
