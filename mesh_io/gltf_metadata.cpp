@@ -240,9 +240,11 @@ class GltfPropertyTable final : public FeatureTable {
 
   static std::string text_of_component(const Column& column, const ObjectValue& value) {
     const auto* number = std::get_if<double>(&value);
-    return column.is_normalized && number != nullptr
-               ? fmt::format("{}", fraction_of(column.type, *number))
-               : text_of_number(value);
+    if (number == nullptr)
+      return text_of_number(value);
+    if (column.type == NumberType::f32)
+      return fmt::format("{}", static_cast<float>(*number));
+    return fmt::format("{}", column.is_normalized ? fraction_of(column.type, *number) : *number);
   }
 
   /// Returns an element by its number among those of all rows.

@@ -39,6 +39,7 @@ storage::ObjectsSummary make_objects(Forest& forest, Vec3d origin,
   census.end();
 
   const storage::ObjectTable table(context.files.open(imported));
+  context.files.make_directories(directory);  // it is the first file there
   const auto file = context.files.create(storage::objects_path(directory));
   storage::ObjectTableWriter writer(*file, table.properties());
   table.for_each([&](std::uint32_t object, ObjectRow row) {

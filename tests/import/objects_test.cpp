@@ -98,8 +98,8 @@ TEST_F(ObjectsTest, StatementsOfAnObjAreNumberedByName) {
     EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("", "roof", "Wall", "roof"));
     EXPECT_THAT(mesh.layout.values,
                 ElementsAre(ScalarAttribute{"object", ValueType::u32, true, true}));
-    EXPECT_THAT(mesh.positions, SizeIs(6U + 6));
-    EXPECT_EQ(mesh.count("split_vertices"), 6U);
+    EXPECT_THAT(mesh.positions, SizeIs(6U + 5));
+    EXPECT_EQ(mesh.count("split_vertices"), 5U);
   }
 }
 
@@ -172,7 +172,7 @@ TEST_F(ObjectsTest, LabelsOfFacesAndOfVertices) {
   EXPECT_THAT(faces.object_names(), ElementsAre("12", "7"));
   EXPECT_THAT(faces.names_of_triangles(), ElementsAre("12", "7"));
   EXPECT_EQ(faces.layout.values[0].name, "part");
-  EXPECT_THAT(faces.values(0), ElementsAre(7, 12, 12, 7, 12, 7)) << "the label stays as it is";
+  EXPECT_THAT(faces.values(0), ElementsAre(12, 7, 12, 12, 7, 7)) << "the label stays as it is";
 
   put("b.ply",
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
