@@ -334,7 +334,7 @@ TEST_F(ObjectsTest, TablesThatAreWrong) {
   EXPECT_THAT(failure_of("height\n1\n"), HasSubstr("w/t.csv: has no column \"id\" or \"name\""));
   EXPECT_THAT(failure_of("id,\"h\n1,2\n"), HasSubstr("line 1: a field in quotes begins here"));
   EXPECT_THAT(failure_of("id,h\na,\"2\n3"), HasSubstr("line 2: a field in quotes begins here"));
-  EXPECT_THAT(failure_of("id,h,h\na,1,2\n"), HasSubstr("two columns have the name \"h\""));
+  EXPECT_THAT(failure_of("id,h,h\na,1,2\n"), HasSubstr("two columns have the name 'h'"));
   EXPECT_THAT(failure_of("{\"id\": 1}\n[1]\n"), HasSubstr("line 2: expected an object of JSON"));
   EXPECT_THAT(failure_of("{\"id\": " + std::string(100, '[') + "\n"), HasSubstr("line 1"));
   EXPECT_THAT(failure_of(""), HasSubstr("found an empty file"));
