@@ -52,6 +52,11 @@ Json plain_number(double value) {
 
 // ---- the JSON schema
 
+/// Returns the texts of a choice that begin with its prefix, as a regular expression.
+std::string pattern_of(const ConfigKey& key) {
+  return fmt::format("{}[!-~]{{1,{}}}", key.prefix, kMostNameBytes);
+}
+
 /// Returns the schema of a key's value.
 Json value_schema(const ConfigKey& key) {
   const Json path{{"type", "string"}, {"minLength", 1}};
@@ -93,7 +98,7 @@ Json value_schema(const ConfigKey& key) {
   const Json choices{{"enum", key.choices}};
   if (key.prefix.empty())
     return choices;
-  return {{"anyOf", Json::array({choices, {{"pattern", '^' + key.prefix + "[!-~]{1,100}$"}}})}};
+  return {{"anyOf", Json::array({choices, {{"pattern", '^' + pattern_of(key) + '$'}}})}};
 }
 
 Json key_schema(const ConfigKey& key) {
@@ -139,12 +144,12 @@ Json object_schema(const std::string& prefix) {
         section.path.find('.', prefix.size()) != std::string::npos)
       continue;
     Json inner{{"description", as_sentence(section.meaning)}};
-    const Json keys = object_schema(section.path + '.');
-    inner.update(section.short_for.empty()
-                     ? keys
-                     : Json{{"anyOf",
-                             {keys, value_schema(*find_config_key(
-                                        with_key(section.path, section.short_for)))}}});
+    inner.update(object_schema(section.path + '.'));
+    if (!section.short_for.empty()) {
+      const ConfigKey& key = *find_config_key(with_key(section.path, section.short_for));
+      inner["type"] = Json::array({"object", "string"});
+      inner["pattern"] = fmt::format("^({}|{})$", fmt::join(key.choices, "|"), pattern_of(key));
+    }
     properties[section.path.substr(prefix.size())] = inner;
   }
   Json schema{{"type", "object"}, {"additionalProperties", false}};

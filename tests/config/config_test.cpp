@@ -767,7 +767,8 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
       EXPECT_EQ(schema.at("oneOf").at(1).at("type"), "string");
       break;
     case KeyKind::choice:
-      EXPECT_EQ(schema.at("enum"), Json(key.choices));
+      EXPECT_EQ((key.prefix.empty() ? schema : schema.at("anyOf").at(0)).at("enum"),
+                Json(key.choices));
       break;
     case KeyKind::names:
       EXPECT_EQ(schema.at("oneOf").at(0).at("enum"), Json(key.choices));
