@@ -53,16 +53,23 @@ WedgeUse use_of(const TileWedges& wedges, const WedgeClusters& clusters) {
   return use;
 }
 
-/// Marks the clusters whose wedges are looked at: not those with one wedge a place, in one chart;
-/// the method knew all there is.
+/// Marks the clusters whose wedges are looked at: not those with one wedge a place, in one chart,
+/// of one object; the method knew all there is.
 std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters& clusters,
-                                  const WedgeUse& use, std::span<const std::uint32_t> charts) {
+                                  const WedgeUse& use, std::span<const std::uint32_t> charts,
+                                  const ValueMixer& values) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<char> wanted(clusters.count());
   std::vector<std::uint32_t> shown(clusters.count(), kNone);  // a chart that survives
+  std::vector<std::uint32_t> firsts(clusters.count(), kNone);
+  const auto object_at = [&](std::uint32_t place) {
+    return values.object_of(wedges.attributes_of(place).data());
+  };
   for (std::uint32_t place = 0; place < wedges.own_place_count(); ++place) {
     const std::uint32_t cluster = clusters.of(place);
-    if (wedges.count_at(place) > 1)
+    if (firsts[cluster] == kNone)
+      firsts[cluster] = place;
+    if (wedges.count_at(place) > 1 || object_at(place) != object_at(firsts[cluster]))
       wanted[cluster] = 1;
     if (use.survives[place] == 0)
       continue;
@@ -164,7 +171,7 @@ class WedgeContraction {
         clusters_(wedges_, contraction),
         use_(use_of(wedges_, clusters_)),
         charts_(texture_charts(wedges_, clusters_, texcoords_)),
-        wanted_(wanted_clusters(wedges_, clusters_, use_, charts_)),
+        wanted_(wanted_clusters(wedges_, clusters_, use_, charts_, rules.values())),
         coordinates_(chart_coordinates(wedges_, clusters_, charts_, representatives_.positions,
                                        wanted_, texcoords_)) {}
 

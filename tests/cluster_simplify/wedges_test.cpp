@@ -841,6 +841,21 @@ TEST(WedgesTest, PiecesThatOnlyAMethodBringsTogetherKeepTheirObjects) {
   }
 }
 
+TEST(WedgesTest, APieceThatVanishesDoesNotNameTheOneThatStays) {
+  // A large triangle whose corners all come to one place, and a small one beside it that stays.
+  tests::TestMesh mesh;
+  mesh.positions = {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {10, 0, 0}, {11, 0, 0}, {10, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const BuildTile tile =
+      tests::tile_of(of_objects(mesh, [](std::uint32_t t) { return t == 0 ? 7.0 : 5.0; }));
+  Contraction contraction =
+      contraction_to({0, 0, 0, 0, 1, 2}, {{3, 0, 0}, {11, 0, 0}, {10, 1, 0}}, 2);
+  for (std::size_t v = 0; v < 3; ++v)
+    put_value(ValueType::u32, v == 0 ? 7 : 5,
+              contraction.representatives.attributes.data() + 2 * v);
+  expect_objects_kept(contracted(tile, std::move(contraction), kObjects));
+}
+
 TEST(WedgesTest, OfAnyNumberOfObjectsAtAPlaceNoneTakesAnothers) {
   const WedgeMesh mesh =
       of_objects(tests::wheel(200, 0.1F), [](std::uint32_t t) { return t + 16777216.0; });
