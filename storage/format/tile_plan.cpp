@@ -373,7 +373,7 @@ std::uint64_t begin_of(TilePart part, std::uint64_t end) {
 std::uint64_t Packing::offset(TilePart part) const {
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(part); ++i)
-    offset = begin_of(static_cast<TilePart>(i), offset) + bytes[i];
+    offset = bytes[i] > 0 ? begin_of(static_cast<TilePart>(i), offset) + bytes[i] : offset;
   return begin_of(part, offset);
 }
 
