@@ -193,8 +193,11 @@ void Draft::put(const std::string& path, Json value, const std::string& source) 
   }
   const std::size_t dot = path.rfind('.');
   if (dot == std::string::npos) {
-    document_[path] = std::move(value);
-    open_short_sections();
+    const ConfigSection* section = find_config_section(path);
+    if (section != nullptr && !section->short_for.empty() && value.is_string())
+      open_section(path)[section->short_for] = std::move(value);
+    else
+      document_[path] = std::move(value);
     return;
   }
   const std::string section = path.substr(0, dot);

@@ -89,6 +89,7 @@ class Namer {
     }
     const auto to = naming_.files.create(naming_.to);
     list_objects(objects, table ? &*table : nullptr, types, *to, list_, naming_.room);
+    to->sync();  // a build that goes on later, and tasks, trust it
     named_.imported = {text_of(objects.choice), naming_.to, list_.facts};
     if (table)
       tell(table->counts());

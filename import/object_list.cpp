@@ -3,6 +3,7 @@
 #include "import/row_bytes.h"
 #include "partition/external_sort.h"
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,17 +62,22 @@ class Lister {
 
   void run() {
     const bool have_ids = objects_.names.have_ids();
-    RowSort by_key(room_, memory_), by_name(room_, memory_);
-    add_found(by_key);
-    by_key.sort();
-    join(by_key, have_ids, by_name);
-    by_name.sort();
-    if (!have_ids)
-      return write(by_name);
-    RowSort renamed(room_, memory_);
-    tell_apart(by_name, renamed);
-    renamed.sort();
-    write(renamed);
+    auto by_name = std::make_unique<RowSort>(room_, memory_);
+    {
+      RowSort by_key(room_, memory_);
+      add_found(by_key);
+      by_key.sort();
+      join(by_key, have_ids, *by_name);
+    }
+    by_name->sort();
+    // A name with an id behind it may be another one's as it is.
+    for (bool is_changed = have_ids; is_changed;) {
+      auto renamed = std::make_unique<RowSort>(room_, memory_);
+      is_changed = tell_apart(*by_name, *renamed);
+      renamed->sort();
+      by_name = std::move(renamed);
+    }
+    write(*by_name);
   }
 
  private:
@@ -115,15 +121,16 @@ class Lister {
       return;
     }
     if (by_id && !row->name.empty())
-      object.name = row->name;
+      object.name = sound_name(row->name);
     if (is_new)
       object.values.insert(object.values.begin(), row->values.begin(), row->values.end());
   }
 
-  /// Objects of one name that have different ids get these behind it, but for the first.
-  void tell_apart(RowSort& by_name, RowSort& renamed) {
+  /// Objects of one name that have different ids get these behind it, but for the first. Returns
+  /// whether there are any.
+  bool tell_apart(RowSort& by_name, RowSort& renamed) {
     std::string name, id;
-    bool is_first = true;
+    bool is_first = true, is_any = false;
     while (by_name.next()) {
       Listed object = listed_in(by_name.row().bytes);
       if (is_first || object.name != name) {
@@ -131,10 +138,12 @@ class Lister {
         id = object.id;
       } else if (object.id != id) {
         object.name = fmt::format("{} ({})", object.name, object.id);
+        is_any = true;
       }
       is_first = false;
-      add_listed(renamed, object.name, {}, object);
+      add_listed(renamed, object.name, object.id, object);
     }
+    return is_any;
   }
 
   void write(RowSort& by_name) {

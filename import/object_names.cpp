@@ -27,15 +27,14 @@ struct ValueHead {
   std::uint8_t property, kind;
 };
 
-/// UTF-8 without a zero, which ends names elsewhere.
+}  // namespace
+
 std::string sound_name(std::string_view name) {
   std::string sound = sound_utf8(name);
   for (std::size_t zero = 0; (zero = sound.find('\0', zero)) != std::string::npos;)
     sound.replace(zero, 1, "\xEF\xBF\xBD");
   return sound;
 }
-
-}  // namespace
 
 std::optional<std::uint8_t> PropertyNames::number(std::string_view name) {
   const auto known = std::ranges::find(names_, name);

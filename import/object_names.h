@@ -38,6 +38,9 @@ class PropertyNames {
   std::uint64_t dropped_ = 0;
 };
 
+/// Returns a name in UTF-8 without a zero, which ends keys of sorts.
+std::string sound_name(std::string_view name);
+
 /// Values of an object, each with the number of its property.
 using ObjectValues = std::vector<std::pair<std::uint8_t, ObjectValue>>;
 

@@ -443,6 +443,17 @@ Json source_json(const storage::Manifest& manifest) {
           {"unused", s.unused}};
 }
 
+Json objects_json(const storage::ObjectsSummary& objects) {
+  Json properties = Json::array();
+  for (const auto& [name, type] : objects.table.properties)
+    properties.push_back({{"name", name}, {"type", name_of(type)}});
+  return {{"count", objects.table.objects},
+          {"bytes", objects.table.bytes},
+          {"properties", std::move(properties)},
+          {"shown", objects.shown},
+          {"in_tiles", objects.are_in_tiles}};
+}
+
 Json partitions_json(const storage::LevelSummary& last,
                      const storage::CompactnessSummary& compactness) {
   return {{"count", last.tiles},
@@ -574,6 +585,8 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
       {"forced_collapses", storage::to_json(forced_collapses_of(reader))},
       {"tile_bytes", tile_bytes(levels)},
       {"total_bytes", bytes_on_disk(place, reader)}};
+  if (manifest.objects)
+    json["objects"] = objects_json(*manifest.objects);
   for (const storage::LevelSummary& s : levels) {
     if (!options.level || s.level == *options.level)
       json["levels"].push_back(storage::to_json(s));

@@ -25,7 +25,8 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
                          const InspectOptions& options);
 
 /// Returns the same for scripts: one object with source, parameters, partitions, levels, outline,
-/// totals, total_bytes; with options.level also `tiles` (an array), with options.node also `tile`.
+/// totals, total_bytes, objects if there are any; with options.level also `tiles` (an array), with
+/// options.node also `tile`.
 nlohmann::ordered_json inspect_json(storage::FileSystem& files,
                                     const std::filesystem::path& directory,
                                     const InspectOptions& options);

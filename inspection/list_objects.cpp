@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "storage/format/object_table.h"
@@ -68,14 +69,16 @@ std::string text_line(std::uint32_t object, const ObjectRow& row,
 
 void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
                   const ListedObjects& which, const std::function<void(std::string_view)>& visit) {
-  const storage::HierarchyReader reader(files, directory);
+  const storage::HierarchyFiles place(files, directory);
+  const storage::HierarchyReader reader(place.files(), directory);
   const auto& objects = reader.manifest().objects;
   if (!objects)
     throw Error(
         ErrorCode::usage,
         fmt::format("{}: has no objects; \"objects\" of the config says what they are made of",
                     directory.string()));
-  const storage::ObjectTable table(files.open(storage::objects_path(directory)), &objects->table);
+  const storage::ObjectTable table(place.files().open(storage::objects_path(directory)),
+                                   &objects->table);
   const auto tell = [&](std::uint32_t object, const ObjectRow& row) {
     visit(which.as_json ? json_line(object, row, table.properties())
                         : text_line(object, row, table.properties()));

@@ -37,6 +37,7 @@ class BatchTable final : public FeatureTable {
   BatchTable(std::shared_ptr<const storage::File> file, const BatchTablePlace& place,
              const Json& json)
       : path_(file->path()),
+        most_rows_(place.rows),
         binary_(std::move(file), place.json + place.json_bytes, place.binary_bytes) {
     for (const auto& [name, value] : json.items()) {
       if (columns_.size() < kMostBatchColumns)
@@ -86,11 +87,12 @@ class BatchTable final : public FeatureTable {
             ByteParts({&binary_, 0, binary_.size()})};
   }
 
-  static std::uint64_t rows_of(const Column& column) {
+  std::uint64_t rows_of(const Column& column) const {
     if (!column.numbers)
       return column.list.size();
     const BinaryColumn& numbers = *column.numbers;
-    return (numbers.bytes.size() - numbers.offset) / (bytes_of(numbers.type) * numbers.components);
+    return std::min(most_rows_, (numbers.bytes.size() - numbers.offset) /
+                                    (bytes_of(numbers.type) * numbers.components));
   }
 
   static ObjectValue numbers(BinaryColumn& column, std::uint64_t row) {
@@ -111,6 +113,7 @@ class BatchTable final : public FeatureTable {
   }
 
   std::filesystem::path path_;
+  std::uint64_t most_rows_;  ///< of numbers: those of other columns stand behind them
   GltfFileBytes binary_;
   std::vector<std::string> names_;
   std::vector<Column> columns_;

@@ -263,6 +263,10 @@ RecordCounts read_records(InputStream& stream, const std::filesystem::path& path
   Characters text(utf8, path);
   while (text.peek() == '\n' || text.peek() == '\r')
     text.pass();
+  if (text.peek() == '[')
+    text.fail(text.line(),
+              "expected CSV, or an object of JSON a line, found a list of JSON; `jq -c "
+              "'.[]'` makes lines of it");
   return text.peek() == '{' ? read_json_lines(text, visit) : read_csv(text, path, visit);
 }
 

@@ -45,6 +45,7 @@ struct Extent {
 struct BatchedParts {
   std::uint64_t header = kBatchedHeaderBytes;
   std::array<std::uint64_t, 4> bytes{};
+  std::uint64_t features = UINT64_MAX;  ///< as old headers say it; others have a feature table
   std::uint64_t before_gltf() const { return header + bytes[0] + bytes[1] + bytes[2] + bytes[3]; }
 };
 
@@ -129,9 +130,10 @@ class TileFileReader {
                    "the tables of the b3dm reach beyond its end (truncated?)");
     }
     const std::uint64_t gltf = tile.begin + parts.before_gltf();
+    const FeatureFacts features = features_of(tile.begin, parts);
     const BatchTablePlace batch{gltf - parts.bytes[2] - parts.bytes[3], parts.bytes[2],
-                                parts.bytes[3]};
-    add_mesh(MeshKind::b3dm, {gltf, tile.end}, centre_of(tile.begin, parts), batch);
+                                parts.bytes[3], features.count};
+    add_mesh(MeshKind::b3dm, {gltf, tile.end}, features.centre, batch);
   }
 
   /// Before 3D Tiles 1.0 headers were shorter: their words are followed by the JSON of the batch
@@ -145,15 +147,21 @@ class TileFileReader {
     for (std::size_t i = 0; i < words.size(); ++i)
       words[i] = word(tile.begin, 3 + i);
     if (is_text(5))  // count of batches, bytes of the table
-      return {20, {0, 0, words[1], 0}};
+      return {20, {0, 0, words[1], 0}, words[0]};
     if (is_text(6))  // bytes of the table's JSON and binary, count of batches
-      return {24, {0, 0, words[0], words[1]}};
+      return {24, {0, 0, words[0], words[1]}, words[2]};
     return {kBatchedHeaderBytes, words};
   }
 
-  Vec3d centre_of(std::uint64_t tile, const BatchedParts& parts) const {
+  /// What a feature table says.
+  struct FeatureFacts {
+    std::uint64_t count = UINT64_MAX;
+    Vec3d centre{};
+  };
+
+  FeatureFacts features_of(std::uint64_t tile, const BatchedParts& parts) const {
     if (parts.bytes[0] == 0)
-      return {};
+      return {parts.features, {}};
     if (parts.bytes[0] > most_bytes_)
       throw Error(ErrorCode::budget,
                   fmt::format("{}: the feature table of the tile takes {} bytes, more than there "
@@ -164,6 +172,12 @@ class TileFileReader {
     table_text.erase(table_text.find_last_not_of('\0') + 1);  // some programs pad it with zeros
     const auto json = parse_gltf_json(std::move(table_text), file_.path(), most_bytes_);
     const GltfObject table(json, file_.path(), "feature table");
+    return {table.count("BATCH_LENGTH", UINT32_MAX).value_or(UINT64_MAX),
+            centre_of(table, begin + parts.bytes[0], parts.bytes[1])};
+  }
+
+  /// `binary`: where the binary part begins, which has so many bytes.
+  Vec3d centre_of(const GltfObject& table, std::uint64_t binary, std::uint64_t binary_bytes) const {
     const char* key = "RTC_CENTER";
     if (!table.has(key))
       return {};
@@ -172,12 +186,12 @@ class TileFileReader {
       return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
     }
     constexpr std::uint64_t kBytes = 12;
-    if (parts.bytes[1] < kBytes)
+    if (binary_bytes < kBytes)
       table.fail("has its RTC_CENTER in a binary part that has no room for it");
     const std::uint64_t at =
-        table.require_object(key).require_count("byteOffset", parts.bytes[1] - kBytes);
+        table.require_object(key).require_count("byteOffset", binary_bytes - kBytes);
     std::array<std::byte, kBytes> bytes{};
-    file_.read_exact(begin + parts.bytes[0] + at, bytes);
+    file_.read_exact(binary + at, bytes);
     const auto number = [&](std::size_t i) {
       return double{storage::load_little<float>(bytes.data() + 4 * i)};
     };

@@ -14,6 +14,7 @@ namespace meshhier::mesh_io {
 /// The place of a b3dm's batch table in its file.
 struct BatchTablePlace {
   std::uint64_t json = 0, json_bytes = 0, binary_bytes = 0;  ///< the binary part stands behind
+  std::uint64_t rows = UINT64_MAX;                           ///< at most, of the binary part
   friend bool operator==(const BatchTablePlace&, const BatchTablePlace&) = default;
 };
 

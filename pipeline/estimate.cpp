@@ -137,7 +137,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
     storage::check_output(files, {config.output, config.storage.container}, force);
     count_by_reading(config, input, files, pool, cancel);
   }
-  BuildEstimate estimate{.plan = plan_build(config, input.description(), input.imported_bytes()),
+  BuildEstimate estimate{.plan = plan_build(config, input.description(), imported_by(input)),
                          .mesh = input.description(),
                          .tiles = {},
                          .time = {},

@@ -8,6 +8,7 @@
 #include "pipeline/journal/workshop.h"
 #include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
+#include "storage/format/object_table.h"
 
 #include <algorithm>
 
@@ -17,17 +18,12 @@
 namespace meshhier::pipeline {
 namespace {
 
-importing::MeshInput::Place place_of(const std::filesystem::path& work, storage::MemoryPool& pool,
-                                     std::uint64_t sort_bytes,
+importing::MeshInput::Place place_of(const std::filesystem::path& work,
+                                     const std::filesystem::path& objects,
+                                     storage::MemoryPool& pool, std::uint64_t sort_bytes,
                                      const BuildEnvironment& environment) {
-  return {storage::imported_path(work),
-          work / "import",
-          pool,
-          sort_bytes,
-          environment.progress,
-          environment.cancel,
-          work / "copies",
-          storage::imported_objects_path(work)};
+  return {storage::imported_path(work), work / "import", pool,   sort_bytes, environment.progress,
+          environment.cancel,           work / "copies", objects};
 }
 
 bool is_to_be_looked_at(const config::Config& config) {
@@ -39,6 +35,10 @@ bool is_to_be_looked_at(const config::Config& config) {
 importing::ImportMemory import_memory(const importing::MeshInput& input,
                                       const config::Config& config) {
   return importing::plan_import(memory_budget(config), input.files().held_bytes());
+}
+
+ImportedBytes imported_by(const importing::MeshInput& input) {
+  return {input.imported_bytes(), input.objects() ? input.objects()->facts.bytes : 0};
 }
 
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
@@ -139,7 +139,7 @@ void require_attributes(const config::Config& config, const importing::MeshInput
 BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materials,
                   const config::Config& config, storage::FileSystem& files) {
   require_attributes(config, input);
-  BuildPlan plan = plan_build(config, input.description(), input.imported_bytes(),
+  BuildPlan plan = plan_build(config, input.description(), imported_by(input),
                               plan_textures(std::move(materials), config.missing_images, files));
   input.files().check_unchanged();
   return plan;
@@ -148,23 +148,32 @@ BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materi
 }  // namespace
 
 BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
-                        storage::MemoryPool& pool, const config::Config& config,
-                        const BuildEnvironment& environment) {
+                        const std::filesystem::path& objects, storage::MemoryPool& pool,
+                        const config::Config& config, const BuildEnvironment& environment) {
   const importing::ImportMemory memory = import_memory(input, config);
   pool.set_capacity(memory.pool_bytes);
   environment.progress.expect(import_time(input, config));
-  read_once(input, config, place_of(directory, pool, memory.sort_bytes, environment));
+  read_once(input, config, place_of(directory, objects, pool, memory.sort_bytes, environment));
   execution::release_free_memory(memory_budget(config));
   return plan_of(input, input.materials(), config, environment.files);
 }
 
 namespace {
 
-/// Returns whether the table of the mesh's objects is gone.
+/// Returns whether the table of the mesh's objects is gone, or damaged.
 bool lacks_objects(const mesh_io::MeshDescription& mesh, const storage::WorkDirectory& work,
                    storage::FileSystem& files) {
-  return placed_object(mesh.attributes) &&
-         files.kind(storage::imported_objects_path(work.path())) != storage::FileKind::regular;
+  const auto path = storage::imported_objects_path(work.path());
+  if (!placed_object(mesh.attributes) || files.kind(path) != storage::FileKind::regular)
+    return placed_object(mesh.attributes).has_value();
+  try {
+    const storage::ObjectTable table(files.open(path));
+    return false;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    return true;
+  }
 }
 
 }  // namespace
@@ -180,7 +189,8 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
     recalled.reset();
   const auto make_plan = [&] {
     if (!recalled)
-      return read_and_plan(input, work.path(), pool, config, environment);
+      return read_and_plan(input, work.path(), storage::imported_objects_path(work.path()), pool,
+                           config, environment);
     input.recall(*recalled);
     return plan_of(input, earlier->materials, config, environment.files);
   };
@@ -196,9 +206,9 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
   const mesh_io::MeshDescription recalled = input.description();
   const std::uint64_t sort_bytes =
       std::min(import_memory(input, context.config).sort_bytes, context.memory().work_bytes / 4);
-  read_once(
-      input, context.config,
-      place_of(work.path(), pool, sort_bytes, {context.files, context.progress, context.cancel}));
+  read_once(input, context.config,
+            place_of(work.path(), storage::imported_objects_path(work.path()), pool, sort_bytes,
+                     {context.files, context.progress, context.cancel}));
   const mesh_io::MeshDescription& mesh = input.description();
   if (mesh.vertex_count != recalled.vertex_count || mesh.places() != recalled.places() ||
       mesh.face_count != recalled.face_count || mesh.attributes != recalled.attributes) {

@@ -21,6 +21,9 @@ importing::MeshInput open_input(const config::Config& config, storage::FileSyste
 importing::ImportMemory import_memory(const importing::MeshInput& input,
                                       const config::Config& config);
 
+/// Returns the bytes of what the import has left.
+ImportedBytes imported_by(const importing::MeshInput& input);
+
 /// Returns about how many bytes the stage has in temporary files at most, before it is known what
 /// is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
@@ -40,11 +43,12 @@ bool is_read_before_plan(const importing::MeshInput& input, const config::Config
 void read_once(importing::MeshInput& input, const config::Config& config,
                const importing::MeshInput::Place& place);
 
-/// Imports the input and finds places in `directory`, then plans the build. Throws as
-/// importing::import_input, importing::find_copies and plan_build.
+/// Imports the input and finds places in `directory`, then plans the build. `objects`: becomes the
+/// table of objects, if there are any. Throws as importing::import_input, importing::find_copies
+/// and plan_build.
 BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
-                        storage::MemoryPool& pool, const config::Config& config,
-                        const BuildEnvironment& environment);
+                        const std::filesystem::path& objects, storage::MemoryPool& pool,
+                        const config::Config& config, const BuildEnvironment& environment);
 
 /// Does the same and checks the disk, unless an earlier build did whose work is still there. Keeps
 /// the work directory if there is earlier work. Throws also as check_disk.

@@ -220,8 +220,7 @@ void SourceMesh::guess_labels(const std::function<bool(const std::string&)>& is_
   std::vector<ScalarAttribute>& all = summary_.attributes.values;
   std::vector<std::string> labels, quantities, possible;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool is_none =
-        !all[i].is_object && guesses_[i].is_quantity() && !is_sure(all[i].name);
+    const bool is_none = !all[i].is_object && guesses_[i].is_quantity() && !is_sure(all[i].name);
     all[i].is_label = all[i].is_label && !is_none;
     if (all[i].is_label && !all[i].is_object)
       labels.push_back(all[i].name);

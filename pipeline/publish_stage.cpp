@@ -49,7 +49,8 @@ std::optional<Lattice> lattice_of(const DistributedSource& source, const StageCo
 }
 
 storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
-                              const TextureStore& textures, const storage::ObjectTable* objects,
+                              const TextureStore& textures,
+                              const std::vector<ObjectProperty>* objects,
                               const StageContext& context) {
   storage::TileFormat format = {source.summary.attributes,
                                 {{}, context.config.up_axis()},  // the origin is in the tileset
@@ -62,17 +63,20 @@ storage::TileFormat format_of(const DistributedSource& source, bool computed_nor
     format.normal_maps = context.config.normal_map.format;
   format.lattice = lattice_of(source, context);
   if (objects != nullptr)
-    format.objects = objects->properties();
+    format.objects = *objects;
   return format;
 }
 
 /// Opens the table of objects that the import has left, if tiles are to have tables of theirs.
 std::unique_ptr<const storage::ObjectTable> open_objects(const std::filesystem::path& hierarchy,
                                                          const StageContext& context) {
-  if (!context.plan.job.has_objects || !context.config.objects.in_tiles)
+  if (!context.plan.job.has_object_tables)
     return nullptr;
+  // Names need not lie as tiles do: each tile may ask for objects of nearly all blocks.
+  constexpr std::uint64_t kUnpackedBlockBytes = std::uint64_t{1} << 17;
   const auto imported = storage::imported_objects_path(hierarchy.parent_path());
-  return std::make_unique<storage::ObjectTable>(context.files.open(imported));
+  return std::make_unique<storage::ObjectTable>(
+      context.files.open(imported), nullptr, context.memory().work_bytes / 8 / kUnpackedBlockBytes);
 }
 
 /// All that writing tiles needs.
@@ -262,14 +266,14 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
   }
   context.progress.stage("publish", left.size(), "tiles");
   std::unique_ptr<const storage::ObjectTable> objects = open_objects(to.directory, context);
-  TileWriter writer{
-      forest,
-      textures,
-      format_of(*journal.source(), forest.computes_normals(), textures, objects.get(), context),
-      to,
-      context,
-      {},
-      std::move(objects)};
+  TileWriter writer{forest,
+                    textures,
+                    format_of(*journal.source(), forest.computes_normals(), textures,
+                              objects ? &objects->properties() : nullptr, context),
+                    to,
+                    context,
+                    {},
+                    std::move(objects)};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
   // A picture is held as it was stored, on its own, and in the tile's file.
@@ -317,9 +321,10 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   const Tree& tree = context.tree();
   const SourceSummary source = complete_source(journal, context);
   const std::vector<Published> tiles = journal.published();
-  const auto objects = open_objects(directory, context);
+  const bool has_tables = known_objects && context.plan.job.has_object_tables;
   storage::TileFormat format =
-      format_of(*journal.source(), forest.computes_normals(), textures, objects.get(), context);
+      format_of(*journal.source(), forest.computes_normals(), textures,
+                has_tables ? &known_objects->table.properties : nullptr, context);
   std::optional<storage::Quantization> quantization;
   if (format.lattice) {
     quantization.emplace();
@@ -410,6 +415,18 @@ StageTimes publish_time(const JobSize& job, const TilePopulation& tiles) {
                (job.draws_preview ? kPreviewSeconds : 0)}};
 }
 
+namespace {
+
+/// Rows are unpacked in tiles, and stand in those of several levels: cities took 8 to 10 times the
+/// bytes of the packed table.
+double published_object_bytes(const JobSize& job, double vertices) {
+  constexpr double kTablesInTiles = 10, kRowNumber = 4;
+  const auto table = static_cast<double>(job.object_table_bytes);
+  return table + (job.has_object_tables ? kTablesInTiles * table + kRowNumber * vertices : 0);
+}
+
+}  // namespace
+
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kFileSlack = 2048;  // half a disk block
   const auto bytes_of = [&](const storage::TileSums& sums) {
@@ -425,7 +442,8 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
           ? kMostSplits * vertices * storage::expected_split_bytes(job.published_attribute_bytes)
           : 0;
   const double pictures = published_picture_bytes(job, tiles) + published_map_bytes(job, tiles);
-  return {plain + pictures, plain * job.published_ratio + pictures,
+  const double objects = published_object_bytes(job, vertices);
+  return {plain + pictures + objects, plain * job.published_ratio + pictures + objects,
           tiles.files() * kFileSlack + splits +
               (job.draws_preview ? double{storage::kMostPreviewBytes} + kFileSlack : 0)};
 }

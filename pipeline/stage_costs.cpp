@@ -66,9 +66,9 @@ DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePop
 }
 
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes, TexturePlan textures) {
+                     const ImportedBytes& imported, TexturePlan textures) {
   const Tree tree = plan_tree(config, mesh.places(), textures);
-  const JobSize job = job_size(config, mesh, imported_bytes, tree, textures);
+  const JobSize job = job_size(config, mesh, imported, tree, textures);
   const MemoryPlan memory = plan_memory(memory_budget(config), memory_costs(job));
   const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));
   return {tree,

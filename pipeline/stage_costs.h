@@ -60,9 +60,9 @@ std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSu
 /// split at creases.
 DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t splits);
 
-/// Returns the plan for a mesh of which the header was read; `imported_bytes` as in job_size().
+/// Returns the plan for a mesh of which the header was read; `imported` as in job_size().
 /// Throws as plan_tree(), and Error(budget) if the memory budget is too small.
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes = 0, TexturePlan textures = {});
+                     const ImportedBytes& imported = {}, TexturePlan textures = {});
 
 }  // namespace meshhier::pipeline

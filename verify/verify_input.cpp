@@ -23,6 +23,7 @@
 #include "partition/external_sort.h"
 #include "partition/renumber.h"
 #include "storage/io/hash.h"
+#include "verify/verify_objects.h"
 #include "verify/verify_parts.h"
 #include "verify/verify_texels.h"
 
@@ -455,6 +456,9 @@ void verify_input(const VerifyJob& job) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;
   }
+  if (files.objects())
+    compare_objects(job, files.objects()->file,
+                    [&](const std::string& text) { problems.add(text); });
   std::optional<TexelCheck> texels;
   if (layout.material)
     texels.emplace(job, files);

@@ -59,8 +59,10 @@ ObjectCheck::ObjectCheck(const VerifyJob& job, std::uint64_t memory_bytes)
     : job_(job), census_(job.tree().depth(), job.scratch, memory_bytes) {
   note_problems(job, [&] {
     const auto path = storage::objects_path(job.reader.directory());
-    table_ = std::make_unique<storage::ObjectTable>(job.files.open(path),
-                                                    &job.reader.manifest().objects->table);
+    constexpr std::uint64_t kUnpackedBlockBytes = std::uint64_t{1} << 17;
+    table_ = std::make_unique<storage::ObjectTable>(
+        job.files.open(path), &job.reader.manifest().objects->table,
+        job.options.memory_budget / 16 / kUnpackedBlockBytes);
   });
 }
 
@@ -134,6 +136,30 @@ void ObjectCheck::check_sum() const {
   }
   if (sum.value() != told.checksum)
     throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
+}
+
+void compare_objects(const VerifyJob& job, const std::filesystem::path& imported,
+                     const std::function<void(const std::string&)>& tell) {
+  const storage::ObjectTable input(job.files.open(imported));
+  const storage::ObjectTable made(job.files.open(storage::objects_path(job.reader.directory())),
+                                  &job.reader.manifest().objects->table);
+  if (input.size() != made.size() || input.properties() != made.properties())
+    return tell(fmt::format("has {} objects with {} properties, the hierarchy {} with {}",
+                            input.size(), input.properties().size(), made.size(),
+                            made.properties().size()));
+  std::uint64_t different = 0;
+  std::string first;
+  input.for_each([&](std::uint32_t object, const ObjectRow& row) {
+    job.cancel.check();
+    const ObjectRow other = made.row(object);
+    if ((row.name != other.name || row.values != other.values) && different++ == 0)
+      first = plain_text(row.name, 60);
+  });
+  if (different > 0)
+    tell(fmt::format("{} have other names or properties, the first is \"{}\"",
+                     counted(different, "objects"), first));
+  job.checks.push_back(
+      fmt::format("input: names and properties of {}", counted(input.size(), "objects")));
 }
 
 }  // namespace meshhier::verifying

@@ -6,7 +6,10 @@
 #include "storage/format/object_table.h"
 #include "verify/verify_parts.h"
 
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
 namespace meshhier::verifying {
 
@@ -30,5 +33,10 @@ class ObjectCheck {
   std::unique_ptr<const storage::ObjectTable> table_;  ///< null if it cannot be read
   partition::ObjectCensus census_;
 };
+
+/// Compares names and properties of the hierarchy's objects with those of a table that an import of
+/// the input has made; tells of the first difference.
+void compare_objects(const VerifyJob& job, const std::filesystem::path& imported,
+                     const std::function<void(const std::string&)>& tell);
 
 }  // namespace meshhier::verifying

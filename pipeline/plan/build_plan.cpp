@@ -112,14 +112,15 @@ std::uint64_t memory_budget(const config::Config& config) {
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                 std::uint64_t imported_bytes, const Tree& tree, const TexturePlan& textures) {
+                 const ImportedBytes& imported, const Tree& tree, const TexturePlan& textures) {
   JobSize job;
   job.vertex_count = mesh.vertex_count;
   job.place_count = tree.vertex_count();
   job.face_count = mesh.face_count;
   job.channels = mesh.attributes.channels();
   job.held_bytes = mesh.held_bytes;
-  job.imported_bytes = imported_bytes;
+  job.imported_bytes = imported.mesh;
+  job.object_table_bytes = imported.objects;
   job.vertices_in_place = mesh.vertices_in_place;
   job.wide_coordinates = mesh.wide_coordinates;
   job.partition_count = tree.partition_count();
@@ -138,6 +139,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.outline_sectors = config.outline.sectors;
   job.has_map = config.placement.crs.has_value();
   job.has_objects = placed_object(mesh.attributes).has_value();
+  job.has_object_tables = job.has_objects && config.objects.in_tiles;
   job.packed = config.storage.container == storage::Container::archive;
   add_textures(config, textures, job);
   job.normal_map_side = normal_map_side(config, job);

@@ -35,10 +35,15 @@ struct BuildPlan {
 Tree plan_tree(const config::Config& config, std::uint64_t vertex_count,
                const TexturePlan& textures = {});
 
-/// Returns the size of the job for a mesh of which the header was read. `imported_bytes`: those of
-/// the PLY that the input was imported to; 0 if it was not.
+/// The bytes of what the import has left; 0 of what it has not.
+struct ImportedBytes {
+  std::uint64_t mesh = 0;     ///< the PLY
+  std::uint64_t objects = 0;  ///< their table
+};
+
+/// Returns the size of the job for a mesh of which the header was read.
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                 std::uint64_t imported_bytes, const Tree& tree, const TexturePlan& textures = {});
+                 const ImportedBytes& imported, const Tree& tree, const TexturePlan& textures = {});
 
 /// Returns the number of threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);

@@ -43,8 +43,10 @@ struct JobSize {
   ImageFormat normal_map_format = ImageFormat::jpeg;
   bool draws_preview = false;
   std::uint32_t outline_sectors = 0;
-  bool has_map = false;      ///< PROJ places the model
-  bool has_objects = false;  ///< triangles belong to objects
+  bool has_map = false;                  ///< PROJ places the model
+  bool has_objects = false;              ///< triangles belong to objects
+  bool has_object_tables = false;        ///< tiles have tables of theirs
+  std::uint64_t object_table_bytes = 0;  ///< of the table that the import has left
 
   /// Whether simplified tiles get normal maps under their pictures.
   bool has_relief() const { return textured && normal_map_side > 0; }

@@ -102,6 +102,7 @@ void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
   files.remove_all(storage::attempts_path(work));
   files.remove_all(storage::built_path(work));
   files.remove_all(storage::packed_path(work));
+  files.remove_all(storage::imported_objects_path(work));
 }
 
 /// Returns the task of `publish` that makes the tile at that place among all.

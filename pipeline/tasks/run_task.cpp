@@ -124,9 +124,10 @@ void Task::read() {
   const config::Config& config = plan_.config;
   importing::MeshInput input = open_input(config, files());
   const BuildEnvironment environment{files(), meter_, environment_.cancel};
+  const std::filesystem::path objects = storage::imported_objects_path(attempt_.shared_directory());
   const BuildPlan plan =
       is_read_before_plan(input, config)
-          ? read_and_plan(input, attempt_.directory(), pool_, config, environment)
+          ? read_and_plan(input, attempt_.directory(), objects, pool_, config, environment)
           : plan_build(config, input.description());
   check_apart(input.files().companions(), config, {}, files());
   check_coders(plan.job);
@@ -136,6 +137,10 @@ void Task::read() {
   open_workshop(plan, identity_of(config, input, plan), input.description().attributes, context);
   if (const auto splits = read_splits(input, *workshop_, context))
     InputSlices::note(*splits, *entries_);
+  if (input.objects()) {  // on the disk already
+    files().rename(objects, storage::imported_objects_path(work_));
+    files().sync_directory(work_);
+  }
   seal();
 }
 
@@ -156,7 +161,7 @@ void Task::go_on() {
   const EarlierBuild source = find_source();
   const mesh_io::MeshDescription mesh = description_of(source);
   const BuildPlan plan =
-      plan_build(config, mesh, 0, plan_textures(source.materials, config.missing_images, files()));
+      plan_build(config, mesh, {}, plan_textures(source.materials, config.missing_images, files()));
   check_pictures(source.input, files());
   check_coders(plan.job);
   if (plan.tree.partition_count() != source.decides_result.value("partitions", std::uint64_t{0})) {

@@ -129,7 +129,7 @@ std::optional<double> cpu_seconds_left(const TaskStatus& status, const TaskPlan&
     return std::nullopt;
   try {
     const BuildPlan build =
-        plan_build(plan.config, description_of(status.source), 0,
+        plan_build(plan.config, description_of(status.source), {},
                    plan_textures(status.source.materials, config::MissingImages::ignore, files));
     const auto expected = expected_seconds(plan, build);
     double took = 0, expected_done = 0, left = 0;

@@ -122,8 +122,9 @@ ObjectTableFacts ObjectTableWriter::finish() {
   return facts;
 }
 
-ObjectTable::ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected)
-    : file_(std::move(file)) {
+ObjectTable::ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected,
+                         std::size_t kept_blocks)
+    : file_(std::move(file)), most_kept_(std::max(kept_blocks, kKeptBlocks)) {
   const Place place = read_place();
   read_directory(place);
   if (expected != nullptr)
@@ -208,7 +209,7 @@ ObjectTable::Rows ObjectTable::rows_of(std::size_t block) const {
   Rows rows = read_rows(directory_.blocks[block]);
   const std::lock_guard lock(mutex_);
   kept_.push_front({block, rows});
-  if (kept_.size() > kKeptBlocks)
+  if (kept_.size() > most_kept_)
     kept_.pop_back();
   return rows;
 }

@@ -12,7 +12,7 @@
 // clang-format on
 //
 // Cost: a question reads one block, about 10 kB, or for a long name a few. The writer appends only,
-// and holds a block and 60 bytes for each one before.
+// and holds a block, and 60 bytes and a key for each one before.
 #pragma once
 
 #include "hierarchy/object_row.h"
@@ -82,9 +82,9 @@ class ObjectTable {
   };
 
   /// Reads the directory. `expected`: what the manifest tells; all but the file's checksum is
-  /// compared.
-  explicit ObjectTable(std::unique_ptr<const File> file,
-                       const ObjectTableFacts* expected = nullptr);
+  /// compared. `kept_blocks`: so many are kept unpacked, but a few at least.
+  explicit ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected = nullptr,
+                       std::size_t kept_blocks = 0);
 
   std::uint32_t size() const { return directory_.objects(); }
   const std::vector<ObjectProperty>& properties() const { return directory_.properties; }
@@ -122,6 +122,7 @@ class ObjectTable {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::unique_ptr<const File> file_;
+  std::size_t most_kept_;
   ObjectDirectory directory_;
   mutable std::mutex mutex_;
   mutable std::list<Kept> kept_;  ///< the one used last first

@@ -317,7 +317,6 @@ Json buffers_json(const TilePlan& plan, const Packing* packing) {
   return Json::array({Json::object({{"byteLength", packing->total()}}), decoded});
 }
 
-/// Returns the extensions without which a viewer cannot show the tile.
 /// Adds a view for each column of the table of objects.
 void add_column_views(const TilePlan& plan, const Packing* packing, Json& views) {
   const std::uint64_t begin =
@@ -345,6 +344,7 @@ Json metadata_json(const TilePlan& plan) {
   return metadata;
 }
 
+/// Returns the extensions without which a viewer cannot show the tile.
 Json required_extensions(const TilePlan& plan, const Packing* packing) {
   Json names = Json::array();
   if (packing != nullptr)

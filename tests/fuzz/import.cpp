@@ -90,7 +90,7 @@ std::string imported(MemoryFiles& files, bool weld, importing::Textures textures
   const execution::CancelToken cancel;
   importing::InputFiles input(files, std::filesystem::path("mesh"), {weld, textures});
   const importing::ImportFacts facts =
-      importing::import_input(input, ply, {files, scratch, 1, progress, cancel, {}});
+      importing::import_input(input, ply, {files, scratch, 1, progress, cancel, "objects"});
   require(std::ranges::any_of(
               facts.files,
               [&](const SourceFile& file) { return file.bytes >= files.bytes("mesh").size(); }),

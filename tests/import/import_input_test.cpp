@@ -213,7 +213,7 @@ class ImportTest : public testing::Test {
     execution::NoProgress progress;
     const execution::CancelToken cancel;
     InputFiles input(files_, inputs(names), {.weld = weld});
-    import_input(input, ply, {files_, scratch, memory.sort_bytes, progress, cancel, {}});
+    import_input(input, ply, {files_, scratch, memory.sort_bytes, progress, cancel, "w/objects"});
     return files_.content("w/imported.ply");
   }
 
