@@ -34,13 +34,16 @@ async function load({ tileset: url, placed = false }) {
   frame = placed ? Cesium.Transforms.eastNorthUpToFixedFrame(center) : Cesium.Matrix4.fromTranslation(center);
 }
 
-function look({ direction, distance }) {
+/// Looks from `direction`, `distance` away from `target`, which begins at the middle; both in radii.
+function look({ direction, distance, target = [0, 0, 0] }) {
   const { radius } = tileset.boundingSphere;
+  const aim = Cesium.Cartesian3.multiplyByScalar(new Cesium.Cartesian3(...target), radius, new Cesium.Cartesian3());
   const from = Cesium.Cartesian3.normalize(new Cesium.Cartesian3(...direction), new Cesium.Cartesian3());
   const offset = Cesium.Cartesian3.multiplyByScalar(from, distance * radius, new Cesium.Cartesian3());
   scene.camera.frustum.near = 0.001 * radius;
   scene.camera.frustum.far = 100 * radius;
-  scene.camera.lookAtTransform(frame, offset);
+  const around = Cesium.Matrix4.multiplyByTranslation(frame, aim, new Cesium.Matrix4());
+  scene.camera.lookAtTransform(around, offset);
   // Light from over the viewer's right shoulder.
   const { directionWC, rightWC, upWC } = scene.camera;
   const light = Cesium.Cartesian3.clone(directionWC);
@@ -131,9 +134,24 @@ async function showGlobe(show) {
   } while (show && !scene.globe.tilesLoaded);
 }
 
+function raysThrough(places) {
+  return places.map(([x, y]) => {
+    const { origin, direction } = scene.camera.getPickRay(new Cesium.Cartesian2(x, y));
+    return { from: [origin.x, origin.y, origin.z], direction: [direction.x, direction.y, direction.z] };
+  });
+}
+
+/// Returns the properties of the things at places of the picture; null where nothing is.
+function pickAll(places) {
+  return places.map(([x, y]) => {
+    const feature = scene.pick(new Cesium.Cartesian2(x, y), 1, 1);
+    return feature?.getPropertyIds ? Object.fromEntries(feature.getPropertyIds().map((id) => [id, feature.getProperty(id)])) : null;
+  });
+}
+
 /// Shows the tileset's colours without light from now on.
 function showColours() {
   tileset.customShader = new Cesium.CustomShader({ lightingModel: Cesium.LightingModel.UNLIT });
 }
 
-window.view = { showColours, load, look, settle, keepOutline, compare, stand, place, showGlobe };
+window.view = { showColours, raysThrough, pickAll, load, look, settle, keepOutline, compare, stand, place, showGlobe };

@@ -113,11 +113,11 @@ async function load({ tileset, mesh, up }) {
   }
 }
 
-/// Looks at the model from `direction`. `distance`: in radii of its sphere, from its middle or,
+/// Looks at the model from `direction`. `distance`: in radii of its sphere, from its middle, moved by `middle`, or,
 /// if `close`, from the point of the mesh that is nearest to the eye that looks at the middle.
-function look({ direction, distance, close = false }) {
+function look({ direction, distance, close = false, target: middle = [0, 0, 0] }) {
   const from = new THREE.Vector3(...direction).normalize();
-  let target = sphere.center.clone();
+  let target = new THREE.Vector3(...middle).multiplyScalar(sphere.radius).add(sphere.center);
   if (close) {
     const ray = new THREE.Raycaster(target.clone().addScaledVector(from, 4 * sphere.radius), from.clone().negate());
     target = ray.intersectObjects(original.children, true)[0]?.point ?? target;
@@ -203,10 +203,35 @@ function stand() {
   return standing({ covered, width: SIZE }, pixelsOf(renderer.domElement));
 }
 
+function rayThrough([x, y]) {
+  const caster = new THREE.Raycaster();
+  caster.setFromCamera(new THREE.Vector2((2 * x) / SIZE - 1, 1 - (2 * y) / SIZE), camera);
+  return caster;
+}
+
+function raysThrough(places) {
+  return places.map((place) => {
+    const { origin, direction } = rayThrough(place).ray;
+    return { from: origin.toArray(), direction: direction.toArray() };
+  });
+}
+
+/// Returns the properties of the things at places of the picture; null where nothing is.
+function pickAll(places) {
+  return Promise.all(places.map(async (place) => {
+    const [hit] = rayThrough(place).intersectObject(tiles.group, true);
+    if (hit === undefined) return null;
+    const { meshFeatures, structuralMetadata } = hit.object.userData;
+    const ids = await meshFeatures.getFeaturesAsync(hit.faceIndex, hit.barycoord);
+    const [{ propertyTable }] = meshFeatures.getFeatureInfo();
+    return structuralMetadata.getPropertyTableData([propertyTable], ids)[0];
+  }));
+}
+
 /// Shows the tileset's colours without light from now on.
 function showColours() {
   tiles.forEachLoadedModel((scene) => takeLight(scene));
   tiles.addEventListener('load-model', ({ scene }) => takeLight(scene));
 }
 
-window.view = { showColours, load, look, settle, compare, comparePictures, showOriginal, stand };
+window.view = { showColours, raysThrough, pickAll, load, look, settle, compare, comparePictures, showOriginal, stand };
