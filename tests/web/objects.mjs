@@ -79,6 +79,8 @@ async function checkHand(visitor) {
   const name = await pickedName(page);
   await visitor.picture(page, 'picked');
   const size = await page.locator('.tool-figures').innerText();
+  const { clientWidth, scrollWidth } = await page.locator('.tool-card:not([hidden])').evaluate(({ clientWidth, scrollWidth }) => ({ clientWidth, scrollWidth }));
+  visitor.check('card', scrollWidth <= clientWidth, `what is ${scrollWidth} wide is in a card of ${clientWidth}`);
   visitor.check('click', /Size\s/.test(size) && /Area/.test(size), size.replaceAll('\n', ' '));
   const spot = { clip: { x: place.x - 5, y: place.y - 5, width: 10, height: 10 } };
   const marked = await page.screenshot(spot);
