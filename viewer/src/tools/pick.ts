@@ -40,13 +40,15 @@ export type Keeps = (point: Vector, values: readonly number[]) => boolean;
 const KEEPS_ALL: Keeps = () => true;
 
 /// From the camera's eye through a place of the picture, from -1 to 1 to the right and up, in the coordinates that `matrix` brings into
-/// the world. Matrices are up to date.
+/// the world. It meets nothing before the near plane: that is not drawn. Matrices are up to date.
 export function rayThrough(camera: PerspectiveCamera, right: number, up: number, matrix: Readonly<Matrix4>): Ray {
   const { elements: e } = camera.projectionMatrix;
   const toLocal = matrix.clone().invert();
   const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal);
-  const ahead = new Vector3((right + e[8]) / e[0], (up + e[9]) / e[5], -1).transformDirection(camera.matrixWorld).transformDirection(toLocal);
-  return { from: eye.toArray(), direction: ahead.toArray() };
+  const ahead = new Vector3((right + e[8]) / e[0], (up + e[9]) / e[5], -1);
+  const seen = ahead.clone().multiplyScalar(camera.near).applyMatrix4(camera.matrixWorld).applyMatrix4(toLocal);
+  const direction = ahead.transformDirection(camera.matrixWorld).transformDirection(toLocal);
+  return { from: eye.toArray(), direction: direction.toArray(), begin: seen.distanceTo(eye) };
 }
 
 /// The nearest of the triangles that are looked at.

@@ -7,6 +7,8 @@ export interface Ray {
   readonly from: Vector;
   /// Has any length but 0.
   readonly direction: Vector;
+  /// The ray meets no triangle nearer than this; 0 if it is not given.
+  readonly begin?: number;
 }
 
 /// Exits are put off by what products round: a box is never missed for that.
@@ -57,7 +59,7 @@ export class RayProbe {
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return Infinity;
     const sum = u + v + w;
     const distance = (u * az + v * bz + w * cz) / sum;
-    if (!(distance >= 0)) return Infinity; // behind the eye, or no area
+    if (!(distance >= (this.ray.begin ?? 0))) return Infinity; // behind the eye, too near, or no area
     this.weights = [u / sum, v / sum, w / sum];
     return distance;
   }

@@ -214,6 +214,19 @@ describe.skipIf(!hasProgram)('picking', () => {
     view.dispose();
   });
 
+  it('meets nothing that is nearer than the near plane', async () => {
+    const { view, camera } = await settledView(fetchFrom(torus()), [0, 0, 4]);
+    const pick = async (): Promise<number[]> => {
+      const ray = rayThrough(camera, 0.35, 0.1, view.surfaceMatrix);
+      return [new Picker().pick(view.surface, ray)!, (await pickOriginal(view.source!, ray, { signal }))!].map(({ distance }) => distance);
+    };
+    const [shown, original] = await pick();
+    camera.near = Math.max(shown, original) * 1.01;
+    camera.updateProjectionMatrix();
+    for (const distance of await pick()) expect(distance).toBeGreaterThan(camera.near);
+    view.dispose();
+  });
+
   it('follows a view that was moved, turned and scaled', async () => {
     const { view, camera } = await settledView(fetchFrom(torus()), [0, 0, 4]);
     const before = new Picker().pick(view.surface, rayThrough(camera, 0.35, 0.1, view.surfaceMatrix))!;
