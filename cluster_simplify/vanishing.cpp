@@ -30,6 +30,29 @@ std::vector<std::uint32_t> piece_of_vertices(const TileMesh& tile) {
   return piece_of;
 }
 
+/// For each vertex of `small`, the place that is left near it where its piece was: of a larger
+/// piece the nearest vertex, or without any the middle of its own piece.
+std::vector<Vec3f> places_left(std::span<const Vec3f> positions,
+                               std::span<const std::uint32_t> small,
+                               std::span<const std::uint32_t> large,
+                               std::span<const std::uint32_t> pieces,
+                               std::span<const std::uint32_t> sizes) {
+  std::vector<Vec3f> left;
+  left.reserve(small.size());
+  if (!large.empty()) {
+    for (const std::uint32_t v : nearest_of(positions, large, small))
+      left.push_back(positions[v]);
+    return left;
+  }
+  std::vector<Vec3f> middles(positions.size());
+  for (const std::uint32_t v : small)
+    middles[pieces[v]] =
+        middles[pieces[v]] + positions[v] * (1 / static_cast<float>(sizes[pieces[v]]));
+  for (const std::uint32_t v : small)
+    left.push_back(middles[pieces[v]]);
+  return left;
+}
+
 }  // namespace
 
 std::vector<float> vanishing_distances(const TileMesh& tile, std::span<const Vec3f> positions) {
@@ -57,14 +80,12 @@ std::vector<float> vanishing_distances(const TileMesh& tile, std::span<const Vec
     if (is_large(v))
       large.push_back(v);
   }
-  if (large.empty())
-    return distances;
-  const std::vector<std::uint32_t> nearest = nearest_of(positions, large, small);
+  const std::vector<Vec3f> left = places_left(positions, small, large, pieces, sizes);
   for (const std::uint32_t v : small)
     distances[v] = 0;
   for (std::size_t i = 0; i < small.size(); ++i) {
     const std::uint32_t piece = pieces[small[i]];
-    const Vec3f away = positions[small[i]] - positions[nearest[i]];
+    const Vec3f away = positions[small[i]] - left[i];
     distances[piece] += dot(away, away) / static_cast<float>(sizes[piece]);
   }
   for (const std::uint32_t v : small)

@@ -30,6 +30,8 @@ std::vector<std::string> metadata_ids(std::span<const std::string> names) {
   std::vector<std::string> ids;
   for (const std::string& name : names) {
     std::string word = as_word(name);
+    if (word == "__proto__")  // which JavaScript takes for something else
+      word = "_proto_";
     if (word.empty() || (word[0] >= '0' && word[0] <= '9'))
       word.insert(word.begin(), '_');
     add_unique(ids, word);
