@@ -1,5 +1,6 @@
 #include "import/gltf_features.h"
 
+#include "base/error.h"
 #include "base/small_letters.h"
 #include "storage/io/hash.h"
 
@@ -71,20 +72,38 @@ const GltfFeatures::Rows& GltfFeatures::rows_of(std::uint32_t table) {
   const auto known = tables_.find(table);
   if (known != tables_.end())
     return known->second;
-  const auto opened = open_property_table(file_, table);
-  unread_tables_ += opened ? 0 : 1;
-  const std::string way = table > 0 ? fmt::format("table {}/", table) : std::string();
-  return tables_.emplace(table, opened ? add_rows(*opened, way) : Rows()).first->second;
+  const Rows rows = rows_if_sound([&] {
+    const auto opened = open_property_table(file_, table);
+    unread_tables_ += opened ? 0 : 1;
+    const std::string way = table > 0 ? fmt::format("table {}/", table) : std::string();
+    return opened ? add_rows(*opened, way) : Rows();
+  });
+  return tables_.emplace(table, rows).first->second;
+}
+
+/// Metadata that nobody asked for stops no mesh.
+template <class Read>
+GltfFeatures::Rows GltfFeatures::rows_if_sound(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input || !objects_.choice.is_evident())
+      throw;
+    ++unread_tables_;
+    return {};
+  }
 }
 
 const GltfFeatures::Rows& GltfFeatures::batch_rows() {
   if (!batched_)
-    batched_ = add_rows(*batch_, "");
+    batched_ = rows_if_sound([&] { return add_rows(*batch_, ""); });
   return *batched_;
 }
 
 GltfFeatures::Rows GltfFeatures::add_rows(mesh_io::FeatureTable& table, const std::string& way) {
   Rows rows{objects_.names.count(), table.columns().empty() ? 0 : table.rows()};
+  if (rows.count > kMostObjects)
+    file_.fail(fmt::format("a table of {} features, more than {}", rows.count, kMostObjects));
   const std::optional<std::size_t> names = naming_column(table);
   std::vector<std::optional<std::uint8_t>> properties;
   for (std::size_t i = 0; i < table.columns().size() && rows.count > 0; ++i)

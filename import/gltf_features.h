@@ -30,7 +30,8 @@ class GltfFeatures {
   std::uint32_t object_of(const mesh_io::GltfFeatureIds& ids, double feature);
   /// Returns how many sets of ids are in textures, which are not read.
   std::uint64_t in_textures() const { return in_textures_; }
-  /// Returns how many tables have their schema in another file, and were not read for that.
+  /// Returns how many tables have their schema in another file, or are damaged and nobody asked for
+  /// them, and were not read for that.
   std::uint64_t unread_tables() const { return unread_tables_; }
 
  private:
@@ -40,6 +41,8 @@ class GltfFeatures {
     std::uint64_t count = 0;
   };
 
+  template <class Read>
+  Rows rows_if_sound(const Read& read);
   Rows add_rows(mesh_io::FeatureTable& table, const std::string& way);
   std::optional<std::size_t> naming_column(mesh_io::FeatureTable& table) const;
   bool are_different(mesh_io::FeatureTable& table, std::size_t column) const;

@@ -1,5 +1,6 @@
 #include "import/gltf_objects.h"
 
+#include "base/error.h"
 #include "execution/spool_cursor.h"
 #include "import/place_lookup.h"
 #include "mesh_io/gltf_elements.h"
@@ -30,14 +31,28 @@ GltfObjects::GltfObjects(mesh_io::GltfFile& file, const mesh_io::GltfScene& scen
   if (objects_ == nullptr)
     return;
   const mesh_io::ObjectChoice& choice = objects_->choice;
-  if (choice.from == ObjectSource::feature ||
-      (choice.is_evident() && are_features_evident(place.batch)))
+  unread_ = place.is_batch_unread ? 1 : 0;
+  if (choice.from == ObjectSource::feature || (choice.is_evident() && has_features(place.batch)))
     features_.emplace(file, *objects_, place.batch, place.name);
   are_materials_ = choice.from == ObjectSource::material;
   are_nodes_ = choice.from == ObjectSource::node ||
                (choice.is_evident() && !features_ && !place.is_tile && are_nodes_evident());
   if (are_nodes_)
     parents_ = parents_of(document_);
+  if (!features_ && !are_materials_ && !are_nodes_)
+    objects_ = nullptr;  // others say whose the triangles are: the file, a label, or nobody
+}
+
+/// Metadata that nobody asked for stops no mesh: what is damaged is counted.
+bool GltfObjects::has_features(mesh_io::FeatureTable* batch) {
+  try {
+    return are_features_evident(batch);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input)
+      throw;
+    ++unread_;
+    return false;
+  }
 }
 
 /// A primitive has features with properties.

@@ -35,9 +35,12 @@ class GltfObjects {
            std::uint64_t count);
   /// Returns how many sets of feature ids were passed over, as textures have them.
   std::uint64_t features_in_textures() const { return features_ ? features_->in_textures() : 0; }
-  std::uint64_t unread_tables() const { return features_ ? features_->unread_tables() : 0; }
+  std::uint64_t unread_tables() const {
+    return unread_ + (features_ ? features_->unread_tables() : 0);
+  }
 
  private:
+  bool has_features(mesh_io::FeatureTable* batch);
   bool are_features_evident(mesh_io::FeatureTable* batch) const;
   bool add_features(const mesh_io::GltfPrimitive& primitive, const PrimitiveSources& sources,
                     std::uint64_t first, const storage::RecordSpool<std::uint32_t>& used,
@@ -56,6 +59,7 @@ class GltfObjects {
   MeshObjects* objects_;
   const ImportRoom& room_;
   std::optional<GltfFeatures> features_;
+  std::uint64_t unread_ = 0;  ///< tables that are damaged, before there are features
   bool are_nodes_ = false, are_materials_ = false;
   std::vector<std::uint32_t> parents_;
   std::map<std::string, std::uint64_t> taken_;  ///< names of nodes, each with how many have it

@@ -14,6 +14,7 @@ struct GltfPlace {
   bool is_tile = false;
   std::string name{};                      ///< before names of features; empty: it is alone
   mesh_io::FeatureTable* batch = nullptr;  ///< table of the b3dm that it is in; null: none
+  bool is_batch_unread = false;            ///< there is one, which is damaged
 };
 
 }  // namespace meshhier::importing

@@ -45,16 +45,30 @@ mesh_io::GltfFile GltfReader::open(const InputFileFacts& facts,
            [this](std::uint64_t bytes) { return decoding_.share(bytes); }}};
 }
 
+std::unique_ptr<mesh_io::FeatureTable> GltfReader::batch_table(
+    const std::shared_ptr<const storage::File>& content, const mesh_io::TilesetMesh& tile,
+    const RawMesh& mesh, GltfPlace& place) const {
+  if (!mesh.objects || !mesh.objects->choice.takes(mesh_io::ObjectSource::feature))
+    return nullptr;
+  try {
+    return mesh_io::open_batch_table(content, tile.batch, decoding_bytes());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input || !mesh.objects->choice.is_evident())
+      throw;
+    place.is_batch_unread = true;
+    return nullptr;
+  }
+}
+
 GltfImport GltfReader::import(const InputFileFacts& facts,
                               std::shared_ptr<const storage::File> content, RawMesh& mesh) {
   const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
-  const auto batch =
-      mesh.objects ? mesh_io::open_batch_table(content, tile.batch, decoding_bytes()) : nullptr;
+  GltfPlace place{tile.placement, facts.tile.has_value()};
+  const auto batch = batch_table(content, tile, mesh, place);
   mesh_io::GltfFile file = open(facts, std::move(content));
-  const std::string name =
-      input_.all().size() > 1 ? input_.object_name(facts.path) + '/' : std::string();
-  return import_gltf(file, {tile.placement, facts.tile.has_value(), name, batch.get()}, mesh,
-                     input_.textures(), input_.attributes(), room_);
+  place.name = input_.all().size() > 1 ? input_.object_name(facts.path) + '/' : std::string();
+  place.batch = batch.get();
+  return import_gltf(file, place, mesh, input_.textures(), input_.attributes(), room_);
 }
 
 void GltfReader::look_for_pictures(const InputFileFacts& facts) {

@@ -6,6 +6,7 @@
 #include "import/gltf_import.h"
 #include "import/input_files.h"
 #include "import/raw_mesh.h"
+#include "mesh_io/feature_table.h"
 #include "mesh_io/gltf_file.h"
 
 #include <cstdint>
@@ -34,6 +35,11 @@ class GltfReader {
   execution::MemoryGate& decoding() { return decoding_; }
 
  private:
+  /// The table of the b3dm that a glTF is in; null if it has none, or if that is damaged and nobody
+  /// asked for it.
+  std::unique_ptr<mesh_io::FeatureTable> batch_table(
+      const std::shared_ptr<const storage::File>& content, const mesh_io::TilesetMesh& tile,
+      const RawMesh& mesh, GltfPlace& place) const;
   mesh_io::GltfFile open(const InputFileFacts& facts, std::shared_ptr<const storage::File> content);
 
   InputFiles& input_;

@@ -57,6 +57,10 @@ PropertyTable::Column& PropertyTable::column_of(const std::string& name, std::si
   const auto known = std::ranges::find(columns_, name, &Column::name);
   if (known != columns_.end())
     return *known;
+  constexpr std::size_t kMostColumns = 4096;
+  if (columns_.size() == kMostColumns)
+    throw Error(ErrorCode::input,
+                "the table of objects has more than 4096 different keys; are they values?");
   Column column{name};
   const std::string small = small_letters(name);
   if (small == "id" && !has_id_column_)

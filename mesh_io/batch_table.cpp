@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/named_value.h"
+#include "base/sound_utf8.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/json_value.h"
@@ -137,7 +138,7 @@ std::unique_ptr<FeatureTable> open_batch_table(std::shared_ptr<const storage::Fi
   std::string text(static_cast<std::size_t>(place.json_bytes), '\0');
   file->read_exact(place.json, std::as_writable_bytes(std::span(text)));
   text.erase(text.find_last_not_of('\0') + 1);  // some programs pad it with zeros
-  const Json json = parse_gltf_json(std::move(text), path, most_bytes);
+  const Json json = parse_gltf_json(sound_utf8(text), path, most_bytes);
   if (!json.is_object())
     fail_file(path, "the batch table of the tile is no object of JSON");
   return std::make_unique<BatchTable>(std::move(file), place, json);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "images/tiff_pixels.h"
 #include "mesh_io/beside_raster.h"
+#include "mesh_io/coordinate_range.h"
 
 #include <cmath>
 #include <cstddef>
@@ -59,7 +60,7 @@ void find_crs(const std::filesystem::path& path, storage::FileSystem& files, Geo
 }
 
 void require_map(const GridMap& map, images::TiffFile& tiff) {
-  const auto finite = [](MapPoint p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+  const auto finite = [](MapPoint p) { return is_coordinate(p.x) && is_coordinate(p.y); };
   if (!finite(map.first) || !finite(map.column) || !finite(map.row) ||
       !(std::abs(map.determinant()) > 0))
     tiff.fail("has a transformation without an area: its cells lie nowhere");

@@ -246,6 +246,9 @@ RecordCounts read_json_lines(Characters& text, const RecordVisitor& visit) {
     const Json object = storage::parse_json_text(line, watch, {.throws = false});
     if (!object.is_object())
       text.fail(number, "expected an object of JSON in one line, found " + in_quotes(line));
+    if (object.size() > kMostRecordFields)
+      text.fail(number,
+                fmt::format("expected up to {} keys, found {}", kMostRecordFields, object.size()));
     record.clear();
     for (const auto& [key, value] : object.items())
       record.push_back({key, value_of_json(value)});

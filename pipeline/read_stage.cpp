@@ -15,8 +15,13 @@ SourceMesh read_vertices(importing::MeshInput& input, storage::ScratchFile& scra
                          const StageContext& context) {
   SourceMesh mesh = ingest(input.open(), input.files().name(), scratch, context);
   if (!context.config.attributes.labels)
-    mesh.guess_labels([&](const std::string& name) { return input.is_sure_label(name); },
-                      context.progress);
+    mesh.guess_labels(
+        [&](const std::string& name) {
+          const mesh_io::ObjectChoice& objects = context.config.objects.from;
+          return input.is_sure_label(name) ||
+                 (objects.from == mesh_io::ObjectSource::label && objects.label == name);
+        },
+        context.progress);
   mesh.note(input.files().units(), input.files().unused());
   for (const std::string& warning : input.files().warnings())
     context.progress.warn(warning);

@@ -52,12 +52,13 @@ std::vector<std::byte> read_part(const File& file, std::uint64_t offset, std::ui
   return part;
 }
 
-ZipEnd read_end64(const File& file, std::uint64_t end) {
+/// `found`: what the short end says, which may end at numbers that are all ones by chance.
+ZipEnd read_end64(const File& file, std::uint64_t end, const ZipEnd& found) {
   if (end < kLocatorBytes)
-    fail(file, "has no end of its directory");
+    return found;
   const auto locator = read_part(file, end - kLocatorBytes, kLocatorBytes);
   if (!text_of(locator).starts_with(kLocatorMark))
-    fail(file, "has no end of its directory");
+    return found;
   const auto end64 = read_part(file, number<std::uint64_t>(locator, 8), kEnd64Bytes);
   if (!text_of(end64).starts_with(kEnd64Mark))
     fail(file, "has no end of its directory");
@@ -78,7 +79,7 @@ ZipEnd read_end(const File& file) {
                        number<std::uint32_t>(end, 16)};
     const bool is_zip64 =
         found.files == kInExtra16 || found.bytes == kInExtra32 || found.offset == kInExtra32;
-    return is_zip64 ? read_end64(file, size - end.size()) : found;
+    return is_zip64 ? read_end64(file, size - end.size(), found) : found;
   }
   fail(file, "has no end (truncated?)");
 }
