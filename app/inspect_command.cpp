@@ -28,9 +28,8 @@ struct InspectArguments {
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.objects) {
-    inspection::list_objects(
-        place.files(), place.path(), {*arguments.objects, arguments.json},
-        [&](std::string_view line) { environment.out << line << '\n'; });
+    inspection::list_objects(place.files(), place.path(), {*arguments.objects, arguments.json},
+                             [&](std::string_view line) { environment.out << line << '\n'; });
   } else if (arguments.json) {
     environment.out << storage::json_text(
                            inspection::inspect_json(place.files(), place.path(), arguments.options),

@@ -144,7 +144,7 @@ struct TextureConfig {
 struct ObjectsConfig {
   mesh_io::ObjectChoice from;  ///< what they are made from
   std::filesystem::path
-      table{};  ///< of their properties, besides those that the mesh has; or empty
+      table{};           ///< of their properties, besides those that the mesh has; or empty
   bool in_tiles = true;  ///< tiles have tables of theirs, for other viewers
   friend bool operator==(const ObjectsConfig&, const ObjectsConfig&) = default;
 };

@@ -76,8 +76,8 @@ void require_no_circle(const OsgbStep& step) {
                                      shown_name(step.path.string())));
   }
   if (step.above && step.above->depth >= kDeepestTile)
-    mesh_io::fail_file(
-        step.path, fmt::format("is named by files within each other, deeper than {}", kDeepestTile));
+    mesh_io::fail_file(step.path, fmt::format("is named by files within each other, deeper than {}",
+                                              kDeepestTile));
 }
 
 /// Collects what is to be told of a tile of the input.

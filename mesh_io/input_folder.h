@@ -33,7 +33,8 @@ bool is_container(storage::FileSystem& files, const std::filesystem::path& path)
 
 /// Returns the meshes of a folder, of an archive, or of a metadata.xml that lies with them; of any
 /// other path the mesh itself, z-up only if its format says so elsewhere. Throws Error(io) if the
-/// folder is of no kind that is known, or cannot be read; Error(input) as tileset_of_archive(); as osgb_tiles_below().
+/// folder is of no kind that is known, or cannot be read; Error(input) as tileset_of_archive(); as
+/// osgb_tiles_below().
 InputMeshes meshes_of(storage::FileSystem& files, const std::filesystem::path& path);
 
 /// Returns the kinds of folders, for sentences: "OSGB tiles, an ODM project or …".

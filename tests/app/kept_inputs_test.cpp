@@ -34,6 +34,7 @@ struct Argument {
 const std::set<std::string> kReadTypes{"FILE", "DIR", "LINE|@FILE"};
 const std::set<std::string> kOtherTypes{"",
                                         "SIZE",
+                                        "SOURCE",
                                         "N",
                                         "L",
                                         "L/I",

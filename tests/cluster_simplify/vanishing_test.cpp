@@ -14,7 +14,10 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
+using testing::AllOf;
 using testing::Each;
+using testing::Gt;
+using testing::Lt;
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -111,7 +114,9 @@ TEST(VanishingTest, AGhostIsSurfaceToGoTo) {
 TEST(VanishingTest, VerticesWithoutTrianglesDoNotVanishAndAreNoSurface) {
   tests::TestMesh mesh = strip(1);
   mesh.positions.push_back({0, 0, 0.5F});
-  EXPECT_THAT(distances_of(tests::tile_of(mesh)), Each(kNever));  // nowhere to go
+  const std::vector<float> alone = distances_of(tests::tile_of(mesh));
+  EXPECT_THAT(part(alone, 0, 4), Each(Lt(1)));  // to its middle: there is nothing else
+  EXPECT_EQ(alone.back(), kNever);
   const std::size_t base = mesh.positions.size();
   tests::append(mesh, tests::open_grid(9, 9), {0, 0, 3});
   const std::vector<float> found = distances_of(tests::tile_of(mesh));
@@ -119,8 +124,15 @@ TEST(VanishingTest, VerticesWithoutTrianglesDoNotVanishAndAreNoSurface) {
   EXPECT_EQ(found[base - 1], kNever);
 }
 
-TEST(VanishingTest, WhereAllPiecesAreSmallNoneVanishes) {
-  EXPECT_THAT(distances_of(tests::tile_of(tests::soup(50))), Each(kNever));
+TEST(VanishingTest, WhereAllPiecesAreSmallTheSmallestGoFirst) {
+  tests::TestMesh mesh;
+  tests::append(mesh, strip(5), {0, 0, 0});
+  tests::append(mesh, strip(1), {100, 0, 0});
+  const std::vector<float> found = distances_of(tests::tile_of(mesh));
+  const std::size_t large = found.size() - 4;
+  EXPECT_THAT(part(found, 0, large), Each(AllOf(Gt(found.back()), Lt(kNever))));
+  EXPECT_THAT(part(found, large, 4), Each(found.back()));
+  EXPECT_THAT(distances_of(tests::tile_of(tests::soup(50))), Each(Lt(kNever)));
   EXPECT_THAT(distances_of(tests::tile_of(tests::points(50))), Each(kNever));
   EXPECT_TRUE(distances_of({}).empty());
 }

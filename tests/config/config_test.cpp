@@ -710,7 +710,8 @@ void walk(const Json& schema, const std::string& prefix, std::map<std::string, J
     required.insert(prefix + name.get<std::string>());
   for (const auto& [name, inner] : schema.at("properties").items()) {
     EXPECT_TRUE(inner.contains("description")) << prefix << name;
-    if (inner.value("type", "") == "object") {
+    const Json type = inner.value("type", Json());
+    if (type == "object" || type == Json::array({"object", "string"})) {
       walk(inner, prefix + name + '.', leaves, required);
     } else {
       leaves[prefix + name] = inner;

@@ -391,6 +391,7 @@ std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_
     const float part = std::abs(hash_noise(vertex, 4 + static_cast<std::uint64_t>(c)));
     channels.push_back(layout.colour == ColourType::f32 ? part : std::round(part * top));
   }
+  channels.insert(channels.end(), static_cast<std::size_t>(layout.value_channels()), 0.0F);
   for (std::uint64_t i = 0; layout.texcoords && i < 2; ++i)
     channels.push_back(3 * hash_noise(vertex, 8 + i));
   return channels;

@@ -180,9 +180,9 @@ TEST_F(GltfValidator, AcceptsTilesWithTablesOfObjects) {
   const AttributeLayout layout{.values = {{"object", ValueType::u32, true, true}}};
   int number = 0;
   for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
-    SampleHierarchy sample = with_objects(
-        with_copies(make_sample(torus(150, 0.05F), 3, {layout, {}})),
-        {{"height", ObjectPropertyType::number}, {"owner", ObjectPropertyType::text}});
+    SampleHierarchy sample =
+        with_objects(with_copies(make_sample(torus(150, 0.05F), 3, {layout, {}})),
+                     {{"height", ObjectPropertyType::number}, {"owner", ObjectPropertyType::text}});
     sample.format.compression = compression;
     write_tiles(fmt::format("objects{}", number++), sample);
   }

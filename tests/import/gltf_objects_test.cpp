@@ -66,7 +66,8 @@ class GltfObjectsTest : public testing::Test {
     }
     return {};
   }
-  Imported import_tiles(const std::vector<std::string>& tiles) {
+  Imported import_tiles(const std::vector<std::string>& tiles,
+                        ObjectSource from = ObjectSource::evident) {
     GltfJson root{{"boundingVolume", {{"sphere", {0, 0, 0, 10}}}}, {"geometricError", 0}};
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       put(fmt::format("{}.b3dm", i), tiles[i]);
@@ -76,7 +77,7 @@ class GltfObjectsTest : public testing::Test {
     }
     put("tileset.json",
         GltfJson{{"asset", {{"version", "1.0"}}}, {"geometricError", 9}, {"root", root}}.dump());
-    return tests::import_files(files_, fs::path("w/tileset.json"), asking(ObjectSource::evident));
+    return tests::import_files(files_, fs::path("w/tileset.json"), asking(from));
   }
 
   tests::MemoryFiles files_;
@@ -291,7 +292,10 @@ TEST_F(GltfObjectsTest, BatchTablesThatLie) {
                {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 9, 9, 9}, "SCALAR")}}}});
   const auto failure_of = [&](const std::string& json) -> std::string {
     try {
-      import_tiles({batched_tile(gltf.glb(), json, "12345678")});
+      const std::string tile = batched_tile(gltf.glb(), json, "12345678");
+      const Imported unasked = import_tiles({tile});
+      EXPECT_EQ(unasked.count(kUnreadTables), 1U) << "nobody asked for it";
+      import_tiles({tile}, ObjectSource::feature);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
       return error.what();

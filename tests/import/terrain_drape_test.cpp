@@ -46,7 +46,7 @@ const TiffForm kInDegrees{
     .scale = {1e-4, 1e-4, 0}, .tie = {0, 0, 0, 15.0, 48.01, 0}, .keys = keys_in_degrees(4326)};
 /// About the same place for a person of the zone to the west.
 const TiffForm kInZone32{
-    .scale = {40, 40, 0}, .tie = {0, 0, 0, 947000, 5332500, 0}, .keys = keys_in_metres(32632)};
+    .scale = {40, 40, 0}, .tie = {0, 0, 0, 947000, 5335700, 0}, .keys = keys_in_metres(32632)};
 
 struct Draped {
   std::unique_ptr<Mosaic> heights;

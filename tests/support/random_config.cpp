@@ -90,7 +90,7 @@ class ConfigDrawer {
   Json value_of(const ConfigKey& key) {
     switch (key.kind) {
       case KeyKind::boolean:
-        return !key.show(config::Config()).get<bool>();
+        return key.show(config::Config()) == false;  // one that is not told is true
       case KeyKind::choice:
         return choice(key);
       case KeyKind::integer:

@@ -384,7 +384,7 @@ TEST_F(HierarchyReaderTest, SANITIZED_AHierarchyOfAnEarlierFormatIsRefusedWithWh
   storage::write_file(*files_, path, std::as_bytes(std::span(text)));
   expect_failure(
       ErrorCode::corrupt, path,
-      "was made with format version 5, this program reads 6 to 13: build it again from the "
+      "was made with format version 5, this program reads 6 to 14: build it again from the "
       "mesh",
       [&] { reader(); });
 }

@@ -654,13 +654,13 @@ TEST(Manifest, TheRootOfTheTilesetHasTheOriginSinceVersionTwelve) {
 
 TEST(Manifest, SANITIZED_OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 14;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 14 is newer than 13"));
+  document["format_version"] = 15;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 15 is newer than 14"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 13: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 14: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

@@ -179,7 +179,7 @@ TEST(ObjectTableTest, TheManifestTellsOfIt) {
   EXPECT_THROW(read(twice), Error);
 
   for (const auto number : {&ObjectTableFacts::bytes, &ObjectTableFacts::directory_bytes,
-                       &ObjectTableFacts::directory_checksum}) {
+                            &ObjectTableFacts::directory_checksum}) {
     ObjectTableFacts other = facts;
     ++(other.*number);
     EXPECT_THROW(ObjectTable(files.open(kTable), &other), Error);
