@@ -294,7 +294,7 @@ TEST_F(GltfObjectsTest, BatchTablesThatLie) {
     try {
       const std::string tile = batched_tile(gltf.glb(), json, "12345678");
       const Imported unasked = import_tiles({tile});
-      EXPECT_EQ(unasked.count(kUnreadTables), 1U) << "nobody asked for it";
+      EXPECT_EQ(unasked.count(std::string(kUnreadTables)), 1U) << "nobody asked for it";
       import_tiles({tile}, ObjectSource::feature);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
