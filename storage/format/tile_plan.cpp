@@ -181,7 +181,8 @@ Json primitives_json(const TilePlan& plan) {
     if (plan[row.part].view >= 0)
       attributes[attribute_name(plan, row.part)] = plan[row.part].view;
   }
-  const std::vector<std::string> values = value_attributes(plan.layout());
+  const std::vector<std::string> values =
+      value_attributes(plan.layout(), plan.shape().objects.has_value());
   for (std::size_t i = 0; i < values.size(); ++i)
     attributes[values[i]] = static_cast<std::size_t>(plan[TilePart::values].view) + i;
   Json primitives = Json::array();
@@ -333,8 +334,8 @@ void add_column_views(const TilePlan& plan, const Packing* packing, Json& views)
 
 /// Returns the content of the root's extension. Values are there whenever objects are.
 Json metadata_json(const TilePlan& plan) {
-  Json metadata = values_metadata(plan.layout());
   const auto& objects = plan.shape().objects;
+  Json metadata = values_metadata(plan.layout(), objects.has_value());
   if (!objects)
     return metadata;
   const ObjectColumns columns = objects->plan();

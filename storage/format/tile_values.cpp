@@ -4,6 +4,7 @@
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/metadata_ids.h"
+#include "storage/format/tile_object_table.h"
 
 #include <algorithm>
 #include <array>
@@ -85,8 +86,10 @@ bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bo
   return false;
 }
 
-std::vector<std::string> value_attributes(const AttributeLayout& layout) {
+std::vector<std::string> value_attributes(const AttributeLayout& layout, bool has_feature_ids) {
   std::vector<std::string> names{kUnshownColours};
+  if (has_feature_ids)
+    names.emplace_back(kFeatureAttribute);
   // A kind's own name may begin as those of values do.
   for (const AttributeKindRow& row : kAttributeKinds)
     names.emplace_back(row.gltf);
@@ -110,10 +113,9 @@ std::vector<std::string> value_ids(const AttributeLayout& layout) {
   return metadata_ids(names);
 }
 
-Json values_metadata(const AttributeLayout& layout) {
+Json vertex_class(const AttributeLayout& layout) {
   const std::vector<std::string> ids = value_ids(layout);
-  const std::vector<std::string> attributes = value_attributes(layout);
-  Json properties = Json::object(), places = Json::object();
+  Json properties = Json::object();
   for (std::size_t i = 0; i < layout.values.size(); ++i) {
     const unsigned component = component_of(layout.values[i].type);
     Json& property = properties[ids[i]];
@@ -122,11 +124,19 @@ Json values_metadata(const AttributeLayout& layout) {
     property["componentType"] = component_name(component);
     if (component == kF32)
       property["noData"] = double{kNoValue};
-    places[ids[i]]["attribute"] = attributes[i];
   }
+  return Json::object({{"properties", std::move(properties)}});
+}
+
+Json values_metadata(const AttributeLayout& layout, bool has_feature_ids) {
+  const std::vector<std::string> ids = value_ids(layout);
+  const std::vector<std::string> attributes = value_attributes(layout, has_feature_ids);
+  Json places = Json::object();
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    places[ids[i]]["attribute"] = attributes[i];
   Json metadata;
   metadata["schema"]["id"] = "meshhier";
-  metadata["schema"]["classes"]["vertex"]["properties"] = std::move(properties);
+  metadata["schema"]["classes"]["vertex"] = vertex_class(layout);
   metadata["propertyAttributes"] =
       Json::array({{{"class", "vertex"}, {"properties", std::move(places)}}});
   return metadata;

@@ -34,13 +34,16 @@ double value_of_stored(ValueType type, double stored);
 /// Whether the accessors lose a part of any value, or, if `labels_only`, of any label.
 bool loses_values(const AttributeLayout& layout, const VertexArray& vertices, bool labels_only);
 
-/// Returns the name of each value in glTF, "_QUALITY"; no name twice.
-std::vector<std::string> value_attributes(const AttributeLayout& layout);
+/// Returns the name of each value in glTF, "_QUALITY"; no name twice, and none that rows of a
+/// tile's table of objects have.
+std::vector<std::string> value_attributes(const AttributeLayout& layout, bool has_feature_ids);
 /// Returns the id of each in EXT_structural_metadata and 3D Tiles: letters, digits and underscores;
 /// no id twice.
 std::vector<std::string> value_ids(const AttributeLayout& layout);
 
+/// Returns the class of a vertex in a schema.
+nlohmann::ordered_json vertex_class(const AttributeLayout& layout);
 /// Returns the content of the root's extension: the class, and the one property attribute.
-nlohmann::ordered_json values_metadata(const AttributeLayout& layout);
+nlohmann::ordered_json values_metadata(const AttributeLayout& layout, bool has_feature_ids);
 
 }  // namespace meshhier::storage

@@ -132,8 +132,7 @@ class TilesetWriter {
   void describe_values(Json& document) const {
     const SourceSummary& source = manifest_.source;
     const std::vector<std::string> ids = value_ids(source.attributes);
-    document["schema"]["classes"]["vertex"] =
-        values_metadata(source.attributes)["schema"]["classes"]["vertex"];
+    document["schema"]["classes"]["vertex"] = vertex_class(source.attributes);
     Json& statistics = document["statistics"]["classes"]["vertex"];
     statistics["count"] = source.vertices;
     for (std::size_t i = 0; i < ids.size(); ++i) {

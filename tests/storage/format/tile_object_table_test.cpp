@@ -37,10 +37,9 @@ const Properties kAllTypes{{"height", ObjectPropertyType::number},
                            {"name", ObjectPropertyType::text},
                            {"7 built", ObjectPropertyType::date}};
 
-SampleHierarchy sample_of(const Properties& properties) {
+SampleHierarchy sample_of(const Properties& properties, const std::string& value = "quality") {
   const AttributeLayout layout{
-      .normals = true,
-      .values = {{"quality", ValueType::f32}, {"object", ValueType::u32, true, true}}};
+      .normals = true, .values = {{value, ValueType::f32}, {"object", ValueType::u32, true, true}}};
   return with_objects(with_copies(make_sample(torus(250, 0.05F), 5, {layout, {}})), properties);
 }
 
@@ -60,6 +59,21 @@ TEST(TileObjectTable, ComesBackInAnyCompression) {
       }
     }
   }
+}
+
+TEST(TileObjectTable, TakesItsAttributeFromNoValue) {
+  const SampleHierarchy sample = sample_of(kAllTypes, "FEATURE_ID_0");
+  const Json root = OpenGlb(encode_tile(sample.tiles.front(), sample.tree, sample.format)).json;
+  const Json& attributes = root["meshes"][0]["primitives"][0]["attributes"];
+  const auto type_of = [&](const char* name) -> unsigned {
+    return root["accessors"][attributes.at(name).get<std::size_t>()]["componentType"];
+  };
+  constexpr unsigned kU16 = 5123, kF32 = 5126;
+  EXPECT_EQ(type_of("_FEATURE_ID_0"), kU16);
+  EXPECT_EQ(type_of("_FEATURE_ID_0_2"), kF32);
+  const Json& metadata = root["extensions"]["EXT_structural_metadata"];
+  EXPECT_EQ(metadata["propertyAttributes"][0]["properties"]["FEATURE_ID_0"]["attribute"],
+            "_FEATURE_ID_0_2");
 }
 
 /// The texts of a column, as a viewer reads them.
