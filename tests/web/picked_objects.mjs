@@ -42,7 +42,7 @@ function levelsOf({ root, geometricError }) {
 
 /// The number of each name. Rows without a number, as names without a row, have none.
 function readNumbers(table) {
-  const [head, ...rows] = readFileSync(table, 'utf8').trim().split('\n').map((line) => line.split(','));
+  const [head, ...rows] = readFileSync(table, 'utf8').trim().split(/\r?\n/).map((line) => line.split(','));
   return { property: head[1], numbers: new Map(rows.map(([name, number]) => [name, number === '' ? null : Number(number)])) };
 }
 
