@@ -13,6 +13,7 @@
 #include "pipeline/preview.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/texture_stage.h"
+#include "pipeline/tile_tables.h"
 #include "pipeline/tiles/texture_store.h"
 #include "pipeline/tiles/tile_normals.h"
 #include "storage/format/index.h"
@@ -21,7 +22,6 @@
 #include "storage/format/manifest.h"
 #include "storage/format/object_table.h"
 #include "storage/format/outline_glb.h"
-#include "storage/format/tile_object_table.h"
 #include "storage/format/tile_plan.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
@@ -72,11 +72,8 @@ std::unique_ptr<const storage::ObjectTable> open_objects(const std::filesystem::
                                                          const StageContext& context) {
   if (!context.plan.job.has_object_tables)
     return nullptr;
-  // Names need not lie as tiles do: each tile may ask for objects of nearly all blocks.
-  constexpr std::uint64_t kUnpackedBlockBytes = std::uint64_t{1} << 17;
-  const auto imported = storage::imported_objects_path(hierarchy.parent_path());
   return std::make_unique<storage::ObjectTable>(
-      context.files.open(imported), nullptr, context.memory().work_bytes / 8 / kUnpackedBlockBytes);
+      context.files.open(storage::imported_objects_path(hierarchy.parent_path())));
 }
 
 /// All that writing tiles needs.
@@ -86,8 +83,7 @@ struct TileWriter {
   const storage::TileFormat format;
   const TileFiles& to;
   const StageContext& context;
-  std::optional<Standpoint> first_view{};                 ///< for the root
-  std::unique_ptr<const storage::ObjectTable> objects{};  ///< if tiles have tables of theirs
+  std::optional<Standpoint> first_view{};  ///< for the root
 };
 
 TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
@@ -149,15 +145,6 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
-/// Returns the table of the tile's objects; an empty one if tiles have none.
-TileObjects objects_in(const TileWriter& to, const TileMesh& mesh) {
-  if (!to.objects)
-    return {};
-  return storage::make_tile_objects(storage::objects_of(mesh, to.format.attributes),
-                                    to.objects->properties(),
-                                    [&](std::uint32_t object) { return to.objects->row(object); });
-}
-
 /// Returns the first view that the config asks for, or the one in which the root is recognised.
 Standpoint first_view_of(const TileWriter& to, Forest& forest) {
   if (const auto wished = to.context.config.first_view.standpoint())
@@ -195,7 +182,7 @@ void write_tile_file(const TileWriter& writer, NodeId node, std::span<const std:
   files.rename(attempt, path);
 }
 
-Published write_tile(const TileWriter& to, NodeId node) {
+Published write_tile(const TileWriter& to, NodeId node, const TileObjects& objects) {
   const Forest& forest = to.forest;
   auto [mesh, shading, image, normal_map, parent_map] = finish(to, node, forest.load(node).mesh);
   Published published;
@@ -203,7 +190,6 @@ Published write_tile(const TileWriter& to, NodeId node) {
     published.rounding = round_to(*to.format.lattice, mesh);
   TileRecord& record = published.record;
   record = describe(to, node, mesh, shading);
-  const TileObjects objects = objects_in(to, mesh);
   record.has_normal_map = !normal_map.empty();
   if (const TileImage& shown = record.has_normal_map ? normal_map : image; !shown.empty()) {
     record.image_width = shown.width;
@@ -240,6 +226,13 @@ std::vector<TileRecord> complete_records(std::span<const Published> tiles, const
   return records;
 }
 
+/// A tile on its way to its file.
+struct TileAtWork {
+  NodeId node;
+  TileObjects objects;  ///< empty if tiles have no tables of them
+  Published published;
+};
+
 /// Returns the memory that the heaviest of the nodes takes while it is written.
 std::uint64_t heaviest_written(const Forest& forest, std::span<const NodeId> nodes,
                                const config::StorageConfig& storage) {
@@ -250,7 +243,8 @@ std::uint64_t heaviest_written(const Forest& forest, std::span<const NodeId> nod
 }  // namespace
 
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const TileFiles& to, const Share& share, const StageContext& context) {
+             const TileFiles& to, const Share& share, const storage::ScratchFile& scratch,
+             const StageContext& context) {
   const Tree& tree = context.tree();
   for (int l = 0; l <= raw(tree.depth()); ++l) {
     const auto level = static_cast<Level>(l);
@@ -264,27 +258,35 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
     if (!journal.is_published(nodes[i]))
       left.push_back(nodes[i]);
   }
-  context.progress.stage("publish", left.size(), "tiles");
-  std::unique_ptr<const storage::ObjectTable> objects = open_objects(to.directory, context);
-  TileWriter writer{forest,
-                    textures,
+  const auto objects = open_objects(to.directory, context);
+  TileWriter writer{forest, textures,
                     format_of(*journal.source(), forest.computes_normals(), textures,
                               objects ? &objects->properties() : nullptr, context),
-                    to,
-                    context,
-                    {},
-                    std::move(objects)};
+                    to, context};
   if (std::ranges::find(left, tree.root()) != left.end())
     writer.first_view = first_view_of(writer, forest);
   // A picture is held as it was stored, on its own, and in the tile's file.
   const std::uint64_t heaviest =
       heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
   const TileRoom room = room_for(forest, context.memory(), {heaviest});
-  execution::ordered_for(
-      left.size(), room.in_flight(), context.cancel,
-      [&](std::size_t i) { return write_tile(writer, left[i]); },
-      [&](std::size_t, const Published& tile) {
-        journal.note_published(tile);
+  std::optional<TileTables> tables;
+  if (objects)
+    tables.emplace(forest, left, *objects, scratch, room.in_flight(), context);
+  context.progress.stage("publish", left.size(), "tiles");
+  std::size_t next = 0;
+  execution::ordered_read_blocks<TileAtWork>(
+      room.in_flight(), context.cancel,
+      [&](TileAtWork& tile) {
+        if (next == left.size())
+          return false;
+        tile.node = left[next++];
+        if (tables)
+          tile.objects = tables->next();
+        return true;
+      },
+      [&](TileAtWork& tile) { tile.published = write_tile(writer, tile.node, tile.objects); },
+      [&](TileAtWork& tile) {
+        journal.note_published(tile.published);
         context.progress.advance(1);
       });
   if (!to.attempts.empty())
@@ -406,26 +408,43 @@ StageMemory publish_memory(const JobSize& job) {
 StageTimes publish_time(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kVertexSeconds = 55e-9;
   constexpr double kPackedByteSeconds = 20e-9;
+  constexpr double kAskedVertexSeconds = 30e-9;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   const double packed = job.published_ratio < 1 ? publish_output(job, tiles).plain_bytes : 0;
-  return {{"publish", "tiles",
-           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
-                                      tiles.early.count),
-           vertices * kVertexSeconds + packed * kPackedByteSeconds + kFirstViewSeconds +
-               (job.draws_preview ? kPreviewSeconds : 0)}};
+  const StageTime written{"publish", "tiles",
+                          static_cast<std::uint64_t>(tiles.partitions.count +
+                                                     tiles.simplified.count - tiles.early.count),
+                          vertices * kVertexSeconds + packed * kPackedByteSeconds +
+                              kFirstViewSeconds + (job.draws_preview ? kPreviewSeconds : 0)};
+  if (!job.has_object_tables)
+    return {written};
+  StageTime asked = written;
+  asked.seconds = vertices * kAskedVertexSeconds;
+  return {asked, written};
 }
 
 namespace {
 
 /// Rows are unpacked in tiles, and stand in those of several levels: cities took 8 to 10 times the
 /// bytes of the packed table.
+constexpr double kTablesInTiles = 10;
+
 double published_object_bytes(const JobSize& job, double vertices) {
-  constexpr double kTablesInTiles = 10, kRowNumber = 4;
+  constexpr double kRowNumber = 4;
   const auto table = static_cast<double>(job.object_table_bytes);
   return table + (job.has_object_tables ? kTablesInTiles * table + kRowNumber * vertices : 0);
 }
 
 }  // namespace
+
+DiskVolumes publish_disk(const JobSize& job, const TilePopulation& /*tiles*/,
+                         const MemoryPlan& /*memory*/) {
+  constexpr double kSortedBytes = 1.6;  // of a byte of a table
+  if (!job.has_object_tables)
+    return {};
+  return {{kSortedBytes * kTablesInTiles * static_cast<double>(job.object_table_bytes),
+           DiskMoment::simplify, DiskMoment::simplify, true}};
+}
 
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kFileSlack = 2048;  // half a disk block

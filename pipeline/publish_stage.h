@@ -9,6 +9,7 @@
 #include "pipeline/tiles/forest.h"
 #include "pipeline/tiles/texture_store.h"
 #include "storage/format/manifest.h"
+#include "storage/io/spool.h"
 
 #include <filesystem>
 
@@ -19,6 +20,8 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
 /// The stage's memory: that of the preview or the first view, as tiles on their way take less than
 /// in `simplify`.
 StageMemory publish_memory(const JobSize& job);
+/// The sorts that bring objects to tiles.
+DiskVolumes publish_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 StageTimes publish_time(const JobSize& job, const TilePopulation& tiles);
 
 /// The directories that tile files go to.
@@ -31,9 +34,11 @@ struct TileFiles {
 
 /// Writes the files of the share of all tiles, but for those the journal has, and notes them. If
 /// `to.attempts` is given, all are on disk when it returns. Requires all tiles, their pictures and
-/// maps. The bytes are the same for any number of threads. Throws Error(io | budget | interrupted).
+/// maps. Objects wait for their tiles in a file beside `scratch`. The bytes are the same for any
+/// number of threads. Throws Error(io | budget | interrupted).
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const TileFiles& to, const Share& share, const StageContext& context);
+             const TileFiles& to, const Share& share, const storage::ScratchFile& scratch,
+             const StageContext& context);
 
 /// Adds up the errors and bounds of all tiles, which must be published, and writes all other files
 /// of the hierarchy; the manifest comes last. `objects`: if the mesh has any. Throws Error(io |

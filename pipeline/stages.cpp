@@ -166,11 +166,13 @@ constexpr std::array kStages{
     // tiles, their pictures and maps → their files
     Stage{.name = "publish",
           .memory = publish_memory,
+          .disk = publish_disk,
           .time = publish_time,
           .make =
               [](Making& of, auto& part, auto& context) {
                 Workshop& at = of.workshop;
-                publish(at.forest, at.textures, at.journal, of.to, part.share, context);
+                publish(at.forest, at.textures, at.journal, of.to, part.share, at.tile_scratch,
+                        context);
               },
           .tasks = {{kPublishTask}},
           .notes = {"publish"}},

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,27 +54,38 @@ bool is_of(const ObjectRow& row, const partition::ObjectExtent& extent, double s
   return slack > 0 || are_near(row.area, extent.area);
 }
 
+std::uint64_t checksum_of(const TileObjects& objects) {
+  storage::Checksum sum;
+  sum.add(std::as_bytes(std::span(objects.objects)));
+  sum.add(std::as_bytes(std::span(&objects.columns, 1)));
+  sum.add(std::as_bytes(std::span(objects.text_bytes)));
+  sum.add(objects.table);
+  return sum.value();
+}
+
 }  // namespace
 
 ObjectCheck::ObjectCheck(const VerifyJob& job, std::uint64_t memory_bytes)
-    : job_(job), census_(job.tree().depth(), job.scratch, memory_bytes) {
+    : job_(job),
+      census_(job.tree().depth(), job.scratch, memory_bytes),
+      rows_(job.scratch, memory_bytes / 2) {
   note_problems(job, [&] {
     const auto path = storage::objects_path(job.reader.directory());
-    constexpr std::uint64_t kUnpackedBlockBytes = std::uint64_t{1} << 17;
-    table_ = std::make_unique<storage::ObjectTable>(
-        job.files.open(path), &job.reader.manifest().objects->table,
-        job.options.memory_budget / 16 / kUnpackedBlockBytes);
+    table_ = std::make_unique<storage::ObjectTable>(job.files.open(path),
+                                                    &job.reader.manifest().objects->table);
   });
+}
+
+void ObjectCheck::tell(NodeId node, const std::string& what) const {
+  job_.problems.add(
+      fmt::format("{}: {}", storage::tile_path(job_.reader.directory(), node).string(), what));
 }
 
 void ObjectCheck::add(const PublishedTile& tile) {
   const AttributeLayout& layout = job_.reader.tile_format().attributes;
-  const auto tell = [&](const std::string& what) {
-    job_.problems.add(fmt::format(
-        "{}: {}", storage::tile_path(job_.reader.directory(), tile.node).string(), what));
-  };
   if (const auto torn = torn_triangle(tile.mesh, layout)) {
-    tell(fmt::format("the corners {}, {} and {} of a triangle belong to different objects",
+    tell(tile.node,
+         fmt::format("the corners {}, {} and {} of a triangle belong to different objects",
                      raw((*torn)[0]), raw((*torn)[1]), raw((*torn)[2])));
     return;
   }
@@ -82,15 +94,28 @@ void ObjectCheck::add(const PublishedTile& tile) {
   const std::vector<std::uint32_t> objects = storage::objects_of(tile.mesh, layout);
   if (!table_ || objects.back() >= table_->size()) {
     if (table_)
-      tell(fmt::format("object {} of {}", objects.back(), table_->size()));
+      tell(tile.node, fmt::format("object {} of {}", objects.back(), table_->size()));
     return;
   }
   if (tile.objects.empty())
     return;
-  const TileObjects expected = storage::make_tile_objects(
-      objects, table_->properties(), [&](std::uint32_t object) { return table_->row(object); });
-  if (tile.objects != expected)
-    tell("its table of objects is not what objects.bin says");
+  rows_.ask(static_cast<std::uint32_t>(told_.size()), objects);
+  told_.push_back({tile.node, checksum_of(tile.objects)});
+}
+
+void ObjectCheck::finish_tiles() {
+  if (!table_)
+    return;
+  note_problems(job_, [&] {
+    rows_.fetch(storage::cell_reader(*table_));
+    for (std::uint32_t i = 0; i < told_.size(); ++i) {
+      job_.cancel.check();
+      storage::TileTableMaker expected(table_->properties());
+      rows_.take(i, [&](std::uint32_t object, auto cells) { expected.add(object, cells); });
+      if (checksum_of(expected.take()) != told_[i].checksum)
+        tell(told_[i].node, "its table of objects is not what objects.bin says");
+    }
+  });
 }
 
 void ObjectCheck::finish() {

@@ -295,6 +295,8 @@ void verify_tiles(const VerifyJob& job) {
     explain_difference(job, {level, pair.low}, {level, pair.high});
   });
   claims.finish([&](const WrongCopies& wrong) { tell_wrong_copies(job, wrong); });
+  if (objects)
+    objects->finish_tiles();
   if (objects && job.tiles.unreadable_count() == 0)
     objects->finish();
   job.checks.push_back(fmt::format(

@@ -33,7 +33,7 @@ constexpr std::uint32_t kTableVersion = 1;
 constexpr std::size_t kTableHeadBytes = 12;
 constexpr std::size_t kTableEndBytes = 24;
 
-/// Unpacked blocks that a reader keeps: neighbours in a tile are often neighbours by name.
+/// Unpacked blocks that a reader keeps: neighbours by name are often asked for together.
 constexpr std::size_t kKeptBlocks = 16;
 /// Bytes of a name in a message.
 constexpr std::size_t kShownNameBytes = 60;
@@ -122,9 +122,8 @@ ObjectTableFacts ObjectTableWriter::finish() {
   return facts;
 }
 
-ObjectTable::ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected,
-                         std::size_t kept_blocks)
-    : file_(std::move(file)), most_kept_(std::max(kept_blocks, kKeptBlocks)) {
+ObjectTable::ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected)
+    : file_(std::move(file)) {
   const Place place = read_place();
   read_directory(place);
   if (expected != nullptr)
@@ -209,7 +208,7 @@ ObjectTable::Rows ObjectTable::rows_of(std::size_t block) const {
   Rows rows = read_rows(directory_.blocks[block]);
   const std::lock_guard lock(mutex_);
   kept_.push_front({block, rows});
-  if (kept_.size() > most_kept_)
+  if (kept_.size() > kKeptBlocks)
     kept_.pop_back();
   return rows;
 }

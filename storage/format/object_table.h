@@ -82,9 +82,9 @@ class ObjectTable {
   };
 
   /// Reads the directory. `expected`: what the manifest tells; all but the file's checksum is
-  /// compared. `kept_blocks`: so many are kept unpacked, but a few at least.
-  explicit ObjectTable(std::unique_ptr<const File> file, const ObjectTableFacts* expected = nullptr,
-                       std::size_t kept_blocks = 0);
+  /// compared.
+  explicit ObjectTable(std::unique_ptr<const File> file,
+                       const ObjectTableFacts* expected = nullptr);
 
   std::uint32_t size() const { return directory_.objects(); }
   const std::vector<ObjectProperty>& properties() const { return directory_.properties; }
@@ -122,7 +122,6 @@ class ObjectTable {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::unique_ptr<const File> file_;
-  std::size_t most_kept_;
   ObjectDirectory directory_;
   mutable std::mutex mutex_;
   mutable std::list<Kept> kept_;  ///< the one used last first

@@ -4,6 +4,7 @@
 #include "hierarchy/value_channels.h"
 #include "storage/format/glb.h"
 #include "storage/format/metadata_ids.h"
+#include "storage/format/object_table.h"
 
 #include <algorithm>
 #include <cassert>
@@ -55,9 +56,45 @@ std::string_view cut(std::string_view text) {
   return text.substr(0, end);
 }
 
-std::string_view text_of(const ObjectValue& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? std::string_view() : cut(*text);
+template <Scalar T>
+void append(T number, std::vector<std::byte>& to) {
+  to.resize(to.size() + sizeof number);
+  store_little(number, to.data() + to.size() - sizeof number);
+}
+
+void append(std::span<const std::byte> bytes, std::vector<std::byte>& to) {
+  to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+void append_aligned(std::span<const std::byte> bytes, std::vector<std::byte>& to) {
+  append(bytes, to);
+  to.resize(aligned8(to.size()));
+}
+
+void append_text(std::string_view text, std::vector<std::byte>& to) {
+  const std::string_view kept = cut(text);
+  append(static_cast<std::uint8_t>(kept.size()), to);
+  append(std::as_bytes(std::span(kept)), to);
+}
+
+void append_value(Kind kind, const ObjectValue& value, std::vector<std::byte>& to) {
+  if (kind == Kind::text) {
+    const auto* text = std::get_if<std::string>(&value);
+    return append_text(text == nullptr ? std::string_view() : *text, to);
+  }
+  if (kind == Kind::number) {
+    const auto* number = std::get_if<double>(&value);
+    return append(number == nullptr ? kNoNumber : *number, to);
+  }
+  const auto* known = std::get_if<bool>(&value);
+  append(known == nullptr ? kNoBoolean : static_cast<std::uint8_t>(*known ? 1 : 0), to);
+}
+
+void append_cells(std::span<const ObjectProperty> properties, const ObjectRow& row,
+                  std::vector<std::byte>& cells) {
+  append_text(row.name, cells);
+  for (std::size_t i = 0; i < properties.size(); ++i)
+    append_value(kind_of(properties[i].type), row.values[i], cells);
 }
 
 /// How many columns may be shown by the names that they have.
@@ -71,84 +108,6 @@ std::size_t named_columns(std::span<const ObjectProperty> properties) {
   }
   return count;
 }
-
-/// Collects rows, column by column, and lets the last columns go when they become too many bytes.
-class TableMaker {
- public:
-  explicit TableMaker(std::span<const ObjectProperty> properties)
-      : columns_(named_columns(properties)) {
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      columns_[c].kind = kind_of(properties, c);
-      if (columns_[c].kind == Kind::text)
-        columns_[c].starts.resize(sizeof(std::uint32_t));
-    }
-  }
-
-  void add(std::uint32_t object, const ObjectRow& row) {
-    append(object, columns_[0].values);
-    for (std::size_t c = 1; c < columns_.size(); ++c)
-      c == 1 ? put_text(columns_[c], cut(row.name)) : put(columns_[c], row.values[c - 2]);
-    while (columns_.size() > 1 && bytes() > kMostTileTableBytes)
-      columns_.pop_back();
-  }
-
-  TileObjects take(std::vector<std::uint32_t> objects) {
-    TileObjects made;
-    made.columns = static_cast<std::uint32_t>(columns_.size());
-    for (const Column& column : columns_) {
-      if (column.kind == Kind::text)
-        made.text_bytes.push_back(column.values.size());
-      append(column.values, made.table);
-      append(column.starts, made.table);
-    }
-    made.objects = std::move(objects);
-    return made;
-  }
-
- private:
-  using Bytes = std::vector<std::byte>;
-  struct Column {
-    Kind kind{};
-    Bytes values, starts;
-  };
-
-  template <Scalar T>
-  static void append(T number, Bytes& to) {
-    to.resize(to.size() + sizeof number);
-    store_little(number, to.data() + to.size() - sizeof number);
-  }
-  static void append(const Bytes& bytes, Bytes& to) {
-    to.insert(to.end(), bytes.begin(), bytes.end());
-    to.resize(aligned8(to.size()));
-  }
-
-  static void put_text(Column& column, std::string_view text) {
-    const auto bytes = std::as_bytes(std::span(text));
-    column.values.insert(column.values.end(), bytes.begin(), bytes.end());
-    append(static_cast<std::uint32_t>(column.values.size()), column.starts);
-  }
-
-  static void put(Column& column, const ObjectValue& value) {
-    if (column.kind == Kind::text)
-      return put_text(column, text_of(value));
-    if (column.kind == Kind::number) {
-      const auto* number = std::get_if<double>(&value);
-      return append(number == nullptr ? kNoNumber : *number, column.values);
-    }
-    const auto* known = std::get_if<bool>(&value);
-    append(known == nullptr ? kNoBoolean : static_cast<std::uint8_t>(*known ? 1 : 0),
-           column.values);
-  }
-
-  std::uint64_t bytes() const {
-    std::uint64_t bytes = 0;
-    for (const Column& column : columns_)
-      bytes += aligned8(column.values.size()) + aligned8(column.starts.size());
-    return bytes;
-  }
-
-  std::vector<Column> columns_;
-};
 
 Json type_json(const ObjectColumn& column) {
   switch (column.kind) {
@@ -229,13 +188,71 @@ std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const AttributeLayou
   return objects;
 }
 
-TileObjects make_tile_objects(std::vector<std::uint32_t> objects,
+CellsOf cell_reader(const ObjectTable& table) {
+  return [&table, cells = std::vector<std::byte>()](std::uint32_t object) mutable {
+    cells.clear();
+    append_cells(table.properties(), table.row(object), cells);
+    return std::span<const std::byte>(cells);
+  };
+}
+
+TileTableMaker::TileTableMaker(std::span<const ObjectProperty> properties)
+    : columns_(named_columns(properties)) {
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    columns_[c].kind = kind_of(properties, c);
+    if (columns_[c].kind == Kind::text)
+      columns_[c].starts.resize(sizeof(std::uint32_t));
+  }
+}
+
+std::uint64_t TileTableMaker::bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Column& column : columns_)
+    bytes += aligned8(column.values.size()) + aligned8(column.starts.size());
+  return bytes;
+}
+
+void TileTableMaker::add(std::uint32_t object, std::span<const std::byte> cells) {
+  objects_.push_back(object);
+  append(object, columns_[0].values);
+  for (Column& column : std::span(columns_).subspan(1)) {
+    const bool is_text = column.kind == Kind::text;
+    const std::size_t head = is_text ? 1 : 0;
+    const std::size_t size =
+        is_text ? std::to_integer<std::size_t>(cells[0]) : bytes_of(column.kind);
+    append(cells.subspan(head, size), column.values);
+    if (is_text)
+      append(static_cast<std::uint32_t>(column.values.size()), column.starts);
+    cells = cells.subspan(head + size);
+  }
+  while (columns_.size() > 1 && bytes() > kMostTileTableBytes)
+    columns_.pop_back();
+}
+
+TileObjects TileTableMaker::take() {
+  TileObjects made;
+  made.columns = static_cast<std::uint32_t>(columns_.size());
+  for (const Column& column : columns_) {
+    if (column.kind == Kind::text)
+      made.text_bytes.push_back(column.values.size());
+    append_aligned(column.values, made.table);
+    append_aligned(column.starts, made.table);
+  }
+  made.objects = std::move(objects_);
+  return made;
+}
+
+TileObjects make_tile_objects(std::span<const std::uint32_t> objects,
                               std::span<const ObjectProperty> properties,
                               const std::function<ObjectRow(std::uint32_t object)>& row) {
-  TableMaker maker(properties);
-  for (const std::uint32_t object : objects)
-    maker.add(object, row(object));
-  return maker.take(std::move(objects));
+  TileTableMaker maker(properties);
+  std::vector<std::byte> cells;
+  for (const std::uint32_t object : objects) {
+    cells.clear();
+    append_cells(properties, row(object), cells);
+    maker.add(object, cells);
+  }
+  return maker.take();
 }
 
 std::vector<std::uint32_t> read_objects(std::span<const std::byte> table,

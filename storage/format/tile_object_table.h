@@ -35,6 +35,8 @@
 
 namespace meshhier::storage {
 
+class ObjectTable;
+
 inline constexpr const char* kFeaturesExtension = "EXT_mesh_features";
 inline constexpr const char* kFeatureAttribute = "_FEATURE_ID_0";
 
@@ -72,8 +74,35 @@ std::size_t text_columns(std::span<const ObjectProperty> properties, std::size_t
 /// has an object. O(n log n).
 std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const AttributeLayout& layout);
 
-/// Returns the table of these objects, of which there is one. `row`: of an object.
-TileObjects make_tile_objects(std::vector<std::uint32_t> objects,
+/// Returns what a table of a tile has of an object: its name, then the values of its properties,
+/// each of the length that its kind has, texts behind a byte with theirs; 16,640 bytes at most.
+using CellsOf = std::function<std::span<const std::byte>(std::uint32_t object)>;
+/// Returns one that reads them from `table`, which must outlive it. They last until its next call.
+CellsOf cell_reader(const ObjectTable& table);
+
+/// Makes the table of a tile, which has one object or more.
+class TileTableMaker {
+ public:
+  explicit TileTableMaker(std::span<const ObjectProperty> properties);
+
+  /// Adds an object, greater than the one before. `cells`: as CellsOf has them.
+  void add(std::uint32_t object, std::span<const std::byte> cells);
+  TileObjects take();
+
+ private:
+  using Bytes = std::vector<std::byte>;
+  struct Column {
+    ObjectColumn::Kind kind{};
+    Bytes values, starts;
+  };
+  std::uint64_t bytes() const;
+
+  std::vector<std::uint32_t> objects_;
+  std::vector<Column> columns_;  ///< the last ones go when the table becomes too large
+};
+
+/// Returns the table of these objects. `row`: of an object.
+TileObjects make_tile_objects(std::span<const std::uint32_t> objects,
                               std::span<const ObjectProperty> properties,
                               const std::function<ObjectRow(std::uint32_t object)>& row);
 

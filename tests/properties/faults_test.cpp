@@ -12,6 +12,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/named_boxes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
@@ -61,6 +62,13 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     config_.storage.container = GetParam();
     config_.threads = 2;
     config_.partition.vertices = 80;
+    config_.memory_budget = tests::tight_budget(config_, *real_);
+  }
+
+  void use_objects() {
+    tests::write_named_boxes(kept_.path() / "boxes.obj", 150);
+    config_.input = kept_.path() / "boxes.obj";
+    config_.objects.table = kept_.path() / "boxes.csv";
     config_.memory_budget = tests::tight_budget(config_, *real_);
   }
 
@@ -237,6 +245,13 @@ TEST_P(FaultsTest, AnyCallOfTheStageThatMakesThePreviewMayFail) {
   EXPECT_GT(fail_every_call({.times = kForever, .from = "publish"}), 10);
 }
 
+TEST_P(FaultsTest, AnyCallWhileObjectsAreBroughtToTilesMayFail) {
+  use_objects();
+  config_.partition.vertices = 1000;
+  EXPECT_GT(fail_every_call({.from = "publish"}), 10);
+  EXPECT_GT(fail_every_call({.times = kForever, .from = "publish"}), 10);
+}
+
 // Nothing is tidied up then: it is as if the process had been killed.
 TEST_P(FaultsTest, AnyCallMayBeTheLast) {
   EXPECT_GT(fail_every_call({.times = kForever}) * stride(), 200);
@@ -322,6 +337,11 @@ TEST_P(FaultsTest, AnInterruptionIsGoneOnFromWithSeveralVerticesAtAPlace) {
       bench::split(tests::loaded(tests::sphere(600, 0.01F)), "mixed", 20);
   bench::write_ply(*real_, {directory_.path() / "mesh.ply", true}, *bench::as_generated(mesh));
   config_.memory_budget = tests::tight_budget(config_, *real_);
+  interrupt_anywhere();
+}
+
+TEST_P(FaultsTest, AnInterruptionIsGoneOnFromWithObjects) {
+  use_objects();
   interrupt_anywhere();
 }
 

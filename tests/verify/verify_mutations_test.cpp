@@ -9,6 +9,7 @@
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/named_boxes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/share.h"
@@ -41,6 +42,7 @@ namespace meshhier::verifying {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -368,6 +370,29 @@ TEST_F(VerifyMutationsTest, NoValueOfTheIndexMayBeAnother) {
     }
   }
   EXPECT_THAT(passed, IsEmpty());
+}
+
+/// The table of all objects, its facts and its checksums are made right: only the tiles differ.
+TEST_F(VerifyMutationsTest, ATileThatTellsOtherwiseOfAnObjectIsFound) {
+  config::Config config = small();
+  config.input = directory_.path() / "boxes.obj";
+  config.objects.table = directory_.path() / "boxes.csv";
+  tests::write_named_boxes(directory_.path() / "boxes.obj", 200, "shops");
+  build(config);
+  const Json other = Json::parse(original_)["objects"];
+  fs::rename(storage::objects_path(path()), directory_.path() / "other.bin");
+  fs::remove_all(path());
+  tests::write_named_boxes(directory_.path() / "boxes.obj", 200, "flats");
+  build(config);
+  EXPECT_THAT(problems(), IsEmpty());
+  fs::rename(directory_.path() / "other.bin", storage::objects_path(path()));
+  Json changed = Json::parse(original_);
+  const auto bytes = [](const Json& objects) { return objects["bytes"].get<std::int64_t>(); };
+  changed["total_bytes"] =
+      changed["total_bytes"].get<std::int64_t>() + bytes(other) - bytes(changed["objects"]);
+  changed["objects"] = other;
+  write_manifest(sealed(changed));
+  EXPECT_THAT(problems(), Contains(HasSubstr("its table of objects is not what objects.bin says")));
 }
 
 TEST_F(VerifyMutationsTest, LinksAreNoFiles) {

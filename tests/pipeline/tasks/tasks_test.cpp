@@ -12,6 +12,7 @@
 #include "storage/io/process.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/named_boxes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/textured_torus.h"
@@ -126,6 +127,11 @@ class TasksTest : public testing::Test {
   void use_relief() {
     use_texture();
     config_.storage.normals = config::Normals::map;
+  }
+  void use_objects() {
+    tests::write_named_boxes(file("boxes.obj"), 150);
+    config_.input = file("boxes.obj");
+    config_.objects.table = file("boxes.csv");
   }
   void use_archive() {
     use_sphere();
@@ -254,6 +260,13 @@ TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithNormalMaps) {
 TEST_F(TasksTest, SLOW_AnyCutMakesTheSameBytesWithRelief) {
   use_relief();
   expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, AnyCutMakesTheSameBytesWithObjects) {
+  use_objects();
+  expect_any_cut_makes_the_same();
+  config_.objects.in_tiles = false;
+  expect_any_cut_makes_the_same({2});
 }
 
 TEST_F(TasksTest, AnyCutMakesTheSameArchive) {

@@ -9,6 +9,7 @@
 #include "support/same_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -90,8 +91,9 @@ std::vector<std::string> texts_of(const TileObjects& objects, const storage::Obj
 }
 
 TEST(TileObjectTable, HasAColumnForEachProperty) {
-  const TileObjects made = make_tile_objects(
-      {3, 4, 8}, kAllTypes, [](std::uint32_t object) { return sample_object(object, kAllTypes); });
+  const TileObjects made =
+      make_tile_objects(std::array{3U, 4U, 8U}, kAllTypes,
+                        [](std::uint32_t object) { return sample_object(object, kAllTypes); });
   const ObjectColumns columns(kAllTypes, made.columns, 3, made.text_bytes);
   ASSERT_EQ(columns.bytes, made.table.size());
   ASSERT_EQ(columns.columns.size(), 6U);
@@ -112,7 +114,7 @@ TEST(TileObjectTable, HasAColumnForEachProperty) {
 }
 
 TEST(TileObjectTable, CutsTextsBetweenCharacters) {
-  const TileObjects made = make_tile_objects({0}, {}, [](std::uint32_t) {
+  const TileObjects made = make_tile_objects(std::array{0U}, {}, [](std::uint32_t) {
     return ObjectRow{std::string(254, 'n') + "€€", {}, {}, 0, 0};
   });
   EXPECT_THAT(made.text_bytes, ElementsAre(254U));
@@ -132,14 +134,14 @@ TEST(TileObjectTable, LeavesOutTheLastColumnsThatAreTooMuch) {
   EXPECT_LT(made.columns, 62U);
 
   const TileObjects named =
-      make_tile_objects({1}, Properties{{std::string(255, 'a'), {}}}, [](auto) {
+      make_tile_objects(std::array{1U}, Properties{{std::string(255, 'a'), {}}}, [](auto) {
         return ObjectRow{"", {1.0}, {}, 0, 0};
       });
   EXPECT_EQ(named.columns, 3U);
   Properties wordy;
   for (int i = 10; i < 40; ++i)
     wordy.push_back({std::string(250, 'a') + std::to_string(i), {}});
-  EXPECT_EQ(make_tile_objects({1}, wordy,
+  EXPECT_EQ(make_tile_objects(std::array{1U}, wordy,
                               [&](std::uint32_t) {
                                 return ObjectRow{"", std::vector<ObjectValue>(30), {}, 0, 0};
                               })
