@@ -117,6 +117,23 @@ function readValues(columns: ColumnReader, type: ObjectPropertyType, count: numb
   return values;
 }
 
+/// Takes the values of a property, without looking at them.
+function skipValues(columns: ColumnReader, type: ObjectPropertyType, count: number): void {
+  const there = columns.marked(count).length;
+  if (type === 'text' || type === 'date') columns.texts(there);
+  else columns.bytesOf(there * (type === 'number' ? 8 : 1));
+}
+
+/// Reads of a block the values of one property. `fail`: is told what is wrong.
+export function readColumn(bytes: Uint8Array, { count }: BlockPlace, properties: readonly ObjectProperty[], at: number, fail: Fail): ObjectValue[] {
+  const columns = new ColumnReader(bytes, fail);
+  columns.texts(count); // names
+  columns.bytesOf(48 * columns.marked(count).length); // boxes
+  columns.bytesOf(16 * count); // triangles and areas
+  for (const { type } of properties.slice(0, at)) skipValues(columns, type, count);
+  return readValues(columns, properties[at].type, count);
+}
+
 /// Reads a block. `fail`: is told what is wrong.
 export function readBlock(bytes: Uint8Array, { first, count, key }: BlockPlace, properties: readonly ObjectProperty[], fail: Fail): ObjectBlock {
   const columns = new ColumnReader(bytes, fail);

@@ -4,12 +4,15 @@
 import { beginsWith, compareBytes } from './byte_columns.js';
 import { unpacked } from './bytes.js';
 import { checksum } from './checksum.js';
-import { MOST_KEY_BYTES, readBlock, readDirectory, type BlockPlace, type ObjectBlock, type ObjectRow } from './object_blocks.js';
+import { MOST_KEY_BYTES, readBlock, readColumn, readDirectory, type BlockPlace, type ObjectBlock, type ObjectRow, type ObjectValue } from './object_blocks.js';
 import { END_BYTES, MOST_DIRECTORY, OBJECTS_FILE, type ObjectFacts, type ObjectProperty } from './object_facts.js';
 import { HierarchyProblem } from './problem.js';
 
 /// Blocks that are kept, of about 20 kB each.
 const KEPT_BLOCKS = 64;
+
+/// Of all blocks, so many bytes are fetched at once.
+const PIECE_BYTES = 2 ** 20;
 
 /// Bytes [first, end) of the file, or all of it where a host knows no ranges.
 export type ReadPart = (first: number, end: number) => Promise<Uint8Array<ArrayBuffer>>;
@@ -24,6 +27,20 @@ function fail(what: string): never {
   throw new HierarchyProblem(OBJECTS_FILE, what);
 }
 
+/// The first object of a block, and with what its name begins.
+export interface BlockStart {
+  readonly object: number;
+  readonly beginning: string;
+  /// The beginning is all of the name.
+  readonly isWhole: boolean;
+}
+
+/// Values of a property, of objects from `first` on.
+export interface ColumnPart {
+  readonly first: number;
+  readonly values: readonly ObjectValue[];
+}
+
 /// Whether a name, in UTF-8, comes before what is looked for; of ascending names it does up to one of them.
 type IsBefore = (name: Uint8Array) => boolean;
 
@@ -36,6 +53,20 @@ function partitionPoint(count: number, isBefore: (i: number) => boolean): number
     else end = middle;
   }
   return begin;
+}
+
+/// Keys may end within a character.
+const CUT = new TextDecoder('utf-8', { ignoreBOM: true });
+
+/// Blocks that follow each other, about PIECE_BYTES together.
+function runsOf(places: readonly BlockPlace[]): BlockPlace[][] {
+  const runs: BlockPlace[][] = [];
+  for (const place of places) {
+    const last = runs.at(-1);
+    if (last !== undefined && place.end - last[0].begin <= PIECE_BYTES) last.push(place);
+    else runs.push([place]);
+  }
+  return runs;
 }
 
 /// What fails rejects with HierarchyProblem, and may be tried again.
@@ -93,6 +124,24 @@ export class ObjectTable {
     return this.rows({ begin, end: Math.min(end, begin + most) });
   }
 
+  /// The blocks that begin within a range, but not where it begins: the directory says it.
+  async starts({ begin, end }: ObjectRange): Promise<BlockStart[]> {
+    const within = (await this.places()).filter(({ first }) => first > begin && first < end);
+    return within.map(({ first, key }) => ({ object: first, beginning: CUT.decode(key), isWhole: key.length < MOST_KEY_BYTES }));
+  }
+
+  /// Yields the values of the property at that place, of all objects in their order: the file is read once, in pieces, and nothing of it is kept.
+  async *column(at: number): AsyncGenerator<ColumnPart> {
+    for (const run of runsOf(await this.places())) {
+      const [{ begin }, { end }] = [run[0], run[run.length - 1]];
+      const bytes = await this.part(begin, end);
+      for (const place of run) {
+        const plain = await this.unpackedBytes(bytes.slice(place.begin - begin, place.end - begin), place.end - place.begin, place.checksum, place.unpacked);
+        yield { first: place.first, values: readColumn(plain, place, this.facts.properties, at, fail) };
+      }
+    }
+  }
+
   private async firstNot(isBefore: IsBefore): Promise<number> {
     const places = await this.places();
     let [begin, end] = [0, places.length];
@@ -140,8 +189,11 @@ export class ObjectTable {
   }
 
   private async unpackedPart(first: number, end: number, sum: bigint, most: number): Promise<Uint8Array> {
-    const part = await this.part(first, end);
-    if (part.length !== end - first || checksum(part) !== sum) fail('a part of it has another checksum: it is damaged, or of another build');
+    return this.unpackedBytes(await this.part(first, end), end - first, sum, most);
+  }
+
+  private async unpackedBytes(part: Uint8Array<ArrayBuffer>, length: number, sum: bigint, most: number): Promise<Uint8Array> {
+    if (part.length !== length || checksum(part) !== sum) fail('a part of it has another checksum: it is damaged, or of another build');
     return unpacked(part, most, OBJECTS_FILE);
   }
 
