@@ -5,6 +5,7 @@ import { locale } from './words/words.js';
 const DASH = '–';
 const UNITS = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte', 'petabyte'] as const;
 const LAST_SECOND = 8.64e12; // since 1970, that dates know
+const NUMBER_DIGITS = 12;
 const THREE_DIGITS = { minimumSignificantDigits: 3, maximumSignificantDigits: 3 } as const;
 
 type NumberUnit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
@@ -24,6 +25,8 @@ export interface Numbers {
   readonly formatDecimal: (value: number) => string;
   /// Four digits: 0.001235, 12.35, 123,500.
   readonly formatLength: (value: number) => string;
+  /// Any number, in up to twelve digits: 1,234.5; very large and small ones as powers of ten: 1.2E-7.
+  readonly formatNumber: (value: number) => string;
   /// A part from 0 to 1: 42%.
   readonly formatPercent: (value: number) => string;
   /// The day of seconds since 1970: Nov 24, 2026.
@@ -50,6 +53,8 @@ export function numbersOf(locale: string): Numbers {
   const compact = formats({ notation: 'compact', ...THREE_DIGITS });
   const day = new Intl.DateTimeFormat(locale, { dateStyle: 'medium' });
   const length = formats({ maximumSignificantDigits: 4 });
+  const plain = formats({ maximumSignificantDigits: NUMBER_DIGITS });
+  const power = formats({ maximumSignificantDigits: NUMBER_DIGITS, notation: 'scientific' });
   const percent = formats({ style: 'percent', maximumFractionDigits: 0 });
   const decimals = [0, 1, 2].map((digits) => formats({ minimumFractionDigits: digits, maximumFractionDigits: digits }));
   const bytes = UNITS.map((name, i) => unit(name, i === 0 ? { maximumFractionDigits: 0 } : THREE_DIGITS));
@@ -78,9 +83,10 @@ export function numbersOf(locale: string): Numbers {
     formatDuration: orDash(duration),
     formatDecimal: orDash((value) => (value >= 1000 ? count(value) : decimals[fractionDigits(value)](value))),
     formatLength: orDash(length),
+    formatNumber: (value) => (!Number.isFinite(value) ? DASH : value === 0 || (Math.abs(value) >= 1e-6 && Math.abs(value) < 1e15) ? plain(value) : power(value)),
     formatPercent: orDash(percent),
     formatDate: orDash((seconds) => (seconds < LAST_SECOND ? day.format(1000 * seconds) : DASH)),
   };
 }
 
-export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatLength, formatPercent, formatDate } = numbersOf(locale);
+export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatLength, formatNumber, formatPercent, formatDate } = numbersOf(locale);

@@ -2,6 +2,7 @@
 export { HierarchyView, type Plugin, type Stage } from './scene/hierarchy_view.js';
 export type { Frame } from './plugins/plugin.js';
 export { replaceChunk, type Shader, type Shading } from './scene/shading.js';
+export type { Omission, Omits } from './scene/omission.js';
 export { CameraPose, type Pose } from './scene/camera_pose.js';
 export type { ViewEvents, ViewOptions } from './scene/view_options.js';
 export type { DrawnTile, TileSource } from './scene/surface.js';

@@ -17,7 +17,8 @@ export function needsKey(type: string, key: string): boolean {
 export function fieldOf(event: Typed): HTMLElement | null {
   const target = event.composedPath()[0] as Partial<HTMLInputElement> | undefined;
   const { localName = '', type = '', isContentEditable = false } = target ?? {};
-  const takes = event.isComposing || isContentEditable || WRITTEN_IN.includes(localName) || (localName === 'input' && needsKey(type, event.key));
+  const isRow = target?.getAttribute?.('role') === 'treeitem'; // letters lead to names
+  const takes = event.isComposing || isContentEditable || isRow || WRITTEN_IN.includes(localName) || (localName === 'input' && needsKey(type, event.key));
   return takes ? (target as HTMLElement) : null;
 }
 

@@ -2,11 +2,13 @@
 // Objects of a model in a view: picked, left out, flown to.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { Scene, Vector3, type WebGLRenderer } from 'three';
+import { LineBasicMaterial, LineSegments, Points, Scene, Vector3, type BufferGeometry, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
-import { CameraPose, rampColour, type Stage } from '../src/index.js';
+import { CameraPose, rampColour, type DrawnTile, type Stage } from '../src/index.js';
 import { ObjectShading } from '../src/plugins/object_shading.js';
 import { Objects } from '../src/plugins/objects.js';
+import { valuesAt } from '../src/tools/pick.js';
+import { shownSurface } from '../src/tools/shown_triangles.js';
 import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
 import { Session } from './support/session.js';
 import { Town } from './support/town.js';
@@ -92,6 +94,37 @@ describe.skipIf(!hasProgram)('objects of a view', () => {
     expect([objects.shading.draws(1 + 5 * 12), objects.shading.draws(2 + 5 * 12)]).toEqual([false, true]);
   });
 
+  it('that are left out are in no pass, and in nothing that is measured', async () => {
+    const { view } = session;
+    const street = 'street 05/';
+    await above(1);
+    const wires = new LineBasicMaterial();
+    expect([view.leaveOut(wires), view.omits]).toEqual([false, null]);
+    const all = trianglesOf(view.surface);
+    await objects.draw({ hidden: [street] });
+    await session.settle();
+    expect(view.leaveOut(wires)).toBe(true);
+    const shader = { uniforms: {}, vertexShader: '#include <project_vertex>', fragmentShader: '' } as WebGLProgramParametersWithUniforms;
+    wires.onBeforeCompile(shader, renderer as unknown as WebGLRenderer);
+    expect(shader.vertexShader).toContain('leftOutObjects');
+    expect(shader.uniforms.leavesObjectsOut).toBe(objects.shading.uniforms.leavesObjectsOut);
+    const left = trianglesOf(shownSurface(view));
+    expect(left.filter((object) => object > 60 && object <= 72)).toEqual([]);
+    expect(left).toEqual(all.filter((object) => object <= 60 || object > 72));
+    view.setLook({ wires: true, points: true });
+    await session.frame();
+    const parts = session.meshes().flatMap(({ children }) => children).filter((part) => part instanceof LineSegments || part instanceof Points);
+    expect(parts.length).toBeGreaterThan(1);
+    for (const { geometry } of parts) expect((geometry as BufferGeometry).hasAttribute('object')).toBe(true);
+    await objects.draw({ shown: [`${street}house 03`] });
+    expect([objects.shading.draws(64), objects.shading.draws(65)]).toEqual([true, false]);
+  });
+
+  /// The object of each triangle that is drawn.
+  function trianglesOf(surface: readonly DrawnTile[]): number[] {
+    return surface.flatMap(({ tile, triangles }) => Array.from({ length: triangles }, (_, i) => valuesAt(tile, tile.indices[3 * i])[0]));
+  }
+
   it('have colours by a property', async () => {
     await above(1);
     await objects.colourBy('storeys');
@@ -100,6 +133,10 @@ describe.skipIf(!hasProgram)('objects of a view', () => {
     const colourOf = (object: number): number[] => [...bytes.slice(4 * object, 4 * object + 4)];
     const withStoreys = (storeys: number): number => town.rows.findIndex(({ values }) => values[0] === storeys);
     expect([colourOf(0), colourOf(withStoreys(1)), colourOf(withStoreys(5))]).toEqual([[0, 0, 0, 0], [...rampColour('viridis', 0), 255], [...rampColour('viridis', 1), 255]]);
+    objects.colourRange([5, 1]);
+    expect([objects.legend?.range, objects.legend?.whole, colourOf(withStoreys(1))]).toEqual([[5, 1], [1, 5], [...rampColour('viridis', 1), 255]]);
+    await objects.colourBy('storeys', 'viridis', [0, 2]);
+    expect([objects.legend?.range, colourOf(withStoreys(1)).length, colourOf(withStoreys(4))]).toEqual([[0, 2], 4, [...rampColour('viridis', 1), 255]]);
     await objects.colourBy('school');
     expect(objects.legend?.values.map(({ value, count }) => [value, count])).toEqual([[false, 130], [true, 14]]);
     await objects.colourBy('no such property');
@@ -135,11 +172,11 @@ describe.skipIf(!hasProgram)('objects of a view', () => {
 describe('objects that are left out', () => {
   it('have a texel each, up to the last of all there may be', () => {
     const shading = new ObjectShading();
-    shading.leaveOut([{ begin: 5, end: 7 }, { begin: 2 ** 24 - 1, end: 2 ** 24 }], false, 2 ** 24);
+    shading.leaveOut([{ begin: 5, end: 7, isOut: true }, { begin: 2 ** 24 - 1, end: 2 ** 24, isOut: true }], 2 ** 24);
     expect([4, 5, 6, 7, 2 ** 24 - 2, 2 ** 24 - 1].map((object) => shading.draws(object))).toEqual([true, false, false, true, true, false]);
     const { image } = shading.uniforms.leftOutObjects.value!;
     expect([image.width, image.height]).toEqual([4096, 4096]);
-    shading.leaveOut(null, false, 2 ** 24);
+    shading.leaveOut([], 2 ** 24);
     expect(shading.draws(5)).toBe(true);
     shading.dispose();
   });

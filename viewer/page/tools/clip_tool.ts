@@ -6,6 +6,7 @@ import { boxPlanes, flipped, localNormal, type CutPlane } from '../../src/tools/
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
 import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
+import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { originalVolume } from '../../src/tools/original_volume.js';
 import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
@@ -13,6 +14,7 @@ import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
+import { parseObjectLink } from './object_link.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -163,7 +165,7 @@ export class ClipTool implements Tool {
   private export(): void {
     const { bench, settings } = this.shop;
     const { view } = bench;
-    const lines = sectionOf(view.surface, this.localPlanes()[0])
+    const lines = sectionOf(shownSurface(view), this.localPlanes()[0])
       .map(({ points, isClosed }) => ({ points: points.map((point) => this.coordinates.toInput(point)), isClosed }));
     if (lines.length === 0) {
       this.note.textContent = words.clip.nothing;
@@ -182,18 +184,20 @@ export class ClipTool implements Tool {
   drawn(): void {
     const { view } = this.shop.bench;
     if (!this.list.isConnected || !view.stats().settled) return;
-    const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
-    const key = [this.planesKey, this.shop.scale.sign, this.exact?.planes, ...tiles].join();
+    const tiles = shownSurface(view).map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
+    const key = [this.shownKey, this.shop.scale.sign, this.exact?.planes, ...tiles].join();
     if (key === this.measured) return;
     this.measured = key;
-    const volume = this.exact?.planes === this.planesKey ? this.exact.volume : this.shownVolume();
+    const volume = this.exact?.planes === this.shownKey ? this.exact.volume : this.shownVolume();
     this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
     const name = view.closed ? words.clip.volume : words.clip.between;
     this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
   }
 
-  private get planesKey(): string {
-    return JSON.stringify(this.planes());
+  /// Volumes are of these planes and objects.
+  private get shownKey(): string {
+    const { hidden, only, shown } = parseObjectLink(this.shop.objectLink.text);
+    return JSON.stringify([this.planes(), hidden, only, shown]);
   }
 
   /// Volumes are measured above or within these.
@@ -204,14 +208,14 @@ export class ClipTool implements Tool {
   }
 
   private async measureOriginal(): Promise<void> {
-    const { source } = this.shop.bench.view;
-    const planes = this.planesKey;
+    const { source, omits } = this.shop.bench.view;
+    const planes = this.shownKey;
     if (source === null) return;
     this.measuring.abort();
     this.measuring = new AbortController();
     const { signal } = this.measuring;
     try {
-      const volume = await originalVolume(source, this.volumePlanes(), { signal, progress: (done, all) => { this.note.textContent = words.clip.measuring(String(done), String(all)); } });
+      const volume = await originalVolume(source, this.volumePlanes(), { signal, omits, progress: (done, all) => { this.note.textContent = words.clip.measuring(String(done), String(all)); } });
       this.exact = { planes, volume };
       this.note.textContent = words.clip.isOriginal;
       this.shop.bench.redraw();
@@ -223,7 +227,8 @@ export class ClipTool implements Tool {
   /// Measures what is kept of a closed model, or what lies between a terrain and a level plane.
   private shownVolume(): Volume | null {
     const { view } = this.shop.bench;
-    const { surface, source } = view;
+    const { source } = view;
+    const surface = shownSurface(view);
     const isLevel = this.mode === 'plane' && view.terrain !== null && Math.abs(dot(this.normal, view.upwards)) > LEVEL;
     if (source === null || !(view.closed || isLevel)) return null;
     const bounds = new Map(surface.map(({ node }) => [node, shownBound(node, surface, (other) => recordedBound(source, other))]));

@@ -5,6 +5,7 @@ import type { Mark } from '../../src/plugins/overlay.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
 import { PROFILE_AXES, profileCsv, profileLines, profileOf } from '../../src/tools/profile.js';
 import { recordedBound } from '../../src/tools/shown_bound.js';
+import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { sectionSvg } from '../../src/tools/section_svg.js';
 import { UNIT_NAMES, UNITS, within, type UnitName } from '../../src/tools/units.js';
 import type { Vector } from '../../src/tools/vectors.js';
@@ -100,7 +101,7 @@ export class MeasureTool implements Tool {
     const { upwards } = view;
     const coordinates = new Coordinates(view.manifest!);
     const toInput = (point: Vector): Vector => coordinates.toInput(point);
-    const profiles = profileOf(view.surface, this.measuring.points.map(({ local }) => local), upwards);
+    const profiles = profileOf(shownSurface(view), this.measuring.points.map(({ local }) => local), upwards);
     this.note.textContent = profiles.length === 0 ? words.measure.noProfile : '';
     if (profiles.length === 0) return;
     const bound = Math.max(...view.surface.map(({ node }) => recordedBound(view.source, node)));

@@ -1,32 +1,24 @@
 // SPDX-License-Identifier: MIT
 // The things that the model consists of: what one is called, found by name, left out or shown alone.
-import type { ObjectProperty } from '../../src/hierarchy/object_facts.js';
-import type { ObjectRow, ObjectValue } from '../../src/hierarchy/object_blocks.js';
+import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
 import type { ObjectTable } from '../../src/hierarchy/object_table.js';
-import { Objects, type ObjectChoice } from '../../src/plugins/objects.js';
+import { Objects } from '../../src/plugins/objects.js';
+import { ALL_OBJECTS, alone, visibilityOf, withShown, type ObjectChoice } from '../../src/tools/object_choice.js';
 import { fittingNames } from '../../src/tools/object_names.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
-import { figureList, figures, textButton } from './figures.js';
+import { textButton } from './figures.js';
+import { ObjectCard } from './object_card.js';
 import { ObjectColouring } from './object_colouring.js';
 import { formatObjectLink, parseObjectLink } from './object_link.js';
 import { ObjectSearch } from './object_search.js';
+import { ObjectTree } from './object_tree.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const AGAIN = 500; // milliseconds between two taps that are one
 const NEAR = 0.06; // of half a picture, between their places
-const DIGITS = 12; // of a number in a table
-
-function told(value: ObjectValue): string {
-  if (typeof value === 'boolean') return value ? words.objects.yes : words.objects.no;
-  return typeof value === 'number' ? String(Number(value.toPrecision(DIGITS))) : (value ?? '–');
-}
-
-function propertyRows(properties: readonly ObjectProperty[], { values }: ObjectRow): (readonly [string, string])[] {
-  return properties.flatMap(({ name }, i) => (values[i] === null ? [] : [[name, told(values[i])] as const]));
-}
 
 /// The name, and the branches that it is in: "a/b/c" is in "a/b/" and in "a/".
 function scopesOf(name: string): string[] {
@@ -38,29 +30,36 @@ export class ObjectsTool implements Tool {
   readonly root: HTMLElement;
   private readonly objects = new Objects({ name: 'page objects', isAlone: false });
   private readonly search = new ObjectSearch((text, most) => this.suggest(text, most), (row) => { this.find(row); });
-  private readonly list = figureList();
+  private readonly card = new ObjectCard();
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly scope = element('select', { class: 'tool-select', 'aria-label': words.objects.scope });
   private readonly acts: HTMLElement;
   private readonly colouring: ObjectColouring;
-  private readonly all = textButton(words.objects.all, () => { this.draw({ hidden: [], only: [] }); });
+  private readonly all = textButton(words.objects.all, () => { this.draw(ALL_OBJECTS); });
+  private readonly tree: ObjectTree;
+  private readonly browser: HTMLDetailsElement;
   private tapped = { at: -Infinity, right: 0, up: 0 };
   private problem = '';
   private scoped: ObjectRow | null = null;
   private following = 0; // links
+  private reading = 0; // properties
 
   constructor(private readonly shop: Workshop) {
     const { objects: text } = words;
     const { bench: { view }, objectLink } = shop;
     view.registerPlugin(this.objects);
     this.objects.addEventListener('change', () => { this.show(); });
-    this.objects.addEventListener('problem', ({ message }) => { this.problem = message; this.show(); });
-    this.colouring = new ObjectColouring(view.objects?.properties ?? [], (name) => void this.objects.colourBy(name));
-    const hide = textButton(text.hide, () => { this.draw({ hidden: [...new Set([...this.objects.choice.hidden, this.scope.value])] }); });
-    const only = textButton(text.only, () => { this.draw({ only: [this.scope.value] }); });
+    this.objects.addEventListener('problem', ({ message }) => { this.fail(message); });
+    this.objects.addEventListener('reading', ({ done, all }) => { this.colouring.tellReading(done / all); });
+    this.colouring = new ObjectColouring(view.objects?.properties ?? [], (name) => void this.colour(name), (range) => { this.objects.colourRange(range); });
+    const hide = textButton(text.hide, () => { this.draw(withShown(this.objects.choice, this.scope.value, false)); });
+    const only = textButton(text.only, () => { this.draw(alone(this.objects.choice, this.scope.value)); });
     const go = textButton(text.go, () => { this.objects.go(); });
     this.acts = element('div', { class: 'object-acts' }, element('label', { class: 'tool-field' }, text.scope, this.scope), go, hide, only);
-    this.root = element('div', {}, this.search.root, this.note, this.list, this.acts, this.all, this.colouring.root);
+    this.tree = this.makeTree();
+    this.browser = element('details', { class: 'tool-extra object-browser' }, element('summary', {}, text.browse), this.tree.root);
+    this.browser.addEventListener('toggle', () => void this.browse());
+    this.root = element('div', {}, this.search.root, this.browser, this.note, this.acts, this.card.root, this.all, this.colouring.root);
     // The browser tells a double click from two also while frames take long.
     shop.bench.surface.addEventListener('dblclick', () => { if (this.root.isConnected) this.objects.go(); }, { signal: shop.bench.signal });
     objectLink.onFollow(() => void this.follow());
@@ -74,9 +73,10 @@ export class ObjectsTool implements Tool {
 
   /// Takes back what was left out last, then the choice of an object.
   undo(): boolean {
-    const { choice: { hidden, only }, picked } = this.objects;
-    if (hidden.length > 0) this.draw({ hidden: hidden.slice(0, -1) });
-    else if (only.length > 0) this.draw({ only: [] });
+    const { choice: { hidden, only, shown }, picked } = this.objects;
+    if (hidden.length > 0) this.draw({ hidden: hidden.slice(0, -1), shown: [] });
+    else if (only.length > 0) this.draw({ only: [], shown: [] });
+    else if (shown.length > 0) this.draw({ shown: [] });
     else if (picked !== null) this.objects.choose(null);
     else return false;
     return true;
@@ -88,7 +88,7 @@ export class ObjectsTool implements Tool {
   }
 
   end(): void {
-    this.draw({ hidden: [], only: [] });
+    this.draw(ALL_OBJECTS);
   }
 
   private get table(): ObjectTable | null {
@@ -100,10 +100,39 @@ export class ObjectsTool implements Tool {
     try {
       return this.table === null ? [] : await fittingNames(this.table, text, most);
     } catch (problem) {
-      this.problem = problem instanceof Error ? problem.message : String(problem);
-      this.show();
+      this.fail(problem);
       return [];
     }
+  }
+
+  private fail(problem: unknown): void {
+    this.problem = problem instanceof Error ? problem.message : String(problem);
+    this.show();
+  }
+
+  private makeTree(): ObjectTree {
+    return new ObjectTree({
+      visibility: (text) => visibilityOf(this.objects.choice, text),
+      show: (text, isShown) => { this.draw(withShown(this.objects.choice, text, isShown)); },
+      alone: (text) => { this.draw(alone(this.objects.choice, text)); },
+      fly: (node) => void this.objects.goTo(node),
+      pick: (object) => void this.objects.chooseObject(object),
+      failed: (problem) => { this.fail(problem); },
+    });
+  }
+
+  /// The tree is read while it is seen, and shows where the picked object is.
+  private async browse(): Promise<void> {
+    const { table, browser } = this;
+    if (!browser.open || table === null) return;
+    await this.tree.open(table);
+    if (this.objects.picked !== null) await this.tree.reveal(this.objects.picked.object);
+  }
+
+  private async colour(name: string | null, range: readonly [number, number] | null = null): Promise<void> {
+    ++this.reading;
+    await this.objects.colourBy(name, undefined, range);
+    if (--this.reading === 0) this.colouring.tellReading(null);
   }
 
   /// The second tap at a place flies to what is there.
@@ -127,36 +156,36 @@ export class ObjectsTool implements Tool {
 
   /// As a link says, which stays as it is meanwhile.
   private async follow(): Promise<void> {
-    const { picked, by, hidden, only } = parseObjectLink(this.shop.objectLink.text);
+    const { picked, by, between, hidden, only, shown } = parseObjectLink(this.shop.objectLink.text);
     ++this.following;
-    await Promise.all([this.objects.draw({ hidden, only }), this.objects.colourBy(by), picked === null ? this.objects.choose(null) : this.objects.chooseNamed(picked)]);
+    await Promise.all([this.objects.draw({ hidden, only, shown }), this.colour(by, between), picked === null ? this.objects.choose(null) : this.objects.chooseNamed(picked)]);
     --this.following;
     this.show();
   }
 
   private show(): void {
-    const { picked, legend, choice: { hidden, only } } = this.objects;
-    this.list.replaceChildren(...(picked === null ? [] : figures(this.rowsOf(picked))));
+    const { picked, choice: { hidden, only, shown } } = this.objects;
     this.acts.hidden = picked === null;
-    if (picked !== null && picked !== this.scoped) this.scope.replaceChildren(...scopesOf(picked.name).map((name) => element('option', { value: name }, name === '' ? words.objects.noName : name)));
-    this.scoped = picked;
-    this.colouring.show(legend);
-    this.all.hidden = hidden.length + only.length === 0;
+    if (picked !== this.scoped) this.showPicked(picked);
+    this.colouring.show(this.objects.legend);
+    this.tree.update();
+    this.all.hidden = hidden.length + only.length + shown.length === 0;
     this.note.textContent = this.problem !== '' ? this.problem : picked === null ? words.objects.hint(formatCount(this.table?.count ?? 0)) : '';
-    if (this.following === 0) this.shop.objectLink.write(formatObjectLink({ picked: picked?.name ?? null, by: legend?.property.name ?? null, hidden, only }));
+    if (this.following === 0) this.shop.objectLink.write(this.link());
     this.shop.bench.redraw();
   }
 
-  private rowsOf(row: ObjectRow): (readonly [string, string])[] {
-    const { objects: text } = words;
-    const { scale } = this.shop;
-    const { box, triangles, area, name } = row;
-    const sides = box?.max.map((most, axis) => scale.format(most - box.min[axis])) ?? [];
-    const size = sides.map((side, axis) => (axis < 2 ? side.slice(0, side.lastIndexOf(` ${scale.sign}`)) : side)).join(' × '); // the unit once
-    return [
-      [text.name, name === '' ? text.noName : name], ...propertyRows(this.table?.properties ?? [], row), ...(box === null ? [] : [[text.size, size] as const]),
-      [text.area, scale.formatArea(area)], [text.triangles, formatCount(triangles)],
-    ];
+  private showPicked(picked: ObjectRow | null): void {
+    this.scoped = picked;
+    this.scope.replaceChildren(...(picked === null ? [] : scopesOf(picked.name)).map((name) => element('option', { value: name }, name === '' ? words.objects.noName : name)));
+    this.card.show(picked, this.table?.properties ?? [], this.shop.scale);
+    void this.browse();
+  }
+
+  private link(): string | null {
+    const { picked, legend, choice } = this.objects;
+    const between = legend === null || legend.range === legend.whole ? null : legend.range;
+    return formatObjectLink({ picked: picked?.name ?? null, by: legend?.property.name ?? null, between, ...choice });
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws a model cut open by planes, a closed one with caps. The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
-import { Sphere, type Vector3 } from 'three';
+import { Sphere, type Plane, type Vector3 } from 'three';
 import type { HierarchyView, Plugin } from '../scene/hierarchy_view.js';
 import { ClippedPainter } from '../tools/caps.js';
 import { worldPlane, type CutPlane } from '../tools/planes.js';
@@ -22,7 +22,7 @@ export class Clipping implements Plugin {
     this.painter = new ClippedPainter(view, () => {
       const { center, radius } = view.box.clone().applyMatrix4(view.matrixWorld).getBoundingSphere(new Sphere());
       return { middle: center, reach: 1.1 * radius };
-    });
+    }, (material) => { view.leaveOut(material); });
     if (this.planes.length > 0) this.cut(this.planes, this.hasCaps);
   }
 
@@ -42,14 +42,18 @@ export class Clipping implements Plugin {
     if (this.places.haveChanged(view.manifest) && this.planes.length > 0) this.cut([]);
     if (this.planes.length === 0) return false;
     painter.isCapped = this.hasCaps && view.closed;
-    painter.planes = this.planes.map((plane) => worldPlane(plane, view.surfaceMatrix));
+    painter.planes = this.cuts;
     painter.paint(renderer, scene, camera);
     return true;
   }
 
-  keeps(point: Vector3): boolean {
+  get cuts(): readonly Plane[] {
     const { view } = this;
-    return view === null || this.planes.every((plane) => worldPlane(plane, view.surfaceMatrix).distanceToPoint(point) >= 0);
+    return view === null ? [] : this.planes.map((plane) => worldPlane(plane, view.surfaceMatrix));
+  }
+
+  keeps(point: Vector3): boolean {
+    return this.cuts.every((plane) => plane.distanceToPoint(point) >= 0);
   }
 
   dispose(): void {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Shows one object in another colour, and leaves objects out: all corners of a triangle have its object.
-import { Color, DataTexture, NearestFilter, RedFormat, RGBAFormat, SRGBColorSpace, UnsignedByteType, type BufferGeometry } from 'three';
-import type { ObjectRange } from '../hierarchy/object_table.js';
-import { objectIndex, type ScalarAttribute } from '../hierarchy/scalar_values.js';
+// Shows one object in another colour, all of them in colours of their own, and leaves objects out: all corners of a triangle have its object.
+import { Color, type BufferGeometry, type DataTexture } from 'three';
+import { objectIndex, valueWidth, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import type { Look } from '../scene/settings.js';
 import { replaceChunk, type Shader, type Shading } from '../scene/shading.js';
+import { LeftOutObjects, type ObjectLayer } from './left_out_objects.js';
+import { texelOf, texelTexture } from './object_texels.js';
 import { setValueAttribute } from './value_attribute.js';
 
-/// A texel an object: all 2^24 that there may be have room.
-const ROW = 4096;
 const NONE = -1;
 /// As a screen has it.
 export const MARK = 0xff8a1f;
@@ -18,36 +17,20 @@ const OBJECT = `#include <begin_vertex>
 vObject = object;`;
 
 const SHOWN = `#include <color_fragment>
-if (leavesObjectsOut) {
-  int object = int(vObject + 0.5);
-  if (texelFetch(leftOutObjects, ivec2(object & ${ROW - 1}, object >> 12), 0).r > 0.5) discard;
-}
 if (coloursObjects) {
-  int object = int(vObject + 0.5);
-  vec4 colour = texelFetch(objectColours, ivec2(object & ${ROW - 1}, object >> 12), 0);
+  vec4 colour = ${texelOf('objectColours', 'vObject')};
   if (colour.a > 0.5) diffuseColor.rgb = colour.rgb;
 }
 if (abs(vObject - markedObject) < 0.5) diffuseColor.rgb = mix(diffuseColor.rgb, objectMark, 0.45);`;
 
-function rowsOf(objects: number): number {
-  return Math.max(1, Math.ceil(objects / ROW));
-}
-
-function texture(bytes: Uint8Array<ArrayBuffer>, rows: number, format: typeof RedFormat | typeof RGBAFormat): DataTexture {
-  const made = new DataTexture(bytes, ROW, rows, format, UnsignedByteType);
-  made.minFilter = made.magFilter = NearestFilter;
-  made.needsUpdate = true;
-  return made;
-}
-
 export class ObjectShading implements Shading {
   /// Pictures that have their light already show it, too.
   readonly isForUnlit = true;
+  readonly omission = new LeftOutObjects((tile, vertex) => this.object(tile.values?.[valueWidth(tile) * vertex + this.index]));
   readonly uniforms = {
+    ...this.omission.uniforms,
     markedObject: { value: NONE },
     objectMark: { value: new Color(MARK) },
-    leavesObjectsOut: { value: false },
-    leftOutObjects: { value: null as DataTexture | null },
     coloursObjects: { value: false },
     objectColours: { value: null as DataTexture | null },
   };
@@ -57,14 +40,15 @@ export class ObjectShading implements Shading {
 
   /// Once something was marked or left out, it goes on: programs are made once.
   key(_: Look, tile: Tile): string {
-    return this.isUsed && this.index >= 0 && tile.values !== null ? 'object' : '';
+    return (this.isUsed || this.omission.isUsed) && this.index >= 0 && tile.values !== null ? 'object' : '';
   }
 
   readonly edit = (shader: Shader): void => {
     replaceChunk(shader, 'vertexShader', 'begin_vertex', OBJECT);
     replaceChunk(shader, 'fragmentShader', 'color_fragment', SHOWN);
-    shader.vertexShader = `attribute float object;\nflat varying float vObject;\n${shader.vertexShader}`;
-    shader.fragmentShader = `uniform float markedObject;\nuniform vec3 objectMark;\nuniform bool leavesObjectsOut;\nuniform highp sampler2D leftOutObjects;\nuniform bool coloursObjects;\nuniform highp sampler2D objectColours;\nflat varying float vObject;\n${shader.fragmentShader}`;
+    this.omission.edit(shader);
+    shader.vertexShader = `flat varying float vObject;\n${shader.vertexShader}`;
+    shader.fragmentShader = `uniform float markedObject;\nuniform vec3 objectMark;\nuniform bool coloursObjects;\nuniform highp sampler2D objectColours;\nflat varying float vObject;\n${shader.fragmentShader}`;
   };
 
   show(_: Look, attributes: readonly ScalarAttribute[]): void {
@@ -81,31 +65,23 @@ export class ObjectShading implements Shading {
     this.uniforms.markedObject.value = object ?? NONE;
   }
 
-  /// Leaves objects out, or all but these; null: none. `count`: of all objects.
-  leaveOut(ranges: readonly ObjectRange[] | null, areShown: boolean, count: number): void {
-    const { leavesObjectsOut, leftOutObjects } = this.uniforms;
-    leavesObjectsOut.value = ranges !== null;
-    if (ranges === null) return;
-    this.isUsed = true;
-    const states = new Uint8Array(ROW * rowsOf(count)).fill(areShown ? 255 : 0);
-    for (const { begin, end } of ranges) states.fill(areShown ? 0 : 255, begin, end);
-    leftOutObjects.value?.dispose();
-    leftOutObjects.value = texture(states, rowsOf(count), RedFormat);
+  /// Each layer goes over those before it; of none all `count` objects are drawn.
+  leaveOut(layers: readonly ObjectLayer[], count: number): void {
+    this.omission.set(layers, count);
   }
 
-  /// Gives each object a colour of a screen, four bytes each; the fourth is 0 where it has none. Null: they look as they are.
-  colour(bytes: Uint8Array | null): void {
+  /// Gives each object a colour: `bytes` as texelBytes() has room for them, the fourth is 0 where there is none. The same bytes again: they have
+  /// changed. Null: objects look as they are.
+  colour(bytes: Uint8Array<ArrayBuffer> | null): void {
     const { coloursObjects, objectColours } = this.uniforms;
+    this.isUsed ||= bytes !== null;
     coloursObjects.value = bytes !== null;
+    if (bytes !== null && objectColours.value?.image.data === bytes) {
+      objectColours.value.needsUpdate = true;
+      return;
+    }
     objectColours.value?.dispose();
-    objectColours.value = null;
-    if (bytes === null) return;
-    this.isUsed = true;
-    const rows = rowsOf(bytes.length / 4);
-    const padded = new Uint8Array(4 * ROW * rows);
-    padded.set(bytes);
-    objectColours.value = texture(padded, rows, RGBAFormat);
-    objectColours.value.colorSpace = SRGBColorSpace;
+    objectColours.value = bytes && texelTexture(bytes, 4);
   }
 
   /// An object is marked, and drawn.
@@ -116,21 +92,21 @@ export class ObjectShading implements Shading {
 
   /// Tells whether an object is drawn.
   draws(object: number): boolean {
-    const { leavesObjectsOut, leftOutObjects: { value } } = this.uniforms;
-    return !leavesObjectsOut.value || (value?.image.data as Uint8Array | undefined)?.[object] !== 255;
+    return !this.omission.has(object);
   }
 
   /// The object of values at a vertex; null: there is none.
   objectOf(values: readonly number[]): number | null {
-    const value = values[this.index] as number | undefined;
-    return value !== undefined && value >= 0 ? value : null;
+    return this.object(values[this.index]);
   }
 
   dispose(): void {
-    this.uniforms.leftOutObjects.value?.dispose();
-    this.uniforms.leftOutObjects.value = null;
-    this.uniforms.leavesObjectsOut.value = false;
+    this.leaveOut([], 0);
     this.colour(null);
     this.uniforms.markedObject.value = NONE;
+  }
+
+  private object(value: number | undefined): number | null {
+    return value !== undefined && value >= 0 ? value : null;
   }
 }

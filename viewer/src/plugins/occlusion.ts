@@ -7,6 +7,7 @@ import {
 } from 'three';
 import { GTAOPass } from 'three/addons/postprocessing/GTAOPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+import { alone } from '../scene/alone.js';
 import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
 import type { Frame } from './plugin.js';
 
@@ -32,12 +33,13 @@ class Hollows {
   private readonly depth = new WebGLRenderTarget(1, 1, { depthTexture: new DepthTexture(1, 1, UnsignedIntType) });
   /// The depth alone counts of whatever is drawn.
   private readonly bare = new MeshBasicMaterial({ side: DoubleSide, colorWrite: false });
+  private readonly tiles = this.bare.clone();
   private readonly pass: GTAOPass;
   private readonly multiply = multiplying();
   private readonly quad = new FullScreenQuad(this.multiply);
   private readonly size = new Vector2();
 
-  constructor(readonly scene: Scene, readonly camera: PerspectiveCamera) {
+  constructor(readonly scene: Scene, readonly camera: PerspectiveCamera, private readonly view: HierarchyView) {
     this.pass = new GTAOPass(scene, camera, 1, 1, { depthTexture: this.depth.depthTexture! });
     this.pass.updateGtaoMaterial(QUALITY);
     this.pass.updatePdMaterial(SMOOTHING);
@@ -64,6 +66,7 @@ class Hollows {
     this.depth.depthTexture?.dispose();
     this.depth.dispose();
     this.bare.dispose();
+    this.tiles.dispose();
     this.pass.dispose();
     this.multiply.dispose();
     this.quad.dispose();
@@ -77,13 +80,30 @@ class Hollows {
     this.pass.setSize(x, y);
   }
 
+  /// What plug-ins leave out of tiles has no depth, either: then tiles are drawn after all else.
   private drawDepth(renderer: WebGLRenderer): void {
-    const { scene } = this;
+    const { scene, view, bare } = this;
     const { overrideMaterial } = scene;
-    scene.overrideMaterial = this.bare;
+    const { visible } = view;
+    const leavesOut = view.leaveOut(this.tiles);
+    scene.overrideMaterial = bare;
     renderer.setRenderTarget(this.depth);
+    view.visible &&= !leavesOut;
     renderer.render(scene, this.camera);
+    view.visible = visible;
     scene.overrideMaterial = overrideMaterial;
+    if (leavesOut) this.drawTiles(renderer);
+  }
+
+  private drawTiles(renderer: WebGLRenderer): void {
+    const { scene, view, camera } = this;
+    const { autoClear } = renderer;
+    renderer.autoClear = false;
+    alone(scene, view, () => {
+      scene.overrideMaterial = this.tiles;
+      renderer.render(scene, camera);
+    });
+    renderer.autoClear = autoClear;
   }
 }
 
@@ -108,7 +128,7 @@ export class Occlusion implements Plugin {
     if (camera.view?.enabled === true) return;
     if (this.hollows?.scene !== scene || this.hollows.camera !== camera) {
       this.hollows?.dispose();
-      this.hollows = new Hollows(scene, camera);
+      this.hollows = new Hollows(scene, camera, this.view!);
     }
     this.hollows.shade(renderer, this.distanceOf(camera), Math.min(devicePixelRatio, MOST_RATIO));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plug-ins: what a view can do besides showing tiles, in modules that are loaded where they are wanted.
-import type { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import type { PerspectiveCamera, Plane, Scene, Vector3, WebGLRenderer } from 'three';
 import type { CameraPose } from '../scene/camera_pose.js';
 import type { Shading } from '../scene/shading.js';
 import { attempt } from './attempt.js';
@@ -53,8 +53,12 @@ export interface PluginOf<View> {
   paint?(frame: Frame): boolean;
   /// Draws over what `renderer.render` has drawn; not over what a plug-in has painted.
   shade?(frame: Frame): void;
+  /// Draws marks over the picture, whoever has drawn or painted it, and after all that plug-ins have drawn over it.
+  mark?(frame: Frame): void;
   /// A frame is complete: time for what lies over the canvas.
   drawn?(frame: Frame): void;
+  /// Planes of the world: what lies behind one of them is not drawn.
+  readonly cuts?: readonly Plane[];
   /// Tells whether a point of the world is drawn: one that any plug-in leaves out is not picked. Called for each hit of a ray. `values`: of a
   /// corner of its triangle, as the manifest lists them.
   keeps?(point: Vector3, values: readonly number[]): boolean;
@@ -64,7 +68,7 @@ export interface PluginOf<View> {
   dispose?(): void;
 }
 
-type Question = 'paint' | 'shade' | 'drawn' | 'keeps' | 'tapped';
+type Question = 'paint' | 'shade' | 'mark' | 'cuts' | 'drawn' | 'keeps' | 'tapped';
 
 /// False: it has thrown.
 function isDone(work: () => void): boolean {
@@ -121,9 +125,16 @@ export class Plugins<View> {
   /// The scene as plug-ins draw it; without one, as the renderer does.
   paint(frame: Frame): void {
     const { renderer, scene, camera } = frame;
-    if (this.every.some((plugin) => this.ask(plugin, 'paint', () => plugin.paint?.(frame) === true, false))) return;
-    renderer.render(scene, camera);
-    for (const plugin of this.every) this.ask(plugin, 'shade', () => plugin.shade?.(frame), undefined);
+    if (!this.every.some((plugin) => this.ask(plugin, 'paint', () => plugin.paint?.(frame) === true, false))) {
+      renderer.render(scene, camera);
+      for (const plugin of this.every) this.ask(plugin, 'shade', () => plugin.shade?.(frame), undefined);
+    }
+    for (const plugin of this.every) this.ask(plugin, 'mark', () => plugin.mark?.(frame), undefined);
+  }
+
+  /// Those of all plug-ins.
+  get cuts(): readonly Plane[] {
+    return this.every.flatMap((plugin) => this.ask(plugin, 'cuts', () => plugin.cuts ?? [], []));
   }
 
   drawn(frame: Frame): void {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
-import { Group, type Box3, type Matrix4, type PerspectiveCamera, type Scene, type Vector3, type WebGLRenderer } from 'three';
+import { Group, type Box3, type Material, type Matrix4, type PerspectiveCamera, type Scene, type Vector3, type WebGLRenderer } from 'three';
 import type { Vector } from '../cut/viewpoint.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import type { ObjectTable } from '../hierarchy/object_table.js';
@@ -11,6 +11,7 @@ import { Relief } from '../plugins/relief.js';
 import { Frames } from './frames.js';
 import { Loading } from './loading.js';
 import type { Viewport } from './motion.js';
+import type { Omits } from './omission.js';
 import { changedSettings, type Look, type Settings, type Stats } from './settings.js';
 import { changedStanding, type Standing } from './standing.js';
 import type { DrawnTile, TileSource } from './surface.js';
@@ -176,6 +177,18 @@ export class HierarchyView extends Group<ViewEvents> {
   /// The triangles that are drawn, in view or not, in coordinates that `surfaceMatrix` brings into the world.
   get surface(): readonly DrawnTile[] {
     return this.tiles.drawn();
+  }
+
+  /// Tells of a vertex of a tile whether plug-ins leave it out; null: they leave out nothing.
+  get omits(): Omits | null {
+    return this.tiles.omits;
+  }
+
+  /// Makes a material, with which tiles are to be drawn in a pass of your own, leave out what plug-ins leave out now: call it before each pass,
+  /// which draws tiles alone. Returns whether anything may be left out.
+  leaveOut(material: Material): boolean {
+    this.tiles.leaveOut(material);
+    return this.omits !== null;
   }
 
   /// Brings the tiles' coordinates into the world; of the last `update`.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Tiles see this of a plug-in: it shades their surfaces otherwise than three alone would.
-import type { BufferGeometry, IUniform, MaterialParameters, WebGLProgramParametersWithUniforms } from 'three';
+import type { BufferGeometry, IUniform, Material, MaterialParameters, WebGLProgramParametersWithUniforms } from 'three';
 import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { attempt } from '../plugins/attempt.js';
+import { leaveOut, type Omission, type Omits } from './omission.js';
 import type { Look } from './settings.js';
 
 export type Shader = WebGLProgramParametersWithUniforms;
@@ -16,6 +17,8 @@ export interface Shading {
   readonly uniforms: Readonly<Record<string, IUniform>>;
   /// It also changes surfaces that no light is on, of pictures that have theirs already; else only lit ones.
   readonly isForUnlit?: boolean;
+  /// It leaves parts of tiles out: `edit` does so on their surfaces, and this wherever else they are drawn or measured.
+  readonly omission?: Omission;
   /// Surfaces of one key have one program, as far as they share `edit`; empty: this one's is left alone.
   key(look: Look, tile: Tile): string;
   /// Changes three's shaders. Chunks that it replaces begin with themselves, for others may replace them too: what they add runs in the order
@@ -62,6 +65,21 @@ export class Shadings {
 
   prepare(geometry: BufferGeometry, tile: Tile, look: Look): void {
     for (const each of this.all) this.ask(each, () => each.prepare?.(geometry, tile, look), undefined);
+  }
+
+  /// What is left out; null: nothing is.
+  get omits(): Omits | null {
+    const { omissions } = this;
+    return omissions.length === 0 ? null : (tile, vertex) => omissions.some((each) => each.omits(tile, vertex));
+  }
+
+  /// Makes a material, with which tiles are drawn otherwise, leave out what is left out now.
+  leaveOut(material: Material): void {
+    leaveOut(material, this.omissions);
+  }
+
+  private get omissions(): readonly Omission[] {
+    return this.all.flatMap(({ omission }) => (omission?.isUsed === true ? [omission] : []));
   }
 
   /// Those that change a tile's surface, with their keys.

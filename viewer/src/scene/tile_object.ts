@@ -5,7 +5,7 @@ import type { Intersection, Material, Raycaster } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import { BITMAP_TEXEL_BYTES, bytesOfTexel } from '../hierarchy/picture.js';
 import { valueWidth } from '../hierarchy/scalar_values.js';
-import type { Indices } from '../hierarchy/copies.js';
+import { placeOf, type Indices } from '../hierarchy/copies.js';
 import type { Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
@@ -65,6 +65,12 @@ export function mostMemory(
   // A ghost takes its chain, its neighbour's number, start and keys, and what the seam keeps of it; a vertex behind the ghosts takes the last, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
   return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, hasNormalMap ? texelBytes.mapped : texelBytes.plain, level);
+}
+
+/// A place is left out with one of its vertices, and stays with another.
+function ownVertices(tile: Tile): Uint32Array {
+  const all = tile.positions.length / 3;
+  return Uint32Array.from(Array(all).keys()).filter((vertex) => placeOf(tile, vertex) < tile.own);
 }
 
 function edgesOf(triangles: Indices, corners: number): Indices {
@@ -216,8 +222,8 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
       this.material = surfaceMaterial(look, this.painting, this.shared);
     }
     if (look.wires !== (this.wires !== null)) this.setWires(look.wires);
-    if (look.points !== (this.points !== null)) this.setPoints(look.points);
-    if (this.points !== null) this.points.material = this.pointMaterial();
+    if (look.points || this.points !== null) this.setPoints(look.points);
+    if (this.wires !== null) this.shareValues(this.wires);
   }
 
   /// Colours the whole tile.
@@ -234,6 +240,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     geometry.setDrawRange(0, 6 * this.triangles);
     geometry.boundingSphere = this.geometry.boundingSphere;
     this.wires = this.place(new LineSegments(geometry, this.shared.wires));
+    this.shareValues(this.wires);
   }
 
   private setPoints(on: boolean): void {
@@ -243,9 +250,11 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     geometry.setAttribute('position', this.geometry.attributes.position);
     const { color } = this.geometry.attributes;
     if (color !== undefined) geometry.setAttribute('color', color);
-    geometry.setDrawRange(0, this.resident.tile.own);
+    if (this.shared.shadings.omits === null) geometry.setDrawRange(0, this.resident.tile.own);
+    else geometry.setIndex(new BufferAttribute(ownVertices(this.resident.tile), 1));
     geometry.boundingSphere = this.geometry.boundingSphere;
     this.points = this.place(new Points(geometry, this.pointMaterial()));
+    this.shareValues(this.points);
     this.points.renderOrder = 1; // after the wires
   }
 
@@ -262,9 +271,14 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     return part;
   }
 
-  /// Positions and colours are the triangles': they stay.
+  /// Shaders that leave parts out look for these.
+  private shareValues({ geometry }: LineSegments | Points): void {
+    for (const [name, attribute] of Object.entries(this.geometry.attributes)) if (attribute instanceof InterleavedBufferAttribute) geometry.setAttribute(name, attribute);
+  }
+
+  /// Attributes are the triangles': they stay.
   private discard(part: LineSegments | Points | null): null {
-    for (const name of ['position', 'color']) part?.geometry.deleteAttribute(name);
+    for (const name of Object.keys(part?.geometry.attributes ?? {})) part?.geometry.deleteAttribute(name);
     part?.geometry.dispose();
     part?.removeFromParent();
     return null;

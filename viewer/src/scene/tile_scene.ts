@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tiles of a cut in a three scene, joined along their seams.
-import { Group, type Camera, type Scene, type WebGLRenderer } from 'three';
+import { Group, type Camera, type Material, type Scene, type WebGLRenderer } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Vector } from '../cut/viewpoint.js';
@@ -9,6 +9,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials, type SharedMaterials } from './materials.js';
+import type { Omits } from './omission.js';
 import type { Look } from './settings.js';
 import { Shadings, type Shading } from './shading.js';
 import type { DrawnTile } from './surface.js';
@@ -94,11 +95,18 @@ export class TileScene extends Group {
     if (isSameCut && look === this.look && attributes === this.attributes) return false;
     this.attributes = attributes;
     this.materials.shadings.show(look, attributes);
+    for (const material of this.partMaterials) this.materials.shadings.leaveOut(material);
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
     for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
     for (const resident of residents) this.join(resident, look);
     return true;
+  }
+
+  /// Of wires and points.
+  private get partMaterials(): readonly Material[] {
+    const { wires, points, dots } = this.materials;
+    return [wires, points, dots.plain, dots.coloured];
   }
 
   private hide(key: number): void {
@@ -157,6 +165,16 @@ export class TileScene extends Group {
     }
   }
 
+  /// What is left out of tiles; null: nothing is.
+  get omits(): Omits | null {
+    return this.materials.shadings.omits;
+  }
+
+  /// Makes a material leave out the same.
+  leaveOut(material: Material): void {
+    this.materials.shadings.leaveOut(material);
+  }
+
   drawn(): DrawnTile[] {
     return [...this.objects.values()].filter(({ visible }) => visible).map((object) => object.drawn());
   }
@@ -170,10 +188,7 @@ export class TileScene extends Group {
     this.programs.forget();
     for (const object of this.objects.values()) object.dispose();
     this.objects.clear();
-    this.materials.wires.dispose();
-    this.materials.points.dispose();
-    this.materials.dots.plain.dispose();
-    this.materials.dots.coloured.dispose();
+    for (const material of this.partMaterials) material.dispose();
     this.materials.matcap.dispose();
   }
 }

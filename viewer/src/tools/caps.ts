@@ -3,8 +3,9 @@
 // The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
 import {
   AlwaysStencilFunc, BackSide, DecrementWrapStencilOp, DoubleSide, FrontSide, IncrementWrapStencilOp, Mesh, MeshBasicMaterial, NotEqualStencilFunc,
-  PlaneGeometry, Scene, Vector3, type Camera, type ColorRepresentation, type Object3D, type Plane, type Side, type StencilOp, type WebGLRenderer,
+  PlaneGeometry, Scene, Vector3, type Camera, type ColorRepresentation, type Material, type Object3D, type Plane, type Side, type StencilOp, type WebGLRenderer,
 } from 'three';
+import { alone } from '../scene/alone.js';
 
 const COLOUR = 0xd9825b;
 
@@ -13,11 +14,6 @@ function counting(side: Side, op: StencilOp): MeshBasicMaterial {
     side, colorWrite: false, depthWrite: false, depthTest: false,
     stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilFail: op, stencilZFail: op, stencilZPass: op,
   });
-}
-
-/// Parts that only decorate the surface do not count.
-function isSurface(object: Object3D): boolean {
-  return 'isMesh' in object || !('isLine' in object || 'isPoints' in object);
 }
 
 export class ClippedPainter {
@@ -29,10 +25,11 @@ export class ClippedPainter {
   private readonly cap: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly capScene = new Scene();
 
-  /// `reach`: of the model, in the world, from its middle to its farthest point.
+  /// `reach`: of the model, in the world, from its middle to its farthest point. `prepare`: is given materials that count, before each pass.
   constructor(
     private readonly model: Object3D,
     private readonly extent: () => { readonly middle: Vector3; readonly reach: number },
+    private readonly prepare: (material: Material) => void = () => undefined,
     colour: ColorRepresentation = COLOUR,
   ) {
     this.cap = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({
@@ -63,27 +60,13 @@ export class ClippedPainter {
   }
 
   private count(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
-    const hidden = this.hideAllButSurface(scene);
-    const { overrideMaterial, background } = scene;
-    scene.background = null;
-    for (const material of [this.backs, this.fronts]) {
-      scene.overrideMaterial = material;
-      renderer.render(scene, camera);
-    }
-    Object.assign(scene, { overrideMaterial, background });
-    for (const object of hidden) object.visible = true;
-  }
-
-  private hideAllButSurface(scene: Scene): Object3D[] {
-    const within = new Set<Object3D>();
-    this.model.traverse((object) => within.add(object));
-    const hidden: Object3D[] = [];
-    scene.traverseVisible((object) => {
-      const isDrawn = 'isMesh' in object || 'isLine' in object || 'isPoints' in object || 'isSprite' in object;
-      if (isDrawn && !(within.has(object) && isSurface(object))) hidden.push(object);
+    alone(scene, this.model, () => {
+      for (const material of [this.backs, this.fronts]) {
+        this.prepare(material);
+        scene.overrideMaterial = material;
+        renderer.render(scene, camera);
+      }
     });
-    for (const object of hidden) object.visible = false;
-    return hidden;
   }
 
   private place(plane: Plane): void {

@@ -3,11 +3,11 @@ import { describe, expect, it } from 'vitest';
 import { formatObjectLink, objectsOfChoices, parseObjectLink, type ObjectLink } from '../../page/tools/object_link.js';
 import { ObjectLinkStore } from '../../page/tools/object_link_store.js';
 
-const NOTHING: ObjectLink = { picked: null, by: null, hidden: [], only: [] };
+const NOTHING: ObjectLink = { picked: null, by: null, between: null, hidden: [], only: [], shown: [] };
 
 describe('a link to objects', () => {
   it.each<ObjectLink>([
-    NOTHING, { ...NOTHING, picked: 'street 01/house 02' }, { ...NOTHING, picked: '' }, { picked: 'a+b & c=d, é #%41', by: 'is & was', hidden: ['x,y', 'storey/', ''], only: ['\u{1f3e0}/'] },
+    NOTHING, { ...NOTHING, picked: 'street 01/house 02' }, { ...NOTHING, picked: '' }, { picked: 'a+b & c=d, é #%41', by: 'is & was', between: [-1e-9, 1 / 3], hidden: ['x,y', 'storey/', ''], only: ['\u{1f3e0}/'], shown: ['storey/a', '<b>/'] },
   ])('tells what it was made of: %j', (link) => { expect(parseObjectLink(formatObjectLink(link))).toEqual(link); });
 
   it('is nothing where nothing is chosen', () => { expect(formatObjectLink(NOTHING)).toBeNull(); });
@@ -19,6 +19,8 @@ describe('a link to objects', () => {
     expect(parseObjectLink(text).hidden.length).toBeGreaterThan(80);
     expect(formatObjectLink({ ...NOTHING, picked: 'x'.repeat(5000) })).toBeNull();
   });
+
+  it.each(['1', '1,2,3', ',', 'a,b', '1,Infinity', ''])('has no range of "%s"', (text) => { expect(parseObjectLink(`by=a&between=${text}`).between).toBeNull(); });
 
   it('is found among the choices of others', () => {
     expect(objectsOfChoices('wires=on&object=a%26b&notes=xyz&hide=c&only=d&hider=1')).toBe('object=a%26b&hide=c&only=d');

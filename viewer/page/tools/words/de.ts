@@ -47,6 +47,12 @@ export const de: ToolWords = {
     only: 'Allein zeigen',
     all: 'Alles zeigen',
     lasting: 'Nicht alles ist zu sehen',
+    copy: (name) => `Kopieren: ${name}`,
+    tree: 'Baum der Namen',
+    browse: 'Alle Objekte',
+    show: 'Einblenden',
+    reading: (part) => `Die Tabelle wird gelesen: ${part} …`,
+    stop: 'Abbrechen',
   },
   measure: {
     hint: 'Klicken oder tippen Sie auf Punkte der Oberfläche. Die Rücktaste nimmt den letzten zurück. ± sagt, wie falsch eine Länge sein kann, solange das Original unterwegs ist.',

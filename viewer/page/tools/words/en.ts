@@ -46,6 +46,12 @@ export const en = {
     only: 'Show alone',
     all: 'Show everything',
     lasting: 'Not everything is shown',
+    copy: (name: string) => `Copy: ${name}`,
+    tree: 'Tree of names',
+    browse: 'All objects',
+    show: 'Show',
+    reading: (part: string) => `Reading the table: ${part}…`,
+    stop: 'Stop',
   },
   measure: {
     hint: 'Click or tap points of the surface. Backspace takes the last one back. ± says how far off a length may be while the original is on its way.',

@@ -47,6 +47,12 @@ export const es: ToolWords = {
     only: 'Mostrar solo',
     all: 'Mostrar todo',
     lasting: 'No se muestra todo',
+    copy: (name) => `Copiar: ${name}`,
+    tree: 'Árbol de nombres',
+    browse: 'Todos los objetos',
+    show: 'Mostrar',
+    reading: (part) => `Se lee la tabla: ${part}…`,
+    stop: 'Detener',
   },
   measure: {
     hint: 'Haga clic o toque puntos de la superficie. Retroceso quita el último. ± dice cuánto puede errar una longitud mientras llega el original.',
