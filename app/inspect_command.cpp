@@ -22,13 +22,15 @@ struct InspectArguments {
   WebOptions web;
   inspection::InspectOptions options;
   std::optional<std::string> objects;  ///< what the names of those that are listed begin with
+  std::string where;
   bool json = false;
 };
 
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
   if (arguments.objects) {
-    inspection::list_objects(place.files(), place.path(), {*arguments.objects, arguments.json},
+    inspection::list_objects(place.files(), place.path(),
+                             {*arguments.objects, arguments.where, arguments.json},
                              [&](std::string_view line) { environment.out << line << '\n'; });
   } else if (arguments.json) {
     environment.out << storage::json_text(
@@ -48,6 +50,7 @@ constexpr const char* kInspectFooter = R"(Examples:
   meshhier inspect david.hier --json | jq .partitions
   meshhier inspect town.hier --objects
   meshhier inspect town.hier --objects=Main_Street/ --json | jq .properties.height
+  meshhier inspect town.hier --objects --where 'storeys > 3 and owner is null'
 )";
 
 }  // namespace
@@ -63,6 +66,7 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation) {
                    "List the objects instead: their names, sizes and properties. --objects=PREFIX "
                    "those whose names begin so")
       ->expected(0, 1);
+  add_where_option(*command, arguments->where)->needs("--objects");
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);
   command->callback([arguments, &invocation] {

@@ -67,6 +67,17 @@ CLI::App* add_group(CLI::App& command, const char* name, const char* help) {
   return group;
 }
 
+CLI::Option* add_where_option(CLI::App& command, std::string& where) {
+  return command
+      .add_option("--where", where,
+                  "Objects that meet a condition, as SQL has them: \"storey = 3 and area > 20\"; "
+                  "inspect lists their properties")
+      ->type_name("CONDITION")
+      ->check([](const std::string& text) {
+        return text.empty() ? "expected a condition, found nothing" : "";
+      });
+}
+
 CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region) {
   const auto take = [&region](const std::vector<std::string>& corners) {
     region.box = BoundsD{parse_corner(corners[0]), parse_corner(corners[1])};
@@ -84,11 +95,19 @@ CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region
                    "The map that x and y of these are of (\"EPSG:4326\": degrees); heights stay "
                    "the input's")
       ->type_name("CRS");
+  group
+      ->add_option("--object", region.objects.names,
+                   "The object of this name; repeated: all of these. A name that ends in / stands "
+                   "for all that begin with it")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_where_option(*group, region.objects.where);
   return group;
 }
 
 void require_region(const exporting::RegionRequest& region, const char* option) {
-  if (!region.is_any())
+  if (!region.has_border())
     throw Error(ErrorCode::usage, std::string(option) + " needs --box or --polygon");
 }
 

@@ -80,9 +80,11 @@ CLI::App* add_group(CLI::App& command, const char* name, const char* help);
 
 /// Adds --error LENGTH, which asks for the coarsest tiles that are no farther from the original.
 CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
-/// Adds --box X,Y,Z X,Y,Z, --polygon FILE and --crs CRS, as a group.
+/// Adds --where CONDITION.
+CLI::Option* add_where_option(CLI::App& command, std::string& where);
+/// Adds --box X,Y,Z X,Y,Z, --polygon FILE, --crs CRS, --object NAME and --where, as a group.
 CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region);
-/// Throws Error(usage) if there is none, which `option` needs.
+/// Throws Error(usage) if there is neither a box nor a polygon, which `option` needs.
 void require_region(const exporting::RegionRequest& region, const char* option);
 
 /// Returns a result as text, for programs. Bytes that are no UTF-8 become U+FFFD: a file name on

@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace meshhier::exporting {
 namespace {
@@ -63,7 +66,14 @@ PlanPolygon rectangle_of(const BoundsD& box) {
 }  // namespace
 
 std::string RegionRequest::name() const {
-  return box && !polygon.empty() ? "box and polygon" : box ? "box" : "polygon";
+  std::vector<std::string_view> parts;
+  if (box)
+    parts.emplace_back("box");
+  if (!polygon.empty())
+    parts.emplace_back("polygon");
+  if (objects.is_any())
+    parts.emplace_back("objects");
+  return fmt::format("{}", fmt::join(parts, " and "));
 }
 
 Region region_of(storage::FileSystem& files, const HierarchyReader& reader,
@@ -76,6 +86,8 @@ Region region_of(storage::FileSystem& files, const HierarchyReader& reader,
     map.emplace(config_of(manifest), manifest.source.bounds, manifest.transform, request.crs);
   }
   Region region;
+  if (request.objects.is_any())
+    region.objects = std::make_shared<const AskedObjects>(reader, request.objects, cancel);
   std::vector<PlanPolygon> polygons;
   if (!request.polygon.empty())
     polygons = read_polygons(files, request.polygon);
@@ -98,6 +110,10 @@ Region region_of(storage::FileSystem& files, const HierarchyReader& reader,
 
 void fail_empty(const HierarchyReader& reader, const RegionRequest& request) {
   const BoundsD& all = reader.manifest().source.bounds;
+  if (!request.has_border()) {
+    throw Error(ErrorCode::usage,
+                "these objects have no triangle there: coarse levels do not show small ones");
+  }
   std::string text =
       fmt::format("no triangle lies in the {}; the mesh reaches from {},{},{} to {},{},{}",
                   request.name(), all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z);

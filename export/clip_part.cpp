@@ -20,6 +20,7 @@ class PartClipper {
   PartClipper(const CutPart& part, const AttributeRules& rules, const Region& region,
               Clipping clipping)
       : part_(part),
+        region_(region),
         clipping_(clipping),
         channels_(static_cast<std::size_t>(part.vertices.channels)),
         mixer_(rules, channels_),
@@ -29,6 +30,8 @@ class PartClipper {
   CutPart run() {
     std::vector<ClippedPolygon> kept;
     for (const auto& triangle : part_.triangles) {
+      if (!region_.takes(part_.vertices.attributes_of(triangle[0])))
+        continue;
       for (ClippedPolygon& piece : kept_of(corners_of(triangle))) {
         for (const ClippedCorner& corner : piece)
           use(corner);
@@ -128,6 +131,7 @@ class PartClipper {
   }
 
   const CutPart& part_;
+  const Region& region_;
   Clipping clipping_;
   std::size_t channels_;
   CornerMixer mixer_;

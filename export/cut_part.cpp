@@ -95,9 +95,21 @@ class PartMaker {
     std::ranges::copy(texcoords.of(vertex.attributes()),
                       part_.vertices.attributes.end() -
                           static_cast<std::ptrdiff_t>(rules_.channels() - texcoords.first));
+    keep_object(vertex);
     add_normal(shown.other->shading,
                wedge == 0 ? shown.place
                           : mesh.vertices.size() + mesh.copies.first_of(shown.place) + wedge - 1);
+  }
+
+  /// A triangle's corners have one object, also where the neighbour shows it no more.
+  void keep_object(const VertexAt& vertex) {
+    for (const PlacedValue& value : rules_.values().values()) {
+      if (value.is_object) {
+        std::ranges::copy(vertex.attributes().subspan(value.channel, value.channels()),
+                          part_.vertices.attributes.end() -
+                              static_cast<std::ptrdiff_t>(rules_.channels() - value.channel));
+      }
+    }
   }
 
   const PublishedTile& tile_;

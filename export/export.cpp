@@ -286,15 +286,33 @@ std::string export_parts_of_piece(const PartsJob& job, Piece& piece, const Regio
   return fmt::format("{}, {}", text_of(piece), write_parts(job, exported, format));
 }
 
+struct NamedPiece {
+  Piece piece;
+  std::string name;  ///< for people: "level 3, box"
+};
+
+/// Returns the piece that the options ask for: of no outline.
 template <class Job>
-Piece piece_of(const Job& job, Cut cut, const ExportOptions& options) {
-  return {job.reader, std::move(cut), region_of(job.files, job.reader, options.region, job.cancel),
-          options.clip ? Clipping::at_border : Clipping::whole_triangles,
-          options.memory_budget / 4};
+NamedPiece piece_of(const Job& job, const ExportOptions& options) {
+  const RegionRequest& request = options.region;
+  const Clipping clipping = options.clip ? Clipping::at_border : Clipping::whole_triangles;
+  if (const auto* node = std::get_if<NodeId>(&options.selection)) {
+    require_node(job.reader.tree(), *node);
+    return {{job.reader, *node, region_of(job.files, job.reader, request, job.cancel), clipping},
+            fmt::format("tile {}, {}", to_text(*node), request.name())};
+  }
+  NamedCut cut = cut_of(job.files, job.reader, options.selection).value();
+  return {{job.reader, std::move(cut.cut), region_of(job.files, job.reader, request, job.cancel),
+           clipping, options.memory_budget / 4},
+          fmt::format("{}, {}", cut.name, request.name())};
 }
 
 /// Writes a GLB or OBJ and publishes it.
 std::string export_parts(const PartsJob& job, const ExportOptions& options, ExportFormat format) {
+  if (options.region.is_any()) {
+    auto [piece, name] = piece_of(job, options);
+    return fmt::format("{}: {}", name, export_parts_of_piece(job, piece, options.region, format));
+  }
   if (const auto* node = std::get_if<NodeId>(&options.selection))
     return fmt::format("tile {}: {}", to_text(*node), export_parts_of_tile(job, *node, format));
   std::optional<NamedCut> cut = cut_of(job.files, job.reader, options.selection);
@@ -302,35 +320,29 @@ std::string export_parts(const PartsJob& job, const ExportOptions& options, Expo
     throw Error(ErrorCode::usage, options.output.string() +
                                       ": the outline is lines, which are exported as a PLY alone");
   }
-  if (options.region.is_any()) {
-    Piece piece = piece_of(job, std::move(cut->cut), options);
-    return fmt::format("{}, {}: {}", cut->name, options.region.name(),
-                       export_parts_of_piece(job, piece, options.region, format));
-  }
   return fmt::format("{}: {}", cut->name,
                      export_parts_of_cut(job, std::move(cut->cut), options.memory_budget, format));
 }
 
 std::string export_selection(const ExportJob& job, const ExportOptions& options) {
+  if (options.region.is_any()) {
+    auto [piece, name] = piece_of(job, options);
+    return export_piece(job, piece, options.region, name);
+  }
   if (const auto* node = std::get_if<NodeId>(&options.selection))
     return export_tile(job, *node);
   std::optional<NamedCut> cut = cut_of(job.files, job.reader, options.selection);
   if (!cut)
     return export_outline(job);
-  if (options.region.is_any()) {
-    Piece piece = piece_of(job, std::move(cut->cut), options);
-    return export_piece(job, piece, options.region, cut->name + ", " + options.region.name());
-  }
   return export_cut(job, std::move(cut->cut), cut->name);
 }
 
-void require_cut(const ExportOptions& options) {
-  const bool is_other = std::holds_alternative<NodeId>(options.selection) ||
-                        std::holds_alternative<OutlineSelection>(options.selection);
-  if (options.region.is_any() && is_other) {
-    throw Error(ErrorCode::usage, fmt::format("a {} takes a piece of a level, a cut or what an "
-                                              "error allows",
-                                              options.region.name()));
+void require_pieces(const ExportOptions& options) {
+  if (options.region.is_any() && std::holds_alternative<OutlineSelection>(options.selection)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("a {} takes a piece of a level, a node, a cut or what "
+                            "an error allows; the outline is whole",
+                            options.region.name()));
   }
 }
 
@@ -349,7 +361,7 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
   if (!storage::is_standard_output(files, options.output))
     storage::require_outside(files, options.output);
   require_own_ending(options.output);
-  require_cut(options);
+  require_pieces(options);
   storage::OutputRequest request{options.output, options.replace, files_named(options)};
   request.inputs.push_back(hierarchy);
   const storage::HierarchyFiles place(files, hierarchy);
@@ -357,7 +369,14 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
   storage::OutputFile output(files, request, [&] { cancel.check(); });
   const ExportFormat format = format_of(options.output);
   if (format != ExportFormat::ply) {
-    const PartsJob job{files, reader, request, output, progress, cancel};
+    const PartsJob job{files,
+                       reader,
+                       request,
+                       output,
+                       progress,
+                       cancel,
+                       options.memory_budget,
+                       options.numbers_objects};
     return fmt::format("{}: {}", options.output.string(), export_parts(job, options, format));
   }
   const ExportJob job{files, reader, output, options.memory_budget, progress, cancel};

@@ -30,9 +30,10 @@ struct ExportOptions {
   std::filesystem::path output;
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
   bool replace = false;                    ///< takes the place of a file that is there
-  /// Nothing else is written, and tiles elsewhere are not read. For cuts only.
+  /// Nothing else is written, and tiles elsewhere are not read. Not of the outline.
   RegionRequest region{};
   bool clip = false;  ///< triangles end where the region does; else those that touch it come whole
+  bool numbers_objects = false;  ///< an OBJ names objects by their numbers, not by their names
 };
 
 /// Returns the files that an export reads besides the hierarchy; its output must not replace them.
@@ -42,8 +43,9 @@ std::vector<std::filesystem::path> files_named(const ExportOptions& options);
 /// people.
 ///
 /// GLB and OBJ have the pictures of a textured hierarchy, and a primitive or group a tile: its
-/// triangles, at vertices of its own in a GLB, at common positions in an OBJ. The tiles of an OBJ
-/// of a region share no positions. The outline goes into a PLY alone.
+/// triangles, at vertices of its own in a GLB, at common positions in an OBJ. Of a mesh of objects
+/// the groups of an OBJ are these. The tiles of an OBJ of a region share no positions. The outline
+/// goes into a PLY alone.
 ///
 /// A PLY has no textures. Vertices are shared between tiles; coordinates are doubles if the
 /// hierarchy has an origin. Vertices of a level or cut are those of CutVertices; those of a node
@@ -55,7 +57,7 @@ std::vector<std::filesystem::path> files_named(const ExportOptions& options);
 ///
 /// The output appears complete or not at all, and depends on hierarchy and options alone. Throws
 /// Error(usage) if the output has another format's ending, lies in a hierarchy or would replace
-/// what is read, a region is asked for with a node or the outline, the outline is to go into a GLB
+/// what is read, a region is asked for with the outline, the outline is to go into a GLB
 /// or OBJ, the selection is not in the tree, the cut file is no cut, or nothing lies in the region;
 /// Error(budget) if the borders of tiles in it exceed the memory; Error(input) for a polygon that
 /// is none; Error(io | corrupt | exists | interrupted).

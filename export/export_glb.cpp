@@ -5,11 +5,13 @@
 #include "base/plain_text.h"
 #include "export/byte_stream.h"
 #include "export/export_parts.h"
+#include "export/glb_objects.h"
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/showable.h"
 #include "storage/format/tile_colours.h"
 #include "storage/format/tile_plan.h"
+#include "storage/format/tile_values.h"
 #include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
 
@@ -17,6 +19,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -33,6 +36,7 @@ using Json = nlohmann::ordered_json;
 /// The facts that are kept of each part.
 struct PartFacts {
   std::uint32_t vertices = 0, triangles = 0, image_bytes = 0;
+  std::uint32_t objects = 0;  ///< different ones; 0: the mesh has none
   ImageFormat format{};
   AlphaMode alpha{};
   Bounds bounds;
@@ -42,6 +46,7 @@ PartFacts facts_of(const CutPart& part) {
   return {static_cast<std::uint32_t>(part.vertices.size()),
           static_cast<std::uint32_t>(part.triangles.size()),
           static_cast<std::uint32_t>(part.image.bytes.size()),
+          0,
           part.image.format,
           part.image.alpha,
           bounds_of(part.vertices.positions)};
@@ -60,16 +65,19 @@ struct GlbSection {
 
 constexpr std::size_t kPositions = 0;
 constexpr std::size_t kFirstAttribute = 1;
-constexpr std::size_t kIndices = kFirstAttribute + storage::kAttributeSections.size();
+constexpr std::size_t kFeatures = kFirstAttribute + storage::kAttributeSections.size();
+constexpr std::size_t kIndices = kFeatures + 1;
 constexpr std::size_t kPicture = kIndices + 1;
 using GlbSections = std::array<GlbSection, kPicture + 1>;
 
 /// The sections of the parts.
 class GlbLayout {
  public:
-  explicit GlbLayout(const storage::TileFormat& format) : format_(format) {}
+  /// `rows`: of the table of objects; 0: there is none.
+  GlbLayout(const storage::TileFormat& format, std::uint32_t rows) : format_(format), rows_(rows) {}
 
-  /// Returns positions, normals, colours, texture coordinates, indices, picture; those that are not
+  /// Returns positions, normals, colours, texture coordinates, rows of objects, indices, picture;
+  /// those that are not
   /// there have no bytes.
   GlbSections sections(const PartFacts& part) const {
     const AttributeLayout& layout = format_.attributes;
@@ -93,6 +101,9 @@ class GlbLayout {
           storage::aligned4(channels * storage::component_bytes(component)),
           component != storage::kF32};
     }
+    const bool has_short_rows = rows_ <= UINT16_MAX;
+    sections[kFeatures] = {storage::kFeatureAttribute, "SCALAR",
+                           has_short_rows ? storage::kU16 : storage::kF32, rows_ > 0 ? n : 0, 4};
     sections[kIndices] = {"", "SCALAR", index_component(n), 3 * std::uint64_t{part.triangles},
                           storage::component_bytes(index_component(n))};
     sections[kPicture] = {"", "", 0, part.image_bytes, 1};
@@ -117,13 +128,19 @@ class GlbLayout {
   }
 
   const storage::TileFormat& format_;
+  std::uint32_t rows_;
 };
 
 /// The JSON, piece by piece.
 class GlbText {
  public:
-  GlbText(const storage::TileFormat& format, std::span<const PartFacts> parts)
-      : format_(format), layout_(format), parts_(parts) {}
+  /// `objects`: null if there are none.
+  GlbText(const storage::TileFormat& format, std::span<const PartFacts> parts,
+          const GlbObjects* objects)
+      : format_(format),
+        layout_(format, objects != nullptr ? objects->rows() : 0),
+        parts_(parts),
+        objects_(objects) {}
 
   using Sink = std::function<void(std::string_view)>;
 
@@ -134,6 +151,8 @@ class GlbText {
     head["scene"] = 0;
     head["scenes"] = Json::array({Json::object({{"nodes", Json::array({0})}})});
     head["nodes"] = Json::array({storage::mesh_node(format_.frame)});
+    if (objects_ != nullptr)
+      head["extensions"][storage::kMetadataExtension] = objects_->metadata(section_count());
     std::string text = storage::json_text(head);
     text.pop_back();
     sink(text);
@@ -155,14 +174,27 @@ class GlbText {
   }
 
   std::uint64_t bin_bytes() const {
+    return objects_ != nullptr ? table_offset() + objects_->columns().bytes : part_bytes();
+  }
+  /// Returns how many bytes there are between the parts and the table of objects.
+  std::uint64_t table_padding() const { return table_offset() - part_bytes(); }
+
+ private:
+  using Item = std::function<void(const Json&)>;
+
+  std::uint64_t part_bytes() const {
     std::uint64_t sum = 0;
     for (const PartFacts& part : parts_)
       sum += layout_.bytes(part);
     return sum;
   }
+  std::uint64_t table_offset() const { return (part_bytes() + 7) / 8 * 8; }
 
- private:
-  using Item = std::function<void(const Json&)>;
+  std::size_t section_count() const {
+    std::size_t count = 0;
+    each_section([&](std::size_t, std::uint64_t, const PartFacts&, const GlbSection&) { ++count; });
+    return count;
+  }
 
   bool has_pictures() const { return format_.textures.has_value(); }
 
@@ -172,6 +204,10 @@ class GlbText {
     Json used = Json::array();
     if (has_pictures() && format_.textures->unlit)
       used.push_back(storage::kUnlitExtension);
+    if (objects_ != nullptr) {
+      used.push_back(storage::kFeaturesExtension);
+      used.push_back(storage::kMetadataExtension);
+    }
     if (required != nullptr) {
       used.push_back(required);
       document["extensionsRequired"] = Json::array({required});
@@ -202,6 +238,9 @@ class GlbText {
           primitive["indices"] = accessor++;
       }
       primitive["material"] = has_pictures() ? i : 0;
+      if (objects_ != nullptr)
+        primitive["extensions"][storage::kFeaturesExtension]["featureIds"] = Json::array(
+            {{{"featureCount", parts_[i].objects}, {"attribute", 0}, {"propertyTable", 0}}});
       item(primitive);
     }
   }
@@ -258,6 +297,19 @@ class GlbText {
           }
           item(view);
         });
+    if (objects_ != nullptr)
+      column_views(item);
+  }
+
+  void column_views(const Item& item) const {
+    const auto add = [&](std::uint64_t offset, std::uint64_t bytes) {
+      item(Json{{"buffer", 0}, {"byteOffset", table_offset() + offset}, {"byteLength", bytes}});
+    };
+    for (const storage::ObjectColumn& column : objects_->columns().columns) {
+      add(column.values, std::max<std::uint64_t>(column.value_bytes, 1));
+      if (column.start_bytes > 0)
+        add(column.starts, column.start_bytes);
+    }
   }
 
   /// Calls visit(number, offset, part, section) for sections that have bytes.
@@ -278,23 +330,27 @@ class GlbText {
   const storage::TileFormat& format_;
   GlbLayout layout_;
   std::span<const PartFacts> parts_;
+  const GlbObjects* objects_;
 };
 
 /// The sections of one part.
 class PartBytes {
  public:
-  PartBytes(const storage::TileFormat& format, const CutPart& part)
+  PartBytes(const storage::TileFormat& format, const CutPart& part, const GlbObjects* objects)
       : layout_(format.attributes),
         part_(part),
+        objects_(objects),
         colours_(layout_, false),
         shown_(colours_.all_stored(storage::showable_attributes(layout_, part.vertices))),
-        sections_(GlbLayout(format).sections(facts_of(part))) {}
+        sections_(
+            GlbLayout(format, objects != nullptr ? objects->rows() : 0).sections(facts_of(part))) {}
 
   void write(ByteStream& to) {
     put(to, kPositions, [&](std::size_t v) { append(part_.vertices.positions[v]); });
     const storage::ChannelGroups groups = storage::groups_of(layout_);
     for (std::size_t i = 0; i < groups.size(); ++i)
       put(to, kFirstAttribute + i, [&](std::size_t v) { append_attribute(groups[i], v); });
+    put(to, kFeatures, [&](std::size_t v) { append_row(v); });
     put(to, kIndices, [&](std::size_t i) { append_index(part_.triangles[i / 3][i % 3]); });
     bytes_ = part_.image.bytes;
     pad_and_put(to);
@@ -341,6 +397,14 @@ class PartBytes {
     bytes_.resize(storage::aligned4(bytes_.size()));
   }
 
+  void append_row(std::size_t vertex) {
+    const std::uint32_t row = objects_->row_of(part_.vertices.attributes_of(vertex));
+    if (sections_[kFeatures].component == storage::kU16)
+      storage::append_little(bytes_, row);  // the upper half is the gap between two
+    else
+      storage::append_little(bytes_, static_cast<float>(row));
+  }
+
   void append_index(std::uint32_t vertex) {
     if (sections_[kIndices].component == storage::kU16)
       storage::append_little(bytes_, static_cast<std::uint16_t>(vertex));
@@ -350,6 +414,7 @@ class PartBytes {
 
   const AttributeLayout& layout_;
   const CutPart& part_;
+  const GlbObjects* objects_;
   storage::TileColours colours_;
   std::vector<float> shown_;  ///< as the sections hold them
   GlbSections sections_;
@@ -371,11 +436,16 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
   format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
   std::vector<PartFacts> facts;
   std::vector<std::size_t> shown;  // parts that draw something
+  std::optional<GlbObjects> objects;
+  if (job.reader.manifest().objects)
+    objects.emplace(job);
   std::uint64_t vertices = 0, triangles = 0;
   for (std::size_t i = 0; i < parts.count; ++i) {
     job.cancel.check();
-    const PartFacts part = facts_of(parts.load(i));
+    const CutPart loaded = parts.load(i);
+    PartFacts part = facts_of(loaded);
     if (part.triangles > 0) {
+      part.objects = objects ? objects->add(loaded) : 0;
       facts.push_back(part);
       shown.push_back(i);
     }
@@ -386,7 +456,10 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
   if (shown.empty())
     throw Error(ErrorCode::usage, "there are no triangles to export: a GLB shows nothing else");
 
-  const GlbText text(format, facts);
+  if (objects)
+    objects->make_table();
+  const GlbObjects* const table = objects ? &*objects : nullptr;
+  const GlbText text(format, facts, table);
   std::uint64_t json_bytes = 0;
   text.write([&](std::string_view piece) { json_bytes += piece.size(); });
   const std::uint64_t bin_bytes = text.bin_bytes();
@@ -408,8 +481,12 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
   put_chunk_head(out, bin_bytes, std::string_view("BIN\0", 4));
   for (const std::size_t i : shown) {
     job.cancel.check();
-    PartBytes(format, parts.load(i)).write(out);
+    PartBytes(format, parts.load(i), table).write(out);
     job.progress.advance(1);
+  }
+  if (table != nullptr) {
+    out.put(std::vector<std::byte>(text.table_padding()));
+    table->write(out);
   }
   job.progress.advance(parts.count - shown.size());
   out.flush();

@@ -3,6 +3,7 @@
 #include "base/srgb.h"
 #include "export/byte_stream.h"
 #include "export/export_parts.h"
+#include "export/obj_faces.h"
 #include "images/image_codec.h"
 #include "storage/format/showable.h"
 
@@ -143,6 +144,12 @@ class ObjPictures {
   ByteStream text_;
 };
 
+/// The texture coordinates and normals of a part's vertices: how many are written before them.
+struct PartCorners {
+  std::uint64_t texcoords = 0, normals = 0;
+  bool has_texcoords = false, has_normals = false;
+};
+
 class ObjWriter {
  public:
   ObjWriter(const storage::HierarchyReader& reader, storage::File& file)
@@ -161,29 +168,47 @@ class ObjWriter {
            (shows_colours_ ? colour_text(channels(shown, v)) : ""));
   }
 
-  void write_part(NodeId node, const CutPart& part) {
+  /// Writes texture coordinates and normals, which faces of the part refer to from now on.
+  PartCorners write_corners(const CutPart& part) {
     const std::vector<float> shown = storage::showable_attributes(layout_, part.vertices);
-    const bool has_texcoords = !part.texcoords.empty() || layout_.texcoords;
-    const bool has_normals = !part.normals.empty() || layout_.normals;
-    for (std::size_t v = 0; has_texcoords && v < part.vertices.size(); ++v) {
+    const PartCorners corners{texcoords_, normals_, !part.texcoords.empty() || layout_.texcoords,
+                              !part.normals.empty() || layout_.normals};
+    for (std::size_t v = 0; corners.has_texcoords && v < part.vertices.size(); ++v) {
       const Vec2f texcoord = texcoord_of(part, shown, v);
       line(fmt::format("vt {} {}", texcoord.u, texcoord.v));
     }
-    for (std::size_t v = 0; has_normals && v < part.vertices.size(); ++v) {
+    for (std::size_t v = 0; corners.has_normals && v < part.vertices.size(); ++v) {
       const Vec3f normal = normal_of(part, shown, v);
       line(fmt::format("vn {} {} {}", normal.x, normal.y, normal.z));
     }
+    texcoords_ += corners.has_texcoords ? part.vertices.size() : 0;
+    normals_ += corners.has_normals ? part.vertices.size() : 0;
+    return corners;
+  }
+
+  /// `places` of the corners, and their numbers in the part.
+  void write_face(const PartCorners& part, std::span<const std::uint32_t, 3> places,
+                  std::span<const std::uint32_t, 3> corners) {
+    std::string face = "f";
+    for (std::size_t i = 0; i < 3; ++i) {
+      face += fmt::format(" {}", places[i] + std::uint64_t{1});
+      if (part.has_texcoords)
+        face += fmt::format("/{}", part.texcoords + corners[i] + 1);
+      if (part.has_normals)
+        face += fmt::format("{}/{}", part.has_texcoords ? "" : "/", part.normals + corners[i] + 1);
+    }
+    line(face);
+  }
+
+  void write_part(NodeId node, const CutPart& part) {
+    const PartCorners corners = write_corners(part);
     line("g tile_" + file_name_of(node));
     if (!part.image.empty())
       line("usemtl " + file_name_of(node));
     for (const Triangle<std::uint32_t>& t : part.triangles) {
-      std::string face = "f";
-      for (const std::uint32_t v : t)
-        face += corner_text(part.places[v], v, has_texcoords, has_normals);
-      line(face);
+      const std::array places{part.places[t[0]], part.places[t[1]], part.places[t[2]]};
+      write_face(corners, places, std::array{t[0], t[1], t[2]});
     }
-    texcoords_ += has_texcoords ? part.vertices.size() : 0;
-    normals_ += has_normals ? part.vertices.size() : 0;
   }
 
   void finish() { out_.flush(); }
@@ -229,21 +254,73 @@ class ObjWriter {
     return {own[0], own[1], own[2]};
   }
 
-  std::string corner_text(std::uint64_t place, std::uint64_t vertex, bool has_texcoord,
-                          bool has_normal) const {
-    std::string corner = fmt::format(" {}", place + 1);
-    if (has_texcoord)
-      corner += fmt::format("/{}", texcoords_ + vertex + 1);
-    if (has_normal)
-      corner += fmt::format("{}/{}", has_texcoord ? "" : "/", normals_ + vertex + 1);
-    return corner;
-  }
-
   AttributeLayout layout_;
   Vec3d origin_;
   bool shows_colours_;
   ByteStream out_;
   std::uint64_t texcoords_ = 0, normals_ = 0;  ///< written by earlier parts
+};
+
+/// Returns a name that fits a line: others than that lose their line ends, and a backslash at the
+/// end, which would join the next line.
+std::string line_name(const std::string& name) {
+  std::string text = plain_text(name, name.size());
+  if (text.ends_with('\\'))
+    text.back() = '?';
+  return text;
+}
+
+/// Writes what is left of the parts when their places are there: faces, by object.
+class ByObjects {
+ public:
+  ByObjects(const PartsJob& job, const ExportedParts& parts, PlacedValue object, ObjWriter& writer)
+      : job_(job),
+        parts_(parts),
+        writer_(writer),
+        faces_(job.files, job.output.scratch(), object, job.memory_budget / 4) {
+    if (!job.numbers_objects)
+      table_ = job.reader.open_objects();
+  }
+
+  void add(std::size_t i, const CutPart& part) {
+    corners_.push_back(writer_.write_corners(part));
+    has_picture_.push_back(!part.image.empty());
+    faces_.add(static_cast<std::uint32_t>(i), part);
+  }
+
+  void write() {
+    std::optional<std::uint32_t> object, part;
+    faces_.for_each([&](const ObjFace& face) {
+      if (face.object != object) {
+        begin(face.object);
+        part.reset();
+      }
+      if (face.part != part && has_picture_[face.part])
+        writer_.line("usemtl " + file_name_of(parts_.node(face.part)));
+      object = face.object;
+      part = face.part;
+      writer_.write_face(corners_[face.part], face.places, face.corners);
+    });
+  }
+
+ private:
+  /// Triangles of no object come first, and have no name.
+  void begin(std::uint32_t object) {
+    job_.cancel.check();
+    if (!table_)
+      return writer_.line(fmt::format("o {}", object));
+    const std::string name = object < table_->size() ? table_->row(object).name : "";
+    if (!name.empty())
+      writer_.line("o " + line_name(name));
+  }
+
+  const PartsJob& job_;
+  const ExportedParts& parts_;
+  ObjWriter& writer_;
+  ObjFaces faces_;
+  std::unique_ptr<storage::ObjectTable> table_;  ///< null: objects are named by their numbers
+  std::vector<PartCorners> corners_;
+  std::vector<bool> has_picture_;
 };
 
 }  // namespace
@@ -265,10 +342,16 @@ std::string write_obj(const PartsJob& job, const ExportedParts& parts) {
     vertices += places.size();
     job.progress.advance(1);
   }
+  std::optional<ByObjects> by_objects;
+  if (const auto object = placed_object(job.reader.tile_format().attributes))
+    by_objects.emplace(job, parts, *object, writer);
   for (std::size_t i = 0; i < parts.count; ++i) {
     job.cancel.check();
     const CutPart part = parts.load(i);
-    writer.write_part(parts.node(i), part);
+    if (by_objects)
+      by_objects->add(i, part);
+    else
+      writer.write_part(parts.node(i), part);
     if (!part.image.empty()) {
       pictures->add(parts.node(i), part.image);
       ++images;
@@ -276,6 +359,8 @@ std::string write_obj(const PartsJob& job, const ExportedParts& parts) {
     triangles += part.triangles.size();
     job.progress.advance(1);
   }
+  if (by_objects)
+    by_objects->write();
   writer.finish();
   if (pictures)
     pictures->publish();

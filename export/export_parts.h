@@ -33,16 +33,19 @@ struct PartsJob {
   storage::OutputFile& output;
   execution::Progress& progress;
   const execution::CancelToken& cancel;
+  std::uint64_t memory_budget;
+  bool numbers_objects = false;  ///< an OBJ names objects by their numbers
 };
 
-/// Writes glTF binary: a primitive and a picture a tile. Reads each part twice; holds one, and some
-/// 80 bytes for each. Throws Error(usage) if there are no triangles, or more than a GLB can hold.
-/// Both return a line for people.
+/// Writes glTF binary: a primitive and a picture a tile, and a table of the objects. Reads each
+/// part twice; holds one, and some 80 bytes for each. Throws Error(usage) if there are no
+/// triangles, or more than a GLB can hold. Both return a line for people.
 std::string write_glb(const PartsJob& job, const ExportedParts& parts);
 
-/// Writes Wavefront OBJ; for a textured hierarchy also NAME.mtl, a material a tile, and the
-/// pictures in NAME_textures, WebP as PNG. They appear before the OBJ does; throws Error(exists) if
-/// they are there already and not to be replaced. Holds one part. Publishes the output.
+/// Writes Wavefront OBJ, a group a tile, or the faces of each object behind "o" and its name; for a
+/// textured hierarchy also NAME.mtl, a material a tile, and the pictures in NAME_textures, WebP as
+/// PNG. They appear before the OBJ does; throws Error(exists) if they are there already and not to
+/// be replaced. Holds one part. Publishes the output.
 std::string write_obj(const PartsJob& job, const ExportedParts& parts);
 
 }  // namespace meshhier::exporting

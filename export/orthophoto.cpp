@@ -79,6 +79,8 @@ BoundsD drawn_box(const HierarchyReader& reader, const MapFrame& frame,
     limits = {options.region.box->min - manifest.origin, options.region.box->max - manifest.origin};
   if (region && region->plan)
     limits = common_part(limits, column_over(*region->plan, manifest.up));
+  if (region && region->objects)
+    limits = common_part(limits, region->objects->box());
   BoundsD all;
   for (const TileRecord& record : reader.records()) {
     if (!is_of_input(reader, record) || record.bounds.empty())
@@ -160,9 +162,9 @@ std::vector<BoundsD> boxes_of(const Drawing& drawing, Benches& benches,
           progress.advance(1);
         });
   }
-  for (BoundsD& box : boxes) {
-    if (!box.empty() && drawing.region && !drawing.region->may_meet(box))
-      box = {};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!boxes[i].empty() && drawing.region && !drawing.region->may_show(cut[i], boxes[i]))
+      boxes[i] = {};
   }
   return boxes;
 }

@@ -35,7 +35,7 @@ std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const 
     finest = std::max(finest, reader.record(node).node.level);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const TileRecord& record = reader.record(cut[i]);
-    if (!region.may_meet(box_of(record, 0)))
+    if (!region.may_show(cut[i], box_of(record, 0)))
       continue;
     inside.push_back(i);
     if (record.node.level < finest)
@@ -52,7 +52,8 @@ std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const 
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const bool is_inside = next != inside.end() && *next == i;
     next += is_inside ? 1 : 0;
-    if (is_inside || is_beside(reader.record(cut[i])))
+    const bool may_have = !region.objects || region.objects->may_show(cut[i]);
+    if (is_inside || (may_have && is_beside(reader.record(cut[i]))))
       all.push_back(i);
   }
   return all;
@@ -61,19 +62,26 @@ std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const 
 Piece::Piece(const storage::HierarchyReader& reader, Cut cut, Region region, Clipping clipping,
              std::uint64_t cache_bytes)
     : reader_(reader),
-      parts_(reader, std::move(cut), cache_bytes),
+      parts_(std::in_place, reader, std::move(cut), cache_bytes),
       region_(std::move(region)),
       clipping_(clipping),
-      positions_(tiles_in(reader, parts_.cut(), region_)) {
+      positions_(tiles_in(reader, parts_->cut(), region_)) {
   std::vector<NodeId> nodes;
   for (const std::size_t position : positions_)
-    nodes.push_back(parts_.cut()[position]);
+    nodes.push_back(parts_->cut()[position]);
   reader_.will_read(nodes);
 }
 
+Piece::Piece(const storage::HierarchyReader& reader, NodeId node, Region region, Clipping clipping)
+    : reader_(reader),
+      node_(node),
+      region_(std::move(region)),
+      clipping_(clipping),
+      positions_{0} {}
+
 CutPart Piece::load(std::size_t i) {
-  return clip_part(parts_.load(positions_[i]), reader_.tile_format().attributes, region_,
-                   clipping_);
+  return clip_part(parts_ ? parts_->load(positions_[i]) : part_of_tile(reader_.read_tile(node_)),
+                   reader_.tile_format().attributes, region_, clipping_);
 }
 
 PieceNumbers::Numbered PieceNumbers::add(const Piece& piece, std::size_t i, const CutPart& part) {

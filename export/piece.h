@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -21,29 +22,31 @@ namespace meshhier::exporting {
 std::vector<std::size_t> tiles_in(const storage::HierarchyReader& reader, const Cut& cut,
                                   const Region& region);
 
-/// A piece. It reads only tiles that may reach into the region, and coarser neighbours of these.
-/// For one thread.
+/// A piece of a cut, or of one tile with its border. It reads only tiles that may reach into the
+/// region, and coarser neighbours of these. For one thread.
 class Piece {
  public:
   /// `region`: relative to the hierarchy's origin. `reader` must outlive it. Throws as CutParts.
   Piece(const storage::HierarchyReader& reader, Cut cut, Region region, Clipping clipping,
         std::uint64_t cache_bytes);
+  Piece(const storage::HierarchyReader& reader, NodeId node, Region region, Clipping clipping);
 
   /// Return how many tiles may have something in the region, and how many the whole cut has.
   std::size_t size() const { return positions_.size(); }
-  std::size_t cut_size() const { return parts_.cut().size(); }
-  NodeId node(std::size_t i) const { return parts_.cut()[positions_[i]]; }
+  std::size_t cut_size() const { return parts_ ? parts_->cut().size() : 1; }
+  NodeId node(std::size_t i) const { return parts_ ? parts_->cut()[positions_[i]] : node_; }
   /// Returns the part of a tile in the region, perhaps nothing. The result depends on `i` alone.
   /// Throws as CutParts::load().
   CutPart load(std::size_t i);
   /// Returns whether another tile may have a vertex of load(i), too.
   bool is_shared(std::size_t i, std::uint32_t place) const {
-    return place == kNoPlace || parts_.is_at_border(positions_[i], place);
+    return parts_ && (place == kNoPlace || parts_->is_at_border(positions_[i], place));
   }
 
  private:
   const storage::HierarchyReader& reader_;
-  CutParts parts_;
+  std::optional<CutParts> parts_;  ///< none: it is of one tile
+  NodeId node_{};                  ///< that tile's
   Region region_;
   Clipping clipping_;
   std::vector<std::size_t> positions_;  ///< in the cut

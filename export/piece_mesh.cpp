@@ -9,6 +9,8 @@
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
@@ -21,6 +23,38 @@ namespace fs = std::filesystem;
 void require_no_outline(const ExportOptions& options) {
   if (std::holds_alternative<OutlineSelection>(options.selection))
     throw Error(ErrorCode::usage, "the outline is lines, of which no hierarchy is made");
+}
+
+void copy_file(const storage::File& from, storage::File& to, const execution::CancelToken& cancel) {
+  constexpr std::uint64_t kBlock = std::uint64_t{1} << 20;
+  std::vector<std::byte> block;
+  for (std::uint64_t at = 0; at < from.size(); at += block.size()) {
+    cancel.check();
+    block.resize(std::min(kBlock, from.size() - at));
+    from.read_exact(at, block);
+    to.write_at(at, block);
+  }
+}
+
+/// Says that the objects of the mesh are those of a table, by their numbers there: as a label of a
+/// PLY, as names in an OBJ.
+void take_objects(const storage::HierarchyReader& whole, const fs::path& table, bool is_obj,
+                  config::Config& config) {
+  config.objects.table = table;
+  if (is_obj) {
+    config.objects.from = {mesh_io::ObjectSource::object};
+    return;
+  }
+  const auto& values = whole.tile_format().attributes.values;
+  const std::string name = std::ranges::find_if(values, &ScalarAttribute::is_object)->name;
+  config.objects.from = {mesh_io::ObjectSource::label, name};
+  mesh_io::AttributeChoice& read = config.attributes;
+  if (read.labels)
+    read.labels->push_back(name);
+  if (read.which != mesh_io::AttributeChoice::Which::all) {
+    read.which = mesh_io::AttributeChoice::Which::named;
+    read.names.push_back(name);
+  }
 }
 
 }  // namespace
@@ -39,6 +73,8 @@ config::Config config_like(storage::FileSystem& files, const fs::path& hierarchy
   config.output = output;
   config.weld = false;
   config.crop.reset();
+  config.objects.from = {mesh_io::ObjectSource::none};
+  config.objects.table.clear();
   config.memory_budget = memory_budget;
   config.storage.container = storage::lower_extension(output) == ".3tz"
                                  ? storage::Container::archive
@@ -64,10 +100,16 @@ PieceMesh::PieceMesh(storage::FileSystem& files, const fs::path& hierarchy,
   config_ =
       config_like(files, hierarchy, options.output, options.replace, options.memory_budget, local);
   const storage::HierarchyFiles place(files, hierarchy);
-  const bool is_textured =
-      storage::HierarchyReader(place.files(), hierarchy).manifest().textures.has_value();
+  const storage::HierarchyReader whole(place.files(), hierarchy);
+  const bool is_textured = whole.manifest().textures.has_value();
   folder_.emplace(local, options.output);
+  if (whole.manifest().objects) {
+    const fs::path table = storage::objects_path(folder_->path());
+    copy_file(*place.files().open(storage::objects_path(hierarchy)), *local.create(table), cancel);
+    take_objects(whole, table, is_textured, config_);
+  }
   ExportOptions mesh = options;
+  mesh.numbers_objects = true;
   mesh.output = folder_->path() / (hierarchy.stem().string() + (is_textured ? ".obj" : ".ply"));
   config_.input = mesh.output;
   export_mesh(files, hierarchy, mesh, progress, cancel);

@@ -29,7 +29,7 @@ config::Config config_like(storage::FileSystem& files, const std::filesystem::pa
 /// A piece has another tree than the whole, as partitions have equal vertex counts: all of its
 /// simplified levels are made anew. Coordinates are the whole's, and vertices and triangles of the
 /// original partitions come bit for bit; those of a textured hierarchy come through the text of an
-/// OBJ.
+/// OBJ. Its objects keep their names and properties.
 class PieceMesh {
  public:
   /// Exports the piece. `files` has the hierarchy, `local` the output. Throws as export_mesh(),

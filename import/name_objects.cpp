@@ -4,6 +4,7 @@
 #include "base/named_value.h"
 #include "base/plain_text.h"
 #include "import/input_record.h"
+#include "import/kept_objects.h"
 #include "import/object_corners.h"
 #include "import/object_labels.h"
 #include "import/object_list.h"
@@ -11,6 +12,7 @@
 #include "import/property_table.h"
 #include "mesh_io/input_error.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -44,7 +46,8 @@ class Namer {
     if (!are_there())
       return std::nullopt;
     objects.fill(mesh_.triangles.size());
-    list();
+    if (!keep())
+      list();
     RunCursor runs(objects.runs);
     SpoolLookup<std::uint32_t> numbers(list_.numbers);
     const std::uint64_t split = put_objects(
@@ -74,6 +77,27 @@ class Namer {
   }
 
   void count(std::string_view name, std::uint64_t count) { add_count(named_.counts, name, count); }
+
+  /// Takes the objects from the table of a hierarchy; returns false if it is another table. A label
+  /// that has their numbers says nothing more then.
+  bool keep() {
+    if (naming_.table.empty())
+      return false;
+    auto file = naming_.files.input().open(naming_.table);
+    if (!is_object_table(*file))
+      return false;
+    const MeshObjects& objects = *mesh_.objects;
+    const auto to = naming_.files.create(naming_.to);
+    keep_objects(objects, storage::ObjectTable(std::move(file)), naming_.table, *to, list_);
+    to->sync();
+    if (objects.choice.from == ObjectSource::label) {
+      const auto& values = mesh_.layout.values;
+      const auto label = std::ranges::find(values, objects.choice.label, &ScalarAttribute::name);
+      drop_value(mesh_, static_cast<std::size_t>(label - values.begin()), naming_.room);
+    }
+    named_.imported = {text_of(objects.choice), naming_.to, list_.facts};
+    return true;
+  }
 
   void list() {
     MeshObjects& objects = *mesh_.objects;

@@ -1,10 +1,9 @@
 #include "inspection/list_objects.h"
 
-#include "base/error.h"
 #include "base/plain_text.h"
+#include "export/asked_objects.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
-#include "storage/format/layout.h"
 #include "storage/format/object_table.h"
 #include "storage/io/json_text.h"
 
@@ -71,23 +70,12 @@ void list_objects(storage::FileSystem& files, const std::filesystem::path& direc
                   const ListedObjects& which, const std::function<void(std::string_view)>& visit) {
   const storage::HierarchyFiles place(files, directory);
   const storage::HierarchyReader reader(place.files(), directory);
-  const auto& objects = reader.manifest().objects;
-  if (!objects)
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("{}: has no objects; \"objects\" of the config says what they are made of",
-                    directory.string()));
-  const storage::ObjectTable table(place.files().open(storage::objects_path(directory)),
-                                   &objects->table);
-  const auto tell = [&](std::uint32_t object, const ObjectRow& row) {
-    visit(which.as_json ? json_line(object, row, table.properties())
-                        : text_line(object, row, table.properties()));
-  };
-  if (which.prefix.empty())
-    return table.for_each(tell);
-  const auto [begin, end] = table.range_of_prefix(which.prefix);
-  for (std::uint32_t object = begin; object < end; ++object)
-    tell(object, table.row(object));
+  const auto table = reader.open_objects();
+  exporting::for_each_asked(*table, {.where = which.where, .prefix = which.prefix},
+                            [&](std::uint32_t object, const ObjectRow& row) {
+                              visit(which.as_json ? json_line(object, row, table->properties())
+                                                  : text_line(object, row, table->properties()));
+                            });
 }
 
 }  // namespace meshhier::inspection

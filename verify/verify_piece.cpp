@@ -41,7 +41,7 @@ void verify_piece(const VerifyJob& job) {
   const exporting::Region region = region_of(job.files, job.reader, job.options.region, job.cancel);
   std::vector<NodeId> nodes;
   for (const TileRecord& record : job.reader.records()) {
-    if (region.may_meet({to_double(record.bounds.min), to_double(record.bounds.max)}))
+    if (region.may_show(record.node, {to_double(record.bounds.min), to_double(record.bounds.max)}))
       nodes.push_back(record.node);
   }
   if (nodes.empty())

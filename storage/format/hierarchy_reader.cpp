@@ -162,6 +162,17 @@ Outline HierarchyReader::read_outline() const {
   return outline;
 }
 
+std::unique_ptr<ObjectTable> HierarchyReader::open_objects() const {
+  if (!manifest_.objects) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: has no objects; \"objects\" of the config says what they are made "
+                            "of",
+                            directory_.string()));
+  }
+  return std::make_unique<ObjectTable>(files_.open(objects_path(directory_)),
+                                       &manifest_.objects->table);
+}
+
 std::vector<std::byte> HierarchyReader::read_preview() const {
   assert(manifest_.preview);
   return of_one_build(files_, directory_, manifest_, [&] {

@@ -9,6 +9,7 @@
 #include "storage/io/file.h"
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,9 @@ class HierarchyReader {
   PublishedTile read_tile(NodeId node) const;
   /// Reads the outline, checks its size, checksum and content.
   Outline read_outline() const;
+  /// Opens the table of objects, which is that of the manifest. Throws Error(usage) if there are no
+  /// objects.
+  std::unique_ptr<ObjectTable> open_objects() const;
   /// Reads the preview, checks its size and checksum; does not decode it. Requires that the
   /// manifest names one.
   std::vector<std::byte> read_preview() const;

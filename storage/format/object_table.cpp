@@ -5,6 +5,7 @@
 #include "base/utf8.h"
 #include "storage/format/gzip.h"
 #include "storage/format/object_block.h"
+#include "storage/format/object_magic.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -28,7 +29,6 @@ namespace {
 //   size - 24     8      d
 //   size - 16     8      bytes of the directory, unpacked
 //   size - 8      8      XXH3-64 of the directory as it is in the file
-constexpr std::string_view kTableMagic = "MHTABLE\n";
 constexpr std::uint32_t kTableVersion = 1;
 constexpr std::size_t kTableHeadBytes = 12;
 constexpr std::size_t kTableEndBytes = 24;
@@ -60,8 +60,8 @@ ObjectTableWriter::ObjectTableWriter(File& file, std::vector<ObjectProperty> pro
     : file_(file), directory_{std::move(properties), {}} {
   assert(directory_.properties.size() <= kMostObjectProperties);
   std::array<std::byte, kTableHeadBytes> head{};
-  std::ranges::copy(std::as_bytes(std::span(kTableMagic)), head.begin());
-  store_little(kTableVersion, head.data() + kTableMagic.size());
+  std::ranges::copy(std::as_bytes(std::span(kObjectTableMagic)), head.begin());
+  store_little(kTableVersion, head.data() + kObjectTableMagic.size());
   append(head);
 }
 
@@ -142,10 +142,10 @@ ObjectTable::Place ObjectTable::read_place() const {
   std::array<std::byte, kTableEndBytes> end;
   file_->read_exact(0, head);
   file_->read_exact(size - end.size(), end);
-  if (!std::ranges::equal(std::as_bytes(std::span(kTableMagic)),
-                          std::span(head).first(kTableMagic.size())))
+  if (!std::ranges::equal(std::as_bytes(std::span(kObjectTableMagic)),
+                          std::span(head).first(kObjectTableMagic.size())))
     fail("does not start with MHTABLE: no table of objects");
-  const auto version = load_little<std::uint32_t>(head.data() + kTableMagic.size());
+  const auto version = load_little<std::uint32_t>(head.data() + kObjectTableMagic.size());
   if (version != kTableVersion) {
     fail(fmt::format("version is {}, expected {}{}", version, kTableVersion,
                      version > kTableVersion ? " (written by a newer meshhier)" : ""));
