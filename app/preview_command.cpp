@@ -33,6 +33,7 @@ struct PreviewArguments {
   std::optional<Level> level;
   std::optional<ImageFormat> format;
   inspection::AttributeColours attribute;
+  std::string property;  ///< of objects
 };
 
 constexpr std::array<std::pair<std::string_view, Standpoint>, 7> kViews{
@@ -144,8 +145,10 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
   const inspection::AttributeColours& attribute = arguments.attribute;
   if (!attribute.attribute.empty())
     options.attribute = attribute;
+  else if (!arguments.property.empty())
+    options.objects = {arguments.property, attribute.ramp, attribute.range};
   else if (attribute.ramp || attribute.range)
-    throw Error(ErrorCode::usage, "--ramp and --range need --attribute");
+    throw Error(ErrorCode::usage, "--ramp and --range need --attribute or --colour-by");
   if (!options.region.crs.empty())
     require_region(options.region, "--crs");
   require_no_terminal(environment, arguments.output);
@@ -225,10 +228,18 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                     });
 }
 
-void add_attribute(CLI::App& command, inspection::AttributeColours& colours) {
+void add_colours(CLI::App& command, PreviewArguments& arguments) {
+  inspection::AttributeColours& colours = arguments.attribute;
+  CLI::Option* attribute = command.add_option("--attribute", colours.attribute,
+                                              "Colours by this attribute; inspect lists them");
+  attribute->type_name("NAME");
   command
-      .add_option("--attribute", colours.attribute, "Colours by this attribute; inspect lists them")
-      ->type_name("NAME");
+      .add_option("--colour-by", arguments.property,
+                  "Colours each object by this property, or by name, area or triangles; tells what "
+                  "they mean")
+      ->type_name("PROPERTY")
+      ->check(name_fault)
+      ->excludes(attribute);
   add_parsed_option(command, "--ramp",
                     "Its colours; if not given, coolwarm for signed values, else viridis",
                     "viridis|cividis|turbo|coolwarm", "viridis, cividis, turbo or coolwarm",
@@ -255,6 +266,7 @@ Examples:
   meshhier preview david.hier --view front --size 800x1200 --background white -o david.webp
   meshhier preview town.3tz --up z --view top --error 0.5 -o map.png
   meshhier preview scan.hier --attribute quality --ramp turbo --range 0,1 -o quality.png
+  meshhier preview town.3tz --colour-by storeys --where "built < '1945-01-01'" -o storeys.png
   meshhier preview town.3tz --polygon parcel.geojson --view top -o parcel.png
   meshhier preview david.hier --level 0 --size 640x480 --format png -o - | display
 )";
@@ -269,7 +281,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
   add_what(*command, *arguments);
   add_region_options(*command, arguments->options.region);
   add_look(*command, *arguments);
-  add_attribute(*command, arguments->attribute);
+  add_colours(*command, *arguments);
   add_file_output_options(*command, "The picture: " + all_formats(".", " or "), arguments->output,
                           arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);

@@ -52,6 +52,18 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
   range_ = colours.range.value_or(whole_range(values, ramp_));
   for (const auto& label : values.labels)
     labels_.emplace(label.label, labels_.size());
+  begin_painted();
+}
+
+AttributePainter::AttributePainter(const AttributeLayout& given, ObjectColours colours)
+    : given_(given), objects_(std::move(colours)) {
+  const auto found = std::ranges::find_if(given_.values, &ScalarAttribute::is_object);
+  attribute_ = *found;
+  channel_ = placed_object(given_)->channel;
+  begin_painted();
+}
+
+void AttributePainter::begin_painted() {
   painted_.normals = given_.normals;
   painted_.colour = ColourType::f32;
   painted_.space = ColourSpace::linear;
@@ -80,6 +92,8 @@ void AttributePainter::paint(VertexArray& vertices) const {
 }
 
 Vec3f AttributePainter::colour(double value) const {
+  if (objects_)
+    return objects_->colour(value).value_or(kNoValueColour);
   if (!std::isfinite(value))
     return kNoValueColour;
   if (attribute_.is_label) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "inspection/object_colours.h"
 #include "render/colour_ramp.h"
 
 #include <array>
@@ -25,6 +26,11 @@ class AttributePainter {
   /// Throws Error(usage) if the source has no such attribute: the message lists those that there
   /// are.
   AttributePainter(const SourceSummary& source, const AttributeColours& colours);
+  /// Paints objects in colours of their own.
+  AttributePainter(const AttributeLayout& given, ObjectColours colours);
+
+  /// Returns for people what the colours of objects mean; nothing of an attribute's.
+  std::string legend() const { return objects_ ? objects_->legend() : ""; }
 
   /// Returns the attributes of painted tiles.
   const AttributeLayout& layout() const { return painted_; }
@@ -33,6 +39,7 @@ class AttributePainter {
   void paint(PublishedTile& tile) const;
 
  private:
+  void begin_painted();
   void paint(VertexArray& vertices) const;
   Vec3f colour(double value) const;
 
@@ -41,6 +48,7 @@ class AttributePainter {
   std::size_t channel_ = 0;  ///< the attribute's first channel
   render::ColourRamp ramp_{};
   std::array<double, 2> range_{};
+  std::optional<ObjectColours> objects_;
   std::map<double, std::uint64_t> labels_;  ///< numbers of labels, by value
 };
 

@@ -119,7 +119,7 @@ Standpoint first_view(const HierarchyReader& reader, std::span<const render::Fac
 /// Returns the look as far as the manifest tells it, not the root tile.
 render::Look look_of(const HierarchyReader& reader, const PreviewOptions& options) {
   const auto& textures = reader.manifest().textures;
-  const bool is_shown = textures && !options.attribute;
+  const bool is_shown = textures && !options.attribute && !options.objects;
   return {is_shown && textures->unlit ? render::Light::none : render::Light::lamps, is_shown,
           options.up.value_or(reader.manifest().up)};
 }
@@ -130,11 +130,21 @@ render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout
                    : render::scene_tile(shown.tile, layout, shown.border);
 }
 
+/// Loads a tile, of objects that are asked for their triangles.
+ShownTile load_in(const std::optional<exporting::Region>& region, ShownTiles& tiles,
+                  std::size_t position) {
+  ShownTile shown = tiles.load(position);
+  if (region && region->objects)
+    keep_objects(*region->objects, shown.tile, shown.border);
+  return shown;
+}
+
 /// Adds the facets of a tile that lie in the piece, without pictures.
 void add_piece(ShownTile shown, const AttributeLayout& layout, const exporting::Region& region,
                std::vector<render::Facet>& facets) {
   drop_pictures(shown.tile);
-  const bool is_points = shown.tile.mesh.interior.empty() && shown.border.empty();
+  const bool is_points =
+      !region.objects && shown.tile.mesh.interior.empty() && shown.border.empty();
   const render::SceneTile piece = clip_scene(scene_of(shown, layout, is_points), region);
   facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
 }
@@ -158,7 +168,7 @@ std::vector<render::Facet> piece_facets(const HierarchyReader& reader,
     facets.clear();
     for (const std::size_t position : positions) {
       cancel.check();
-      add_piece(tiles.load(position), reader.tile_format().attributes, region, facets);
+      add_piece(load_in(region, tiles, position), reader.tile_format().attributes, region, facets);
     }
     if (facets.size() >= kSomeFacets)
       break;
@@ -305,6 +315,11 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   std::optional<AttributePainter> painter;
   if (options.attribute)
     painter.emplace(reader.manifest().source, *options.attribute);
+  if (options.objects) {
+    const auto table = reader.open_objects();
+    painter.emplace(reader.tile_format().attributes,
+                    ObjectColours(*table, *options.objects, cancel));
+  }
   AttributeLayout layout = painter ? painter->layout() : reader.tile_format().attributes;
   render::Look look = look_of(reader, options);
   const auto [camera, axes] = [&] {
@@ -324,7 +339,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
   const double point_side = point_side_of(reader, shown, camera);
   const auto load = [&, &axes = axes](std::size_t i) {
-    ShownTile tile = shown.tiles.load(shown.positions[i]);
+    ShownTile tile = load_in(region, shown.tiles, shown.positions[i]);
     if (painter)
       painter->paint(tile.tile);
     render::SceneTile drawn = scene_of(tile, layout, point_side > 0);
@@ -346,8 +361,9 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   if (options.background)
     lay_on(*options.background, picture);
   output.publish(images::encode_image(picture, options.format, kQuality));
-  return fmt::format("{}: {} x {} pixels, {}", options.output.string(), options.width,
-                     options.height, text_of(reader, shown));
+  const std::string legend = painter ? painter->legend() : "";
+  return fmt::format("{}: {} x {} pixels, {}{}{}", options.output.string(), options.width,
+                     options.height, text_of(reader, shown), legend.empty() ? "" : "\n", legend);
 }
 
 }  // namespace meshhier::inspection

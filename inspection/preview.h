@@ -37,13 +37,15 @@ struct PreviewOptions {
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
   std::optional<AttributeColours> attribute{};  ///< none: colours and pictures of the input
-  exporting::RegionRequest region{};            ///< the picture shows this piece alone
+  /// Colours by a property of objects; not with `attribute`.
+  std::optional<ObjectColouring> objects{};
+  exporting::RegionRequest region{};  ///< the picture shows this piece alone
   std::uint64_t memory_budget = std::uint64_t{1} << 30;
 };
 
-/// Writes the picture and returns a line that says what it shows. The output appears complete or
-/// not at all. Throws Error(usage | exists | input | io | corrupt), and Error(budget) if the
-/// picture does not fit the memory.
+/// Writes the picture and returns a text that says what it shows, and what colours of objects mean.
+/// The output appears complete or not at all. Throws Error(usage | exists | input | io | corrupt),
+/// and Error(budget) if the picture does not fit the memory.
 std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                          const PreviewOptions& options, execution::Progress& progress,
                          const execution::CancelToken& cancel);
