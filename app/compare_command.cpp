@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "compare/compare.h"
 #include "export/piece_mesh.h"
+#include "hierarchy/object_row.h"
 #include "hierarchy/unit.h"
 #include "pipeline/build.h"
 #include "storage/io/output_file.h"
@@ -97,6 +98,7 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
   comparing::CompareOptions& options = arguments.options;
   options.output = arguments.output;
   options.is_signed = !arguments.has_no_sign;
+  options.scratch = temporary_path("meshhier-objects-");
   if (!arguments.transform.empty())
     options.transform = read_transform(environment.files, arguments.transform);
   options.inputs.emplace_back(arguments.transform);
@@ -189,6 +191,13 @@ void add_compare_command(CLI::App& parser, Invocation& invocation) {
       ->type_name("FILE")
       ->check(name_fault);
   command->add_flag("--force", arguments->options.replace, "Replace a file that is there");
+  add_integer_option(*command,
+                     {"--objects", "List so many objects of FROM, the farthest first; 0: none [20]",
+                      0, kMostObjects},
+                     [arguments](std::uint64_t count) {
+                       arguments->options.listed_objects = static_cast<std::size_t>(count);
+                     })
+      ->type_name("N");
   command->add_flag("--json", arguments->json, "For scripts");
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);

@@ -118,14 +118,17 @@ class Comparer {
       throw Error(ErrorCode::input, result_.to.name + " has no triangle to measure from");
   }
 
-  SurfaceComparison run(DifferencePly* output) {
+  SurfaceComparison run(DifferencePly* output, storage::FileSystem& files) {
     warn_of_places();
+    if (options_.listed_objects > 0 && from_.reader.manifest().objects)
+      objects_.emplace(files, options_.scratch, spare_bytes(options_) / 8);
     progress_.stage("compare", surface_.size(), "tiles");
     from_.reader.will_read(surface_.cut().nodes());
     execution::ordered_for(
         surface_.size(), tiles_in_flight(), cancel_,
         [&](std::size_t position) { return surface_.load_placed(position); },
-        [&](std::size_t, PlacedTile tile) {
+        [&](std::size_t position, PlacedTile tile) {
+          waiting_positions_.push_back(static_cast<std::uint32_t>(position));
           waiting_points_ += tile.places.size();
           waiting_.push_back(std::move(tile));
           if (waiting_points_ >= kBatchPoints)
@@ -204,8 +207,12 @@ class Comparer {
     std::vector<Side> sides;
     const std::vector<double> distances = distances_of(points, sides, options_.is_signed);
     std::size_t first = 0;
-    for (const PlacedTile& tile : waiting_) {
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+      const PlacedTile& tile = waiting_[i];
       const std::size_t count = tile.places.size();
+      if (objects_)
+        objects_->add(waiting_positions_[i], tile, std::span(points).subspan(first, count),
+                      std::span(distances).subspan(first, count));
       account(tile, std::span(points).subspan(first, count),
               std::span(distances).subspan(first, count), std::span(sides).subspan(first, count));
       if (output != nullptr)
@@ -215,6 +222,7 @@ class Comparer {
     }
     bound_triangles(points, distances);
     waiting_.clear();
+    waiting_positions_.clear();
     waiting_points_ = 0;
   }
 
@@ -304,6 +312,12 @@ class Comparer {
     result_.no_farther_than =
         bound_.refine(measure) + result_.from.error_bound + result_.to.error_bound;
     result_.tiles_read = search_.trees().tiles_read();
+    if (objects_) {
+      const auto from = from_.reader.open_objects();
+      const auto to = to_.reader.manifest().objects ? to_.reader.open_objects() : nullptr;
+      result_.objects =
+          objects_->finish(*from, to.get(), options_.transform, options_.listed_objects);
+    }
     if (result_.distances.empty() || to_.box().empty())
       return;
     const double diagonal = length(to_.box().max - to_.box().min);
@@ -325,7 +339,9 @@ class Comparer {
   CutSurface target_;
   SurfaceDistance search_;
   SurfaceComparison result_;
+  std::optional<ObjectDistances> objects_;
   std::vector<PlacedTile> waiting_;
+  std::vector<std::uint32_t> waiting_positions_;  ///< theirs, in the cut
   std::size_t waiting_points_ = 0;
   FarthestBound bound_;
 };
@@ -388,7 +404,7 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
     output = std::make_unique<DifferencePly>(files, request, spare_bytes(options) / 8, check);
   }
   SurfaceComparison comparison =
-      Comparer(opened_from, opened_to, options, progress, cancel).run(output.get());
+      Comparer(opened_from, opened_to, options, progress, cancel).run(output.get(), files);
   if (output) {
     output->write(opened_from.reader.manifest().origin,
                   fmt::format("meshhier compare: distance to {}", comparison.to.name), check);

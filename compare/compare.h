@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/distance_tally.h"
+#include "compare/object_distances.h"
 #include "compare/place_transform.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
@@ -35,9 +36,11 @@ struct CompareOptions {
   bool bounds_triangles = false;
   std::optional<double> tolerance{};     ///< >= 0
   std::optional<Unit> tolerance_unit{};  ///< none: the unit of the second surface's coordinates
-  std::optional<PlaceTransform> transform{};    ///< moves the first surface before it is compared
-  std::uint64_t memory_budget = 1U << 30;       ///< bytes
-  std::filesystem::path output{};               ///< a PLY; empty: none
+  std::optional<PlaceTransform> transform{};  ///< moves the first surface before it is compared
+  std::uint64_t memory_budget = 1U << 30;     ///< bytes
+  std::filesystem::path output{};             ///< a PLY; empty: none
+  std::size_t listed_objects = 20;  ///< the farthest objects of the first surface; 0: none
+  std::filesystem::path scratch{};  ///< becomes a temporary file where objects exceed the memory
   std::vector<std::filesystem::path> inputs{};  ///< files and folders that stay, besides the two
   /// Takes the place of an output that is there.
   bool replace = false;
@@ -82,6 +85,7 @@ struct SurfaceComparison {
   double farthest = 0;              ///< the largest distance of a vertex, exact
   /// No point of the original surface of `from` is farther from that of `to`.
   double no_farther_than = 0;
+  std::optional<ObjectComparison> objects;  ///< none: `from` has none, or none are listed
   std::vector<std::string> warnings;
 
   /// Returns whether all vertices are within the tolerance; true without one.

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +22,9 @@ constexpr double kBeyond = 0.005;
 constexpr std::size_t kTextBins = 15;
 constexpr std::size_t kJsonBins = 60;
 constexpr std::size_t kBarWidth = 40;
+constexpr std::size_t kShownNameBytes = 80;
+/// Names of objects that one side has alone.
+constexpr std::size_t kShownLone = 5;
 
 struct Range {
   double from = 0, to = 0;
@@ -98,6 +104,58 @@ std::string tolerance_text(const SurfaceComparison& comparison) {
   return text + "\n";
 }
 
+std::string lone_text(const LoneObjects& lone, std::string_view which) {
+  if (lone.lone == 0)
+    return {};
+  std::string text = fmt::format("  {} only in the {} one: ", counted(lone.lone, "objects"), which);
+  const std::size_t shown = std::min(lone.names.size(), kShownLone);
+  for (std::size_t i = 0; i < shown; ++i)
+    text += (i > 0 ? ", " : "") + plain_text(lone.names[i], kShownNameBytes);
+  return text + (lone.lone > shown ? " and others\n" : "\n");
+}
+
+std::string objects_text(const ObjectComparison& objects) {
+  std::string text =
+      fmt::format("objects: {} of the first one compared, the farthest first\n", objects.compared);
+  text += "      farthest         mean          rms         area        moved  name\n";
+  for (const ObjectDistance& one : objects.farthest) {
+    const DistanceSums& sums = one.distances;
+    text +=
+        fmt::format("  {:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g} {:>12}  {}\n",
+                    std::abs(sums.least) > sums.largest ? sums.least : sums.largest, sums.mean(),
+                    sums.rms(), sums.area, one.moved ? fmt::format("{:.6g}", *one.moved) : "-",
+                    one.name.empty() ? "-" : plain_text(one.name, kShownNameBytes));
+  }
+  text += lone_text(objects.from, "first");
+  return text + (objects.to ? lone_text(*objects.to, "second") : "");
+}
+
+Json lone_json(const LoneObjects& lone) {
+  return {{"objects", lone.objects}, {"lone", lone.lone}, {"lone_names", lone.names}};
+}
+
+Json objects_json(const ObjectComparison& objects) {
+  Json json{{"compared", objects.compared}, {"from", lone_json(objects.from)}};
+  json["to"] = objects.to ? lone_json(*objects.to) : Json();
+  json["farthest"] = Json::array();
+  for (const ObjectDistance& one : objects.farthest) {
+    const DistanceSums& sums = one.distances;
+    Json row{{"object", one.object},
+             {"name", one.name},
+             {"area", sums.area},
+             {"mean", sums.mean()},
+             {"mean_size", sums.mean_size()},
+             {"rms", sums.rms()},
+             {"least", sums.least},
+             {"largest", sums.largest},
+             {"farthest", sums.farthest()}};
+    row["other_area"] = one.other_area ? Json(*one.other_area) : Json();
+    row["moved"] = one.moved ? Json(*one.moved) : Json();
+    json["farthest"].push_back(std::move(row));
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string comparison_text(const SurfaceComparison& comparison) {
@@ -132,6 +190,8 @@ std::string comparison_text(const SurfaceComparison& comparison) {
       comparison.farthest, comparison.no_farther_than);
   if (comparison.tolerance)
     text += tolerance_text(comparison);
+  if (comparison.objects)
+    text += objects_text(*comparison.objects);
   return text;
 }
 
@@ -152,6 +212,8 @@ Json comparison_json(const SurfaceComparison& comparison) {
     object["area_within"] = distances.weight_within();
     object["within"] = comparison.is_within();
   }
+  if (comparison.objects)
+    object["objects"] = objects_json(*comparison.objects);
   object["warnings"] = comparison.warnings;
   return object;
 }

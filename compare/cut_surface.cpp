@@ -1,6 +1,8 @@
 #include "compare/cut_surface.h"
 
 #include "execution/parallel.h"
+#include "hierarchy/value_channels.h"
+#include "hierarchy/vertex_numbers.h"
 
 #include <algorithm>
 #include <utility>
@@ -29,6 +31,27 @@ TileSurfaceFacts facts_of(const TileRecord& record) {
   if (std::uint64_t{record.interior_count} + record.border_count > 0)
     facts.bounds = record.bounds;
   return facts;
+}
+
+/// Returns the objects of the triangles that a tile draws, which are those of their first corners.
+std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const exporting::DrawnTile& drawn,
+                                      const PlacedValue& object) {
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  std::vector<std::uint32_t> objects;
+  objects.reserve(drawn.triangles.size());
+  const auto add = [&](const TileTriangle& triangle) {
+    const std::size_t vertex = raw(triangle[0]), places = mesh.vertices.size();
+    const auto attributes = vertex < places ? mesh.vertices.attributes_of(vertex)
+                                            : mesh.copies.vertices.attributes_of(vertex - places);
+    objects.push_back(
+        static_cast<std::uint32_t>(value_in(object.type, attributes.data() + object.channel)));
+  };
+  for (const TileTriangle& triangle : numbers.numbered(mesh.interior, mesh.interior_wedges))
+    add(triangle);
+  const auto border = numbers.numbered(mesh.border, mesh.border_wedges);
+  for (const std::uint32_t i : drawn.border)
+    add(border[i]);
+  return objects;
 }
 
 void add(TileSurfaceFacts& total, const TileSurfaceFacts& facts) {
@@ -88,6 +111,8 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
   const TileMesh& mesh = tile.mesh;
   exporting::DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
   PlacedTile placed;
+  if (const auto object = placed_object(reader_.tile_format().attributes))
+    placed.objects = objects_of(mesh, drawn, *object);
   placed.base = numbered_.base(position);
   placed.own_count = mesh.own_count;
   placed.interior_count = mesh.interior.size();

@@ -42,6 +42,7 @@ struct PlacedTile {
   std::vector<Foreign> foreign;  ///< places from own_count on, ascending by number
   std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
   std::size_t interior_count = 0;
+  std::vector<std::uint32_t> objects;  ///< of the triangles; empty if the mesh has none
 
   std::uint32_t number(std::uint32_t place) const {
     return place < own_count ? base + place : foreign[place - own_count].number;

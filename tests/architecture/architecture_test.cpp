@@ -74,7 +74,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
                       "pipeline/tiles", "render", "shading", "texture"})},
        {"export", with_storage({"config", "execution", "geodesy", "hierarchy", "images", "import",
                                 "mesh_io", "partition", "render"})},
-       {"compare", with_storage({"execution", "export", "hierarchy", "mesh_io"})},
+       {"compare", with_storage({"execution", "export", "hierarchy", "mesh_io", "partition"})},
        {"verify", with_storage({"compare", "config", "execution", "export", "hierarchy", "images",
                                 "import", "mesh_io", "partition"})},
        {"inspection",
