@@ -241,6 +241,9 @@ class Hierarchy:
             chosen = self.cut_nodes(error=error, level=level, box=box)
         corners = None if box is None else checked_box(box)
         mesh = CutAssembly(self._manifest, self.read_tile).mesh(chosen)
+        labels = [mesh.attributes[scalar.name] for scalar in self._manifest.scalars if scalar.kind == "object"]
+        if labels:
+            mesh.triangle_objects = labels[0][mesh.triangles[:, 0]].astype(np.int64)
         return mesh if corners is None else mesh.take(touches_box(mesh.positions[mesh.triangles], *corners))
 
     def _checked(self, nodes: list[Node]) -> list[Node]:

@@ -26,6 +26,7 @@ class Mesh:
         attributes: name -> (n,): quality, label, ... in the input's types.
         tiles: the tiles that the triangles come from.
         triangle_tiles: (m,) int64, for each triangle the number of its tile in `tiles`.
+        triangle_objects: (m,) int64, for each triangle the number of its object in `Hierarchy.objects`; None if there are none.
         images: of a textured mesh the file of the picture of each tile (JPEG, PNG, WebP or KTX2); else empty.
     """
 
@@ -38,6 +39,7 @@ class Mesh:
     tiles: list[Node] = field(default_factory=list)
     triangle_tiles: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     images: list[bytes] = field(default_factory=list, repr=False)
+    triangle_objects: Optional[NDArray[np.int64]] = None
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.positions)} vertices, {len(self.triangles)} triangles, {len(self.tiles)} tiles)"
@@ -66,6 +68,7 @@ class Mesh:
             tiles=self.tiles,
             triangle_tiles=self.triangle_tiles[chosen],
             images=self.images,
+            triangle_objects=None if self.triangle_objects is None else self.triangle_objects[chosen],
         )
 
     def colours_as_bytes(self) -> Optional[NDArray[np.uint8]]:

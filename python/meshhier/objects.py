@@ -46,6 +46,16 @@ class ObjectRow:
     area: float
 
 
+def _as_array(values: list[Any], kind: str) -> NDArray[Any]:
+    if kind == "count":
+        return np.array(values, np.int64)
+    if kind == "number":
+        return np.array([np.nan if value is None else value for value in values], np.float64)
+    array = np.empty(len(values), object)
+    array[:] = values
+    return array
+
+
 class _Columns:
     """Reads one column behind the other."""
 
@@ -168,6 +178,29 @@ class ObjectTable(Sequence[ObjectRow]):
         if name not in self.properties:
             raise KeyError(name)
         return [row.values[name] for row in self]
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """All of the table as arrays, one value of each object, in their order: name -> (n,).
+
+        Properties, and the facts `name`, `area` and `triangles` (`object.name` and so on where a property has that name).
+        Numbers are float64, NaN where there is none; texts, dates and booleans are Python's, None where there is none.
+        """
+        facts: dict[str, list[Any]] = {"name": [], "area": [], "triangles": []}
+        values: dict[str, list[Any]] = {name: [] for name in self.properties}
+        for row in self:
+            for name, column in facts.items():
+                column.append(getattr(row, name))
+            for name, column in values.items():
+                column.append(row.values[name])
+        kinds = {"area": "number", "triangles": "count"}
+        columns = {f"object.{name}" if name in values else name: _as_array(column, kinds.get(name, "text")) for name, column in facts.items()}
+        return columns | {name: _as_array(column, self.properties[name]) for name, column in values.items()}
+
+    def to_pandas(self) -> Any:
+        """The columns as a `pandas.DataFrame`, a row an object, in their order; needs pandas."""
+        import pandas
+
+        return pandas.DataFrame(self.columns()).rename_axis("object")
 
     # The file.
 

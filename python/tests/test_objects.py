@@ -5,8 +5,11 @@ from __future__ import annotations
 
 import gzip
 import struct
+import subprocess
+from pathlib import Path
 from typing import Any, Callable, Optional
 
+import numpy as np
 import pytest
 
 import meshhier
@@ -117,3 +120,34 @@ def test_damaged_blocks_are_refused(change: Callable[[bytes], bytes]) -> None:
 def test_a_hierarchy_without_objects_has_none(torus: str, built: Callable[..., str]) -> None:
     with meshhier.open(built(torus, "plain.hier")) as plain:
         assert plain.objects is None
+
+
+def test_columns_are_arrays() -> None:
+    objects = table([row(i) for i in range(600)])
+    columns = objects.columns()
+    assert list(columns) == ["name", "area", "triangles", "height", "listed", "use", "built"]
+    assert columns["name"].tolist() == objects.names() and columns["triangles"].dtype == np.int64
+    assert np.array_equal(columns["area"], np.arange(600) / 2)
+    assert np.isnan(columns["height"][::3]).all() and columns["height"][1] == 0.125
+    assert columns["listed"][:6].tolist() == [None, False, True, False, True, None]
+    assert int(((columns["height"] > 10) & (columns["use"] == "café")).sum()) == sum(1 for i in range(81, 600) if i % 3 and i % 4)
+
+
+def test_triangles_have_objects(meshgen: str, built: Callable[..., str], tmp_path: Path) -> None:
+    mesh = str(tmp_path / "city.obj")
+    subprocess.run([meshgen, "city", "--buildings", "300", "-o", mesh], check=True, stdout=subprocess.DEVNULL)
+    with meshhier.open(built(mesh, "city.hier", objects__table=str(tmp_path / "city.csv"))) as city:
+        assert city.objects is not None
+        table = city.objects.columns()
+        whole = city.cut()
+        assert whole.triangle_objects is not None
+        assert np.array_equal(np.bincount(whole.triangle_objects, minlength=len(city.objects)), table["triangles"])
+        a, b, c = (whole.positions[whole.triangles[:, k]] for k in range(3))
+        areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        assert np.allclose(np.bincount(whole.triangle_objects, areas, len(city.objects)), table["area"])
+        high = (table["height"] > 20) & (table["area"] > 500)
+        towers = whole.take(high[whole.triangle_objects])
+        assert towers.triangle_objects is not None and 0 < len(towers.triangles) == table["triangles"][high].sum()
+        assert set(towers.triangle_objects.tolist()) == set(np.flatnonzero(high).tolist())
+        for values in city.cut(level=0).attributes.values():
+            assert values.max() < len(city.objects)
