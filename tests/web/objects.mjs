@@ -1,14 +1,20 @@
-// Checks objects in viewer/'s page in headless Chromium: picked by mouse and key, found by name, left out, and kept in links.
+// Checks objects in viewer/'s page in headless Chromium: picked by mouse and key, found by name and in a tree, left out of all that is drawn,
+// and kept in links.
 //
 //   node objects.mjs PICTURES PAGE HIERARCHY
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must have objects, some of them with a "/" in their
 // names. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const VIEWPORT = { width: 1000, height: 700 };
+const CLIP = { x: VIEWPORT.width * 0.4, y: 150, width: VIEWPORT.width * 0.5, height: 450 }; // beside all buttons
+const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+const MARK = [255, 138, 31]; // the line around an object
 const PATIENCE = 120_000; // milliseconds
 const TRIES = 40; // places that are clicked until an object is there
 
@@ -106,7 +112,11 @@ async function checkHand(visitor) {
   await settle(page);
   await visitor.picture(page, 'alone');
   await page.locator('.object-legend').locator('..').locator('select').selectOption({ index: 1 });
-  visitor.check('colours', await until(page, async () => page.url().includes('by=') && (await page.locator('.object-legend').innerText()) !== ''), await page.locator('.object-legend').innerText());
+  const ends = page.locator('.object-legend .ends input');
+  visitor.check('colours', await until(page, async () => page.url().includes('by=') && (await ends.first().isVisible())), (await ends.evaluateAll((inputs) => inputs.map(({ value }) => value))).join(' to '));
+  await ends.last().fill('20');
+  await ends.last().press('Enter');
+  visitor.check('range in the link', await until(page, async () => /between=[\d.]+%2C20(&|$)/.test(page.url())), page.url().replace(/.*&by/, 'by'));
   await settle(page);
   await visitor.picture(page, 'colours');
   await checkLink(visitor, page, name);
@@ -116,13 +126,18 @@ async function checkHand(visitor) {
   await page.close();
 }
 
+function choicesOf(page) {
+  return page.url().replace(/^.*?&(?=object=)/, '');
+}
+
 /// Whoever opens the page's address sees the same.
 async function checkLink(visitor, page, name) {
   const other = await visitor.open(page.url().replace(/^.*\.hier/, ''));
   visitor.check('link', await nameIs(other, (told) => told === name), await pickedName(other));
+  await other.locator('.object-legend .ends input').first().waitFor();
   await settle(other);
-  const clip = { x: VIEWPORT.width * 0.4, y: 150, width: VIEWPORT.width * 0.5, height: 450 }; // beside all buttons
-  const [one, two] = await Promise.all([page, other].map((each) => each.screenshot({ clip })));
+  visitor.check('choices of the link', await until(other, () => choicesOf(other) === choicesOf(page)), choicesOf(other));
+  const [one, two] = await Promise.all([page, other].map((each) => each.screenshot({ clip: CLIP })));
   await visitor.picture(other, 'link');
   visitor.check('picture of the link', one.equals(two), 'is the same');
   await other.close();
@@ -163,12 +178,117 @@ async function checkKeys(visitor) {
   await page.close();
 }
 
+/// The first parts of all names.
+function branches(page) {
+  return page.evaluate(async () => {
+    const { objects } = window.meshhier.view;
+    const rows = await objects.rows({ begin: 0, end: objects.count });
+    return [...new Set(rows.map(({ name }) => name.slice(0, name.indexOf('/') + 1)))];
+  });
+}
+
+/// What is hidden has no wires, no points, and darkens nothing.
+async function checkPasses(visitor) {
+  const page = await visitor.open();
+  const hidden = (await branches(page)).map((branch) => `&hide=${encodeURIComponent(branch)}`).join('');
+  await page.close();
+  const pictures = [];
+  for (const besides of ['', '&occlusion=on&wires=on&points=on']) {
+    const other = await visitor.open(`${besides}${hidden}`);
+    await other.waitForFunction(() => window.meshhier.view.omits !== null, null, { timeout: 10_000 }).catch(() => undefined);
+    await other.waitForTimeout(1000);
+    await settle(other);
+    pictures.push(await other.screenshot({ clip: CLIP }));
+    if (besides !== '') await visitor.picture(other, 'all-hidden');
+    await other.close();
+  }
+  visitor.check('hidden in each pass', pictures[0].equals(pictures[1]), 'no wires, points or hollows are left');
+}
+
+async function markedPixels(page) {
+  const pixels = await decodePicture(page, await page.screenshot({ clip: CLIP }));
+  let marked = 0;
+  for (let i = 0; i < pixels.length; i += 4) if (MARK.every((value, k) => Math.abs(pixels[i + k] - value) < 2)) ++marked;
+  return marked;
+}
+
+/// Of an object that is cut in two what is left has a line around it.
+async function checkCut(visitor) {
+  const page = await visitor.open();
+  await page.keyboard.press('j');
+  const name = await page.evaluate(async () => (await window.meshhier.view.objects.row(window.meshhier.view.objects.count >> 1)).name);
+  await page.getByRole('combobox', { name: 'Name of an object' }).fill(name);
+  await page.getByRole('option', { name, exact: true }).waitFor();
+  await page.keyboard.press('Enter');
+  await nameIs(page, (told) => told === name);
+  await settle(page);
+  const whole = await markedPixels(page);
+  await page.getByRole('application').focus();
+  await page.keyboard.press('x');
+  await page.getByRole('radio', { name: 'z', exact: true }).check({ force: true });
+  await page.waitForTimeout(1000);
+  await settle(page);
+  const cut = await markedPixels(page);
+  await visitor.picture(page, 'cut');
+  visitor.check('line of a cut model', cut > 50 && cut !== whole, `${cut} pixels, of the whole object ${whole}`);
+  await page.close();
+}
+
+function row(page, name) {
+  return page.getByRole('treeitem', { name, exact: false }).first();
+}
+
+/// By keys alone.
+async function checkTree(visitor) {
+  const page = await visitor.open();
+  await page.keyboard.press('j');
+  const summary = page.locator('.object-browser summary');
+  await summary.waitFor();
+  await summary.focus();
+  await page.keyboard.press('Enter');
+  await page.getByRole('treeitem').nth(1).waitFor();
+  await page.keyboard.press('Tab');
+  const active = () => page.evaluate(() => {
+    const { activeElement: one } = document;
+    return Object.fromEntries(['role', 'aria-level', 'aria-expanded', 'aria-checked', 'aria-setsize'].map((name) => [name, one.getAttribute(name)]).concat([['text', one.querySelector('.tree-name')?.textContent]]));
+  });
+  const first = await active();
+  visitor.check('tree', first.role === 'treeitem' && first['aria-level'] === '1' && first['aria-checked'] === 'true', JSON.stringify(first));
+  while ((await active())['aria-expanded'] !== null) {
+    await page.keyboard.press('ArrowRight');
+    await page.locator('[role=treeitem][aria-busy]').waitFor({ state: 'detached' });
+    await page.keyboard.press('ArrowDown');
+  }
+  const leaf = await active();
+  visitor.check('tree leaf', Number(leaf['aria-level']) > 1 && Number(leaf['aria-setsize']) > 1, JSON.stringify(leaf));
+  await page.keyboard.press(' ');
+  visitor.check('tree hides', await until(page, async () => /hide=[^&]*%2F/.test(page.url()) && (await active())['aria-checked'] === 'false'), page.url().replace(/.*hier/, ''));
+  await page.keyboard.press('ArrowLeft');
+  visitor.check('tree parent', (await active())['aria-checked'] === 'mixed', JSON.stringify(await active()));
+  await page.keyboard.press(' ');
+  visitor.check('tree shows', await until(page, async () => !page.url().includes('hide=')), 'all of the branch again');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Enter');
+  visitor.check('tree picks', await nameIs(page, (name) => name.endsWith(`/${leaf.text}`)), await pickedName(page));
+  await visitor.picture(page, 'tree');
+  await page.keyboard.press('End');
+  await page.addScriptTag({ content: readFileSync(AXE, 'utf8') });
+  const { violations } = await page.evaluate(() => window.axe.run('.tool-card'));
+  visitor.check('axe of the tree', violations.length === 0, violations.map(({ id, nodes }) => `${id}: ${nodes[0].failureSummary}`).join('; ') || 'finds nothing');
+  const last = await page.evaluate(async () => (await window.meshhier.view.objects.row(window.meshhier.view.objects.count - 1)).name);
+  await page.getByRole('combobox', { name: 'Name of an object' }).fill(last);
+  await page.getByRole('option', { name: last, exact: true }).waitFor();
+  await page.keyboard.press('Enter');
+  visitor.check('tree follows', await until(page, async () => (await row(page, last.slice(last.lastIndexOf('/') + 1)).getAttribute('aria-selected').catch(() => null)) === 'true'), last);
+  visitor.check('console of the tree', page.complaints.length === 0, page.complaints.join('; ') || 'no complaints');
+  await page.close();
+}
+
 async function serveAndCheck(browser, report, [pictures, page, directory]) {
   const hierarchy = readHierarchy(directory);
   await withSite(page, [hierarchy], async (origin) => {
     const visitor = new Visitor(browser, origin, report, { name: hierarchy.name, pictures });
-    await checkHand(visitor);
-    await checkKeys(visitor);
+    for (const check of [checkHand, checkKeys, checkTree, checkPasses, checkCut]) await check(visitor);
   });
 }
 

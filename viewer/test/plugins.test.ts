@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { PerspectiveCamera, Scene, Vector3, type Material, type Mesh, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
+import { PerspectiveCamera, Plane, Scene, Vector3, type Material, type Mesh, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Plugins, type StageOf } from '../src/plugins/plugin.js';
 import { replaceChunk, type Frame, type HierarchyView, type Plugin, type Shader, type Shading, type Stage } from '../src/index.js';
@@ -122,6 +122,21 @@ describe.skipIf(!hasProgram)('a plug-in of a stranger', () => {
     draw();
     expect(render).toHaveBeenCalledTimes(1);
     expect(plugin.told.slice(-2)).toEqual(['paint', 'drawn']);
+  });
+
+  it('marks the picture, whoever has made it, after all that was drawn over it', () => {
+    const [marked, plane] = [vi.fn(), new Plane(new Vector3(0, 1, 0), 2)];
+    const told: string[] = [];
+    session.view.registerPlugin({ name: 'marks', cuts: [plane], mark: (frame) => { marked(frame); told.push('mark'); } });
+    session.view.registerPlugin({ name: 'shades', shade: () => { told.push('shade'); } });
+    session.view.registerPlugin(plugin);
+    const draw = (): void => { session.view.draw(RENDERER, new Scene(), new PerspectiveCamera()); };
+    draw();
+    expect(told).toEqual(['shade', 'mark']);
+    plugin.isPainter = true;
+    draw();
+    expect(told).toEqual(['shade', 'mark', 'mark']);
+    expect(session.view.plugins.cuts).toEqual([plane]);
   });
 
   it('is on a stage, whichever was there first', () => {

@@ -22,7 +22,7 @@ export class Clipping implements Plugin {
     this.painter = new ClippedPainter(view, () => {
       const { center, radius } = view.box.clone().applyMatrix4(view.matrixWorld).getBoundingSphere(new Sphere());
       return { middle: center, reach: 1.1 * radius };
-    }, (material) => { view.leaveOut(material); });
+    }, undefined, (material) => { view.leaveOut(material); });
     if (this.planes.length > 0) this.cut(this.planes, this.hasCaps);
   }
 

@@ -29,8 +29,8 @@ export class ClippedPainter {
   constructor(
     private readonly model: Object3D,
     private readonly extent: () => { readonly middle: Vector3; readonly reach: number },
-    private readonly prepare: (material: Material) => void = () => undefined,
     colour: ColorRepresentation = COLOUR,
+    private readonly prepare: (material: Material) => void = () => undefined,
   ) {
     this.cap = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({
       color: colour, side: DoubleSide, toneMapped: false, stencilWrite: true, stencilRef: 0, stencilFunc: NotEqualStencilFunc,

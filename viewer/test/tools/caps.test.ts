@@ -36,14 +36,14 @@ class Notes {
   }
 }
 
-function paint(planes: readonly Plane[], isCapped = true): Notes {
+function paint(planes: readonly Plane[], isCapped = true, prepared: Material[] = []): Notes {
   const scene = new Scene();
   const model = new Group();
   const surface = new Mesh(undefined, new MeshBasicMaterial());
   surface.add(new Points());
   model.add(surface);
   scene.add(model, new Mesh()); // and something that is none of the model
-  const painter = new ClippedPainter(model, () => ({ middle: new Vector3(1, 2, 3), reach: 9 }));
+  const painter = new ClippedPainter(model, () => ({ middle: new Vector3(1, 2, 3), reach: 9 }), 0xffffff, (material) => { prepared.push(material); });
   Object.assign(painter, { planes, isCapped });
   const camera = new PerspectiveCamera();
   camera.position.set(0, 0, 10);
@@ -83,6 +83,13 @@ describe('caps', () => {
     expect(backs.override).toMatchObject({ side: 1, colorWrite: false, depthTest: false, stencilWrite: true });
     expect(fronts.override).toMatchObject({ side: 0, colorWrite: false, depthTest: false, stencilWrite: true });
     expect([backs.override?.stencilZPass, fronts.override?.stencilZPass]).toEqual([34055, 34056]); // INCR_WRAP, DECR_WRAP
+  });
+
+  it('leave out what whoever prepares their materials leaves out', () => {
+    const prepared: Material[] = [];
+    const counting = paint([AWAY, TILTED], true, prepared).passes.flatMap(({ override }) => override ?? []);
+    expect(prepared).toEqual(counting);
+    expect(prepared).toHaveLength(4);
   });
 
   it('are not drawn from the side that is kept, nor where they are not wanted', () => {
