@@ -285,16 +285,17 @@ ConfigKey object_source(ConfigKey key) {
   key.assign = [](Config& config, const Json& value) {
     config.objects.from = mesh_io::object_choice_of(value.get_ref<const std::string&>()).value();
   };
-  // What is evident is not told, so that builds without objects tell what they always did.
-  key.show = [](const Config& config) {
-    return config.objects.from.is_evident() ? Json() : Json(text_of(config.objects.from));
-  };
+  key.show = [](const Config& config) { return Json(text_of(config.objects.from)); };
   return key;
 }
 
-/// Builds without objects tell what they always did.
-ConfigKey objects_in_tiles(ConfigKey key) {
-  key.show = [](const Config& config) { return config.objects.in_tiles ? Json() : Json(false); };
+/// A key that is told only where it is not what it is by default: builds without it tell what they
+/// did before there was such a key.
+ConfigKey untold_by_default(ConfigKey key) {
+  key.show = [show = key.show, usual = key.show(Config())](const Config& config) {
+    Json value = show(config);
+    return value == usual ? Json() : value;
+  };
   return key;
 }
 
@@ -354,7 +355,7 @@ std::vector<ConfigKey> make_config_keys() {
                        .meaning =
                            "which of them are labels, of which no means are made: those of integer "
                            "types (`integers`), or a list of names"})),
-      deciding(object_source(
+      deciding(untold_by_default(object_source(
           {.path = "objects.from",
            .meaning = "what the objects are made from: nodes of a glTF (`node`), statements `g` "
                       "(`group`), `o` (`object`) or `usemtl` (`material`) of an OBJ file, "
@@ -362,14 +363,14 @@ std::vector<ConfigKey> make_config_keys() {
                       "file (`solid`), features of a glTF or b3dm (`feature`), a label "
                       "(`label:NAME`), or nothing (`none`)",
            .unset = "`auto`: features that have properties, else `object` or `group`, named "
-                    "nodes, `solid`, if there are two names or more"})),
+                    "nodes, `solid`, if there are two names or more"}))),
       deciding(path(
           {.path = "objects.table",
            .meaning = "a table of the objects' properties, CSV or lines of JSON, whose column "
                       "`id` (the value of a label or of a feature) or `name` says whose a row is; "
                       "`--object-table` of `build` sets it"},
           [](auto& c) -> auto& { return c.objects.table; })),
-      deciding(objects_in_tiles(boolean(
+      deciding(untold_by_default(boolean(
           {.path = "objects.in_tiles",
            .meaning = "tiles have tables of their objects, which other viewers show: names and "
                       "properties once more in each tile",

@@ -55,6 +55,51 @@ std::string refusal(const std::string& text, const Overrides& overrides = {}) {
   return "";
 }
 
+// ---- objects
+
+TEST(Config, ObjectsComeFromASourceOrALabel) {
+  const auto from_of = [](const std::string& keys) { return parse(with(keys)).objects.from; };
+  EXPECT_TRUE(from_of("").is_evident());
+  EXPECT_TRUE(from_of(R"("objects": "auto")").is_evident());
+  EXPECT_EQ(from_of(R"("objects": "node")").from, mesh_io::ObjectSource::node);
+  EXPECT_EQ(from_of(R"("objects": {"from": "none"})").from, mesh_io::ObjectSource::none);
+  EXPECT_EQ(from_of(R"("objects": {"from": "label:bone"})"),
+            (mesh_io::ObjectChoice{mesh_io::ObjectSource::label, "bone"}));
+  EXPECT_EQ(parse(with(""), {"objects.from=solid"}).objects.from.from,
+            mesh_io::ObjectSource::solid);
+  for (const char* wrong : {R"("nodes")", R"({"from": "label"})", R"({"from": "label:"})",
+                            R"({"from": "label:a b"})", R"({"from": 7})", R"(["node"])"})
+    EXPECT_THAT(refusal(with(std::string(R"("objects": )") + wrong)), HasSubstr("objects"))
+        << wrong;
+}
+
+TEST(Config, ATableOfObjectsLiesBesideTheConfig) {
+  EXPECT_EQ(parse(with(R"("objects": {"table": "b.csv"})")).objects.table, "/data/scans/b.csv");
+  EXPECT_TRUE(parse(with(R"("objects": {"table": "b.csv"})")).objects.in_tiles);
+  EXPECT_FALSE(parse(with(R"("objects": {"in_tiles": false})")).objects.in_tiles);
+  EXPECT_THAT(refusal(with(R"("objects": {"from": "none", "table": "b.csv"})")),
+              HasSubstr("expected objects for its rows"));
+  EXPECT_THAT(refusal(with(R"("objects": {"table": ""})")), HasSubstr("objects.table"));
+  EXPECT_THAT(refusal(with(R"("objects": {"tables": "b.csv"})")), HasSubstr("tables"));
+}
+
+TEST(Config, ALabelThatIsNotReadMakesNoObjects) {
+  EXPECT_THAT(refusal(with(R"("attributes": ["a"], "objects": "label:b")")),
+              HasSubstr("the label \"b\" is not read"));
+  parse(with(R"("attributes": ["a", "b"], "objects": "label:b")"));
+}
+
+TEST(Config, WhatObjectsAreByDefaultIsNotTold) {
+  const auto told = [](const std::string& keys) {
+    const Json all = resolved_json(parse(with(keys)));
+    return all.contains("objects") ? all["objects"].dump() : "";
+  };
+  EXPECT_EQ(told(""), "");
+  EXPECT_EQ(told(R"("objects": {"from": "auto", "in_tiles": true})"), "");
+  EXPECT_EQ(told(R"("objects": {"from": "label:x", "in_tiles": false})"),
+            R"({"from":"label:x","in_tiles":false})");
+}
+
 // ---- values
 
 TEST(Config, OnlyInputAndOutputAreRequired) {
