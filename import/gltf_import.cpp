@@ -558,13 +558,12 @@ class GltfImporter {
                       {"instanced_meshes", copies_},
                       {"hidden_meshes", scene_.hidden},
                       {"ignored_skins", ignored_skins_},
-                      {std::string(kFeaturesInTextures), objects_.features_in_textures()},
-                      {std::string(kUnreadTables), objects_.unread_tables()},
                       {std::string(kIgnoredEmission), materials_.dropped_lights(is_textured())},
                       {"dropped_values", found_values_.dropped()},
                       {"vertices_left_out", left_out_},
                       {"vertices_without_normal", without(AttributeKind::normals)},
                       {"vertices_without_texcoord", without(AttributeKind::texcoords)}};
+    std::ranges::move(source_counts(objects_.unread()), std::back_inserter(import_.counts));
     return std::move(import_);
   }
 

@@ -31,9 +31,11 @@ GltfObjects::GltfObjects(mesh_io::GltfFile& file, const mesh_io::GltfScene& scen
   if (objects_ == nullptr)
     return;
   const mesh_io::ObjectChoice& choice = objects_->choice;
-  unread_ = place.is_batch_unread ? 1 : 0;
+  unread_.tables = place.is_batch_unread ? 1 : 0;
   if (choice.from == ObjectSource::feature || (choice.is_evident() && has_features(place.batch)))
     features_.emplace(file, *objects_, place.batch, place.name);
+  if (features_ || choice.is_evident())
+    note_unread();
   are_materials_ = choice.from == ObjectSource::material;
   are_nodes_ = choice.from == ObjectSource::node ||
                (choice.is_evident() && !features_ && !place.is_tile && are_nodes_evident());
@@ -50,22 +52,93 @@ bool GltfObjects::has_features(mesh_io::FeatureTable* batch) {
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input)
       throw;
-    ++unread_;
+    ++unread_.tables;
     return false;
   }
 }
 
-/// A primitive has features with properties.
+/// Calls `visit(ids, attributes)` for all sets of ids of each mesh and of the copies of it, until
+/// it returns true.
+template <class Visit>
+void GltfObjects::for_each_features(const Visit& visit) const {
+  std::vector<bool> seen(document_.meshes.size());
+  for (const mesh_io::GltfInstance& instance : scene_.instances) {
+    if (instance.copies &&
+        visit(feature_ids_of(file_, instance.copies->features), instance.copies->attributes))
+      return;
+    if (seen[instance.mesh])
+      continue;
+    seen[instance.mesh] = true;
+    for (const mesh_io::GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
+      if (visit(feature_ids_of(file_, primitive.features), primitive.attributes))
+        return;
+    }
+  }
+}
+
+/// A primitive, or a copy of a mesh, has features with properties.
 bool GltfObjects::are_features_evident(mesh_io::FeatureTable* batch) const {
   const bool has_batch = batch != nullptr && !batch->columns().empty();
-  const auto has_rows = [&](const mesh_io::GltfPrimitive& primitive) {
-    return (has_batch && primitive.attribute("_BATCHID")) ||
-           std::ranges::any_of(feature_ids_of(file_, primitive),
-                               [](const auto& ids) { return ids.attribute && ids.table; });
-  };
-  return std::ranges::any_of(scene_.instances, [&](const mesh_io::GltfInstance& instance) {
-    return std::ranges::any_of(document_.meshes[instance.mesh].primitives, has_rows);
+  bool is_any = false;
+  for_each_features([&](const auto& all, const mesh_io::GltfAttributes& attributes) {
+    is_any = (has_batch && batch_ids_in(attributes) != nullptr) ||
+             std::ranges::any_of(all, [&](const mesh_io::GltfFeatureIds& ids) {
+               return ids.table && !ids.is_in_texture &&
+                      (!ids.attribute || attributes.contains(*ids.attribute));
+             });
+    return is_any;
   });
+  return is_any;
+}
+
+void GltfObjects::note_unread() {
+  try {
+    for_each_features([&](const auto& all, const auto&) {
+      const auto textures = static_cast<std::uint64_t>(
+          std::ranges::count(all, true, &mesh_io::GltfFeatureIds::is_in_texture));
+      unread_.in_textures += textures;
+      unread_.further_sets += std::max<std::uint64_t>(all.size() - textures, 1) - 1;
+      return false;
+    });
+    const mesh_io::GltfOtherProperties others = other_properties_of(file_);
+    unread_.property_textures = others.textures;
+    unread_.property_attributes = others.attributes;
+  } catch (const Error& error) {  // has_features() has counted it
+    if (error.code() != ErrorCode::input)
+      throw;
+  }
+}
+
+UnreadMetadata GltfObjects::unread() const {
+  UnreadMetadata all = unread_;
+  all.tables += features_ ? features_->unread_tables() : 0;
+  return all;
+}
+
+void GltfObjects::begin(const mesh_io::GltfInstance& instance) {
+  instance_ = &instance;
+  copy_ids_.reset();
+  copy_feature_.reset();
+  if (!features_ || !instance.copies)
+    return;
+  copy_ids_ = features_->ids_of(instance.copies->features, instance.copies->attributes);
+  if (!copy_ids_ || !copy_ids_->attribute)
+    return;
+  auto source = gltf_elements_of(file_, instance.copies->attributes.at(*copy_ids_->attribute));
+  if (source.components != 1)
+    file_.fail(source.name + " is of no type that feature ids may have");
+  copy_feature_.emplace(file_, std::move(source), mesh_io::GltfElements::Integers::stored);
+}
+
+/// A copy without a number of its own is numbered by its place among the copies.
+std::uint32_t GltfObjects::object_of_copy() {
+  const std::uint64_t number = copy_ - 1;
+  if (!copy_feature_)
+    return features_->object_of(*copy_ids_, static_cast<double>(number));
+  if (number >= copy_feature_->size())
+    file_.fail(fmt::format("{} has {} elements for the features of more copies",
+                           copy_feature_->source().name, copy_feature_->size()));
+  return features_->object_of(*copy_ids_, copy_feature_->at(number)[0]);
 }
 
 /// Two nodes have names.
@@ -133,6 +206,8 @@ void GltfObjects::add(const mesh_io::GltfPrimitive& primitive, const PrimitiveSo
   const std::uint64_t triangles = mesh_.triangles.size() - first;
   if (objects_ == nullptr || triangles == 0)
     return;
+  if (copy_ids_)
+    return objects_->runs.add(object_of_copy(), triangles);
   if (features_ && add_features(primitive, sources, first, used, count))
     return;
   if (are_nodes_)
@@ -144,23 +219,34 @@ void GltfObjects::add(const mesh_io::GltfPrimitive& primitive, const PrimitiveSo
     objects_->runs.add(objects_->names.number(""), triangles);
 }
 
+void GltfObjects::read_features(const mesh_io::GltfFeatureIds& ids, const PrimitiveSources& sources,
+                                const storage::RecordSpool<std::uint32_t>& used,
+                                std::uint64_t count, storage::RecordSpool<double>& features) {
+  std::optional<mesh_io::GltfElements> all;
+  if (ids.attribute) {
+    const auto source = *sources.attribute(*ids.attribute, 1, 1);
+    if (source.count != count)
+      file_.fail(fmt::format("{} has {} elements, but there are {} vertices", source.name,
+                             source.count, count));
+    all.emplace(file_, source, mesh_io::GltfElements::Integers::stored);
+  }
+  execution::SpoolCursor vertices(used, room_.cancel);
+  for (std::uint64_t i = 0; i < used.size(); ++i) {
+    const std::uint32_t vertex = vertices.at(i);
+    features.append(all ? all->at(vertex)[0] : static_cast<double>(vertex));
+  }
+}
+
 /// The feature of a triangle is that of most of its corners, of three different ones the first's.
 bool GltfObjects::add_features(const mesh_io::GltfPrimitive& primitive,
                                const PrimitiveSources& sources, std::uint64_t first,
                                const storage::RecordSpool<std::uint32_t>& used,
                                std::uint64_t count) {
-  const auto ids = features_->ids_of(primitive);
-  const auto source = ids ? sources.attribute(*ids->attribute, 1, 1) : std::nullopt;
-  if (!source)
+  const auto ids = features_->ids_of(primitive.features, primitive.attributes);
+  if (!ids)
     return false;
-  if (source->count != count)
-    file_.fail(fmt::format("{} has {} elements, but there are {} vertices", source->name,
-                           source->count, count));
-  mesh_io::GltfElements all(file_, *source, mesh_io::GltfElements::Integers::stored);
   storage::RecordSpool<double> features(room_.scratch, kImportSpoolBytes);
-  execution::SpoolCursor vertices(used, room_.cancel);
-  for (std::uint64_t i = 0; i < used.size(); ++i)
-    features.append(all.at(vertices.at(i))[0]);
+  read_features(*ids, sources, used, count, features);
   SpoolLookup<double> feature(features);
   execution::SpoolCursor triangles(mesh_.triangles, room_.cancel);
   const std::uint64_t base = mesh_.vertex_count();

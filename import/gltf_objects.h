@@ -5,6 +5,8 @@
 #include "import/gltf_place.h"
 #include "import/gltf_primitive.h"
 #include "import/raw_mesh.h"
+#include "import/unread_metadata.h"
+#include "mesh_io/gltf_elements.h"
 #include "mesh_io/gltf_file.h"
 #include "mesh_io/gltf_scene.h"
 
@@ -25,7 +27,7 @@ class GltfObjects {
               const GltfPlace& place, const ImportRoom& room);
 
   /// Says which mesh of the scene is appended next.
-  void begin(const mesh_io::GltfInstance& instance) { instance_ = &instance; }
+  void begin(const mesh_io::GltfInstance& instance);
   /// Says which of its copies is, from 1 on; 0: it has none.
   void begin_copy(std::uint64_t copy) { copy_ = copy; }
   /// Takes the triangles of a primitive that the mesh has from `first` on. Their vertices, which it
@@ -33,15 +35,19 @@ class GltfObjects {
   void add(const mesh_io::GltfPrimitive& primitive, const PrimitiveSources& sources,
            std::uint64_t first, const storage::RecordSpool<std::uint32_t>& used,
            std::uint64_t count);
-  /// Returns how many sets of feature ids were passed over, as textures have them.
-  std::uint64_t features_in_textures() const { return features_ ? features_->in_textures() : 0; }
-  std::uint64_t unread_tables() const {
-    return unread_ + (features_ ? features_->unread_tables() : 0);
-  }
+  /// Returns what was passed over, if objects may be features.
+  UnreadMetadata unread() const;
 
  private:
   bool has_features(mesh_io::FeatureTable* batch);
   bool are_features_evident(mesh_io::FeatureTable* batch) const;
+  template <class Visit>
+  void for_each_features(const Visit& visit) const;
+  void note_unread();
+  std::uint32_t object_of_copy();
+  void read_features(const mesh_io::GltfFeatureIds& ids, const PrimitiveSources& sources,
+                     const storage::RecordSpool<std::uint32_t>& used, std::uint64_t count,
+                     storage::RecordSpool<double>& features);
   bool add_features(const mesh_io::GltfPrimitive& primitive, const PrimitiveSources& sources,
                     std::uint64_t first, const storage::RecordSpool<std::uint32_t>& used,
                     std::uint64_t count);
@@ -59,12 +65,14 @@ class GltfObjects {
   MeshObjects* objects_;
   const ImportRoom& room_;
   std::optional<GltfFeatures> features_;
-  std::uint64_t unread_ = 0;  ///< tables that are damaged, before there are features
+  UnreadMetadata unread_;  ///< tables: before there are features
   bool are_nodes_ = false, are_materials_ = false;
   std::vector<std::uint32_t> parents_;
   std::map<std::string, std::uint64_t> taken_;  ///< names of nodes, each with how many have it
   const mesh_io::GltfInstance* instance_ = nullptr;
   std::uint64_t copy_ = 0;
+  std::optional<mesh_io::GltfFeatureIds> copy_ids_;    ///< those of the copies, if they have any
+  std::optional<mesh_io::GltfElements> copy_feature_;  ///< a feature for each copy, if one says it
   /// The node and the copy that have the number `object_`.
   std::pair<std::uint32_t, std::uint64_t> known_{UINT32_MAX, 0};
   std::uint32_t object_ = 0;

@@ -12,7 +12,8 @@ struct GltfPlace {
   mesh_io::GltfTransform placement{};
   /// Of a tileset, or of a like tree, whose nodes are evident for nobody.
   bool is_tile = false;
-  std::string name{};                      ///< before names of features; empty: it is alone
+  /// Before names that only number features: "tile.cmpt/2/"; empty: it is alone.
+  std::string name{};
   mesh_io::FeatureTable* batch = nullptr;  ///< table of the b3dm that it is in; null: none
   bool is_batch_unread = false;            ///< there is one, which is damaged
 };

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace meshhier::importing {
 namespace {
 
@@ -66,7 +68,10 @@ GltfImport GltfReader::import(const InputFileFacts& facts,
   GltfPlace place{tile.placement, facts.tile.has_value()};
   const auto batch = batch_table(content, tile, mesh, place);
   mesh_io::GltfFile file = open(facts, std::move(content));
-  place.name = input_.all().size() > 1 ? input_.object_name(facts.path) + '/' : std::string();
+  if (input_.all().size() > 1)
+    place.name = input_.object_name(facts.path) + '/';
+  if (facts.part > 0)
+    place.name += fmt::format("{}/", facts.part);
   place.batch = batch.get();
   return import_gltf(file, place, mesh, input_.textures(), input_.attributes(), room_);
 }

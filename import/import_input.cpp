@@ -8,6 +8,7 @@
 #include "import/name_objects.h"
 #include "import/place_vertices.h"
 #include "import/raw_mesh.h"
+#include "import/unread_metadata.h"
 #include "import/weld.h"
 #include "mesh_io/ply_writer.h"
 
@@ -225,6 +226,8 @@ class Import {
 
   /// Returns the mesh with its objects; as it is, if it has none.
   RawMesh& name() {
+    for (const std::string& warning : warnings_of_metadata(facts_.counts))
+      env_.progress.warn(input_.name() + ": " + warning);
     named_.emplace(env_.scratch);
     auto objects =
         name_objects(mesh_, *named_, facts_.tile_ends,

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -63,6 +64,7 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
   join_rasters();
   add_object_table();
   find_common_folder();
+  number_parts();
   std::ranges::sort(tileset_counts_, {}, &SourceCount::name);
 }
 
@@ -140,6 +142,19 @@ void InputFiles::find_common_folder() {
     for (auto part = common_folder_.begin(); part != differ.in1; ++part)
       common /= *part;
     common_folder_ = common;
+  }
+}
+
+/// A composite holds several tiles, and a tileset may show a file in several places.
+void InputFiles::number_parts() {
+  std::map<std::filesystem::path, std::size_t> counts;
+  for (const InputFileFacts& file : all_)
+    counts[file.path] += file.tile ? 1 : 0;
+  std::erase_if(counts, [](const auto& one) { return one.second < 2; });
+  std::map<std::filesystem::path, std::size_t> numbers;
+  for (InputFileFacts& file : all_) {
+    if (file.tile && counts.contains(file.path))
+      file.part = ++numbers[file.path];
   }
 }
 

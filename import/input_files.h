@@ -57,8 +57,9 @@ struct InputFileFacts {
   storage::FileIdentity identity;
   bool has_corner_attributes = false;          ///< as importing::has_corner_attributes()
   std::optional<mesh_io::TilesetMesh> tile{};  ///< place in `path`, of a tileset's tile
-  std::size_t face_values = 0;                 ///< values that faces have; a colour counts as one
-  bool names_ktx2 = false;                     ///< it uses pictures in KTX2
+  std::size_t part = 0;  ///< number among the meshes of a file that is shown several times; or 0
+  std::size_t face_values = 0;  ///< values that faces have; a colour counts as one
+  bool names_ktx2 = false;      ///< it uses pictures in KTX2
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// Opens the file, or the data that stand for it.
@@ -117,7 +118,8 @@ class InputFiles {
   const std::filesystem::path& object_table() const { return use_.object_table; }
   /// Returns whether there shall be objects, evident or not.
   bool asks_for_objects() const;
-  /// Returns the name of a mesh among them as an object: its path from the folder that all are in.
+  /// Returns the name of a mesh file among them as an object: its path from the folder that all are
+  /// in.
   std::string object_name(const std::filesystem::path& mesh) const;
   /// Returns false if the input is one PLY that is read in place as it is.
   bool needs_import() const {
@@ -165,6 +167,7 @@ class InputFiles {
   void join_rasters();
   void add_object_table();
   void find_common_folder();
+  void number_parts();
   void warn_of_heights();
   void add_file(InputFileFacts facts, const storage::File& file);
   void add_outlined(InputFileFacts facts, const mesh_io::MeshOutline& outline);

@@ -89,8 +89,13 @@ inline constexpr std::string_view kInvisibleParts = "invisible_parts";
 inline constexpr std::string_view kPointsAndLines = "ignored_points_and_lines";
 /// Sets of feature ids that textures have: they are not read.
 inline constexpr std::string_view kFeaturesInTextures = "ignored_feature_textures";
-/// Property tables whose schema is in another file: they are not read.
+/// Sets of feature ids beside the one that says the objects.
+inline constexpr std::string_view kFurtherFeatures = "ignored_feature_ids";
+/// Property tables that are damaged, or whose schema is not there: they are not read.
 inline constexpr std::string_view kUnreadTables = "ignored_property_tables";
+/// Properties that texels or vertices have, of EXT_structural_metadata.
+inline constexpr std::string_view kPropertyTextures = "ignored_property_textures";
+inline constexpr std::string_view kPropertyAttributes = "ignored_property_attributes";
 /// Vertices of which a coordinate is not finite.
 inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 

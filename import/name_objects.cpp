@@ -54,7 +54,7 @@ class Namer {
         mesh_, whole, [&](std::uint64_t triangle) { return numbers.at(runs.object_of(triangle)); },
         ends, naming_.room);
     count("split_vertices", split);
-    count("dropped_properties", objects.properties.dropped());
+    tell_dropped(objects.properties);
     return std::move(named_);
   }
 
@@ -99,13 +99,20 @@ class Namer {
     return true;
   }
 
+  PropertyTable::Ids ids() const {
+    const MeshObjects& objects = *mesh_.objects;
+    if (!objects.names.have_ids())
+      return PropertyTable::Ids::none;
+    return objects.choice.from == ObjectSource::label ? PropertyTable::Ids::numbers
+                                                      : PropertyTable::Ids::texts;
+  }
+
   void list() {
     MeshObjects& objects = *mesh_.objects;
     PropertyTypes types;
     std::optional<PropertyTable> table;
     if (!naming_.table.empty()) {
-      table.emplace(objects.names.have_ids(), objects.properties, types, naming_.room,
-                    naming_.room.sort_bytes / 2);
+      table.emplace(ids(), objects.properties, types, naming_.room, naming_.room.sort_bytes / 2);
       const auto file = naming_.files.input().open(naming_.table);
       const auto stream = mesh_io::open_stream({*file, file->size()},
                                                [&](std::uint64_t) { naming_.room.cancel.check(); });
@@ -119,8 +126,18 @@ class Namer {
       tell(table->counts());
   }
 
+  void tell_dropped(const PropertyNames& properties) {
+    count("dropped_properties", properties.dropped());
+    if (properties.dropped() > 0)
+      named_.warnings.push_back(fmt::format(
+          "{}: {} of objects left out: {}; up to {} are kept, with names of 1 to {} bytes",
+          naming_.input, counted(properties.dropped(), "properties"), properties.dropped_names(),
+          kMostObjectProperties, kMostPropertyNameBytes));
+  }
+
   void tell(const PropertyTableCounts& counts) {
     count("table_rows", counts.read.records);
+    count("fields_not_utf8", counts.read.foreign);
     count("unmatched_rows", counts.unmatched);
     count("duplicate_rows", counts.duplicate);
     count("ragged_rows", counts.read.ragged);
@@ -128,6 +145,11 @@ class Namer {
     const auto warn = [&](const std::string& message) {
       named_.warnings.push_back(mesh_io::file_message(naming_.table, message));
     };
+    if (counts.read.records == 0)
+      warn("has no rows");
+    if (counts.read.foreign > 0)
+      warn(fmt::format("{} no UTF-8: their odd bytes are taken for Windows-1252; save it as UTF-8",
+                       counted(counts.read.foreign, "fields with")));
     if (counts.read.ragged > 0)
       warn(fmt::format("{} more or fewer fields than its first line has (line {} is the first)",
                        counted(counts.read.ragged, "rows with"), counts.read.first_ragged));

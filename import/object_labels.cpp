@@ -5,6 +5,7 @@
 #include "import/renumber_triangles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -50,8 +51,9 @@ class LabelObjects {
 
   void add(double label) {
     if (!last_ || label != *last_) {
-      // Whole labels are written without a fraction, and 0 without a sign.
-      const std::string name = fmt::format("{}", label + 0.0);
+      // Whole labels are written without a fraction, and 0 without a sign; what is no number is
+      // none.
+      const std::string name = std::isnan(label) ? "" : fmt::format("{}", label + 0.0);
       known_ = objects_.names.number(name, name);
       last_ = label;
     }

@@ -88,25 +88,33 @@ class Lister {
   void add_found(RowSort& by_key) {
     objects_.names.for_each([&](std::uint32_t number, FoundObject object) {
       for (const auto& [property, value] : object.values)
-        types_.note(property, value, false);
+        types_.note(property, value, mesh_io::RecordTexts::texts);
       const std::string key = is_known_by_id(object.id) ? object.id : object.name;
       const std::string name = object.name;
-      add_listed(by_key, key, name, {number, object.id, name, std::move(object.values)});
+      // Of one id, a name that is more than the id comes first; no UTF-8 has that byte.
+      const std::string then = name == object.id ? "\xFF" : name;
+      add_listed(by_key, key, then, {number, object.id, name, std::move(object.values)});
     });
   }
 
-  /// Gives each object the name and the values that the table has for it.
+  /// Gives each object the name and the values that the table has for it. Objects of one id get one
+  /// name.
   void join(RowSort& by_key, bool have_ids, RowSort& by_name) {
-    std::string last;
+    std::string last, last_id, name;
     bool is_first = true;
     while (by_key.next()) {
       const std::string_view all = by_key.row().key;
-      const bool is_new = is_first || all != last;
+      Listed object = listed_in(by_key.row().bytes);
+      const bool is_same_id = is_known_by_id(object.id) && object.id == last_id;
+      const bool is_new = is_first || (all != last && !is_same_id);
       is_first = false;
       last = all;
-      Listed object = listed_in(by_key.row().bytes);
+      last_id = object.id;
+      if (is_same_id)
+        object.name = name;
       if (table_ != nullptr)
         take_row(std::string_view(last).substr(0, last.find('\0')), is_new, object);
+      name = object.name;
       const std::string& then = have_ids ? object.id : std::string();
       add_listed(by_name, object.name, then, object);
     }

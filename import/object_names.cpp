@@ -30,7 +30,7 @@ struct ValueHead {
 }  // namespace
 
 std::string sound_name(std::string_view name) {
-  std::string sound = sound_utf8(name);
+  std::string sound = utf8_of_windows(name);
   for (std::size_t zero = 0; (zero = sound.find('\0', zero)) != std::string::npos;)
     sound.replace(zero, 1, "\xEF\xBF\xBD");
   return sound;
@@ -42,11 +42,38 @@ std::optional<std::uint8_t> PropertyNames::number(std::string_view name) {
     return static_cast<std::uint8_t>(known - names_.begin());
   if (names_.size() == kMostObjectProperties || name.empty() ||
       name.size() > kMostPropertyNameBytes) {
-    ++dropped_;
+    drop(name);
     return std::nullopt;
   }
   names_.emplace_back(name);
   return static_cast<std::uint8_t>(names_.size() - 1);
+}
+
+void PropertyNames::drop(std::string_view name) {
+  constexpr std::size_t kMostDropped = 4096;
+  const std::string shown = plain_text(std::string(name), kLongestShown);
+  if (dropped_.size() < kMostDropped)
+    dropped_.insert(shown);
+  else
+    more_dropped_ += dropped_.contains(shown) ? 0 : 1;
+}
+
+void PropertyNames::drop_all(const PropertyNames& others) {
+  std::ranges::for_each(others.dropped_, [this](const std::string& name) { drop(name); });
+  more_dropped_ += others.more_dropped_;
+}
+
+std::string PropertyNames::dropped_names() const {
+  constexpr std::size_t kMostListed = 5;
+  std::string text;
+  std::size_t listed = 0;
+  for (const std::string& name : dropped_) {
+    if (listed++ == kMostListed)
+      break;
+    text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  }
+  return dropped() <= kMostListed ? text
+                                  : fmt::format("{} and {} more", text, dropped() - kMostListed);
 }
 
 std::string encode_values(const ObjectValues& values) {
@@ -175,6 +202,7 @@ void MeshObjects::append(const MeshObjects& others) {
   std::vector<std::optional<std::uint8_t>> numbers;
   for (const std::string& name : others.properties.all())
     numbers.push_back(properties.number(name));
+  properties.drop_all(others.properties);
   const std::uint32_t first = names.count();
   if (numbers.empty()) {
     names.append(others.names);

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,15 +31,23 @@ class PropertyNames {
   /// cannot be the name of one.
   std::optional<std::uint8_t> number(std::string_view name);
   const std::vector<std::string>& all() const { return names_; }
-  /// Returns how many values had no number.
-  std::uint64_t dropped() const { return dropped_; }
+  /// Notes a property that is not kept.
+  void drop(std::string_view name);
+  /// Returns how many had no number or were dropped; beyond 4096, how often.
+  std::uint64_t dropped() const { return dropped_.size() + more_dropped_; }
+  /// Returns what a warning says of them: `"colour", "" and 4 more`; empty: there are none.
+  std::string dropped_names() const;
+  /// Notes those that others have dropped.
+  void drop_all(const PropertyNames& others);
 
  private:
   std::vector<std::string> names_;
-  std::uint64_t dropped_ = 0;
+  std::set<std::string> dropped_;  ///< their names, cut
+  std::uint64_t more_dropped_ = 0;
 };
 
-/// Returns a name in UTF-8 without a zero, which ends keys of sorts.
+/// Returns a name in UTF-8, as utf8_of_windows() makes it, without a zero, which ends keys of
+/// sorts.
 std::string sound_name(std::string_view name);
 
 /// Values of an object, each with the number of its property.

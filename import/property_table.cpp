@@ -2,8 +2,10 @@
 
 #include "base/error.h"
 #include "base/small_letters.h"
+#include "import/id_columns.h"
 #include "import/row_bytes.h"
 #include "mesh_io/input_error.h"
+#include "mesh_io/number_text.h"
 
 #include <algorithm>
 
@@ -16,24 +18,31 @@ namespace {
 constexpr std::uint64_t kMostRows = std::uint64_t{1} << 27;
 
 /// Returns a key as objects have it: a number of JSON is its text.
-std::string key_text(const ObjectValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value))
-    return *text;
-  if (const auto* number = std::get_if<double>(&value))
-    return fmt::format("{}", *number);
-  return {};
+/// `is_number`: texts are numbers where they can be.
+std::string key_text(const ObjectValue& value, bool is_number) {
+  const auto* text = std::get_if<std::string>(&value);
+  const auto* number = std::get_if<double>(&value);
+  if (text == nullptr)
+    return number != nullptr ? fmt::format("{}", *number) : std::string();
+  const auto parsed = is_number ? mesh_io::parse_decimal(*text) : std::nullopt;
+  return parsed ? fmt::format("{}", parsed->value + 0.0) : sound_name(*text);
 }
 
 }  // namespace
 
-PropertyTable::PropertyTable(bool has_ids, PropertyNames& names, PropertyTypes& types,
+PropertyTable::PropertyTable(Ids ids, PropertyNames& names, PropertyTypes& types,
                              const ImportRoom& room, std::uint64_t memory_bytes)
-    : has_ids_(has_ids), names_(names), types_(types), rows_(room, memory_bytes) {}
+    : has_ids_(ids != Ids::none),
+      are_numbers_(ids == Ids::numbers),
+      names_(names),
+      types_(types),
+      rows_(room, memory_bytes) {}
 
 void PropertyTable::read(mesh_io::InputStream& stream, const std::filesystem::path& path) {
   counts_.read = mesh_io::read_records(
-      stream, path,
-      [&](std::span<const mesh_io::RecordField> fields, bool is_plain) { take(fields, is_plain); });
+      stream, path, [&](std::span<const mesh_io::RecordField> fields, mesh_io::RecordTexts texts) {
+        take(fields, texts);
+      });
   if (!has_id_column_ && !has_name_column_ && counts_.read.records > 0) {
     mesh_io::fail_file(path,
                        "has no column \"id\" or \"name\", by which its rows belong to objects");
@@ -43,6 +52,16 @@ void PropertyTable::read(mesh_io::InputStream& stream, const std::filesystem::pa
   matched_.resize(counts_.read.records);
   rows_.sort();
   is_row_ = rows_.next();
+}
+
+/// Other names of ids than "id" count in the first row.
+void PropertyTable::choose_id_column(std::span<const mesh_io::RecordField> fields) {
+  for (const std::string_view name : kIdColumns) {
+    for (const mesh_io::RecordField& field : fields) {
+      if (id_name_.empty() && small_letters(field.column) == name)
+        id_name_ = field.column;
+    }
+  }
 }
 
 /// A key is a property as well where it says more than the object's name does.
@@ -63,7 +82,7 @@ PropertyTable::Column& PropertyTable::column_of(const std::string& name, std::si
                 "the table of objects has more than 4096 different keys; are they values?");
   Column column{name};
   const std::string small = small_letters(name);
-  if (small == "id" && !has_id_column_)
+  if ((small == "id" || (name == id_name_ && !name.empty())) && !has_id_column_)
     column.key = Key::id;
   else if (small == "name" && !has_name_column_)
     column.key = Key::name;
@@ -73,24 +92,31 @@ PropertyTable::Column& PropertyTable::column_of(const std::string& name, std::si
   return columns_.back();
 }
 
-void PropertyTable::take(std::span<const mesh_io::RecordField> fields, bool is_plain) {
+void PropertyTable::take(std::span<const mesh_io::RecordField> fields, mesh_io::RecordTexts texts) {
   std::string id, name;
+  if (columns_.empty() && std::ranges::none_of(fields, [](const auto& field) {
+        return small_letters(field.column) == "id";
+      }))
+    choose_id_column(fields);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto key = column_of(fields[i].column, i).key;
-    if (key)
-      (*key == Key::id ? id : name) = key_text(fields[i].value);
+    if (key == Key::id)
+      id = key_text(fields[i].value, are_numbers_);
+    else if (key == Key::name)
+      name = key_text(fields[i].value, false);
   }
   ObjectValues values;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     Column& column = column_of(fields[i].column, i);
     const bool is_none = std::holds_alternative<std::monostate>(fields[i].value);
-    if (is_none || (column.key && !is_property(*column.key)))
+    if (is_none || column.is_dropped || (column.key && !is_property(*column.key)))
       continue;
     if (!column.property)
       column.property = names_.number(column.name);
-    if (!column.property)
+    column.is_dropped = !column.property;
+    if (column.is_dropped)
       continue;
-    types_.note(*column.property, fields[i].value, is_plain);
+    types_.note(*column.property, fields[i].value, texts);
     values.emplace_back(*column.property, fields[i].value);
   }
   std::string bytes;

@@ -32,12 +32,17 @@ class PropertyTable {
     ObjectValues values{};
   };
 
-  /// `has_ids`: objects have ids, which are no names: then a column "name" names them.
-  PropertyTable(bool has_ids, PropertyNames& names, PropertyTypes& types, const ImportRoom& room,
+  /// Ids of objects: there are none, so that names are; texts; or numbers, of which "007" and "7.0"
+  /// are one.
+  enum class Ids : std::uint8_t { none, texts, numbers };
+
+  /// `ids`: those of objects; if there are any, a column "name" names them.
+  PropertyTable(Ids ids, PropertyNames& names, PropertyTypes& types, const ImportRoom& room,
                 std::uint64_t memory_bytes);
 
   /// Throws as mesh_io::read_records(), and Error(input) if there is neither a column "id" nor one
-  /// "name", in any letters.
+  /// "name", in any letters. Without "id" a column of the first row that has one of
+  /// kIdColumns is it.
   void read(mesh_io::InputStream& stream, const std::filesystem::path& path);
   /// Returns whether objects that have ids are known by these.
   bool knows_ids() const { return has_id_column_; }
@@ -55,15 +60,18 @@ class PropertyTable {
     std::string name;
     std::optional<Key> key{};
     std::optional<std::uint8_t> property{};
+    bool is_dropped = false;
   };
 
-  void take(std::span<const mesh_io::RecordField> fields, bool is_plain);
+  void take(std::span<const mesh_io::RecordField> fields, mesh_io::RecordTexts texts);
+  void choose_id_column(std::span<const mesh_io::RecordField> fields);
   Column& column_of(const std::string& name, std::size_t likely);
   bool is_property(Key key) const;
   void add(Key kind, const std::string& key, const std::string& bytes);
   void load(std::string_view key);
 
-  bool has_ids_;
+  bool has_ids_, are_numbers_;
+  std::string id_name_{};  ///< of the column that is one for want of an "id"
   PropertyNames& names_;
   PropertyTypes& types_;
   std::vector<Column> columns_;

@@ -12,6 +12,8 @@
 namespace meshhier::importing {
 namespace {
 
+using mesh_io::RecordTexts;
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos)
@@ -21,6 +23,12 @@ std::string_view trimmed(std::string_view text) {
 
 bool is_of_digits(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_nothing(std::string_view text) {
+  constexpr std::array<std::string_view, 7> kNothing{"NA",  "N/A",  "#N/A", "NaN",
+                                                     "nan", "NULL", "null"};
+  return std::ranges::find(kNothing, text) != kNothing.end();
 }
 
 std::optional<bool> boolean_of_text(std::string_view text) {
@@ -76,8 +84,11 @@ bool is_zone(std::string_view text) {
   return take_one_of(text, "+-") && take_clock(text, 14) && text.empty();
 }
 
-ObjectPropertyType type_of_text(std::string_view text, bool is_plain) {
+ObjectPropertyType type_of_text(std::string_view text, RecordTexts texts) {
+  const bool is_plain = texts != RecordTexts::texts;
   if (is_plain && number_of_text(text))
+    return ObjectPropertyType::number;
+  if (texts == RecordTexts::any_with_commas && number_with_comma(text))
     return ObjectPropertyType::number;
   if (is_plain && boolean_of_text(text))
     return ObjectPropertyType::boolean;
@@ -112,6 +123,15 @@ std::optional<double> number_of_text(std::string_view text) {
   return number->value;
 }
 
+std::optional<double> number_with_comma(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || text.find('.') != std::string_view::npos)
+    return std::nullopt;
+  std::string number(text);
+  number[comma] = '.';
+  return number_of_text(number);
+}
+
 bool is_date(std::string_view text) {
   const bool has_day = take_number(text, 4, 0, 9999) && take_one_of(text, "-") &&
                        take_number(text, 2, 1, 12) && take_one_of(text, "-") &&
@@ -121,20 +141,27 @@ bool is_date(std::string_view text) {
   return take_one_of(text, "T ") && take_clock(text, 24) && take_seconds(text) && is_zone(text);
 }
 
-void PropertyTypes::note(std::uint8_t property, const ObjectValue& value, bool is_plain) {
+void PropertyTypes::note(std::uint8_t property, const ObjectValue& value, RecordTexts texts) {
   auto type = ObjectPropertyType::number;
   if (std::holds_alternative<std::monostate>(value))
     return;
   if (std::holds_alternative<bool>(value))
     type = ObjectPropertyType::boolean;
-  if (const auto* text = std::get_if<std::string>(&value))
-    type = type_of_text(*text, is_plain);
+  const auto* text = std::get_if<std::string>(&value);
+  if (text != nullptr && texts != RecordTexts::texts && is_nothing(*text))
+    return;
+  if (text != nullptr)
+    type = type_of_text(*text, texts);
+  if (type == ObjectPropertyType::number && text != nullptr) {
+    has_points_[property] = has_points_[property] || text->find('.') != std::string::npos;
+    has_commas_[property] = has_commas_[property] || text->find(',') != std::string::npos;
+  }
   seen_[property][static_cast<std::size_t>(type)] = true;
 }
 
 ObjectPropertyType PropertyTypes::type(std::uint8_t property) const {
   const auto& seen = seen_[property];
-  if (std::ranges::count(seen, true) != 1)
+  if (std::ranges::count(seen, true) != 1 || (has_points_[property] && has_commas_[property]))
     return ObjectPropertyType::text;
   return static_cast<ObjectPropertyType>(std::ranges::find(seen, true) - seen.begin());
 }
@@ -143,9 +170,15 @@ ObjectValue PropertyTypes::converted(std::uint8_t property, ObjectValue value) c
   if (std::holds_alternative<std::monostate>(value))
     return value;
   const auto* text = std::get_if<std::string>(&value);
+  if (text != nullptr && type(property) != ObjectPropertyType::text && is_nothing(*text))
+    return {};
   switch (type(property)) {
     case ObjectPropertyType::number:
-      return text != nullptr ? ObjectValue(number_of_text(*text).value()) : value;
+      if (text == nullptr)
+        return value;
+      return has_commas_[property] && text->find(',') != std::string::npos
+                 ? number_with_comma(*text).value()
+                 : number_of_text(*text).value();
     case ObjectPropertyType::boolean:
       return text != nullptr ? ObjectValue(boolean_of_text(*text).value()) : value;
     case ObjectPropertyType::text:

@@ -41,8 +41,8 @@ class BatchTable final : public FeatureTable {
         most_rows_(place.rows),
         binary_(std::move(file), place.json + place.json_bytes, place.binary_bytes) {
     for (const auto& [name, value] : json.items()) {
-      if (columns_.size() < kMostBatchColumns)
-        add(name, value);
+      if (columns_.size() >= kMostBatchColumns || !add(name, value))
+        note_unread(name, value);
     }
     for (const Column& column : columns_)
       rows_ = std::max(rows_, rows_of(column));
@@ -50,6 +50,7 @@ class BatchTable final : public FeatureTable {
 
   std::uint64_t rows() const override { return rows_; }
   const std::vector<std::string>& columns() const override { return names_; }
+  std::vector<std::string> unread() const override { return unread_; }
 
   ObjectValue value(std::size_t number, std::uint64_t row) override {
     Column& column = columns_[number];
@@ -65,17 +66,30 @@ class BatchTable final : public FeatureTable {
     std::optional<BinaryColumn> numbers{};
   };
 
-  /// Hierarchies, extensions and extras are objects without a place in the binary part.
-  void add(const std::string& name, const Json& value) {
+  /// Notes what is there that is no column: hierarchies of classes, extensions.
+  void note_unread(const std::string& name, const Json& value) {
+    constexpr std::size_t kMostNoted = 64;
+    if (name == "extensions" && value.is_object()) {
+      for (const auto& [extension, content] : value.items())
+        note_unread(extension, content);
+    } else if (name != "extras" && unread_.size() < kMostNoted) {
+      unread_.push_back(name);
+    }
+  }
+
+  /// Returns whether it is a column: hierarchies, extensions and extras are objects without a place
+  /// in the binary part.
+  bool add(const std::string& name, const Json& value) {
     Column column;
     if (value.is_array())
       column.list = value;
     else if (value.is_object() && value.contains("byteOffset"))
       column.numbers = binary_column(name, value);
     else
-      return;
+      return false;
     names_.push_back(name);
     columns_.push_back(std::move(column));
+    return true;
   }
 
   BinaryColumn binary_column(const std::string& name, const Json& value) const {
@@ -116,7 +130,7 @@ class BatchTable final : public FeatureTable {
   std::filesystem::path path_;
   std::uint64_t most_rows_;  ///< of numbers: those of other columns stand behind them
   GltfFileBytes binary_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, unread_;
   std::vector<Column> columns_;
   std::uint64_t rows_ = 0;
 };

@@ -373,9 +373,16 @@ class DocumentReader {
       return std::nullopt;
     const GltfObject attributes = extension->require_object("attributes");
     const std::size_t accessors = document_.accessors.size();
-    return GltfInstancing{attributes.index("TRANSLATION", accessors),
+    GltfInstancing copies{attributes.index("TRANSLATION", accessors),
                           attributes.index("ROTATION", accessors),
                           attributes.index("SCALE", accessors)};
+    if (const auto features = o.extension("EXT_instance_features")) {
+      copies.features = features->copy();
+      attributes.for_each_index(accessors, [&](const std::string& name, std::uint32_t accessor) {
+        copies.attributes.emplace(name, accessor);
+      });
+    }
+    return copies;
   }
 
   void read_node(const GltfObject& o) {

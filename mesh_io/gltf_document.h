@@ -102,6 +102,8 @@ struct GltfMesh {
 /// each copy. An accessor that is missing means no move, no turn, size 1.
 struct GltfInstancing {
   std::optional<std::uint32_t> translation, rotation, scale;
+  GltfAttributes attributes{};                       ///< accessors by name, if there are features
+  std::shared_ptr<const nlohmann::json> features{};  ///< EXT_instance_features as it is; null: none
 };
 
 struct GltfSkin {

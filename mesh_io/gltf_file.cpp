@@ -163,16 +163,28 @@ GltfFile::Buffer GltfFile::open_buffer(std::uint32_t index) const {
       fail(name + " has neither a \"uri\" nor the second chunk of a GLB");
     return {std::make_unique<GltfFileBytes>(*chunk_), path(), chunk_offset_};
   }
-  if (const auto base64 = base64_of(*buffer.uri))
+  return open_uri(*buffer.uri, name);
+}
+
+GltfFile::Buffer GltfFile::open_uri(const std::string& uri, const std::string& name) const {
+  if (const auto base64 = base64_of(uri))
     return {decode_data(*base64, name), {}, 0};
-  const auto file = file_of_uri(*buffer.uri, folder_);
+  const auto file = file_of_uri(uri, folder_);
   if (!file) {
     fail(
         fmt::format("{}: \"{}\" is no relative path below the folder of the file; copy the buffer "
                     "beside it",
-                    name, plain_text(*buffer.uri, kLongestUri)));
+                    name, plain_text(uri, kLongestUri)));
   }
   return open_file(*file, name);
+}
+
+std::string GltfFile::text_of(const std::string& uri, const std::string& what) const {
+  const Buffer content = open_uri(uri, what);
+  require_memory(content.bytes->size(), what);
+  std::string text(static_cast<std::size_t>(content.bytes->size()), '\0');
+  content.bytes->read(0, std::as_writable_bytes(std::span(text)));
+  return text;
 }
 
 const GltfFile::Buffer& GltfFile::buffer(std::uint32_t index) {

@@ -69,6 +69,10 @@ class GltfFile {
   /// Error(budget) if decoding takes more memory than there is, Error(io).
   GltfRange view(std::uint32_t index);
 
+  /// Returns the text that a URI means: of a file, or within itself. `what`: for messages. Throws
+  /// as view().
+  std::string text_of(const std::string& uri, const std::string& what) const;
+
   /// Returns where a picture lies. Its file is found as NamedFiles finds it; a file that is
   /// missing, or no regular one, is none. A picture in a view of fleeting bytes is read into
   /// `data`. Throws Error(input) if it lies in a compressed view.
@@ -92,6 +96,7 @@ class GltfFile {
   std::string read_text(std::uint64_t offset, std::uint64_t bytes) const;
   const Buffer& buffer(std::uint32_t index);
   Buffer open_buffer(std::uint32_t index) const;
+  Buffer open_uri(const std::string& uri, const std::string& name) const;
   Buffer open_file(const std::filesystem::path& path, const std::string& name) const;
   std::unique_ptr<GltfBytes> decode_data(std::string_view base64, const std::string& name) const;
   GltfRange range(std::uint32_t buffer, std::uint64_t offset, std::uint64_t bytes,

@@ -67,8 +67,8 @@ std::string text_of_number(const ObjectValue& value) {
 /// Reads the columns of a table.
 class ColumnReader {
  public:
-  ColumnReader(GltfFile& file, const GltfObject& metadata, std::uint64_t rows)
-      : file_(file), metadata_(metadata), rows_(rows) {}
+  ColumnReader(GltfFile& file, const GltfObject& schema, std::uint64_t rows)
+      : file_(file), schema_(schema), rows_(rows) {}
 
   /// `property`: of the class; `place`: of the table.
   Column read(const GltfObject& property, const GltfObject& place) {
@@ -117,8 +117,7 @@ class ColumnReader {
   }
 
   void read_choices(const GltfObject& property, Column& column) const {
-    const auto schema = metadata_.require_object("schema");
-    const auto choices = schema.require_object("enums").require_object(
+    const auto choices = schema_.require_object("enums").require_object(
         property.text("enumType").value_or("").c_str());
     column.type = component_type(choices, "valueType", "UINT16");
     choices.for_each("values", [&](const GltfObject& one) {
@@ -160,7 +159,7 @@ class ColumnReader {
   }
 
   GltfFile& file_;
-  const GltfObject& metadata_;
+  const GltfObject& schema_;
   std::uint64_t rows_;
 };
 
@@ -168,13 +167,16 @@ class GltfPropertyTable final : public FeatureTable {
  public:
   GltfPropertyTable(GltfFile& file, std::uint64_t rows) : file_(file), rows_(rows) {}
 
-  void add(std::string name, Column column) {
+  /// `meaning`: the semantic of its class's property, as "ID".
+  void add(std::string name, std::string meaning, Column column) {
     names_.push_back(std::move(name));
+    meanings_.push_back(std::move(meaning));
     columns_.push_back(std::move(column));
   }
 
   std::uint64_t rows() const override { return rows_; }
   const std::vector<std::string>& columns() const override { return names_; }
+  std::string_view meaning(std::size_t column) const override { return meanings_[column]; }
   ObjectValue value(std::size_t number, std::uint64_t row) override {
     Column& column = columns_[number];
     ObjectValue value = stored(column, row);
@@ -285,22 +287,33 @@ class GltfPropertyTable final : public FeatureTable {
 
   GltfFile& file_;
   std::uint64_t rows_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, meanings_;
   std::vector<Column> columns_;
 };
 
 constexpr const char* kMetadataPlace = "extensions.EXT_structural_metadata";
 
+/// Returns the schema, which may be in a file of its own, as JSON that stays.
+std::shared_ptr<const Json> schema_of(const GltfFile& file, const GltfObject& metadata) {
+  const auto uri = metadata.text("schemaUri");
+  if (uri && !metadata.has("schema"))
+    return std::make_shared<const Json>(
+        parse_gltf_json(file.text_of(*uri, "its schema"), file.path(), file.room().memory_bytes));
+  return metadata.require_object("schema").copy();
+}
+
 }  // namespace
 
-std::vector<GltfFeatureIds> feature_ids_of(const GltfFile& file, const GltfPrimitive& primitive) {
+std::vector<GltfFeatureIds> feature_ids_of(const GltfFile& file,
+                                           const std::shared_ptr<const Json>& extension) {
   std::vector<GltfFeatureIds> all;
-  if (!primitive.features)
+  if (!extension)
     return all;
-  const GltfObject features(*primitive.features, file.path(), "EXT_mesh_features");
+  const GltfObject features(*extension, file.path(), "features");
   features.for_each("featureIds", [&](const GltfObject& one) {
     GltfFeatureIds ids{.count = one.require_count("featureCount", kMostFeatures),
                        .null_id = one.count("nullFeatureId", kMostFeatures),
+                       .is_in_texture = one.has("texture"),
                        .table = one.index("propertyTable", property_table_count(file))};
     if (const auto attribute = one.count("attribute", kMostFeatures))
       ids.attribute = fmt::format("_FEATURE_ID_{}", *attribute);
@@ -315,24 +328,31 @@ std::size_t property_table_count(const GltfFile& file) {
                   : 0;
 }
 
+GltfOtherProperties other_properties_of(const GltfFile& file) {
+  if (!file.document().metadata)
+    return {};
+  const GltfObject metadata(*file.document().metadata, file.path(), kMetadataPlace);
+  return {metadata.item_count("propertyTextures"), metadata.item_count("propertyAttributes")};
+}
+
 std::unique_ptr<FeatureTable> open_property_table(GltfFile& file, std::uint32_t number) {
   const GltfObject metadata(*file.document().metadata, file.path(), kMetadataPlace);
-  if (!metadata.has("schema"))
-    return nullptr;
+  const auto json = schema_of(file, metadata);
+  const GltfObject schema(*json, file.path(), "schema");
   const GltfObject place = *metadata.item("propertyTables", number);
   const std::uint64_t rows = place.require_count("count", kMostFeatures);
   const GltfObject type =
-      metadata.require_object("schema").require_object("classes").require_object(
-          place.text("class").value_or("").c_str());
+      schema.require_object("classes").require_object(place.text("class").value_or("").c_str());
   auto table = std::make_unique<GltfPropertyTable>(file, rows);
-  ColumnReader reader(file, metadata, rows);
+  ColumnReader reader(file, schema, rows);
   const auto columns = place.object("properties");
   const auto properties = type.object("properties");
   if (!columns || !properties)
     return table;
   for (const std::string& name : columns->keys(kMostTableColumns)) {
     const GltfObject property = properties->require_object(name.c_str());
-    table->add(name, reader.read(property, columns->require_object(name.c_str())));
+    table->add(name, property.text("semantic").value_or(""),
+               reader.read(property, columns->require_object(name.c_str())));
   }
   return table;
 }

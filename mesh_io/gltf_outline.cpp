@@ -20,14 +20,16 @@ namespace meshhier::mesh_io {
 namespace {
 
 constexpr std::size_t kMostBufferFiles = 65536;
-/// Takes buffers[...].uri, and looks for a name among the extensions.
+/// Takes buffers[...].uri and extensions.EXT_structural_metadata.schemaUri, and looks for a name
+/// among the extensions.
 class OutlineVisitor final : public storage::JsonVisitor {
  public:
   std::vector<std::string> uris;
   bool names_ktx2 = false;
 
   bool string(string_t& value) override {
-    if (depth() == 3 && in_buffers_ && is_uri_ && uris.size() <= kMostBufferFiles)
+    const bool is_file = (in_buffers_ && is_uri_) || (has_extensions_ && is_schema_);
+    if (depth() == 3 && is_file && uris.size() <= kMostBufferFiles)
       uris.push_back(value);
     if (depth() == 2 && in_extensions_ && value == "KHR_texture_basisu")
       names_ktx2 = true;
@@ -37,13 +39,16 @@ class OutlineVisitor final : public storage::JsonVisitor {
     if (depth() == 1) {
       in_buffers_ = value == "buffers";
       in_extensions_ = value == "extensionsUsed" || value == "extensionsRequired";
+      has_extensions_ = value == "extensions";
     }
     is_uri_ = value == "uri";
+    is_schema_ = value == "schemaUri";
     return true;
   }
 
  private:
   bool in_buffers_ = false, in_extensions_ = false, is_uri_ = false;
+  bool has_extensions_ = false, is_schema_ = false;
 };
 
 /// A file that is not packed, of which no more is read than is asked for.

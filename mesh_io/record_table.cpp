@@ -1,6 +1,7 @@
 #include "mesh_io/record_table.h"
 
 #include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/json_value.h"
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -70,6 +72,8 @@ class CsvLines {
 
   void set_separator(char separator) { separator_ = separator; }
   std::uint64_t line() const { return first_line_; }
+  /// Returns how many fields were no UTF-8.
+  std::uint64_t foreign() const { return foreign_; }
 
   /// Returns the fields of the next line that is not empty; none at the end.
   bool next(std::vector<std::string>& fields) {
@@ -90,7 +94,11 @@ class CsvLines {
       if (fields.size() == kMostRecordFields)
         text_.fail(first_line_,
                    fmt::format("expected up to {} columns, found more", kMostRecordFields));
-      fields.push_back(sound_utf8(take_field()));
+      fields.push_back(take_field());
+      if (!is_utf8(fields.back())) {
+        fields.back() = utf8_of_windows(fields.back());
+        ++foreign_;
+      }
     } while (take(separator_));
     take('\r');
     take('\n');
@@ -138,9 +146,26 @@ class CsvLines {
 
   Characters& text_;
   int separator_ = kEnd;
-  std::uint64_t first_line_ = 1;
+  std::uint64_t first_line_ = 1, foreign_ = 0;
   std::size_t bytes_ = 0;
 };
+
+/// Refuses spreadsheets and data bases as they are.
+void require_text(std::string_view head, const std::filesystem::path& path) {
+  const bool is_binary = std::ranges::any_of(
+      head, [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; });
+  if (is_binary)
+    fail_file(path,
+              "expected a table as text (CSV, or an object of JSON a line), found a binary "
+              "file; save it as CSV in UTF-8");
+}
+
+/// Returns what a line "sep=;" says.
+std::optional<char> told_separator(std::string_view line) {
+  constexpr std::string_view kTold = "sep=";
+  const bool is_told = line.starts_with(kTold) && line.size() == kTold.size() + 1;
+  return is_told ? std::optional(line.back()) : std::nullopt;
+}
 
 /// Returns the separator that a line has most of, outside of quotes.
 char separator_of(std::string_view line) {
@@ -168,8 +193,10 @@ std::string take_text_line(Characters& text) {
   return line;
 }
 
+/// Passes blanks, too, and the record separators of RFC 8142.
 void pass_line_ends(Characters& text) {
-  for (int c = text.peek(); c == '\n' || c == '\r' || c == ' ' || c == '\t'; c = text.peek())
+  constexpr std::string_view kBetween = "\n\r \t\x1E";
+  while (text.peek() != kEnd && kBetween.find(static_cast<char>(text.peek())) != kBetween.npos)
     text.pass();
 }
 
@@ -206,11 +233,19 @@ void check_columns(const std::vector<std::string>& columns, Characters& text) {
 
 RecordCounts read_csv(Characters& text, const std::filesystem::path& path,
                       const RecordVisitor& visit) {
-  const std::string head = take_text_line(text);
+  std::string head = take_text_line(text);
+  const auto told = told_separator(head);  // Excel's first line
+  if (told) {
+    pass_line_ends(text);
+    head = take_text_line(text);
+  }
+  require_text(head, path);
+  const char separator = told.value_or(separator_of(head));
+  const auto texts = separator == ',' ? RecordTexts::any : RecordTexts::any_with_commas;
   Prepended all(head, text);
   Characters again(all, path);
   CsvLines lines(again);
-  lines.set_separator(separator_of(head));
+  lines.set_separator(separator);
   RecordCounts counts;
   std::vector<std::string> columns, fields;
   if (!lines.next(columns))
@@ -227,9 +262,22 @@ RecordCounts read_csv(Characters& text, const std::filesystem::path& path,
       const bool is_there = i < fields.size() && !fields[i].empty();
       record[i].value = is_there ? ObjectValue(std::move(fields[i])) : ObjectValue();
     }
-    visit(record, true);
+    visit(record, texts);
   }
+  counts.foreign = lines.foreign();
   return counts;
+}
+
+/// Adds the members of an object. Of a feature of GeoJSON they are its properties and its id.
+void add_fields(const Json& object, std::vector<RecordField>& record) {
+  const auto type = object.find("type");
+  const auto properties = object.find("properties");
+  const bool is_feature = type != object.end() && *type == "Feature" &&
+                          properties != object.end() && properties->is_object();
+  for (const auto& [key, value] : (is_feature ? *properties : object).items())
+    record.push_back({key, value_of_json(value)});
+  if (is_feature && object.contains("id") && !properties->contains("id"))
+    record.push_back({"id", value_of_json(object["id"])});
 }
 
 RecordCounts read_json_lines(Characters& text, const RecordVisitor& visit) {
@@ -245,15 +293,19 @@ RecordCounts read_json_lines(Characters& text, const RecordVisitor& visit) {
     };
     const Json object = storage::parse_json_text(line, watch, {.throws = false});
     if (!object.is_object())
-      text.fail(number, "expected an object of JSON in one line, found " + in_quotes(line));
-    if (object.size() > kMostRecordFields)
+      text.fail(number, "expected an object of JSON in one line, found " + in_quotes(line) +
+                            "; `jq -c .`, of GeoJSON `jq -c '.features[]'`, makes lines of it");
+    if (object.contains("features"))
       text.fail(number,
-                fmt::format("expected up to {} keys, found {}", kMostRecordFields, object.size()));
+                "expected an object of JSON a line, found a collection of features; `jq "
+                "-c '.features[]'` makes lines of it");
     record.clear();
-    for (const auto& [key, value] : object.items())
-      record.push_back({key, value_of_json(value)});
+    add_fields(object, record);
+    if (record.size() > kMostRecordFields)
+      text.fail(number,
+                fmt::format("expected up to {} keys, found {}", kMostRecordFields, record.size()));
     ++counts.records;
-    visit(record, false);
+    visit(record, RecordTexts::texts);
   }
   return counts;
 }
@@ -264,7 +316,7 @@ RecordCounts read_records(InputStream& stream, const std::filesystem::path& path
                           const RecordVisitor& visit) {
   Utf16Stream utf8(stream, path);
   Characters text(utf8, path);
-  while (text.peek() == '\n' || text.peek() == '\r')
+  while (text.peek() == '\n' || text.peek() == '\r' || text.peek() == 0x1E)
     text.pass();
   if (text.peek() == '[')
     text.fail(text.line(),

@@ -252,14 +252,105 @@ TEST_F(GltfObjectsTest, FeaturesWithoutNamesAreNumbered) {
               ElementsAre("feature 1", ""));
 }
 
-TEST_F(GltfObjectsTest, FeaturesInTexturesAreCounted) {
+TEST_F(GltfObjectsTest, MetadataThatIsNotReadIsTold) {
   GltfBuilder gltf;
   gltf.show({{"attributes", {{"POSITION", gltf.accessor(kPair, "VEC3")}}},
              {"extensions",
               {{"EXT_mesh_features",
                 {{"featureIds", {{{"featureCount", 2}, {"texture", {{"index", 0}}}}}}}}}}});
-  EXPECT_THAT(import(gltf).objects, IsEmpty());
+  gltf.json["extensions"]["EXT_structural_metadata"] = {{"propertyTextures", {1}},
+                                                        {"propertyAttributes", {1, 2}}};
+  const Imported mesh = import(gltf);
+  EXPECT_THAT(mesh.objects, IsEmpty());
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre(HasSubstr("1 feature id set not read: only ids of vertices"),
+                          HasSubstr("1 property texture not read"),
+                          HasSubstr("2 property attributes not read")));
+  EXPECT_EQ(mesh.count(std::string(kFeaturesInTextures)), 1U);
   EXPECT_THAT(failure(gltf), HasSubstr("has no features of a glTF or b3dm"));
+}
+
+TEST_F(GltfObjectsTest, ASecondSetOfIdsIsTold) {
+  GltfBuilder gltf = with_table(GltfJson::object(), GltfJson::object());
+  gltf.json["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"]
+      .push_back({{"featureCount", 6}});
+  const Imported mesh = import(gltf, ObjectSource::feature);
+  EXPECT_EQ(mesh.count(std::string(kFurtherFeatures)), 1U);
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("1 feature id set not read: the first one")));
+}
+
+TEST_F(GltfObjectsTest, IdsThatNothingSaysAreNumbersOfVertices) {
+  GltfBuilder gltf = with_table(GltfJson::object(), GltfJson::object());
+  GltfJson& ids =
+      gltf.json["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"][0];
+  ids.erase("attribute");
+  EXPECT_THAT(import(gltf, ObjectSource::feature).names_of_triangles(),
+              ElementsAre("feature 0", "feature 3"));
+}
+
+TEST_F(GltfObjectsTest, ASchemaInAFileOfItsOwn) {
+  GltfBuilder gltf = with_table({}, {});
+  GltfJson& metadata = gltf.json["extensions"]["EXT_structural_metadata"];
+  const std::size_t view = gltf.view(GltfBuilder::bytes_of(std::vector<float>{1, 2}));
+  metadata["propertyTables"][0]["properties"] = {{"h", {{"values", view}}}};
+  GltfJson schema = metadata["schema"];
+  schema["classes"]["building"]["properties"] = {
+      {"h", {{"type", "SCALAR"}, {"componentType", "FLOAT32"}}}};
+  metadata.erase("schema");
+  metadata["schemaUri"] = "my%20schema.json";
+  EXPECT_EQ(import(gltf).count(std::string(kUnreadTables)), 1U);
+  EXPECT_THAT(failure(gltf), HasSubstr("its schema: w/my schema.json is not there"));
+  put("my schema.json", schema.dump());
+  const Imported mesh = import(gltf);
+  EXPECT_THAT(rows_of(mesh), ElementsAre("feature 0: 1", "feature 1: 2"));
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/my schema.json"));
+  put("my schema.json", "{\"classes\": 7}");
+  EXPECT_THAT(failure(gltf), HasSubstr("classes"));
+}
+
+/// A mesh of two triangles in three places, which are features of a table of two rows.
+GltfBuilder with_copies(const std::vector<float>& features) {
+  GltfBuilder gltf = with_table({}, {});
+  gltf.json["meshes"][0]["primitives"][0].erase("extensions");
+  const std::size_t view = gltf.view(GltfBuilder::bytes_of(std::vector<std::int8_t>{5, 6}));
+  GltfJson& metadata = gltf.json["extensions"]["EXT_structural_metadata"];
+  metadata["schema"]["classes"]["building"]["properties"] = {
+      {"age", {{"type", "SCALAR"}, {"componentType", "INT8"}}}};
+  metadata["propertyTables"][0]["properties"] = {{"age", {{"values", view}}}};
+  const std::vector<float> places{0, 0, 0, 5, 0, 0, 9, 0, 0};
+  GltfJson attributes{{"TRANSLATION", gltf.accessor(places, "VEC3")}};
+  GltfJson ids{{"featureCount", 2}, {"propertyTable", 0}};
+  if (!features.empty()) {
+    attributes["_FEATURE_ID_0"] = gltf.accessor(features, "SCALAR");
+    ids["attribute"] = 0;
+  }
+  gltf.json["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}},
+                                         {"EXT_instance_features", {{"featureIds", {ids}}}}};
+  return gltf;
+}
+
+TEST_F(GltfObjectsTest, EachCopyIsAFeature) {
+  const Imported mesh = import(with_copies({1, 0, 1}));
+  EXPECT_THAT(rows_of(mesh), ElementsAre("feature 0: 5", "feature 1: 6"));
+  EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("feature 1", "feature 1", "feature 0",
+                                                     "feature 0", "feature 1", "feature 1"));
+  EXPECT_THAT(
+      import(with_copies({})).names_of_triangles(),
+      ElementsAre("feature 0", "feature 0", "feature 1", "feature 1", "feature 2", "feature 2"));
+  EXPECT_THAT(failure(with_copies({1, 0})), HasSubstr("has 2 elements for the features of more"));
+}
+
+TEST_F(GltfObjectsTest, AColumnMaySayThatItIsAName) {
+  GltfBuilder gltf = with_table({}, {});
+  const std::string offsets = number_word(0) + number_word(4) + number_word(8);
+  GltfJson& metadata = gltf.json["extensions"]["EXT_structural_metadata"];
+  metadata["schema"]["classes"]["building"]["properties"] = {
+      {"what", {{"type", "STRING"}, {"semantic", "NAME"}}},
+      {"key", {{"type", "STRING"}, {"semantic", "ID"}}}};
+  metadata["propertyTables"][0]["properties"] = {
+      {"what", {{"values", gltf.view("hallmill")}, {"stringOffsets", gltf.view(offsets)}}},
+      {"key", {{"values", gltf.view("DE_1DE_2")}, {"stringOffsets", gltf.view(offsets)}}}};
+  EXPECT_THAT(rows_of(import(gltf)), ElementsAre("hall: DE_1", "mill: DE_2"));
 }
 
 TEST_F(GltfObjectsTest, BatchTablesOfTiles) {
@@ -275,6 +366,8 @@ TEST_F(GltfObjectsTest, BatchTablesOfTiles) {
                     heights),
        batched_tile(gltf.glb(), R"({"id":["x2","x3"],"use":["shop","farm"]})")});
   EXPECT_THAT(rows_of(mesh), ElementsAre("x1: 1.5 home", "x2: 2 shop", "x3: - farm"));
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre(HasSubstr("1 property of objects left out: \"HIERARCHY\"")));
   EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("x1", "x2", "x2", "x3"));
 
   const Imported unnamed =
@@ -283,6 +376,39 @@ TEST_F(GltfObjectsTest, BatchTablesOfTiles) {
   EXPECT_THAT(rows_of(unnamed), ElementsAre("0.b3dm/feature 0: 0 a", "0.b3dm/feature 1: 1 b",
                                             "1.b3dm/feature 0: 0 c", "1.b3dm/feature 1: 1 d"))
       << "numbers of rows say nothing in another tile";
+}
+
+TEST_F(GltfObjectsTest, AnIdSaysWhatIsTheSameThingInAllTiles) {
+  GltfBuilder gltf;
+  gltf.show({{"attributes",
+              {{"POSITION", gltf.accessor(kPair, "VEC3")},
+               {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 1, 1, 1}, "SCALAR")}}}});
+  const Imported mesh = import_tiles(
+      {batched_tile(gltf.glb(), R"({"gml:id":["DE_1","DE_2"],"name":["mill","hall"]})"),
+       batched_tile(gltf.glb(), R"({"gml:id":["DE_2","DE_3"],"name":["shed","shed"],"h":[1,2]})"),
+       batched_tile(gltf.glb(), R"({"gml:id":["DE_4",null],"name":["mill",""],"h":[3,4]})")});
+  EXPECT_THAT(rows_of(mesh),
+              ElementsAre("2.b3dm/feature 1: - 4 -", "DE_3: - 2 shed", "hall: DE_2 1 shed",
+                          "mill: DE_1 - -", "mill (DE_4): DE_4 3 -"));
+  EXPECT_THAT(mesh.names_of_triangles(),
+              ElementsAre("mill", "hall", "hall", "DE_3", "mill (DE_4)", "2.b3dm/feature 1"));
+}
+
+TEST_F(GltfObjectsTest, TilesOfACompositeNumberTheirFeaturesApart) {
+  GltfBuilder gltf;
+  gltf.show({{"attributes",
+              {{"POSITION", gltf.accessor(kPair, "VEC3")},
+               {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 1, 1, 1}, "SCALAR")}}}});
+  const auto composite = [&](const std::string& first, const std::string& second) {
+    const std::string tiles = batched_tile(gltf.glb(), first) + batched_tile(gltf.glb(), second);
+    return "cmpt" + number_word(1) + number_word(16 + tiles.size()) + number_word(2) + tiles;
+  };
+  EXPECT_THAT(rows_of(import_tiles({composite(R"({"h":[1,2]})", R"({"h":[3,4]})")})),
+              ElementsAre("0.b3dm/1/feature 0: 1", "0.b3dm/1/feature 1: 2", "0.b3dm/2/feature 0: 3",
+                          "0.b3dm/2/feature 1: 4"));
+  EXPECT_THAT(rows_of(import_tiles(
+                  {composite(R"({"id":["a","b"],"h":[1,2]})", R"({"id":["b","c"],"h":[3,4]})")})),
+              ElementsAre("a: 1", "b: 2", "c: 4"));
 }
 
 TEST_F(GltfObjectsTest, BatchTablesThatLie) {

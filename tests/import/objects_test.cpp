@@ -232,8 +232,8 @@ TEST_F(ObjectsTest, NamesOfAnyKind) {
   put_obj("o " + longest + "\nf 1 2 3\no " + longest + "x\nf 2 4 3\no bell\a\x1b[31m\nf 3 4 5\n" +
           "o \xff\xfe bad\nf 4 6 5\n");
   const Imported mesh = import(from(ObjectSource::object));
-  EXPECT_THAT(mesh.object_names(), ElementsAre("bell\a\x1b[31m", longest, longest + "x",
-                                               "\xEF\xBF\xBD\xEF\xBF\xBD bad"));
+  EXPECT_THAT(mesh.object_names(),
+              ElementsAre("bell\a\x1b[31m", longest, longest + "x", "\xC3\xBF\xC3\xBE bad"));
   put_obj("o " + std::string(600000, 'n') + "\nf 1 2 3\n");
   EXPECT_THAT(failure(from(ObjectSource::object)), HasSubstr("line 7: found a line of more than"));
 }
@@ -338,6 +338,7 @@ TEST_F(ObjectsTest, TablesThatAreWrong) {
   EXPECT_THAT(failure_of("{\"id\": 1}\n[1]\n"), HasSubstr("line 2: expected an object of JSON"));
   EXPECT_THAT(failure_of("{\"id\": " + std::string(100, '[') + "\n"), HasSubstr("line 1"));
   EXPECT_THAT(failure_of(""), HasSubstr("found an empty file"));
+  EXPECT_THAT(failure_of("PK\3\4"), HasSubstr("w/t.csv: expected a table as text"));
   put_obj("f 1 2 3\n");
   put("t.csv", "id\na\n");
   ImportHow how = from(ObjectSource::evident);
@@ -355,6 +356,87 @@ TEST_F(ObjectsTest, APropertyTooManyIsCounted) {
   const Imported mesh = import_with_table(head + '\n' + row + '\n');
   EXPECT_THAT(mesh.properties, SizeIs(kMostObjectProperties));
   EXPECT_EQ(mesh.count("dropped_properties"), 6U);
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre("w/t.csv: has no row for 1 object",
+                          HasSubstr("a.obj: 6 properties of objects left out: \"p64\", \"p65\", "
+                                    "\"p66\", \"p67\", \"p68\" and 1 more; up to 64 are kept")));
+}
+
+TEST_F(ObjectsTest, TablesOfSpreadsheetsInEurope) {
+  put_obj(
+      "o Stra\xDF"
+      "e\nf 1 2 3\no b\nf 2 4 3\n");
+  const Imported mesh = import_with_table(
+      "sep=;\r\nname;h;rooms;when\r\nStra\xDF"
+      "e;12,5;1,2;17.05.2031\r\nb;-1000;1.2;\r\n");
+  EXPECT_THAT(types_of(mesh), ElementsAre("h number", "rooms text", "when text"));
+  EXPECT_THAT(rows_of(mesh), ElementsAre("Stra\xC3\x9F"
+                                         "e: 12.5 \"1,2\" \"17.05.2031\"",
+                                         "b: -1000 \"1.2\" -"));
+  EXPECT_EQ(mesh.count("fields_not_utf8"), 1U);
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("1 field with no UTF-8")));
+  EXPECT_THAT(types_of(import_with_table("name,h\nb,\"1,5\"\n")), ElementsAre("h text"))
+      << "commas stand between fields";
+}
+
+TEST_F(ObjectsTest, WordsForNothing) {
+  put_obj("o a\nf 1 2 3\no b\nf 2 4 3\n");
+  const Imported mesh =
+      import_with_table("name\th\twhen\tt\na\tNA\tNULL\tNA\nb\t1,5\t2031-05-17\tx\n");
+  EXPECT_THAT(types_of(mesh), ElementsAre("h number", "when date", "t text"));
+  EXPECT_THAT(rows_of(mesh), ElementsAre("a: - - \"NA\"", "b: 1.5 \"2031-05-17\" \"x\""));
+}
+
+TEST_F(ObjectsTest, AFeatureOfGeoJsonIsItsProperties) {
+  put_obj("o a\nf 1 2 3\no b\nf 2 4 3\n");
+  const Imported mesh = import_with_table(
+      "\x1E{\"type\": \"Feature\", \"id\": \"a\", \"geometry\": {\"type\": \"Point\", "
+      "\"coordinates\": [1, 2]}, \"properties\": {\"h\": 3}}\n\x1E"
+      "{\"type\": \"Feature\", \"properties\": {\"id\": \"b\", \"type\": \"mill\"}}\n",
+      ObjectSource::object, "t.geojsonl");
+  EXPECT_THAT(rows_of(mesh), ElementsAre("a: 3 -", "b: - \"mill\""));
+  put("t.csv", "{\"type\": \"FeatureCollection\", \"features\": []}");
+  ImportHow how = from(ObjectSource::object);
+  how.object_table = "w/t.csv";
+  EXPECT_THAT(failure(how), HasSubstr("jq -c '.features[]'"));
+}
+
+TEST_F(ObjectsTest, ColumnsThatAreIdsByAnotherName) {
+  put_obj("o DE_1\nf 1 2 3\no DE_2\nf 2 4 3\n");
+  EXPECT_THAT(rows_of(import_with_table("h,GML_ID\n1,DE_2\n2,DE_1\n")),
+              ElementsAre("DE_1: 2", "DE_2: 1"));
+  EXPECT_THAT(rows_of(import_with_table("gml_id,h,id\nDE_1,1,DE_2\n")),
+              ElementsAre("DE_1: - -", "DE_2: \"DE_1\" 1"))
+      << "a column \"id\" is the id";
+  EXPECT_THAT(rows_of(import_with_table(",name,h\n0,DE_1,1\n")), ElementsAre("DE_1: 1", "DE_2: -"))
+      << "pandas numbers the rows";
+  const Imported none = import_with_table("id,h\n");
+  EXPECT_THAT(rows_of(none), ElementsAre("DE_1:", "DE_2:"));
+  EXPECT_THAT(none.warnings,
+              ElementsAre("w/t.csv: has no rows", HasSubstr("no row for 2 objects")));
+}
+
+/// Faces of labels 7, 12 and none.
+std::string labelled(const std::string& type, const std::string& last) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+         "float z\nelement face 3\nproperty list uchar int vertex_indices\nproperty " +
+         type + " bone\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 7\n3 0 2 3 12\n3 0 1 3 " +
+         last + "\n";
+}
+
+TEST_F(ObjectsTest, NumbersOfLabelsMayBeWrittenInOtherWays) {
+  put("a.ply", labelled("int", "-3"));
+  put("t.csv", "id,h\n007,1\n12.0,2\n -3,3\n");
+  ImportHow how = from(ObjectSource::label, "bone");
+  how.object_table = "w/t.csv";
+  EXPECT_THAT(rows_of(import(how, "a.ply")), ElementsAre("-3: -", "12: 2", "7: 1"));
+}
+
+TEST_F(ObjectsTest, ALabelThatIsNoNumberIsNone) {
+  put("a.ply", labelled("float", "nan"));
+  ImportHow how = from(ObjectSource::label, "bone");
+  how.attributes.labels = {{"bone"}};
+  EXPECT_THAT(import(how, "a.ply").names_of_triangles(), ElementsAre("7", "12", ""));
 }
 
 // ---- the parts
