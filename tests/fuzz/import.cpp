@@ -83,12 +83,16 @@ void put_pictures(MemoryFiles& files) {
 }
 
 std::string imported(MemoryFiles& files, bool weld, importing::Textures textures) {
+  return imported(files, {weld, textures});
+}
+
+std::string imported(MemoryFiles& files, const importing::InputUse& use) {
   storage::MemoryPool pool(0);
   storage::ScratchFile scratch(files, "scratch", pool);
   importing::TemporaryFile ply(files, "imported.ply", pool.scratch_use());
   execution::NoProgress progress;
   const execution::CancelToken cancel;
-  importing::InputFiles input(files, std::filesystem::path("mesh"), {weld, textures});
+  importing::InputFiles input(files, std::filesystem::path("mesh"), use);
   const importing::ImportFacts facts =
       importing::import_input(input, ply, {files, scratch, 1, progress, cancel, "objects"});
   require(std::ranges::any_of(

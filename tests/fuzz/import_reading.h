@@ -15,5 +15,6 @@ void put_pictures(MemoryFiles& files);
 /// Throws Violation if a promise of the import is broken.
 std::string imported(MemoryFiles& files, bool weld,
                      importing::Textures textures = importing::Textures::use);
+std::string imported(MemoryFiles& files, const importing::InputUse& use);
 
 }  // namespace meshhier::tests::fuzz

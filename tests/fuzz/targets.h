@@ -45,6 +45,11 @@ void outline(std::span<const std::byte> input);
 void archive(std::span<const std::byte> input);
 /// A table of objects: a kind, then a file, or a part of one.
 void object_table(std::span<const std::byte> input);
+/// A table beside a mesh: CSV or lines of JSON.
+void records(std::span<const std::byte> input);
+/// What features of a glTF are: a kind, the JSON and the bytes of a property table or of a batch
+/// table (see metadata.cpp).
+void metadata(std::span<const std::byte> input);
 /// A layout and runs of lists, packed here or whole as a file, for a mesh of a few thousand slots.
 void detail(std::span<const std::byte> input);
 /// A progressive.json; also with the right checksum at its end.
@@ -87,6 +92,8 @@ inline constexpr auto kTargets = std::to_array<Target>({{"ply_header", ply_heade
                                                         {"outline", outline},
                                                         {"archive", archive},
                                                         {"object_table", object_table},
+                                                        {"records", records},
+                                                        {"metadata", metadata},
                                                         {"detail", detail},
                                                         {"stream_index", stream_index},
                                                         {"stream", stream},
