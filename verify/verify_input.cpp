@@ -371,6 +371,9 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
     use.crop = config.crop_box();
     if (has_objects)
       use.objects = config.objects.from;
+    // Values of faces have split vertices even where the mesh has not kept them.
+    if (manifest.source.count_of("dropped_values") > 0)
+      use.attributes = config.attributes;
     use.crs = config.placement.crs.value_or("");
   } catch (const Error&) {
   }
@@ -378,11 +381,19 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
 }
 
 /// Takes the file of that name out of the inputs; if it is not there, it is beside the first one.
-std::filesystem::path take_named(const std::string& name, mesh_io::InputPaths& inputs) {
+/// `what`: for the message if it is not there either.
+std::filesystem::path take_named(const VerifyJob& job, const std::string& name,
+                                 std::string_view what, mesh_io::InputPaths& inputs) {
   const auto named = std::ranges::find_if(
       inputs, [&](const std::filesystem::path& path) { return path.filename() == name; });
-  if (named == inputs.end())
-    return inputs[0].parent_path() / name;
+  if (named == inputs.end()) {
+    std::filesystem::path beside = inputs[0].parent_path() / name;
+    if (job.files.input().kind(beside) != storage::FileKind::regular)
+      throw Error(ErrorCode::usage, fmt::format("{}: {} of the hierarchy is not there; name it by "
+                                                "another --input",
+                                                beside.string(), what));
+    return beside;
+  }
   std::filesystem::path found = *named;
   inputs.erase(named);
   return found;
@@ -400,15 +411,16 @@ std::filesystem::path take_drape(const VerifyJob& job, mesh_io::InputPaths& inpu
   const auto picture = std::ranges::find(made_of, "picture", &SourceFile::format);
   if (picture == made_of.end() || inputs.empty() || std::ranges::none_of(made_of, is_raster))
     return {};
-  return take_named(picture->name, inputs);
+  return take_named(job, picture->name, "the orthophoto", inputs);
 }
 
 /// Takes the table of objects in the same way.
 std::filesystem::path take_object_table(const VerifyJob& job, mesh_io::InputPaths& inputs) {
   const auto& made_of = job.reader.manifest().source.files;
   const auto table = std::ranges::find(made_of, "object table", &SourceFile::format);
-  return table == made_of.end() || inputs.empty() ? std::filesystem::path()
-                                                  : take_named(table->name, inputs);
+  return table == made_of.end() || inputs.empty()
+             ? std::filesystem::path()
+             : take_named(job, table->name, "the table of objects", inputs);
 }
 
 void compare_sums(const MeshSums& input, const MeshSums& partitions,

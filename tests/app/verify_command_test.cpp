@@ -1,6 +1,8 @@
 // `meshhier verify` and `compare`.
 #include "tests/app/command_line.h"
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -29,6 +31,45 @@ TEST_F(CommandLine, VerifyPassesWhatBuildMade) {
   EXPECT_EQ(report.at("ok"), true);
   EXPECT_THAT(report.at("problems"), IsEmpty());
   EXPECT_THAT(report.at("checks"), Not(IsEmpty()));
+}
+
+/// A square of two faces at `x`, which may have labels.
+std::string square_at(int x, bool is_labelled) {
+  const std::string label = is_labelled ? " 7\n" : "\n";
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 2\nproperty list uchar int vertex_indices\n";
+  text += std::string(is_labelled ? "property int bone\n" : "") + "end_header\n";
+  for (const char* rest : {" 0 0\n", " 1 0\n"})
+    text += std::to_string(x) + rest + std::to_string(x + 1) + rest;
+  return text + "3 0 1 2" + label + "3 1 3 2" + (is_labelled ? " 3\n" : "\n");
+}
+
+TEST_F(CommandLine, VerifyTakesAListOfWhichSomeFacesHaveValues) {
+  const std::string a = work() / "labelled.ply", b = work() / "plain.ply";
+  std::ofstream(a) << square_at(0, true);
+  std::ofstream(b) << square_at(5, false);
+  const std::string made = work() / "list.hier";
+  ASSERT_EQ(run({"build", a, b, "-o", made}).code, 0);
+  const Outcome outcome = run({"verify", made, "--input", a, "--input", b});
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("input: 10 vertices and 4 triangles compared"));
+}
+
+TEST_F(CommandLine, VerifySaysWhatATableOfObjectsIsNamedBy) {
+  const std::string mesh = work() / "b.ply";
+  std::ofstream(mesh) << square_at(0, true);
+  std::filesystem::create_directory(work() / "tables");
+  const std::string table = work() / "tables" / "bones.csv";
+  std::ofstream(table) << "id,name\n3,femur\n7,tibia\n";
+  const std::string made = work() / "bones.hier";
+  ASSERT_EQ(
+      run({"build", mesh, "--objects", "label:bone", "--object-table", table, "-o", made}).code, 0);
+  const Outcome lacking = run({"verify", made, "--input", mesh});
+  EXPECT_EQ(lacking.code, kUsage);
+  EXPECT_THAT(lacking.messages, HasSubstr("bones.csv: the table of objects of the hierarchy is not "
+                                          "there; name it by another --input"));
+  EXPECT_EQ(run({"verify", made, "--input", mesh, "--input", table}).code, 0);
 }
 
 TEST_F(CommandLine, CompareMakesAHierarchyThatIsShownByTheDistance) {
