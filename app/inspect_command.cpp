@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
 #include "app/options.h"
+#include "base/error.h"
 #include "inspection/inspect.h"
 #include "inspection/list_objects.h"
 #include "storage/io/json_text.h"
@@ -23,15 +24,20 @@ struct InspectArguments {
   inspection::InspectOptions options;
   std::optional<std::string> objects;  ///< what the names of those that are listed begin with
   std::string where;
+  std::optional<std::string> words;  ///< that the names of those that are listed have
   bool json = false;
 };
 
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
+  const bool lists = arguments.objects || arguments.words;
+  if (!arguments.where.empty() && !lists)
+    throw Error(ErrorCode::usage, "--where: needs --objects or --find");
   const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  if (arguments.objects) {
-    inspection::list_objects(place.files(), place.path(),
-                             {*arguments.objects, arguments.where, arguments.json},
-                             [&](std::string_view line) { environment.out << line << '\n'; });
+  if (lists) {
+    inspection::list_objects(
+        place.files(), place.path(),
+        {arguments.objects.value_or(""), arguments.where, arguments.json, arguments.words},
+        [&](std::string_view line) { environment.out << line << '\n'; });
   } else if (arguments.json) {
     environment.out << storage::json_text(
                            inspection::inspect_json(place.files(), place.path(), arguments.options),
@@ -51,6 +57,7 @@ constexpr const char* kInspectFooter = R"(Examples:
   meshhier inspect town.hier --objects
   meshhier inspect town.hier --objects=Main_Street/ --json | jq .properties.height
   meshhier inspect town.hier --objects --where 'storeys > 3 and owner is null'
+  meshhier inspect town.hier --find 'church mar'
 )";
 
 }  // namespace
@@ -66,7 +73,12 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation) {
                    "List the objects instead: their names, sizes and properties. --objects=PREFIX "
                    "those whose names begin so")
       ->expected(0, 1);
-  add_where_option(*command, arguments->where)->needs("--objects");
+  command
+      ->add_option("--find", arguments->words,
+                   "List the objects whose names have these words, in any order; the last one "
+                   "may be the beginning of a word")
+      ->excludes("--objects");
+  add_where_option(*command, arguments->where);
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);
   command->callback([arguments, &invocation] {

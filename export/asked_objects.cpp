@@ -113,6 +113,11 @@ void for_each_asked(const ObjectTable& table, const ObjectRequest& request,
     if (!condition || condition->is_met_by(row))
       visit(object, row);
   };
+  if (request.numbers) {
+    for (const std::uint32_t object : *request.numbers)
+      visit_if_met(object, table.row(object));
+    return;
+  }
   if (request.names.empty() && request.prefix.empty())
     return table.for_each(visit_if_met);
   const auto ranges = request.names.empty() ? std::vector{table.range_of_prefix(request.prefix)}

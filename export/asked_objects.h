@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct ObjectRequest {
   std::vector<std::string> names{};  ///< one that ends in "/" stands for all that begin with it
   std::string where{};               ///< as ObjectCondition reads it; empty: all of these names
   std::string prefix{};              ///< without names: those whose names begin so
+  std::optional<std::vector<std::uint32_t>> numbers{};  ///< instead of names: these, ascending
 
   bool is_any() const { return !names.empty() || !where.empty(); }
 };

@@ -12,6 +12,7 @@
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
+#include "storage/io/sealed_file.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -149,38 +150,60 @@ Filling filling_of(const PageSource& source, std::uint64_t room) {
   return has_none || is_covered || rounded.error() < exact.error() ? rounded : exact;
 }
 
+constexpr std::uint64_t kMostEntry = std::uint64_t{1} << 32;
+
 std::string entry_of(const PageSource& source, const fs::path& name) {
-  constexpr std::uint64_t kMostEntry = std::uint64_t{1} << 32;
   const auto path = source.reader.directory() / name;
   return page_entry(name, storage::read_file(source.files, path, kMostEntry));
 }
 
 /// A file that the page may lack: it is in it unless it takes too much of the room.
 struct Besides {
+  fs::path name;
   std::string_view missing;  ///< told if it is not
   std::string entry;
   bool is_in = false;
 };
 
-/// Reads a file of at least so many bytes if it fits: it then leaves less room for all else.
-Besides besides(const PageSource& source, const fs::path& name, std::uint64_t bytes,
+/// Reads a file, whose bytes the manifest seals, if it fits: it then leaves less room for all else.
+Besides besides(const PageSource& source, const fs::path& name, const storage::Seal& seal,
                 std::string_view missing, std::uint64_t& room) {
   constexpr std::uint64_t kPart = 4;  // of the room
-  Besides file{missing, bytes <= room ? entry_of(source, name) : ""};
+  Besides file{name, missing, ""};
+  if (seal.bytes <= room) {
+    const storage::HierarchyReader& reader = source.reader;
+    const auto bytes =
+        storage::of_one_build(source.files, reader.directory(), reader.manifest(), [&] {
+          return storage::read_sealed(source.files, reader.directory() / name, seal, kMostEntry);
+        });
+    file.entry = page_entry(name, bytes);
+  }
   file.is_in = !file.entry.empty() && file.entry.size() <= room / kPart;
   room -= file.is_in ? file.entry.size() : 0;
   return file;
 }
 
-/// The outline shows itself before the first tile, so it is worth a part, but no more.
+bool is_in(std::span<const Besides> files, const fs::path& name) {
+  return std::ranges::any_of(files,
+                             [&](const Besides& file) { return file.name == name && file.is_in; });
+}
+
+/// The outline shows itself before the first tile, so it is worth a part, but no more. Words lead
+/// to objects: without these they are worth nothing.
 std::vector<Besides> besides_of(const PageSource& source, std::uint64_t& room) {
   const storage::Manifest& manifest = source.reader.manifest();
   std::vector<Besides> files;
-  files.push_back(
-      besides(source, storage::outline_path({}), 0, "the shape-outline did not fit\n", room));
-  if (manifest.objects) {
-    files.push_back(besides(source, storage::objects_path({}), manifest.objects->table.bytes,
-                            "the names and properties of objects did not fit\n", room));
+  files.push_back(besides(source, storage::outline_path({}),
+                          {manifest.outline_bytes, manifest.outline_checksum},
+                          "the shape-outline did not fit\n", room));
+  if (!manifest.objects)
+    return files;
+  const storage::ObjectTableFacts& objects = manifest.objects->table;
+  files.push_back(besides(source, storage::objects_path({}), {objects.bytes, objects.checksum},
+                          "the names and properties of objects did not fit\n", room));
+  if (const auto& words = manifest.objects->words; words && files.back().is_in) {
+    files.push_back(besides(source, storage::object_words_path({}), {words->bytes, words->checksum},
+                            "the words of objects' names did not fit\n", room));
   }
   return files;
 }
@@ -221,11 +244,11 @@ class EntryStream {
 
 /// Returns how many bytes were written.
 std::uint64_t write_files(const PageSource& source, const Filling& filling,
-                          const std::string& besides, ByteStream& out) {
+                          std::span<const Besides> besides, ByteStream& out) {
   const auto& [packer, choice] = filling;
   std::vector<TileRecord> records = source.reader.records();
   EntryStream entries(out);
-  entries.put(besides);
+  entries.put(entries_of(besides));
   source.progress.stage("page", choice.tiles.size(), "tiles");
   for (const NodeId tile : choice.tiles) {
     source.cancel.check();
@@ -234,7 +257,8 @@ std::uint64_t write_files(const PageSource& source, const Filling& filling,
     records[record_number(source.reader, tile)] = packed.record;
     source.progress.advance(1);
   }
-  entries.put(packer.account(std::move(records), choice.last_record, choice.rounding));
+  entries.put(packer.account(std::move(records), choice.last_record, choice.rounding,
+                             is_in(besides, storage::object_words_path({}))));
   return entries.bytes();
 }
 
@@ -326,16 +350,14 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
   if (filling.choice.tiles.empty()) {
     const std::uint64_t around = fixed - std::min(fixed, viewer.size() + story.text.size());
     refuse_size(options.size, viewer.size(), story,
-                around + besides.front().entry.size() + filling.choice.least);
+                around + entry_of(source, storage::outline_path({})).size() + filling.choice.least);
   }
-  const std::string others = entries_of(besides);
-
   ByteStream out(*output.file());
   out.put(frame.before);
-  const std::uint64_t bytes = frame.bytes() + write_files(source, filling, others, out);
+  const std::uint64_t bytes = frame.bytes() + write_files(source, filling, besides, out);
   out.put(frame.behind);
   out.flush();
-  const std::string left_out = left_out_text(source, filling, fixed + others.size());
+  const std::string left_out = left_out_text(source, filling, fixed + entries_of(besides).size());
   storage::require_same_build(place.files(), hierarchy, reader.manifest());
   output.publish();
   std::string account = account_text(source, filling, bytes, viewer.size()) + left_out +

@@ -182,11 +182,15 @@ double PagePacker::most_rounding() const {
 }
 
 storage::Manifest PagePacker::manifest(std::span<const TileRecord> records, double rounding,
-                                       std::span<const std::byte> index) const {
+                                       bool has_words, std::span<const std::byte> index) const {
   storage::Manifest manifest = reader_.manifest();
   manifest.compression = format_.compression;
   if (manifest.objects)
     manifest.objects->are_in_tiles = format_.objects.has_value();
+  if (manifest.objects && manifest.objects->words && !has_words) {
+    manifest.total_bytes -= manifest.objects->words->bytes;
+    manifest.objects->words.reset();
+  }
   manifest.config["storage"]["compression"] = storage::row_of(format_.compression).name;
   if (format_.lattice) {
     const double before = manifest.quantization ? manifest.quantization->worst_rounding : 0;
@@ -206,7 +210,7 @@ storage::Manifest PagePacker::manifest(std::span<const TileRecord> records, doub
 }
 
 std::string PagePacker::account(std::vector<TileRecord> records, std::uint64_t last_record,
-                                double rounding) const {
+                                double rounding, bool has_words) const {
   const auto entry = [&](const std::filesystem::path& path, std::vector<std::byte> bytes) {
     if (path == storage::index_path({}))
       bytes.resize(index_bytes_with(reader_, last_record));
@@ -224,7 +228,7 @@ std::string PagePacker::account(std::vector<TileRecord> records, std::uint64_t l
       record.bound = bound_with_rounding(record.bound, rounding, depth - raw(record.node.level));
   }
   const std::vector<std::byte> index = storage::encode_index(records);
-  const std::string text = storage::to_json_text(manifest(records, rounding, index));
+  const std::string text = storage::to_json_text(manifest(records, rounding, has_words, index));
   const auto bytes = std::as_bytes(std::span(text));
   return entry(storage::index_path({}), index) +
          entry(storage::manifest_path({}), {bytes.begin(), bytes.end()});

@@ -53,12 +53,13 @@ class PagePacker {
   double most_rounding() const;
   /// Returns the entries of the index, up to the page of records that has `last_record`, and of the
   /// manifest. `records`: all of the index, those of packed tiles as pack() returned them;
-  /// `rounding`: the largest of these tiles.
-  std::string account(std::vector<TileRecord> records, std::uint64_t last_record,
-                      double rounding) const;
+  /// `rounding`: the largest of these tiles. `has_words`: the page has the words of
+  /// objects' names; if not, the manifest tells of none, but for pages with a link.
+  std::string account(std::vector<TileRecord> records, std::uint64_t last_record, double rounding,
+                      bool has_words) const;
 
  private:
-  storage::Manifest manifest(std::span<const TileRecord> records, double rounding,
+  storage::Manifest manifest(std::span<const TileRecord> records, double rounding, bool has_words,
                              std::span<const std::byte> index) const;
 
   storage::FileSystem& files_;

@@ -1,14 +1,18 @@
 #include "inspection/list_objects.h"
 
 #include "base/plain_text.h"
+#include "base/sound_utf8.h"
 #include "export/asked_objects.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
 #include "storage/format/object_table.h"
+#include "storage/format/object_words.h"
 #include "storage/io/json_text.h"
 
 #include <span>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -64,6 +68,30 @@ std::string text_line(std::uint32_t object, const ObjectRow& row,
   return line;
 }
 
+/// Returns the objects whose names have the words of `text`, ascending. Reads all names where there
+/// is no table of words.
+std::vector<std::uint32_t> found_objects(const storage::HierarchyReader& reader,
+                                         storage::FileSystem& files,
+                                         const storage::ObjectTable& table,
+                                         const std::string& text) {
+  const std::string sound = sound_utf8(text);
+  const storage::LetterTable letters(storage::kLetterTable, "letters");
+  const auto asked = letters.asked_words(sound);
+  if (asked.empty())
+    throw Error(ErrorCode::usage, "--find: give a word, as 'church mar': \"" +
+                                      plain_text(text, kMostShownBytes) + "\" has none");
+  if (const auto& words = reader.manifest().objects->words) {
+    const auto path = storage::object_words_path(reader.directory());
+    return storage::ObjectWords(files.open(path), table.size(), &*words).find(sound);
+  }
+  std::vector<std::uint32_t> found;
+  table.for_each([&](std::uint32_t object, const ObjectRow& row) {
+    if (storage::fits(letters.words_of(row.name), asked))
+      found.push_back(object);
+  });
+  return found;
+}
+
 }  // namespace
 
 void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
@@ -71,11 +99,13 @@ void list_objects(storage::FileSystem& files, const std::filesystem::path& direc
   const storage::HierarchyFiles place(files, directory);
   const storage::HierarchyReader reader(place.files(), directory);
   const auto table = reader.open_objects();
-  exporting::for_each_asked(*table, {.where = which.where, .prefix = which.prefix},
-                            [&](std::uint32_t object, const ObjectRow& row) {
-                              visit(which.as_json ? json_line(object, row, table->properties())
-                                                  : text_line(object, row, table->properties()));
-                            });
+  exporting::ObjectRequest request{.where = which.where, .prefix = which.prefix};
+  if (which.words)
+    request.numbers = found_objects(reader, place.files(), *table, *which.words);
+  exporting::for_each_asked(*table, request, [&](std::uint32_t object, const ObjectRow& row) {
+    visit(which.as_json ? json_line(object, row, table->properties())
+                        : text_line(object, row, table->properties()));
+  });
 }
 
 }  // namespace meshhier::inspection

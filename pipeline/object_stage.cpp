@@ -4,6 +4,7 @@
 #include "execution/parallel.h"
 #include "hierarchy/object_parts.h"
 #include "partition/object_census.h"
+#include "pipeline/object_words.h"
 #include "pipeline/plan/tile_room.h"
 #include "storage/format/layout.h"
 #include "storage/format/object_table.h"
@@ -52,7 +53,8 @@ storage::ObjectsSummary make_objects(Forest& forest, Vec3d origin,
   });
   if (census.next())
     throw Error(ErrorCode::corrupt, imported.string() + ": lacks objects that triangles name");
-  return {writer.finish(), census.shown(), false};
+  return {writer.finish(), census.shown(), false,
+          make_object_words(table, directory, scratch, context)};
 }
 
 StageTimes objects_time(const JobSize& /*job*/, const TilePopulation& tiles) {

@@ -3,6 +3,7 @@
 #include "pipeline/publish_stage.h"
 #include "storage/format/archive_writer.h"
 #include "storage/format/layout.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/tileset.h"
 
 #include <functional>
@@ -26,12 +27,15 @@ void for_each_name(const storage::HierarchyReader& made,
   visit(storage::outline_path({}));
   if (made.manifest().preview)
     visit(storage::preview_path({}));
-  if (made.manifest().objects)
+  const auto& objects = made.manifest().objects;
+  if (objects)
     visit(storage::objects_path({}));
   for (const TileRecord& record : std::span(tiles).subspan(1))
     visit(storage::tile_path({}, record.node));
   storage::for_each_tileset(made.manifest(), made.tree(), tiles,
                             [&](const storage::TilesetFile& file) { visit(file.path); });
+  if (objects && objects->words)  // behind all files whose places earlier readers work out
+    visit(storage::object_words_path({}));
 }
 
 }  // namespace
@@ -41,8 +45,8 @@ std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
   storage::FileSystem& files = context.files;
   const storage::Manifest& manifest = made.manifest();
   // Manifest, index, outline, and what there may be besides.
-  const std::uint64_t others =
-      3 + std::uint64_t{manifest.preview.has_value()} + std::uint64_t{manifest.objects.has_value()};
+  const std::uint64_t others = 3 + std::uint64_t{manifest.preview.has_value()} +
+                               storage::object_files(manifest.objects).size();
   context.progress.stage("pack", others + manifest.tileset_files + made.records().size(), "files");
   const std::unique_ptr<storage::File> archive = files.create(file);
   storage::ArchiveWriter writer(*archive, [&] { context.cancel.check(); });

@@ -20,6 +20,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/manifest.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/object_table.h"
 #include "storage/format/outline_glb.h"
 #include "storage/format/tile_plan.h"
@@ -393,7 +394,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(),
       index.size() + outline_file.size() + (preview ? preview->file.size() : 0) +
-          (known_objects ? known_objects->table.bytes : 0),
+          storage::object_file_bytes(known_objects),
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
   storage::write_tilesets(files, directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);

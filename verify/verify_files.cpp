@@ -2,6 +2,7 @@
 #include "base/plain_text.h"
 #include "hierarchy/cut.h"
 #include "storage/format/layout.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/system_files.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
@@ -35,7 +36,8 @@ bool is_known(const VerifyJob& job, const std::set<fs::path>& tilesets, const fs
   return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
          relative == storage::outline_path({}) ||
          (has_preview && relative == storage::preview_path({})) ||
-         (job.reader.manifest().objects && relative == storage::objects_path({})) ||
+         std::ranges::any_of(storage::object_files(job.reader.manifest().objects),
+                             [&](const auto& file) { return relative == file.name; }) ||
          is_tile_file(job.tree(), relative) || tilesets.contains(relative);
 }
 

@@ -7,6 +7,7 @@
 #include "export/manifest_config.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/sealed_json.h"
 #include "storage/io/json_text.h"
 #include "verify/verify_parts.h"
@@ -193,7 +194,7 @@ void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
   const storage::Manifest& manifest = job.reader.manifest();
   std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes +
                         (manifest.preview ? manifest.preview->bytes : 0) +
-                        (manifest.objects ? manifest.objects->table.bytes : 0);
+                        storage::object_file_bytes(manifest.objects);
   std::uint64_t triangles = 0;
   for (const TileRecord& record : job.reader.records()) {
     bytes += record.file_bytes;

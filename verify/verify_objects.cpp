@@ -3,7 +3,10 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "hierarchy/object_parts.h"
+#include "import/word_rows.h"
 #include "storage/format/layout.h"
+#include "storage/format/object_facts.h"
+#include "storage/format/object_words.h"
 #include "storage/format/tile_object_table.h"
 #include "storage/io/hash.h"
 
@@ -67,6 +70,7 @@ std::uint64_t checksum_of(const TileObjects& objects) {
 
 ObjectCheck::ObjectCheck(const VerifyJob& job, std::uint64_t memory_bytes)
     : job_(job),
+      memory_bytes_(memory_bytes),
       census_(job.tree().depth(), job.scratch, memory_bytes),
       rows_(job.scratch, memory_bytes / 2) {
   note_problems(job, [&] {
@@ -123,7 +127,8 @@ void ObjectCheck::finish() {
     return;
   census_.end();
   note_problems(job_, [&] { check_rows(); });
-  note_problems(job_, [&] { check_sum(); });
+  note_problems(job_, [&] { check_sums(); });
+  note_problems(job_, [&] { check_words(); });
   const auto& told = job_.reader.manifest().objects->shown;
   if (told != census_.shown())
     job_.problems.add(fmt::format("{}: \"objects.shown\" is not what the tiles show",
@@ -146,21 +151,49 @@ void ObjectCheck::check_rows() {
   });
 }
 
-void ObjectCheck::check_sum() const {
-  const auto path = storage::objects_path(job_.reader.directory());
-  const auto file = job_.files.open(path);
-  const storage::ObjectTableFacts& told = job_.reader.manifest().objects->table;
-  storage::Checksum sum;
-  std::vector<std::byte> block(std::size_t{1} << 18);
-  for (std::uint64_t at = 0; at < file->size(); at += block.size()) {
-    job_.cancel.check();
-    const auto part =
-        std::span(block).first(std::min<std::uint64_t>(block.size(), file->size() - at));
-    file->read_exact(at, part);
-    sum.add(part);
+void ObjectCheck::check_sums() const {
+  for (const storage::ObjectFile& told : storage::object_files(job_.reader.manifest().objects)) {
+    const auto path = job_.reader.directory() / told.name;
+    const auto file = job_.files.open(path);
+    storage::Checksum sum;
+    std::vector<std::byte> block(std::size_t{1} << 18);
+    for (std::uint64_t at = 0; at < file->size(); at += block.size()) {
+      job_.cancel.check();
+      const auto part =
+          std::span(block).first(std::min<std::uint64_t>(block.size(), file->size() - at));
+      file->read_exact(at, part);
+      sum.add(part);
+    }
+    if (sum.value() != told.checksum)
+      throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
   }
-  if (sum.value() != told.checksum)
-    throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
+}
+
+/// The words are taken from the names anew, by the file's own table of letters.
+void ObjectCheck::check_words() const {
+  const auto& told = job_.reader.manifest().objects->words;
+  if (!told)
+    return;
+  const auto path = storage::object_words_path(job_.reader.directory());
+  const storage::ObjectWords words(job_.files.open(path), table_->size(), &*told);
+  words.for_each([](std::string_view, const auto&) {});  // sound, each for itself
+  std::uint32_t row = 1, wrong = 0;
+  std::string first;
+  importing::for_each_word_row(*table_, words.letters(), {job_.scratch, memory_bytes_, job_.cancel},
+                               [&](const ObjectRow& expected) {
+                                 const bool is_there = row < words.table().size() &&
+                                                       words.table().row(row) == expected;
+                                 if (!is_there && wrong++ == 0)
+                                   first = plain_text(expected.name, 60);
+                                 ++row;
+                               });
+  if (wrong > 0 || row != words.table().size())
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: is not of the names of objects.bin: it has {} rows, expected {}{}",
+                            path.string(), words.table().size(), row,
+                            first.empty() ? "" : ", the first that differs is \"" + first + '"'));
+  job_.checks.push_back(
+      fmt::format("object words: {} compared with the names", counted(row - 1, "rows")));
 }
 
 void compare_objects(const VerifyJob& job, const std::filesystem::path& imported,

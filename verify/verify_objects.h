@@ -39,9 +39,11 @@ class ObjectCheck {
   };
   void tell(NodeId node, const std::string& what) const;
   void check_rows();
-  void check_sum() const;
+  void check_sums() const;
+  void check_words() const;
 
   const VerifyJob& job_;
+  const std::uint64_t memory_bytes_;
   std::unique_ptr<const storage::ObjectTable> table_;  ///< null if it cannot be read
   partition::ObjectCensus census_;
   partition::RowsByTile rows_;

@@ -75,6 +75,10 @@ std::filesystem::path objects_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "objects.bin";
 }
 
+std::filesystem::path object_words_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "object_words.bin";
+}
+
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "tileset.json";
 }
@@ -126,8 +130,8 @@ std::optional<NodeId> tile_of(std::string_view name) {
 
 bool is_hierarchy_file(std::string_view name) {
   return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
-         name == preview_path({}) || name == objects_path({}) || name == tileset_path({}) ||
-         is_tileset_file(name) || tile_of(name);
+         name == preview_path({}) || name == objects_path({}) || name == object_words_path({}) ||
+         name == tileset_path({}) || is_tileset_file(name) || tile_of(name);
 }
 
 std::filesystem::path story_path(const std::filesystem::path& hierarchy) {

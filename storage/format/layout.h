@@ -7,6 +7,7 @@
 //   NAME.hier/outline.glb
 //   NAME.hier/preview.webp                   unless the config says no
 //   NAME.hier/objects.bin                    if the mesh has objects
+//   NAME.hier/object_words.bin               if it has more than 256
 //   NAME.hier/tileset.json
 //   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more) below 10,000
@@ -56,6 +57,7 @@ std::filesystem::path index_path(const std::filesystem::path& hierarchy);
 std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
 std::filesystem::path preview_path(const std::filesystem::path& hierarchy);
 std::filesystem::path objects_path(const std::filesystem::path& hierarchy);
+std::filesystem::path object_words_path(const std::filesystem::path& hierarchy);
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
 /// Returns the file with `node` and the nodes below it. Requires node.level > 0.
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);

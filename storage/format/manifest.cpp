@@ -106,6 +106,8 @@ Json objects_json(const ObjectsSummary& objects) {
   Json json = object_facts_json(objects.table);
   json["shown"] = objects.shown;
   json["in_tiles"] = objects.are_in_tiles;
+  if (objects.words)
+    json["words"] = object_facts_json(*objects.words, object_words_path({}));
   return json;
 }
 
@@ -360,6 +362,8 @@ std::optional<ObjectsSummary> read_objects_summary(const JsonObject& object,
   if (!is_sound)
     objects.wrong("shown", "a count of objects for each level");
   summary.shown = shown.get<std::vector<std::uint64_t>>();
+  if (objects.has("words"))
+    summary.words = read_object_facts(objects.object("words"), object_words_path({}));
   return summary;
 }
 

@@ -64,6 +64,7 @@ struct ObjectsSummary {
   ObjectTableFacts table;
   std::vector<std::uint64_t> shown;  ///< of each level: objects of which its cut shows a triangle
   bool are_in_tiles = false;         ///< tiles have tables of theirs, for other viewers
+  std::optional<ObjectTableFacts> words{};  ///< the table of their names' words, if there is one
   friend bool operator==(const ObjectsSummary&, const ObjectsSummary&) = default;
 };
 

@@ -1,7 +1,5 @@
 #include "storage/format/object_facts.h"
 
-#include "storage/format/layout.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -35,11 +33,11 @@ std::vector<ObjectProperty> properties_of(const JsonObject& object) {
 
 }  // namespace
 
-Json object_facts_json(const ObjectTableFacts& facts) {
+Json object_facts_json(const ObjectTableFacts& facts, const std::filesystem::path& file) {
   Json properties = Json::array();
   for (const auto& [name, type] : facts.properties)
     properties.push_back({{"name", name}, {"type", name_of(type)}});
-  return {{"file", objects_path({}).string()},
+  return {{"file", file.string()},
           {"bytes", facts.bytes},
           {"checksum", hex_digits(facts.checksum)},
           {"count", facts.objects},
@@ -48,9 +46,9 @@ Json object_facts_json(const ObjectTableFacts& facts) {
           {"properties", std::move(properties)}};
 }
 
-ObjectTableFacts read_object_facts(const JsonObject& object) {
-  if (object.text("file") != objects_path({}).string())
-    object.wrong("file", "objects.bin");
+ObjectTableFacts read_object_facts(const JsonObject& object, const std::filesystem::path& file) {
+  if (object.text("file") != file.string())
+    object.wrong("file", file.string());
   const JsonObject directory = object.object("directory");
   return {object.count("bytes"),
           object.hash("checksum"),
@@ -58,6 +56,22 @@ ObjectTableFacts read_object_facts(const JsonObject& object) {
           directory.count("bytes"),
           directory.hash("checksum"),
           properties_of(object)};
+}
+
+std::vector<ObjectFile> object_files(const std::optional<ObjectsSummary>& objects) {
+  std::vector<ObjectFile> files;
+  if (objects)
+    files.push_back({objects_path({}), objects->table.bytes, objects->table.checksum});
+  if (objects && objects->words)
+    files.push_back({object_words_path({}), objects->words->bytes, objects->words->checksum});
+  return files;
+}
+
+std::uint64_t object_file_bytes(const std::optional<ObjectsSummary>& objects) {
+  std::uint64_t bytes = 0;
+  for (const ObjectFile& file : object_files(objects))
+    bytes += file.bytes;
+  return bytes;
 }
 
 }  // namespace meshhier::storage
