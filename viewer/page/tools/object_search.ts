@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // A field that finds objects by their names, with suggestions as one types: a combobox with a list, by hand and by key.
 import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
+import type { FoundNames } from '../../src/tools/object_names.js';
 import { element } from '../parts/element.js';
 import { words } from './words/words.js';
 
 const MOST = 8;
 const NONE = -1;
 
-/// Names that begin so; called for each text that is typed.
-export type Suggest = (text: string, most: number) => Promise<readonly ObjectRow[]>;
+/// Names that fit; called for each text that is typed. The signal says that another one was typed meanwhile.
+export type Suggest = (text: string, most: number, signal: AbortSignal) => Promise<FoundNames>;
 
 export class ObjectSearch {
   readonly root: HTMLElement;
@@ -19,7 +20,7 @@ export class ObjectSearch {
   private readonly told = element('p', { class: 'tool-note', role: 'status' });
   private rows: readonly ObjectRow[] = [];
   private active = NONE;
-  private asked = 0;
+  private asking = new AbortController();
 
   constructor(private readonly suggest: Suggest, private readonly chosen: (row: ObjectRow) => void) {
     this.input.addEventListener('input', () => void this.look());
@@ -28,7 +29,7 @@ export class ObjectSearch {
     this.root = element('div', { class: 'object-finder' }, this.input, this.list, this.told);
   }
 
-  /// Looks for what begins so.
+  /// Looks for what fits.
   seek(text: string): void {
     this.input.value = text;
     this.input.focus();
@@ -36,12 +37,14 @@ export class ObjectSearch {
   }
 
   private async look(): Promise<void> {
-    const asked = ++this.asked;
+    this.asking.abort();
+    this.asking = new AbortController();
+    const { signal } = this.asking;
     const text = this.input.value;
-    const rows = text === '' ? [] : await this.suggest(text, MOST);
-    if (asked !== this.asked) return;
+    const { rows, hasMore } = text === '' ? { rows: [], hasMore: false } : await this.suggest(text, MOST, signal);
+    if (signal.aborted) return;
     this.show(rows);
-    this.told.textContent = text === '' ? '' : rows.length === 0 ? words.objects.nothing : rows.length < MOST ? '' : words.objects.more;
+    this.told.textContent = text === '' ? '' : hasMore ? words.objects.more : rows.length === 0 ? words.objects.nothing : '';
   }
 
   private show(rows: readonly ObjectRow[]): void {
@@ -78,7 +81,7 @@ export class ObjectSearch {
 
   private choose(number: number): void {
     const row = this.rows[number];
-    ++this.asked;
+    this.asking.abort();
     this.input.value = row.name;
     this.show([]);
     this.told.textContent = '';

@@ -4,7 +4,7 @@ import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
 import type { ObjectTable } from '../../src/hierarchy/object_table.js';
 import { Objects } from '../../src/plugins/objects.js';
 import { ALL_OBJECTS, alone, visibilityOf, withShown, type ObjectChoice } from '../../src/tools/object_choice.js';
-import { fittingNames } from '../../src/tools/object_names.js';
+import { fittingNames, type FoundNames } from '../../src/tools/object_names.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { textButton } from './figures.js';
@@ -29,7 +29,7 @@ function scopesOf(name: string): string[] {
 export class ObjectsTool implements Tool {
   readonly root: HTMLElement;
   private readonly objects = new Objects({ name: 'page objects', isAlone: false });
-  private readonly search = new ObjectSearch((text, most) => this.suggest(text, most), (row) => { this.find(row); });
+  private readonly search = new ObjectSearch((...asked) => this.suggest(...asked), (row) => { this.find(row); });
   private readonly card = new ObjectCard();
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly scope = element('select', { class: 'tool-select', 'aria-label': words.objects.scope });
@@ -95,13 +95,14 @@ export class ObjectsTool implements Tool {
     return this.shop.bench.view.objects;
   }
 
-  private async suggest(text: string, most: number): Promise<readonly ObjectRow[]> {
+  private async suggest(text: string, most: number, signal: AbortSignal): Promise<FoundNames> {
     this.problem = '';
+    const none = { rows: [], hasMore: false };
     try {
-      return this.table === null ? [] : await fittingNames(this.table, text, most);
+      return this.table === null ? none : await fittingNames(this.table, text, most, signal);
     } catch (problem) {
-      this.fail(problem);
-      return [];
+      if (!signal.aborted) this.fail(problem);
+      return none;
     }
   }
 

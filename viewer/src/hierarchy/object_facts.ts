@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the manifest tells of objects.bin (docs/file_format.md, sections 2 and 9).
+// What the manifest tells of objects.bin and object_words.bin (docs/file_format.md, sections 2 and 9).
 import type { JsonValue } from '../json_value.js';
 
 export const OBJECTS_FILE = 'objects.bin';
+const WORDS_FILE = 'object_words.bin';
 export const MOST_OBJECTS = 2 ** 24;
 const MOST_PROPERTIES = 64;
 
@@ -20,7 +21,8 @@ export interface ObjectProperty {
   readonly type: ObjectPropertyType;
 }
 
-export interface ObjectFacts {
+/// What is known of a table.
+export interface TableFacts {
   readonly file: string;
   readonly bytes: number;
   readonly count: number;
@@ -28,15 +30,24 @@ export interface ObjectFacts {
   readonly directory: { readonly bytes: number; readonly checksum: bigint };
 }
 
-/// Reads `objects` of a manifest.
-export function readObjectFacts(objects: JsonValue): ObjectFacts {
-  const bytes = objects.at('bytes').count(HEAD_BYTES + END_BYTES);
-  const directory = objects.at('directory');
+export interface ObjectFacts extends TableFacts {
+  /// The table of their names' words; null: there is none.
+  readonly words: TableFacts | null;
+}
+
+function readTableFacts(table: JsonValue, file: string): TableFacts {
+  const bytes = table.at('bytes').count(HEAD_BYTES + END_BYTES);
+  const directory = table.at('directory');
   return {
-    file: objects.at('file').oneOf(OBJECTS_FILE),
+    file: table.at('file').oneOf(file),
     bytes,
-    count: objects.at('count').count(1, MOST_OBJECTS),
-    properties: objects.at('properties').items().slice(0, MOST_PROPERTIES).map((item) => ({ name: item.at('name').text(), type: item.at('type').oneOf(...PROPERTY_TYPES) })),
+    count: table.at('count').count(1, MOST_OBJECTS),
+    properties: table.at('properties').items().slice(0, MOST_PROPERTIES).map((item) => ({ name: item.at('name').text(), type: item.at('type').oneOf(...PROPERTY_TYPES) })),
     directory: { bytes: directory.at('bytes').count(1, Math.min(MOST_DIRECTORY, bytes - HEAD_BYTES - END_BYTES)), checksum: BigInt(`0x${directory.at('checksum').checksum()}`) },
   };
+}
+
+/// Reads `objects` of a manifest.
+export function readObjectFacts(objects: JsonValue): ObjectFacts {
+  return { ...readTableFacts(objects, OBJECTS_FILE), words: objects.has('words') ? readTableFacts(objects.at('words'), WORDS_FILE) : null };
 }

@@ -5,7 +5,7 @@ import { beginsWith, compareBytes } from './byte_columns.js';
 import { unpacked } from './bytes.js';
 import { checksum } from './checksum.js';
 import { MOST_KEY_BYTES, readBlock, readColumn, readDirectory, type BlockPlace, type ObjectBlock, type ObjectRow, type ObjectValue } from './object_blocks.js';
-import { END_BYTES, MOST_DIRECTORY, OBJECTS_FILE, type ObjectFacts, type ObjectProperty } from './object_facts.js';
+import { END_BYTES, MOST_DIRECTORY, type ObjectProperty, type TableFacts } from './object_facts.js';
 import { HierarchyProblem } from './problem.js';
 
 /// Blocks that are kept, of about 20 kB each.
@@ -21,10 +21,6 @@ export type ReadPart = (first: number, end: number) => Promise<Uint8Array<ArrayB
 export interface ObjectRange {
   readonly begin: number;
   readonly end: number;
-}
-
-function fail(what: string): never {
-  throw new HierarchyProblem(OBJECTS_FILE, what);
 }
 
 /// The first object of a block, and with what its name begins.
@@ -76,10 +72,16 @@ export class ObjectTable {
   /// The one used last last.
   private readonly kept = new Map<number, Promise<ObjectBlock>>();
 
+  /// `words`: the table of the names' words; null: there is none.
   constructor(
-    private readonly facts: ObjectFacts,
+    private readonly facts: TableFacts,
     private readonly read: ReadPart,
+    readonly words: ObjectTable | null = null,
   ) {}
+
+  get file(): string {
+    return this.facts.file;
+  }
 
   get count(): number {
     return this.facts.count;
@@ -102,6 +104,15 @@ export class ObjectTable {
     if (begin >= end) return [];
     const blocks = await Promise.all(places.slice(of(begin), of(end - 1) + 1).map((place) => this.block(place)));
     return blocks.flatMap(({ rows }) => rows).filter(({ object }) => object >= begin && object < end);
+  }
+
+  /// The parts of a range that are in one block each.
+  async blocksOf({ begin, end }: ObjectRange): Promise<ObjectRange[]> {
+    if (begin >= end) return [];
+    const places = await this.places();
+    const first = partitionPoint(places.length, (i) => places[i].first + places[i].count <= begin);
+    const behind = partitionPoint(places.length, (i) => places[i].first < end);
+    return places.slice(first, behind).map((place) => ({ begin: Math.max(begin, place.first), end: Math.min(end, place.first + place.count) }));
   }
 
   /// The object of that name; null: there is none.
@@ -137,7 +148,7 @@ export class ObjectTable {
       const bytes = await this.part(begin, end);
       for (const place of run) {
         const plain = await this.unpackedBytes(bytes.slice(place.begin - begin, place.end - begin), place.end - place.begin, place.checksum, place.unpacked);
-        yield { first: place.first, values: readColumn(plain, place, this.facts.properties, at, fail) };
+        yield { first: place.first, values: readColumn(plain, place, this.facts.properties, at, this.fail) };
       }
     }
   }
@@ -170,7 +181,7 @@ export class ObjectTable {
     const { bytes, count, properties, directory } = this.facts;
     const begin = bytes - END_BYTES - directory.bytes;
     const plain = await this.unpackedPart(begin, begin + directory.bytes, directory.checksum, MOST_DIRECTORY);
-    return readDirectory(plain, properties, count, begin, fail);
+    return readDirectory(plain, properties, count, begin, this.fail);
   }
 
   private block(place: BlockPlace): Promise<ObjectBlock> {
@@ -185,7 +196,7 @@ export class ObjectTable {
 
   private async readBlock(place: BlockPlace): Promise<ObjectBlock> {
     const plain = await this.unpackedPart(place.begin, place.end, place.checksum, place.unpacked);
-    return readBlock(plain, place, this.facts.properties, fail);
+    return readBlock(plain, place, this.facts.properties, this.fail);
   }
 
   private async unpackedPart(first: number, end: number, sum: bigint, most: number): Promise<Uint8Array> {
@@ -193,9 +204,13 @@ export class ObjectTable {
   }
 
   private async unpackedBytes(part: Uint8Array<ArrayBuffer>, length: number, sum: bigint, most: number): Promise<Uint8Array> {
-    if (part.length !== length || checksum(part) !== sum) fail('a part of it has another checksum: it is damaged, or of another build');
-    return unpacked(part, most, OBJECTS_FILE);
+    if (part.length !== length || checksum(part) !== sum) this.fail('a part of it has another checksum: it is damaged, or of another build');
+    return unpacked(part, most, this.file);
   }
+
+  private readonly fail = (what: string): never => {
+    throw new HierarchyProblem(this.file, what);
+  };
 
   private async part(first: number, end: number): Promise<Uint8Array<ArrayBuffer>> {
     const read = this.whole ?? (await this.read(first, end));

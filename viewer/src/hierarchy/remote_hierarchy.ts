@@ -3,6 +3,7 @@
 import { Build } from './build.js';
 import { checksum } from './checksum.js';
 import { fetchManifest, type Manifest } from './manifest.js';
+import type { TableFacts } from './object_facts.js';
 import { ObjectTable } from './object_table.js';
 import { fetchOutlineOf, type Outline } from './outline.js';
 import { HierarchyProblem, HierarchyReplaced } from './problem.js';
@@ -109,13 +110,14 @@ export class RemoteHierarchy {
 
   /// Names and properties of objects, read as they are asked for; null: there are none. Call it once the directory is there.
   objects({ objects }: Manifest): ObjectTable | null {
-    return objects && new ObjectTable(objects, async (first, end) => {
+    const open = (facts: TableFacts, words: ObjectTable | null = null): ObjectTable => new ObjectTable(facts, async (first, end) => {
       try {
-        return await this.files.part(objects.file, [first, end], objects.bytes, this.signal);
+        return await this.files.part(facts.file, [first, end], facts.bytes, this.signal);
       } catch (problem) {
-        throw await this.explained(problem, this.holds(objects.file, end));
+        throw await this.explained(problem, this.holds(facts.file, end));
       }
-    });
+    }, words);
+    return objects && open(objects, objects.words && open(objects.words));
   }
 
   async manifest(): Promise<Manifest> {

@@ -5,7 +5,7 @@ import { JsonValue } from '../../src/json_value.js';
 import { checksum } from '../../src/hierarchy/checksum.js';
 import { compareBytes } from '../../src/hierarchy/byte_columns.js';
 import type { ObjectRow } from '../../src/hierarchy/object_blocks.js';
-import { readObjectFacts, type ObjectFacts } from '../../src/hierarchy/object_facts.js';
+import { readObjectFacts, type ObjectFacts, type TableFacts } from '../../src/hierarchy/object_facts.js';
 import { ObjectTable } from '../../src/hierarchy/object_table.js';
 import { HierarchyProblem } from '../../src/hierarchy/problem.js';
 import { fittingNames } from '../../src/tools/object_names.js';
@@ -134,7 +134,7 @@ function forged(block: readonly number[], { count = 1, key = [97], type = 0, nam
     ...u32(1), ...u32(1), type, ...texts([...Buffer.from('p')]), ...u32(count), ...u32(packed.length), ...u32(block.length), ...planes(8, [checksum(packed)]), ...texts(key),
   ]));
   const bytes = Buffer.concat([Buffer.alloc(12), packed, directory, Buffer.alloc(24)]);
-  const facts: ObjectFacts = {
+  const facts: TableFacts = {
     file: 'objects.bin', bytes: bytes.length, count, properties: [{ name, type: (['number', 'boolean', 'text', 'date'] as const)[type] ?? 'number' }],
     directory: { bytes: directory.length, checksum: checksum(directory) },
   };
@@ -189,7 +189,7 @@ describe('names that fit', () => {
     const { bytes, json } = tableOfRows([...names].sort().map((name) => ({ name, values: [], box: null, triangles: 0, area: 0 })), []);
     return tableOf(bytes, { json }).table;
   };
-  const found = async (table: ObjectTable, text: string, most = 8): Promise<string[]> => (await fittingNames(table, text, most)).map(({ name }) => name);
+  const found = async (table: ObjectTable, text: string, most = 8): Promise<string[]> => (await fittingNames(table, text, most)).rows.map(({ name }) => name);
 
   it('begin so, however their letters are written, before those that have it elsewhere', async () => {
     const table = tableOfNames(['', 'Main Street 1', 'Main Street 12', 'MAIN', 'main', 'East Main Road', 'Old main st', 'Park']);
