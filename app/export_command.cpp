@@ -154,6 +154,8 @@ Examples:
   meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
   meshhier export town.hier --level 6 --polygon parcel.geojson --crs EPSG:4326 --clip -o parcel.ply
   meshhier export town.3tz --error 0 --box 0,0,-10 200,100,90 -o quarter.3tz
+  meshhier export town.hier --error 0 --object 'Main Street/' -o street.obj
+  meshhier export town.hier --error 0 --where "storey = 3 and owner like 'A%'" -o storey.glb
   meshhier export town.hier --gsd 0.02 -o ortho.tif --dsm dsm.tif
   meshhier export hills.hier --gsd 30 --align 15,15 --dsm heights.tif
   meshhier export https://example.org/town.3tz --level 4 -o town.ply

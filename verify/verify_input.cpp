@@ -349,6 +349,15 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
     compare_each(expected.files, found.files, problems);
 }
 
+/// Says that the label that objects are made from is read, also where it is not kept besides.
+void read_object_label(importing::InputUse& use) {
+  const std::string& label = use.objects.label;
+  if (label.empty() || use.attributes.takes(label))
+    return;
+  use.attributes.names.push_back(label);
+  use.attributes.labels->push_back(label);
+}
+
 /// Returns the use of the input as in the build. A config that is none is told elsewhere.
 importing::InputUse use_of(const storage::Manifest& manifest) {
   importing::InputUse use;
@@ -374,6 +383,7 @@ importing::InputUse use_of(const storage::Manifest& manifest) {
     // Values of faces have split vertices even where the mesh has not kept them.
     if (manifest.source.count_of("dropped_values") > 0)
       use.attributes = config.attributes;
+    read_object_label(use);
     use.crs = config.placement.crs.value_or("");
   } catch (const Error&) {
   }
