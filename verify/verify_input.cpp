@@ -355,7 +355,8 @@ void read_object_label(importing::InputUse& use) {
   if (label.empty() || use.attributes.takes(label))
     return;
   use.attributes.names.push_back(label);
-  use.attributes.labels->push_back(label);
+  if (use.attributes.labels)
+    use.attributes.labels->push_back(label);
 }
 
 /// Returns the use of the input as in the build. A config that is none is told elsewhere.

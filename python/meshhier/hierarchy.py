@@ -43,7 +43,7 @@ class Hierarchy:
         self._files = open_files(path)
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
         facts = self._manifest.json.get("objects")
-        self._objects = ObjectTable(facts, self._read_objects, self.path) if facts else None
+        self._objects = self._open_objects(facts, "objects.bin", self._open_objects(facts.get("words"), "object_words.bin")) if facts else None
         self._index = self._read_index()
         self._keys = self._index["level"].astype(np.uint64) << np.uint64(32) | self._index["index"]
 
@@ -72,8 +72,8 @@ class Hierarchy:
                 raise ReplacedError(f"{self.path}: another hierarchy has taken its place since it was opened: open it again") from None
             raise
 
-    def _read_objects(self, begin: int, end: int) -> bytes:
-        return self._files.part("objects.bin", begin, end)
+    def _open_objects(self, facts: Any, file: str, words: Optional[ObjectTable] = None) -> Optional[ObjectTable]:
+        return ObjectTable(facts, lambda begin, end: self._files.part(file, begin, end), self.path, file, words) if facts else None
 
     def _is_replaced(self) -> bool:
         try:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .checksum import checksum
 from .errors import CorruptError
+from .words import AskedWord, Letters, PlainLetters, fits, objects_of_row
 
 _FILE = "objects.bin"
 _TYPES = ("number", "boolean", "text", "date")
@@ -120,9 +121,11 @@ class ObjectTable(Sequence[ObjectRow]):
     Reads the directory when it is first asked for something, then a block of at most 256 objects a question.
     """
 
-    def __init__(self, facts: dict[str, Any], read: Callable[[int, int], bytes], path: str) -> None:
-        self._what = f"{path}: {_FILE}"
+    def __init__(self, facts: dict[str, Any], read: Callable[[int, int], bytes], path: str, file: str = _FILE, words: Optional["ObjectTable"] = None) -> None:
+        self._what = f"{path}: {file}"
         self._read = read
+        self._words = words
+        self._letters: Optional[Letters] = None
         self._blocks: Optional[list[_Block]] = None
         self._firsts: list[int] = []
         self._kept: OrderedDict[int, _Rows] = OrderedDict()
@@ -169,6 +172,23 @@ class ObjectTable(Sequence[ObjectRow]):
         begin = self._first_not(lambda name: name < start)
         return range(begin, self._first_not(lambda name: name < start or name.startswith(start)))
 
+    def search(self, text: str) -> list[int]:
+        """The numbers of the objects whose names have all words of `text`, in any order; the last one may be the beginning of a word.
+
+        Case and accents make no difference. Reads the rows of these words, or all names of a hierarchy without a table of words, as one of up to 256 objects.
+        """
+        if self._letters is None:
+            self._letters = PlainLetters() if self._words is None else self._words._own_letters()
+        asked = self._letters.asked(text)
+        if not asked:
+            return []
+        if self._words is None:
+            return [row.object for row in self if fits(self._letters.words(row.name), asked)]
+        found = set.intersection(*(self._words._objects_with(word) for word in asked))
+        if found and max(found) >= self._count:
+            raise self._words._corrupt("has an object that there is not")
+        return sorted(found)
+
     def names(self) -> list[str]:
         """The names of all objects, in their order."""
         return [row.name for row in self]
@@ -201,6 +221,21 @@ class ObjectTable(Sequence[ObjectRow]):
         import pandas
 
         return pandas.DataFrame(self.columns()).rename_axis("object")
+
+    # A table of words.
+
+    def _corrupt(self, why: str) -> CorruptError:
+        return CorruptError(f"{self._what}: {why}")
+
+    def _own_letters(self) -> Letters:
+        text = self[0].values.get("objects") if self._count and self[0].name == "" else None
+        if not isinstance(text, str):
+            raise self._corrupt("lacks the table of letters")
+        return Letters(text, self._corrupt)
+
+    def _objects_with(self, asked: AskedWord) -> set[int]:
+        rows = self.range(asked.word if asked.is_beginning else asked.word + " ")
+        return {number for row in (self[i] for i in rows) for number in objects_of_row(row.name, str(row.values["objects"] or ""), self._corrupt)}
 
     # The file.
 
