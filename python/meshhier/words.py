@@ -48,7 +48,7 @@ class Letters:
                 raise fail("a row of the table of letters is not as it must be") from None
             last = first + (count - 1) * step
             span = last - first if kind == _RUNNING else 0
-            if min(first, count - 1, step - 1, kind) < 0 or max(last, *(point + span for point in to)) > _LAST_CODE_POINT or kind > _UNSPACED or (kind == _RUNNING and len(to) != 1):
+            if min(first, count - 1, step - 1, kind) < 0 or max([last, *(point + span for point in to)]) > _LAST_CODE_POINT or kind > _UNSPACED or (kind == _RUNNING and len(to) != 1):
                 raise fail("a row of the table of letters is not as it must be")
             ranges = self._unspaced if kind == _UNSPACED else self._ranges
             if ranges and first <= ranges[-1].last:

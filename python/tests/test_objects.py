@@ -15,6 +15,7 @@ import pytest
 import meshhier
 from meshhier.checksum import checksum
 from meshhier.objects import ObjectTable
+from meshhier.words import Letters
 
 PROPERTIES = [("height", "number"), ("listed", "boolean"), ("use", "text"), ("built", "date")]
 TYPES = ["number", "boolean", "text", "date"]
@@ -151,3 +152,66 @@ def test_triangles_have_objects(meshgen: str, built: Callable[..., str], tmp_pat
         assert set(towers.triangle_objects.tolist()) == set(np.flatnonzero(high).tolist())
         for values in city.cut(level=0).attributes.values():
             assert values.max() < len(city.objects)
+
+def words_of(names: list[str], letters: str, change: Callable[[str], str] = lambda text: text) -> ObjectTable:
+    """Names with a table of words, as docs/file_format.md describes it (section 9.1); `change`: what is done to the objects of each word."""
+    found: dict[str, list[int]] = {}
+    for number, name in enumerate(names):
+        for word in set(Letters(letters, ValueError).words(name)):
+            found.setdefault(word, []).append(number)
+    rows = [("", letters)] + sorted((f"{word} {all[0]:06x}", change("".join(number_text(b - a - 1) for a, b in zip(all, all[1:])))) for word, all in found.items())
+    words = small_table([(name, text) for name, text in rows], [("objects", "text")], "object_words.bin")
+    return small_table([(name, None) for name in names], [], "objects.bin", words)
+
+
+def number_text(number: int) -> str:
+    return chr(number) if number < 64 else chr(64 + number % 64) + number_text(number // 64)
+
+
+def small_table(rows: list[tuple[str, Optional[str]]], properties: list[tuple[str, str]], file: str, words: Optional[ObjectTable] = None) -> ObjectTable:
+    """A table of one block, with at most one property."""
+    count = len(rows)
+    plain = texts([name for name, _ in rows]) + bytes(17 * count)
+    if properties:
+        there = [text for _, text in rows if text is not None]
+        plain += bytes(text is not None for _, text in rows) + texts(there)
+    packed = gzip.compress(plain)
+    directory = struct.pack("<II", len(properties), 1) + bytes(TYPES.index(kind) for _, kind in properties) + texts([name for name, _ in properties])
+    directory += struct.pack("<IIIQ", count, len(packed), len(plain), checksum(packed)) + texts([rows[0][0]])
+    end = gzip.compress(directory)
+    data = b"MHTABLE\n\1\0\0\0" + packed + end + struct.pack("<QQQ", len(end), len(directory), checksum(end))
+    facts = {"bytes": len(data), "count": count, "directory": {"bytes": len(end), "checksum": f"{checksum(end):016x}"}, "properties": [{"name": name, "type": kind} for name, kind in properties]}
+    return ObjectTable(facts, lambda begin, end: data[begin:end], "town.hier", file, words)
+
+
+LETTERS = "0 30 1 0 20\n3a 7 1 0 20\n41 1a 1 1 61\n5b 6 1 0 20\ndf 1 1 0 73 73\ne9 1 1 0 65\n3040 c0 1 2\n4e00 5200 1 2\n"
+STREETS = sorted(["", "St. Mary's Church", "bldg_7 church of St Mark", "Churchyard", "Große Straße", "東京都庁", "서울"], key=str.encode)
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [("church", ["Churchyard", "St. Mary's Church", "bldg_7 church of St Mark"]), ("mar CHURCH", []), ("church mar", ["St. Mary's Church", "bldg_7 church of St Mark"]),
+     ("strasse", ["Große Straße"]), ("東京都", ["東京都庁"]), ("京", ["東京都庁"]), ("서", ["서울"]), ("x", []), (" -", [])],
+)
+def test_names_are_found_by_their_words(text: str, expected: list[str]) -> None:
+    table = words_of(STREETS, LETTERS)
+    assert [STREETS[number] for number in table.search(text)] == expected
+
+
+def test_few_names_are_read_whole() -> None:
+    table = small_table([(name, None) for name in STREETS], [], "objects.bin")
+    assert [STREETS[number] for number in table.search("church mar")] == ["St. Mary's Church", "bldg_7 church of St Mark"]
+    assert [STREETS[number] for number in table.search("strasse")] == ["Große Straße"]
+
+
+@pytest.mark.parametrize("letters", ["x\n", "41 1\n", "41 0 1 0\n", "61 1 1 0\n41 1 1 0\n", "41 1 1 1\n", "110000 1 1 0\n"])
+def test_a_wrong_table_of_letters_is_refused(letters: str) -> None:
+    words = small_table([("", letters)], [("objects", "text")], "object_words.bin")
+    with pytest.raises(meshhier.CorruptError, match="object_words.bin"):
+        small_table([("a", None)], [], "objects.bin", words).search("a")
+
+
+@pytest.mark.parametrize("text", ["A", "\x07", "\u00e9", "AAAAAA"])
+def test_wrong_objects_of_a_word_are_refused(text: str) -> None:
+    with pytest.raises(meshhier.CorruptError, match="object_words.bin"):
+        words_of(["a", "b"], LETTERS, lambda _: text).search("b")
