@@ -82,7 +82,7 @@ void ObjectDistances::add(std::uint32_t position, const PlacedTile& tile,
     }
   }
   for (const auto& [object, sums] : all)
-    sums_.add(TileSums{object, position, sums});
+    sums_.add(ObjectTileSums{object, position, sums});
 }
 
 std::vector<ObjectDistance> ObjectDistances::farthest(std::size_t most, std::uint32_t& compared) {
@@ -100,8 +100,8 @@ std::vector<ObjectDistance> ObjectDistances::farthest(std::size_t most, std::uin
     }
   };
   sums_.sort();
-  sums_.for_each_block([&](std::span<const TileSums> block) {
-    for (const TileSums& sums : block) {
+  sums_.for_each_block([&](std::span<const ObjectTileSums> block) {
+    for (const ObjectTileSums& sums : block) {
       if (now && now->object == sums.object) {
         join(now->distances, sums.distances);
         continue;

@@ -84,12 +84,12 @@ class ObjectDistances {
                           const std::optional<PlaceTransform>& transform, std::size_t most);
 
  private:
-  struct TileSums {
+  struct ObjectTileSums {
     std::uint32_t object = 0, tile = 0;
     DistanceSums distances;
   };
   struct Order {
-    std::pair<std::uint32_t, std::uint32_t> operator()(const TileSums& sums) const {
+    std::pair<std::uint32_t, std::uint32_t> operator()(const ObjectTileSums& sums) const {
       return {sums.object, sums.tile};
     }
   };
@@ -98,7 +98,7 @@ class ObjectDistances {
 
   storage::MemoryPool pool_;
   storage::ScratchFile scratch_;
-  partition::ExternalSort<TileSums, Order> sums_;
+  partition::ExternalSort<ObjectTileSums, Order> sums_;
 };
 
 }  // namespace meshhier::comparing
