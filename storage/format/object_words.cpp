@@ -1,6 +1,7 @@
 #include "storage/format/object_words.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 
 #include <algorithm>
 #include <cassert>
@@ -19,6 +20,8 @@ constexpr std::uint32_t kMoreDigits = 0x40;
 constexpr int kDigitBits = 6;
 /// Of the first object, in a row's name.
 constexpr std::size_t kFirstDigits = 6;
+/// Bytes of a word in a message.
+constexpr std::size_t kMostShownWord = 60;
 
 void append_number(std::uint32_t number, std::string& text) {
   for (; number >= kMoreDigits; number >>= kDigitBits)
@@ -88,8 +91,8 @@ ObjectWords::ObjectWords(std::unique_ptr<const File> file, std::uint32_t objects
 
 std::vector<std::uint32_t> ObjectWords::objects_of(const ObjectRow& row) const {
   const auto fail = [&](const char* what) {
-    throw Error(ErrorCode::corrupt,
-                fmt::format("{}: the row of word \"{}\" {}", name_, word_in(row), what));
+    throw Error(ErrorCode::corrupt, fmt::format("{}: the row of word \"{}\" {}", name_,
+                                                plain_text(word_in(row), kMostShownWord), what));
   };
   const std::string_view word = word_in(row);
   std::uint32_t object = 0;
@@ -123,8 +126,8 @@ std::vector<std::uint32_t> ObjectWords::objects_with(const AskedWord& asked) con
     std::ranges::sort(all);
     all.erase(std::ranges::unique(all).begin(), all.end());
   } else if (std::ranges::adjacent_find(all, std::ranges::greater_equal()) != all.end()) {
-    throw Error(ErrorCode::corrupt,
-                fmt::format("{}: the objects of word \"{}\" do not ascend", name_, asked.word));
+    throw Error(ErrorCode::corrupt, fmt::format("{}: the objects of word \"{}\" do not ascend",
+                                                name_, plain_text(asked.word, kMostShownWord)));
   }
   return all;
 }
@@ -155,8 +158,8 @@ void ObjectWords::for_each(
     const std::vector<std::uint32_t> objects = objects_of(row);
     const std::string_view word = word_in(row);
     if (word == before && objects.front() <= last)
-      throw Error(ErrorCode::corrupt,
-                  fmt::format("{}: the objects of word \"{}\" do not ascend", name_, word));
+      throw Error(ErrorCode::corrupt, fmt::format("{}: the objects of word \"{}\" do not ascend",
+                                                  name_, plain_text(word, kMostShownWord)));
     before = word;
     last = objects.back();
     visit(word, objects);

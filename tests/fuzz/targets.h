@@ -50,6 +50,8 @@ void records(std::span<const std::byte> input);
 /// What features of a glTF are: a kind, the JSON and the bytes of a property table or of a batch
 /// table (see metadata.cpp).
 void metadata(std::span<const std::byte> input);
+/// A table of words: a kind, then a file, rows, a table of letters, or names.
+void object_words(std::span<const std::byte> input);
 /// A layout and runs of lists, packed here or whole as a file, for a mesh of a few thousand slots.
 void detail(std::span<const std::byte> input);
 /// A progressive.json; also with the right checksum at its end.
@@ -94,6 +96,7 @@ inline constexpr auto kTargets = std::to_array<Target>({{"ply_header", ply_heade
                                                         {"object_table", object_table},
                                                         {"records", records},
                                                         {"metadata", metadata},
+                                                        {"object_words", object_words},
                                                         {"detail", detail},
                                                         {"stream_index", stream_index},
                                                         {"stream", stream},

@@ -29,16 +29,19 @@ export class ColumnReader {
   }
 
   u32(count: number): number[] {
-    return Array.from(this.numbers(count, 4), (view) => view.getUint32(0, true));
+    const numbers = this.numbers(count, 4);
+    return Array.from({ length: count }, (_, i) => numbers.getUint32(4 * i, true));
   }
 
   u64(count: number): bigint[] {
-    return Array.from(this.numbers(count, 8), (view) => view.getBigUint64(0, true));
+    const numbers = this.numbers(count, 8);
+    return Array.from({ length: count }, (_, i) => numbers.getBigUint64(8 * i, true));
   }
 
   /// Finite numbers.
   f64(count: number): number[] {
-    const numbers = Array.from(this.numbers(count, 8), (view) => view.getFloat64(0, true));
+    const bytes = this.numbers(count, 8);
+    const numbers = Array.from({ length: count }, (_, i) => bytes.getFloat64(8 * i, true));
     return numbers.every(Number.isFinite) ? numbers : this.fail('a number is not finite');
   }
 
@@ -72,13 +75,11 @@ export class ColumnReader {
     return this.bytes.subarray(this.at - bytes, this.at);
   }
 
-  /// Each number's bytes, put together from their planes.
-  private *numbers(count: number, width: number): Generator<DataView> {
+  /// The numbers one behind the other, each put together from its planes.
+  private numbers(count: number, width: number): DataView {
     const planes = this.take(count * width);
-    const view = new DataView(new ArrayBuffer(width));
-    for (let i = 0; i < count; ++i) {
-      for (let plane = 0; plane < width; ++plane) view.setUint8(plane, planes[plane * count + i]);
-      yield view;
-    }
+    const bytes = new Uint8Array(planes.length);
+    for (let plane = 0; plane < width; ++plane) for (let i = 0; i < count; ++i) bytes[i * width + plane] = planes[plane * count + i];
+    return new DataView(bytes.buffer);
   }
 }
