@@ -226,6 +226,21 @@ TEST_F(PageTest, ADamagedTileIsNeverPutIntoAPage) {
   EXPECT_FALSE(files_->exists(page()));
 }
 
+TEST_F(PageTest, ADamagedOutlineIsNeverPutIntoAPage) {
+  const fs::path outline = storage::outline_path(hierarchy());
+  std::string bytes = text_of(outline);
+  bytes[bytes.size() / 2] ^= 1;
+  storage::write_file(*files_, outline, page_bytes(bytes));
+  try {
+    write(100'000'000, "");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::corrupt);
+    EXPECT_THAT(error.what(), HasSubstr("outline.glb"));
+  }
+  EXPECT_FALSE(files_->exists(page()));
+}
+
 // ---- stories
 
 std::vector<std::byte> picture_bytes(const std::string& bytes) {
