@@ -149,19 +149,20 @@ std::size_t text_columns(std::span<const ObjectProperty> properties, std::size_t
   return texts;
 }
 
-ObjectColumns::ObjectColumns(std::span<const ObjectProperty> properties, std::size_t count,
-                             std::uint64_t rows, std::span<const std::uint64_t> text_bytes) {
-  assert(count <= properties.size() + 2 && text_bytes.size() == text_columns(properties, count));
+ObjectColumns::ObjectColumns(const ObjectTableShape& shape) : rows(shape.rows) {
+  const std::vector<ObjectProperty>& properties = shape.properties;
+  assert(shape.columns <= properties.size() + 2 &&
+         shape.text_bytes.size() == text_columns(properties, shape.columns));
   std::vector<std::string> names{"object", "name"};
   for (const ObjectProperty& property : properties)
     names.push_back(property.name);
   const std::vector<std::string> ids = metadata_ids(names);
   std::size_t text = 0;
-  for (std::size_t c = 0; c < count; ++c) {
+  for (std::size_t c = 0; c < shape.columns; ++c) {
     ObjectColumn column{ids[c], names[c], kind_of(properties, c)};
     column.values = bytes;
     column.value_bytes =
-        column.kind == Kind::text ? text_bytes[text++] : rows * bytes_of(column.kind);
+        column.kind == Kind::text ? shape.text_bytes[text++] : rows * bytes_of(column.kind);
     bytes = aligned8(bytes + column.value_bytes);
     if (column.kind == Kind::text) {
       column.starts = bytes;
@@ -256,18 +257,17 @@ TileObjects make_tile_objects(std::span<const std::uint32_t> objects,
 }
 
 std::vector<std::uint32_t> read_objects(std::span<const std::byte> table,
-                                        const ObjectColumns& columns, std::uint64_t rows,
-                                        const std::string& name) {
+                                        const ObjectColumns& columns, const std::string& name) {
   assert(table.size() == columns.bytes);
-  std::vector<std::uint32_t> objects(rows);
-  for (std::uint64_t i = 0; i < rows; ++i) {
+  std::vector<std::uint32_t> objects(columns.rows);
+  for (std::uint64_t i = 0; i < columns.rows; ++i) {
     objects[i] = load_little<std::uint32_t>(table.data() + columns.columns[0].values + 4 * i);
     if (i > 0 && objects[i] <= objects[i - 1])
       refuse_table(name, "the objects of the table do not ascend");
   }
   for (const ObjectColumn& column : columns.columns) {
     if (column.kind == Kind::text)
-      check_texts(table, column, rows, name);
+      check_texts(table, column, columns.rows, name);
   }
   return objects;
 }
@@ -282,7 +282,7 @@ Json object_class(const ObjectColumns& columns) {
   return {{"properties", std::move(properties)}};
 }
 
-Json object_table_json(const ObjectColumns& columns, std::uint64_t rows, std::size_t first_view) {
+Json object_table_json(const ObjectColumns& columns, std::size_t first_view) {
   Json properties = Json::object();
   std::size_t view = first_view;
   for (const ObjectColumn& column : columns.columns) {
@@ -291,7 +291,7 @@ Json object_table_json(const ObjectColumns& columns, std::uint64_t rows, std::si
       property["stringOffsets"] = view++;
     properties[column.id] = std::move(property);
   }
-  return {{"class", "object"}, {"count", rows}, {"properties", std::move(properties)}};
+  return {{"class", "object"}, {"count", columns.rows}, {"properties", std::move(properties)}};
 }
 
 }  // namespace meshhier::storage

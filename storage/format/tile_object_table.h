@@ -57,14 +57,20 @@ struct ObjectColumn {
   std::uint64_t starts = 0, start_bytes = 0;  ///< of texts: u32s, one more than rows
 };
 
-/// The columns of a table of so many rows.
+/// The numbers from which the place of everything in a table follows.
+struct ObjectTableShape {
+  std::vector<ObjectProperty> properties;  ///< the hierarchy's
+  std::uint64_t rows = 0;
+  std::uint32_t columns = 0;
+  std::vector<std::uint64_t> text_bytes;  ///< of each of them that has texts
+};
+
 struct ObjectColumns {
   std::vector<ObjectColumn> columns;
+  std::uint64_t rows = 0;
   std::uint64_t bytes = 0;  ///< a multiple of 8
 
-  /// `count`: of columns. `text_bytes`: of each that has texts.
-  ObjectColumns(std::span<const ObjectProperty> properties, std::size_t count, std::uint64_t rows,
-                std::span<const std::uint64_t> text_bytes);
+  explicit ObjectColumns(const ObjectTableShape& shape);
 };
 
 /// Returns how many of the first columns have texts.
@@ -109,14 +115,12 @@ TileObjects make_tile_objects(std::span<const std::uint32_t> objects,
 /// Reads the objects of a table that nobody vouches for, which has the bytes that its columns say,
 /// and checks the texts' places. Throws Error(corrupt) that starts with `name`.
 std::vector<std::uint32_t> read_objects(std::span<const std::byte> table,
-                                        const ObjectColumns& columns, std::uint64_t rows,
-                                        const std::string& name);
+                                        const ObjectColumns& columns, const std::string& name);
 
 /// Returns the class of the schema.
 nlohmann::ordered_json object_class(const ObjectColumns& columns);
 /// Returns the property table. `first_view`: the number of the buffer view of the first column;
 /// others follow, those of places of texts behind those of the texts.
-nlohmann::ordered_json object_table_json(const ObjectColumns& columns, std::uint64_t rows,
-                                         std::size_t first_view);
+nlohmann::ordered_json object_table_json(const ObjectColumns& columns, std::size_t first_view);
 
 }  // namespace meshhier::storage

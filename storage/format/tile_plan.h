@@ -101,6 +101,10 @@ enum class TilePart : std::size_t {
   normal_map
 };
 inline constexpr std::size_t kPartCount = 23;
+inline constexpr auto kPartsEnd = static_cast<TilePart>(kPartCount);
+constexpr TilePart next(TilePart part) {
+  return static_cast<TilePart>(static_cast<std::size_t>(part) + 1);
+}
 
 /// A coordinate of 1 in a normal map is stored as this.
 inline constexpr float kMaxMapTexcoord = 65535;
@@ -135,6 +139,9 @@ using ChannelGroups = std::array<ChannelGroup, kAttributeSections.size()>;
 enum class ViewMode { raw, attributes, triangles, indices };
 ViewMode mode_of(TilePart part);
 
+/// Returns what a part's buffer view is a target for, as glTF has it; 0: nothing.
+unsigned target_of(TilePart part);
+
 /// Returns where a part begins behind what ends there: at a multiple of 4, of 8 for tables.
 std::uint64_t begin_of(TilePart part, std::uint64_t end);
 
@@ -160,16 +167,6 @@ struct ImageShape {
   std::uint64_t bytes = 0;  ///< 0: there is none
   std::uint32_t width = 0, height = 0;
   AlphaMode alpha = AlphaMode::opaque;
-};
-
-/// The table of objects.
-struct ObjectTableShape {
-  std::vector<ObjectProperty> properties;  ///< the hierarchy's
-  std::uint64_t rows = 0;
-  std::uint32_t columns = 0;
-  std::vector<std::uint64_t> text_bytes;  ///< of each of them that has texts
-
-  ObjectColumns plan() const { return {properties, columns, rows, text_bytes}; }
 };
 
 /// The numbers from which the place of everything in the file follows; each below 2^32, so that no

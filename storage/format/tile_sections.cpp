@@ -225,7 +225,7 @@ class Reader {
       return {};
     const Section& section = plan_[TilePart::objects];
     const auto table = bin_.subspan(section.offset, section.bytes());
-    TileObjects objects{read_objects(table, shape->plan(), shape->rows, name_),
+    TileObjects objects{read_objects(table, ObjectColumns(*shape), name_),
                         shape->columns,
                         shape->text_bytes,
                         {table.begin(), table.end()}};

@@ -94,7 +94,7 @@ TEST(TileObjectTable, HasAColumnForEachProperty) {
   const TileObjects made =
       make_tile_objects(std::array{3U, 4U, 8U}, kAllTypes,
                         [](std::uint32_t object) { return sample_object(object, kAllTypes); });
-  const ObjectColumns columns(kAllTypes, made.columns, 3, made.text_bytes);
+  const ObjectColumns columns({kAllTypes, 3, made.columns, made.text_bytes});
   ASSERT_EQ(columns.bytes, made.table.size());
   ASSERT_EQ(columns.columns.size(), 6U);
   EXPECT_EQ(columns.columns[4].id, "name_2");
@@ -179,8 +179,8 @@ TEST(TileObjectTable, SANITIZED_WhatDoesNotFitIsRefused) {
               HasSubstr("ascend"));
   EXPECT_THAT(failure([](OpenGlb& glb) { glb.attribute("_FEATURE_ID_0")[1] ^= std::byte{255}; }),
               HasSubstr("row"));
-  const ObjectColumns columns(kAllTypes, tile.objects.columns, tile.objects.objects.size(),
-                              tile.objects.text_bytes);
+  const ObjectColumns columns(
+      {kAllTypes, tile.objects.objects.size(), tile.objects.columns, tile.objects.text_bytes});
   EXPECT_THAT(failure([&](OpenGlb& glb) {
                 glb.view("objectTable")[columns.columns[1].starts + 7] ^= std::byte{255};
               }),
