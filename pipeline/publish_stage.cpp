@@ -1,30 +1,22 @@
 #include "pipeline/publish_stage.h"
 
 #include "base/bounds.h"
-#include "config/placement.h"
 #include "execution/parallel.h"
 #include "hierarchy/drawing_rule.h"
-#include "hierarchy/lattice.h"
 #include "hierarchy/rounded_tile.h"
 #include "partition/compactness.h"
-#include "pipeline/images_stage.h"
 #include "pipeline/normal_map_stage.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/preview.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/texture_stage.h"
+#include "pipeline/tile_format.h"
 #include "pipeline/tile_tables.h"
 #include "pipeline/tiles/texture_store.h"
 #include "pipeline/tiles/tile_normals.h"
-#include "storage/format/index.h"
 #include "storage/format/layout.h"
-#include "storage/format/level_summary.h"
-#include "storage/format/manifest.h"
-#include "storage/format/object_facts.h"
 #include "storage/format/object_table.h"
-#include "storage/format/outline_glb.h"
 #include "storage/format/tile_plan.h"
-#include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 #include "storage/io/process.h"
 #include "texture/corners.h"
@@ -32,41 +24,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 
 namespace meshhier::pipeline {
 namespace {
-
-/// Returns the lattice over the input's bounds as they are stored; nothing if positions stay exact.
-std::optional<Lattice> lattice_of(const DistributedSource& source, const StageContext& context) {
-  const std::optional<std::uint32_t>& bits = context.config.storage.position_bits;
-  if (!bits)
-    return std::nullopt;
-  const BoundsD& bounds = source.summary.bounds;
-  return make_lattice({to_float(bounds.min - source.origin), to_float(bounds.max - source.origin)},
-                      static_cast<int>(*bits));
-}
-
-storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
-                              const TextureStore& textures,
-                              const std::vector<ObjectProperty>* objects,
-                              const StageContext& context) {
-  storage::TileFormat format = {source.summary.attributes,
-                                {{}, context.config.up_axis()},  // the origin is in the tileset
-                                context.config.storage.compression,
-                                {}};
-  format.computed_normals = computed_normals;
-  if (source.summary.textures)
-    format.textures = context.config.picture_format();
-  if (context.plan.job.normal_map_side > 0 && textures.has_normal_maps())
-    format.normal_maps = context.config.normal_map.format;
-  format.lattice = lattice_of(source, context);
-  if (objects != nullptr)
-    format.objects = *objects;
-  return format;
-}
 
 /// Opens the table of objects that the import has left, if tiles are to have tables of theirs.
 std::unique_ptr<const storage::ObjectTable> open_objects(const std::filesystem::path& hierarchy,
@@ -208,25 +170,6 @@ Published write_tile(const TileWriter& to, NodeId node, const TileObjects& objec
   return published;
 }
 
-/// Returns the records with errors and bounds, which count the rounding of positions.
-std::vector<TileRecord> complete_records(std::span<const Published> tiles, const TileErrors& errors,
-                                         const std::optional<storage::Quantization>& rounded,
-                                         const Tree& tree) {
-  std::vector<TileRecord> records;
-  records.reserve(tiles.size());
-  for (const Published& tile : tiles) {
-    TileRecord& record = records.emplace_back(tile.record);
-    const TileError& error = errors[record.node];
-    record.error = error.error;
-    record.bound = error.bound;
-    if (rounded) {
-      record.bound = bound_with_rounding(error.bound, rounded->worst_rounding,
-                                         raw(tree.depth()) - raw(record.node.level));
-    }
-  }
-  return records;
-}
-
 /// A tile on its way to its file.
 struct TileAtWork {
   NodeId node;
@@ -294,113 +237,6 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
     context.files.sync_tree(to.directory);
 }
 
-namespace {
-
-/// Returns the summary of the input, completed by what all stages have found.
-SourceSummary complete_source(const BuildJournal& journal, const StageContext& context) {
-  SourceSummary source = journal.source()->summary;
-  source.unreferenced_vertices = journal.unreferenced_vertices();
-  if (source.textures) {
-    source.textures->texels = context.plan.textures.texels();
-    source.textures->missing_images += broken_pictures(context.plan.textures, journal).size();
-  }
-  return source;
-}
-
-TileErrors complete_errors(const TextureStore& textures, BuildJournal& journal,
-                           const StageContext& context) {
-  const SourceSummary& source = journal.source()->summary;
-  TileErrors errors = add_up(journal, context.tree(), source.diagonal());
-  return source.textures ? with_texels(std::move(errors), context.tree(), textures) : errors;
-}
-
-}  // namespace
-
-void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-                   const OutlineStageResult& outline,
-                   const std::optional<storage::ObjectsSummary>& known_objects,
-                   const std::filesystem::path& directory, const StageContext& context) {
-  storage::FileSystem& files = context.files;
-  const Tree& tree = context.tree();
-  const SourceSummary source = complete_source(journal, context);
-  const std::vector<Published> tiles = journal.published();
-  const bool has_tables = known_objects && context.plan.job.has_object_tables;
-  storage::TileFormat format =
-      format_of(*journal.source(), forest.computes_normals(), textures,
-                has_tables ? &known_objects->table.properties : nullptr, context);
-  std::optional<storage::Quantization> quantization;
-  if (format.lattice) {
-    quantization.emplace();
-    quantization->lattice = *format.lattice;
-    for (const Published& tile : tiles)
-      quantization->worst_rounding = std::max(quantization->worst_rounding, tile.rounding);
-  }
-  const std::vector<TileRecord> records =
-      complete_records(tiles, complete_errors(textures, journal, context), quantization, tree);
-  const std::vector<std::byte> index = storage::encode_index(records);
-  storage::write_file(files, storage::index_path(directory), index);
-  // Drawing a tile takes as much memory as packing it.
-  const std::array root{tree.root()};
-  const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
-  const PreviewInput published{directory, format, records};
-  PublishedTile root_tile = read_root(published, context);
-  Outline lines = outline.outline;
-  lines.first_view = root_tile.first_view;
-  const std::vector<std::byte> outline_file = storage::encode_outline(lines, format.frame);
-  storage::write_file(files, storage::outline_path(directory), outline_file);
-
-  std::optional<MadePreview> preview;
-  if (context.config.preview) {
-    preview = make_preview(published, std::move(root_tile), context);
-    storage::write_file(files, storage::preview_path(directory), preview->file);
-  }
-
-  storage::Manifest manifest;
-  manifest.generator = "meshhier " MESHHIER_VERSION;
-  manifest.source = source;
-  manifest.origin = journal.source()->origin;
-  manifest.up = format.frame.up;
-  manifest.units = context.config.units ? context.config.units : source.units;
-  manifest.first_view = lines.first_view;
-  manifest.transform = config::tileset_transform(context.config, source.bounds);
-  manifest.licence = context.config.licence;
-  manifest.tileset_pixels = context.config.tileset.pixels;
-  manifest.partition_count = tree.partition_count();
-  manifest.compression = format.compression;
-  manifest.quantization = quantization;
-  manifest.computed_normals = format.computed_normals;
-  manifest.textures = format.textures;
-  manifest.normal_maps = format.normal_maps;
-  manifest.config = config::resolved_json(context.config);
-  if (!source.textures) {
-    manifest.config.erase("texture");  // it decided nothing
-    manifest.config.erase("missing_images");
-  }
-  if (context.plan.job.normal_map_side == 0)
-    manifest.config.erase("normal_map");
-  manifest.index_bytes = index.size();
-  manifest.index_checksum = storage::checksum(index);
-  manifest.outline_bytes = outline_file.size();
-  manifest.outline_checksum = storage::checksum(outline_file);
-  manifest.outline = outline.report;
-  manifest.objects = known_objects;
-  if (manifest.objects)
-    manifest.objects->are_in_tiles = format.objects.has_value();
-  if (preview)
-    manifest.preview = preview->facts;
-  manifest.levels = nlohmann::ordered_json::array();
-  for (const storage::LevelSummary& level : storage::summarize_levels(tree, records))
-    manifest.levels.push_back(storage::to_json(level));
-  manifest.total_bytes = std::accumulate(
-      records.begin(), records.end(),
-      index.size() + outline_file.size() + (preview ? preview->file.size() : 0) +
-          storage::object_file_bytes(known_objects),
-      [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
-  storage::write_tilesets(files, directory, tree, records, manifest);
-  const std::string text = storage::to_json_text(manifest);
-  storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
-}
-
 StageMemory publish_memory(const JobSize& job) {
   const std::uint64_t bytes = job.draws_preview ? preview_memory(job) : first_view_memory(job);
   return {bytes, 1, bytes, bytes};
@@ -428,10 +264,8 @@ namespace {
 
 /// Rows are unpacked in tiles, and stand in those of several levels: cities took 8 to 10 times the
 /// bytes of the packed table.
-constexpr double kTablesInTiles = 10;
-
 double published_object_bytes(const JobSize& job, double vertices) {
-  constexpr double kRowNumber = 4;
+  constexpr double kTablesInTiles = 10, kRowNumber = 4;
   const auto table = static_cast<double>(job.object_table_bytes);
   return table + (job.has_object_tables ? kTablesInTiles * table + kRowNumber * vertices : 0);
 }
@@ -440,11 +274,12 @@ double published_object_bytes(const JobSize& job, double vertices) {
 
 DiskVolumes publish_disk(const JobSize& job, const TilePopulation& /*tiles*/,
                          const MemoryPlan& /*memory*/) {
-  constexpr double kSortedBytes = 1.6;  // of a byte of a table
-  if (!job.has_object_tables)
-    return {};
-  return {{kSortedBytes * kTablesInTiles * static_cast<double>(job.object_table_bytes),
-           DiskMoment::simplify, DiskMoment::simplify, true}};
+  // Bytes for one of the table as the import packed it, as cities took them: in the sorts that
+  // bring rows to tiles, or else in that of the stage `objects`.
+  constexpr double kRows = 36, kParts = 18;
+  const auto table = static_cast<double>(job.object_table_bytes);
+  return {{(job.has_object_tables ? kRows : kParts) * table, DiskMoment::simplify,
+           DiskMoment::simplify, true}};
 }
 
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {

@@ -1,14 +1,12 @@
-// The stage `publish`: tiles as GLB, then the index, the outline and the manifest.
+// The stage `publish`: tiles as GLB.
 #pragma once
 
 #include "pipeline/journal/build_journal.h"
-#include "pipeline/outline_stage.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/forest.h"
 #include "pipeline/tiles/texture_store.h"
-#include "storage/format/manifest.h"
 #include "storage/io/spool.h"
 
 #include <filesystem>
@@ -20,7 +18,7 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
 /// The stage's memory: that of the preview or the first view, as tiles on their way take less than
 /// in `simplify`.
 StageMemory publish_memory(const JobSize& job);
-/// The sorts that bring objects to tiles.
+/// The largest of the sorts of objects.
 DiskVolumes publish_disk(const JobSize& job, const TilePopulation& tiles, const MemoryPlan& memory);
 StageTimes publish_time(const JobSize& job, const TilePopulation& tiles);
 
@@ -39,13 +37,5 @@ struct TileFiles {
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
              const TileFiles& to, const Share& share, const storage::ScratchFile& scratch,
              const StageContext& context);
-
-/// Adds up the errors and bounds of all tiles, which must be published, and writes all other files
-/// of the hierarchy; the manifest comes last. `objects`: if the mesh has any. Throws Error(io |
-/// corrupt | interrupted).
-void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-                   const OutlineStageResult& outline,
-                   const std::optional<storage::ObjectsSummary>& objects,
-                   const std::filesystem::path& directory, const StageContext& context);
 
 }  // namespace meshhier::pipeline

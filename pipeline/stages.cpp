@@ -4,6 +4,7 @@
 #include "pipeline/stages.h"
 
 #include "execution/threads.h"
+#include "pipeline/account_stage.h"
 #include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"

@@ -10,6 +10,7 @@
 #include "pipeline/plan/stage_cost.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/publish_stage.h"
+#include "storage/format/manifest.h"
 
 #include <cstdint>
 #include <future>

@@ -47,7 +47,7 @@ enum class DiskMoment {
   triangles,  ///< partition: triangles are being distributed
   noted,      ///< partition: the chunks are on disk, named by the journal
   leaves,     ///< the end of leaves
-  simplify    ///< the end of simplify; outline and publish add no temporary files
+  simplify    ///< the end of simplify, and what comes behind it
 };
 
 /// Temporary bytes and how long they stay. They are expected ones, a few per cent above measured
