@@ -24,15 +24,17 @@
 namespace meshhier::verifying {
 namespace {
 
-/// Runs a check; that a file is not as it must be is a problem.
+/// Runs a check; that a file is not as it must be is a problem. Returns whether there was none.
 template <class Check>
-void note_problems(const VerifyJob& job, const Check& check) {
+bool note_problems(const VerifyJob& job, const Check& check) {
   try {
     check();
+    return true;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
       throw;
     job.problems.add(error.what());
+    return false;
   }
 }
 
@@ -110,16 +112,16 @@ void ObjectCheck::add(const PublishedTile& tile) {
 void ObjectCheck::finish_tiles() {
   if (!table_)
     return;
-  note_problems(job_, [&] {
-    rows_.fetch(storage::cell_reader(*table_));
-    for (std::uint32_t i = 0; i < told_.size(); ++i) {
-      job_.cancel.check();
-      storage::TileTableMaker expected(table_->properties());
-      rows_.take(i, [&](std::uint32_t object, auto cells) { expected.add(object, cells); });
-      if (checksum_of(expected.take()) != told_[i].checksum)
-        tell(told_[i].node, "its table of objects is not what objects.bin says");
-    }
-  });
+  const bool is_readable = note_problems(job_, [&] { rows_.fetch(storage::cell_reader(*table_)); });
+  if (!is_readable)
+    return table_.reset();
+  for (std::uint32_t i = 0; i < told_.size(); ++i) {
+    job_.cancel.check();
+    storage::TileTableMaker expected(table_->properties());
+    rows_.take(i, [&](std::uint32_t object, auto cells) { expected.add(object, cells); });
+    if (checksum_of(expected.take()) != told_[i].checksum)
+      tell(told_[i].node, "its table of objects is not what objects.bin says");
+  }
 }
 
 void ObjectCheck::finish() {
