@@ -75,15 +75,17 @@ void GlbObjects::make_table() {
     if (column->starts.size() > 0)
       text_bytes.push_back(column->values.size());
   }
-  columns_.emplace(table_->properties(), made_.size(), rows(), text_bytes);
+  columns_.emplace(storage::ObjectTableShape{table_->properties(), rows(),
+                                             static_cast<std::uint32_t>(made_.size()),
+                                             std::move(text_bytes)});
 }
 
 void GlbObjects::add_rows(const std::vector<std::uint32_t>& objects) {
   job_.cancel.check();
   const TileObjects rows = storage::make_tile_objects(
       objects, table_->properties(), [&](std::uint32_t object) { return table_->row(object); });
-  const storage::ObjectColumns columns(table_->properties(), rows.columns, objects.size(),
-                                       rows.text_bytes);
+  const storage::ObjectColumns columns(
+      {table_->properties(), objects.size(), rows.columns, rows.text_bytes});
   const std::span table(rows.table);
   for (std::size_t c = 0; c < columns.columns.size(); ++c) {
     const storage::ObjectColumn& from = columns.columns[c];
@@ -105,7 +107,7 @@ nlohmann::ordered_json GlbObjects::metadata(std::size_t first_view) const {
   metadata["schema"] = {{"id", "meshhier"}};
   metadata["schema"]["classes"]["object"] = object_class(*columns_);
   metadata["propertyTables"] =
-      nlohmann::ordered_json::array({object_table_json(*columns_, rows(), first_view)});
+      nlohmann::ordered_json::array({object_table_json(*columns_, first_view)});
   return metadata;
 }
 
