@@ -40,7 +40,13 @@ struct ExportArguments {
   std::uint64_t memory_budget = exporting::ExportOptions{}.memory_budget;
 };
 
-/// Requires that at most one of them was given.
+/// Whether a raster is asked for, and not a mesh.
+bool is_raster(const ExportArguments& arguments) {
+  return !arguments.heights.empty() || arguments.pixel || arguments.corner ||
+         exporting::is_raster_name(arguments.output);
+}
+
+/// Requires that at most one of them was given. Of a piece the original is meant without one.
 std::optional<exporting::ExportSelection> selection(const ExportArguments& arguments) {
   if (arguments.level)
     return *arguments.level;
@@ -52,13 +58,9 @@ std::optional<exporting::ExportSelection> selection(const ExportArguments& argum
     return exporting::LargestError{*arguments.error};
   if (arguments.outline)
     return exporting::OutlineSelection{};
+  if (arguments.region.is_any() && !is_raster(arguments))
+    return exporting::LargestError{0};
   return std::nullopt;
-}
-
-/// Whether a raster is asked for, and not a mesh.
-bool is_raster(const ExportArguments& arguments) {
-  return !arguments.heights.empty() || arguments.pixel || arguments.corner ||
-         exporting::is_raster_name(arguments.output);
 }
 
 /// Throws CLI::RequiredError as the parser does.
@@ -153,9 +155,9 @@ Examples:
   meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
   meshhier export town.hier --error 0.05 --box 0,0,-10 200,100,90 --clip -o quarter.glb
   meshhier export town.hier --level 6 --polygon parcel.geojson --crs EPSG:4326 --clip -o parcel.ply
-  meshhier export town.3tz --error 0 --box 0,0,-10 200,100,90 -o quarter.3tz
-  meshhier export town.hier --error 0 --object 'Main Street/' -o street.obj
-  meshhier export town.hier --error 0 --where "storey = 3 and owner like 'A%'" -o storey.glb
+  meshhier export town.3tz --box 0,0,-10 200,100,90 -o quarter.3tz
+  meshhier export town.hier --object 'Main Street/' -o street.obj
+  meshhier export town.hier --where "storey = 3 and owner like 'A%'" -o storey.glb
   meshhier export town.hier --gsd 0.02 -o ortho.tif --dsm dsm.tif
   meshhier export hills.hier --gsd 30 --align 15,15 --dsm heights.tif
   meshhier export https://example.org/town.3tz --level 4 -o town.ply
@@ -203,7 +205,9 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
       "export", "Write part of a hierarchy as a PLY, GLB or OBJ file, or as an orthophoto");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
 
-  CLI::App* what = add_group(*command, "What", "Exactly one of these; of rasters at most one");
+  CLI::App* what = add_group(*command, "What",
+                             "Exactly one of these; at most one of a raster, and of a piece, which "
+                             "is of the original without");
   add_place_options(*what, arguments->level, arguments->node);
   what->add_option("--cut", arguments->cut, "The cut that this file lists")
       ->type_name("FILE")

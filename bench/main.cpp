@@ -257,7 +257,8 @@ int main(int argc, char** argv) {
         ->add_option("-o,--output", arguments.output,
                      command->get_name() == "textured"
                          ? "The mesh to write; materials and pictures go beside it"
-                         : "The PLY to write; \"-\" is standard output")
+                     : command->get_name() == "city" ? "The OBJ to write; the table goes beside it"
+                                                     : "The PLY to write; \"-\" is standard output")
         ->required();
     command->add_flag("--force", arguments.force, "Replace existing files");
   }

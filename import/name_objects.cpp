@@ -24,6 +24,8 @@ namespace {
 using mesh_io::ObjectSource;
 
 /// What an input has none of, for messages.
+constexpr std::size_t kMostToldBytes = 200;  // of a name in a message
+
 constexpr std::array kMissing{
     NamedValue{"nodes of a glTF that show a mesh", ObjectSource::node},
     NamedValue{"groups (\"g\" of an OBJ file)", ObjectSource::group},
@@ -160,7 +162,9 @@ class Namer {
       warn(fmt::format("{} {} to no object", counted(counts.unmatched, "rows"),
                        counts.unmatched == 1 ? "belongs" : "belong"));
     if (list_.without_row > 0)
-      warn(fmt::format("has no row for {}", counted(list_.without_row, "objects")));
+      warn(fmt::format("has no row for {}; the first is \"{}\"",
+                       counted(list_.without_row, "objects"),
+                       plain_text(list_.first_without_row, kMostToldBytes)));
   }
 
   RawMesh& mesh_;

@@ -125,7 +125,8 @@ class Lister {
     const PropertyTable::Found* row =
         object.name.empty() && !by_id ? nullptr : table_->find(key, by_id);
     if (row == nullptr) {
-      list_.without_row += is_new && !object.name.empty() ? 1 : 0;
+      if (is_new && !object.name.empty() && list_.without_row++ == 0)
+        list_.first_without_row = key;
       return;
     }
     if (by_id && !row->name.empty())

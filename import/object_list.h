@@ -37,7 +37,8 @@ struct ObjectList {
   storage::ObjectTableFacts facts;
   /// The number in the list of each that a reader gave.
   storage::RecordSpool<std::uint32_t> numbers;
-  std::uint64_t without_row = 0;  ///< objects that the table does not know
+  std::uint64_t without_row = 0;    ///< objects that the table does not know
+  std::string first_without_row{};  ///< what it would be called there
 };
 
 /// Fills the list, and `file` with it. `types`: of values of `table` that were noted; null: there

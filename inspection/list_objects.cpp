@@ -36,8 +36,11 @@ Json json_of(const ObjectValue& value) {
 }
 
 std::string text_of(const ObjectValue& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? storage::json_text(json_of(value)) : plain_text(*text, kMostShownBytes);
+  if (const auto* number = std::get_if<double>(&value))
+    return fmt::format("{}", *number);  // 7, not 7.0: many are ids and counts
+  if (const auto* text = std::get_if<std::string>(&value))
+    return plain_text(*text, kMostShownBytes);
+  return storage::json_text(json_of(value));
 }
 
 std::string json_line(std::uint32_t object, const ObjectRow& row,

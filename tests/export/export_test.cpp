@@ -421,7 +421,7 @@ TEST_F(ExportBoxTest, CutEdgesMixWhatTheirEndsHave) {
   part.triangles = {{0, 1, 2}};
   part.image.bytes.resize(3);
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8};
-  const Region half{ConvexRegion::of_box({{-1, -1, -1}, {0.5, 2, 2}}), nullptr};
+  const Region half{ConvexRegion::of_box({{-1, -1, -1}, {0.5, 2, 2}}), nullptr, nullptr};
   const CutPart made = clip_part(part, layout, half, Clipping::at_border);
   ASSERT_EQ(made.vertices.size(), 4U);
   EXPECT_EQ(made.triangles.size(), 2U);
@@ -433,7 +433,7 @@ TEST_F(ExportBoxTest, CutEdgesMixWhatTheirEndsHave) {
   EXPECT_FLOAT_EQ(attributes[2], std::sqrt(0.5F));
   EXPECT_EQ(attributes[3], 188);  // half the light of 255
   EXPECT_EQ(made.image.bytes.size(), 3U);
-  const Region none{ConvexRegion::of_box({{3, 3, 3}, {4, 4, 4}}), nullptr};
+  const Region none{ConvexRegion::of_box({{3, 3, 3}, {4, 4, 4}}), nullptr, nullptr};
   EXPECT_TRUE(clip_part(part, layout, none, Clipping::at_border).image.bytes.empty());
   EXPECT_EQ(clip_part(part, layout, half, Clipping::whole_triangles).triangles, part.triangles);
 }

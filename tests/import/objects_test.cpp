@@ -272,8 +272,9 @@ TEST_F(ObjectsTest, ATableGivesPropertiesOfGuessedTypes) {
   EXPECT_EQ(mesh.count("table_rows"), 3U);
   EXPECT_EQ(mesh.count("unmatched_rows"), 1U);
   EXPECT_EQ(mesh.count("objects_without_row"), 1U);
-  EXPECT_THAT(mesh.warnings, ElementsAre("w/t.csv: 1 row belongs to no object",
-                                         "w/t.csv: has no row for 1 object"));
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre("w/t.csv: 1 row belongs to no object",
+                          "w/t.csv: has no row for 1 object; the first is \"barn\""));
   EXPECT_THAT(mesh.companions(), ElementsAre("w/t.csv"));
 }
 
@@ -357,7 +358,7 @@ TEST_F(ObjectsTest, APropertyTooManyIsCounted) {
   EXPECT_THAT(mesh.properties, SizeIs(kMostObjectProperties));
   EXPECT_EQ(mesh.count("dropped_properties"), 6U);
   EXPECT_THAT(mesh.warnings,
-              ElementsAre("w/t.csv: has no row for 1 object",
+              ElementsAre("w/t.csv: has no row for 1 object; the first is \"b\"",
                           HasSubstr("a.obj: 6 properties of objects left out: \"p64\", \"p65\", "
                                     "\"p66\", \"p67\", \"p68\" and 1 more; up to 64 are kept")));
 }
