@@ -37,7 +37,7 @@ int run_inspect(const InspectArguments& arguments, Environment& environment) {
     inspection::list_objects(
         place.files(), place.path(),
         {arguments.objects.value_or(""), arguments.where, arguments.json, arguments.words},
-        [&](std::string_view line) { environment.out << line << '\n'; });
+        environment.cancel, [&](std::string_view line) { environment.out << line << '\n'; });
   } else if (arguments.json) {
     environment.out << storage::json_text(
                            inspection::inspect_json(place.files(), place.path(), arguments.options),

@@ -316,7 +316,7 @@ class Comparer {
       const auto from = from_.reader.open_objects();
       const auto to = to_.reader.manifest().objects ? to_.reader.open_objects() : nullptr;
       result_.objects =
-          objects_->finish(*from, to.get(), options_.transform, options_.listed_objects);
+          objects_->finish(*from, to.get(), options_.transform, options_.listed_objects, cancel_);
     }
     if (result_.distances.empty() || to_.box().empty())
       return;

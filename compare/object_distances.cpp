@@ -42,9 +42,10 @@ void note(LoneObjects& side, const std::string& name, std::size_t most) {
 
 /// Finds the names that one of two tables has alone; both ascend.
 void find_lone(const storage::ObjectTable& from, const storage::ObjectTable& to, std::size_t most,
-               LoneObjects& of_from, LoneObjects& of_to) {
+               LoneObjects& of_from, LoneObjects& of_to, const execution::CancelToken& cancel) {
   std::uint32_t i = 0, j = 0;
   while (i < from.size() || j < to.size()) {
+    cancel.check();
     const std::string a = i < from.size() ? from.row(i).name : "";
     const std::string b = j < to.size() ? to.row(j).name : "";
     const bool is_from = j == to.size() || (i < from.size() && a < b);
@@ -118,13 +119,13 @@ std::vector<ObjectDistance> ObjectDistances::farthest(std::size_t most, std::uin
 ObjectComparison ObjectDistances::finish(const storage::ObjectTable& from,
                                          const storage::ObjectTable* to,
                                          const std::optional<PlaceTransform>& transform,
-                                         std::size_t most) {
+                                         std::size_t most, const execution::CancelToken& cancel) {
   ObjectComparison found;
   found.from.objects = from.size();
   found.farthest = farthest(most, found.compared);
   if (to != nullptr) {
     found.to.emplace().objects = to->size();
-    find_lone(from, *to, most, found.from, *found.to);
+    find_lone(from, *to, most, found.from, *found.to, cancel);
   }
   for (ObjectDistance& one : found.farthest) {
     const ObjectRow row = one.object < from.size() ? from.row(one.object) : ObjectRow{};

@@ -8,7 +8,7 @@
 //     tile 1   (bone 1: ...)                        ->    bone 2: tile 0           -> 2.1 mm
 //
 // Invariant. Sums are added by tile: neither threads nor memory show in the result.
-// Cost. 64 bytes for each object of a tile.
+// Cost. 56 bytes for each object of a tile.
 #pragma once
 
 #include "compare/cut_surface.h"
@@ -79,9 +79,10 @@ class ObjectDistances {
   void add(std::uint32_t position, const PlacedTile& tile, std::span<const Vec3d> points,
            std::span<const double> distances);
   /// Returns the `most` farthest objects. Called once. `to`: null if it has no objects. Throws
-  /// Error(io | corrupt).
+  /// Error(io | corrupt | interrupted).
   ObjectComparison finish(const storage::ObjectTable& from, const storage::ObjectTable* to,
-                          const std::optional<PlaceTransform>& transform, std::size_t most);
+                          const std::optional<PlaceTransform>& transform, std::size_t most,
+                          const execution::CancelToken& cancel);
 
  private:
   struct ObjectTileSums {

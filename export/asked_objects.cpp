@@ -105,11 +105,13 @@ double largest_shift(const storage::Manifest& manifest) {
 }  // namespace
 
 void for_each_asked(const ObjectTable& table, const ObjectRequest& request,
+                    const execution::CancelToken& cancel,
                     const std::function<void(std::uint32_t, const ObjectRow&)>& visit) {
   std::optional<ObjectCondition> condition;
   if (!request.where.empty())
     condition = condition_of(request.where, table);
   const auto visit_if_met = [&](std::uint32_t object, const ObjectRow& row) {
+    cancel.check();
     if (!condition || condition->is_met_by(row))
       visit(object, row);
   };
@@ -138,8 +140,7 @@ AskedObjects::AskedObjects(const storage::HierarchyReader& reader, const ObjectR
   marks_.resize(boxes.size());
   const Vec3d origin = reader.manifest().origin;
   bool is_any = false;
-  for_each_asked(*table, request, [&](std::uint32_t object, const ObjectRow& row) {
-    cancel.check();
+  for_each_asked(*table, request, cancel, [&](std::uint32_t object, const ObjectRow& row) {
     is_any = asked_[object] = true;
     if (!row.box)
       return;

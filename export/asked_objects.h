@@ -41,8 +41,10 @@ struct ObjectRequest {
 };
 
 /// Calls visit(object, row) for each object that is asked for, ascending; all if none is. Throws
-/// Error(usage) if there is none of a name, or `where` is no condition; and as `table`.
+/// Error(usage) if there is none of a name, or `where` is no condition; Error(interrupted), and as
+/// `table`.
 void for_each_asked(const storage::ObjectTable& table, const ObjectRequest& request,
+                    const execution::CancelToken& cancel,
                     const std::function<void(std::uint32_t object, const ObjectRow& row)>& visit);
 
 /// Thread-safe once constructed.

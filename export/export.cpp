@@ -339,10 +339,11 @@ std::string export_selection(const ExportJob& job, const ExportOptions& options)
 
 void require_pieces(const ExportOptions& options) {
   if (options.region.is_any() && std::holds_alternative<OutlineSelection>(options.selection)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("a {} takes a piece of a level, a node, a cut or what "
-                            "an error allows; the outline is whole",
-                            options.region.name()));
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("the outline is whole: a piece ({}) is taken of a level, a node, a cut or "
+                    "what an error allows",
+                    options.region.name()));
   }
 }
 

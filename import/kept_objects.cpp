@@ -51,16 +51,22 @@ bool is_object_table(const storage::File& file) {
 }
 
 void keep_objects(const MeshObjects& objects, const storage::ObjectTable& table,
-                  const std::filesystem::path& path, storage::File& file, ObjectList& list) {
+                  const std::filesystem::path& path, storage::File& file, ObjectList& list,
+                  const execution::CancelToken& cancel) {
   ObjectSet kept(table.size());
   objects.names.for_each([&](std::uint32_t, const FoundObject& object) {
+    cancel.check();
     kept.add(row_named(object.name, table.size(), path));
   });
   kept.close();
   storage::ObjectTableWriter writer(file, table.properties());
-  kept.for_each([&](std::uint32_t row) { writer.add(imported(table.row(row))); });
+  kept.for_each([&](std::uint32_t row) {
+    cancel.check();
+    writer.add(imported(table.row(row)));
+  });
   list.facts = writer.finish();
   objects.names.for_each([&](std::uint32_t, const FoundObject& object) {
+    cancel.check();
     list.numbers.append(kept.place_of(row_named(object.name, table.size(), path)));
   });
 }

@@ -23,9 +23,10 @@ namespace meshhier::importing {
 bool is_object_table(const storage::File& file);
 
 /// Fills the list, and `file` with it. Throws Error(input) if a name is no number of a row,
-/// Error(io | corrupt). O(rows), a bit each.
+/// Error(io | corrupt | interrupted). O(rows), a bit each.
 void keep_objects(const MeshObjects& objects, const storage::ObjectTable& table,
-                  const std::filesystem::path& path, storage::File& file, ObjectList& list);
+                  const std::filesystem::path& path, storage::File& file, ObjectList& list,
+                  const execution::CancelToken& cancel);
 
 /// Takes a value, by its place in layout.values, from all vertices.
 void drop_value(RawMesh& mesh, std::size_t value, const ImportRoom& room);

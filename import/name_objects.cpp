@@ -23,9 +23,9 @@ namespace {
 
 using mesh_io::ObjectSource;
 
-/// What an input has none of, for messages.
 constexpr std::size_t kMostToldBytes = 200;  // of a name in a message
 
+/// What an input has none of, for messages.
 constexpr std::array kMissing{
     NamedValue{"nodes of a glTF that show a mesh", ObjectSource::node},
     NamedValue{"groups (\"g\" of an OBJ file)", ObjectSource::group},
@@ -90,7 +90,8 @@ class Namer {
       return false;
     const MeshObjects& objects = *mesh_.objects;
     const auto to = naming_.files.create(naming_.to);
-    keep_objects(objects, storage::ObjectTable(std::move(file)), naming_.table, *to, list_);
+    keep_objects(objects, storage::ObjectTable(std::move(file)), naming_.table, *to, list_,
+                 naming_.room.cancel);
     to->sync();
     if (objects.choice.from == ObjectSource::label) {
       const auto& values = mesh_.layout.values;

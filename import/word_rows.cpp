@@ -53,6 +53,7 @@ void for_each_word_row(const storage::ObjectTable& objects, const storage::Lette
   sort.sort();
   WordRows rows(visit);
   while (sort.next()) {
+    room.cancel.check();
     std::uint32_t object = 0;
     std::memcpy(&object, sort.row().bytes.data(), sizeof(object));
     rows.add(sort.row().key, object);

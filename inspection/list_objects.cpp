@@ -75,8 +75,8 @@ std::string text_line(std::uint32_t object, const ObjectRow& row,
 /// is no table of words.
 std::vector<std::uint32_t> found_objects(const storage::HierarchyReader& reader,
                                          storage::FileSystem& files,
-                                         const storage::ObjectTable& table,
-                                         const std::string& text) {
+                                         const storage::ObjectTable& table, const std::string& text,
+                                         const execution::CancelToken& cancel) {
   const std::string sound = sound_utf8(text);
   const storage::LetterTable letters(storage::kLetterTable, "letters");
   const auto asked = letters.asked_words(sound);
@@ -89,6 +89,7 @@ std::vector<std::uint32_t> found_objects(const storage::HierarchyReader& reader,
   }
   std::vector<std::uint32_t> found;
   table.for_each([&](std::uint32_t object, const ObjectRow& row) {
+    cancel.check();
     if (storage::fits(letters.words_of(row.name), asked))
       found.push_back(object);
   });
@@ -98,17 +99,19 @@ std::vector<std::uint32_t> found_objects(const storage::HierarchyReader& reader,
 }  // namespace
 
 void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
-                  const ListedObjects& which, const std::function<void(std::string_view)>& visit) {
+                  const ListedObjects& which, const execution::CancelToken& cancel,
+                  const std::function<void(std::string_view)>& visit) {
   const storage::HierarchyFiles place(files, directory);
   const storage::HierarchyReader reader(place.files(), directory);
   const auto table = reader.open_objects();
   exporting::ObjectRequest request{.where = which.where, .prefix = which.prefix};
   if (which.words)
-    request.numbers = found_objects(reader, place.files(), *table, *which.words);
-  exporting::for_each_asked(*table, request, [&](std::uint32_t object, const ObjectRow& row) {
-    visit(which.as_json ? json_line(object, row, table->properties())
-                        : text_line(object, row, table->properties()));
-  });
+    request.numbers = found_objects(reader, place.files(), *table, *which.words, cancel);
+  exporting::for_each_asked(*table, request, cancel,
+                            [&](std::uint32_t object, const ObjectRow& row) {
+                              visit(which.as_json ? json_line(object, row, table->properties())
+                                                  : text_line(object, row, table->properties()));
+                            });
 }
 
 }  // namespace meshhier::inspection

@@ -22,8 +22,9 @@ struct ListedObjects {
 /// Hands a line for each object to `visit`, ascending by name: its number, name, triangles, area
 /// and properties; as JSON an object that also has its box. Reads the table block by block. Throws
 /// Error(usage) if the hierarchy has no objects, `where` is no condition, or words have no letters;
-/// Error(io | corrupt).
+/// Error(io | corrupt | interrupted).
 void list_objects(storage::FileSystem& files, const std::filesystem::path& directory,
-                  const ListedObjects& which, const std::function<void(std::string_view)>& visit);
+                  const ListedObjects& which, const execution::CancelToken& cancel,
+                  const std::function<void(std::string_view)>& visit);
 
 }  // namespace meshhier::inspection

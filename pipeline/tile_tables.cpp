@@ -34,7 +34,10 @@ TileTables::TileTables(const Forest& forest, std::span<const NodeId> nodes,
         rows_.ask(static_cast<std::uint32_t>(i), objects);
         context.progress.advance(1);
       });
-  rows_.fetch(storage::cell_reader(table));
+  rows_.fetch([&, cells = storage::cell_reader(table)](std::uint32_t object) {
+    context.cancel.check();
+    return cells(object);
+  });
 }
 
 TileObjects TileTables::next() {

@@ -112,7 +112,12 @@ void ObjectCheck::add(const PublishedTile& tile) {
 void ObjectCheck::finish_tiles() {
   if (!table_)
     return;
-  const bool is_readable = note_problems(job_, [&] { rows_.fetch(storage::cell_reader(*table_)); });
+  const bool is_readable = note_problems(job_, [&] {
+    rows_.fetch([&, cells = storage::cell_reader(*table_)](std::uint32_t object) {
+      job_.cancel.check();
+      return cells(object);
+    });
+  });
   if (!is_readable)
     return table_.reset();
   for (std::uint32_t i = 0; i < told_.size(); ++i) {
@@ -129,8 +134,11 @@ void ObjectCheck::finish() {
     return;
   census_.end();
   note_problems(job_, [&] { check_rows(); });
-  note_problems(job_, [&] { check_sums(); });
-  note_problems(job_, [&] { check_words(); });
+  bool are_sound = true;
+  for (const storage::ObjectFile& told : storage::object_files(job_.reader.manifest().objects))
+    are_sound = note_problems(job_, [&] { check_sum(told); });
+  if (are_sound)  // the last one, of the words
+    note_problems(job_, [&] { check_words(); });
   const auto& told = job_.reader.manifest().objects->shown;
   if (told != census_.shown())
     job_.problems.add(fmt::format("{}: \"objects.shown\" is not what the tiles show",
@@ -153,22 +161,20 @@ void ObjectCheck::check_rows() {
   });
 }
 
-void ObjectCheck::check_sums() const {
-  for (const storage::ObjectFile& told : storage::object_files(job_.reader.manifest().objects)) {
-    const auto path = job_.reader.directory() / told.name;
-    const auto file = job_.files.open(path);
-    storage::Checksum sum;
-    std::vector<std::byte> block(std::size_t{1} << 18);
-    for (std::uint64_t at = 0; at < file->size(); at += block.size()) {
-      job_.cancel.check();
-      const auto part =
-          std::span(block).first(std::min<std::uint64_t>(block.size(), file->size() - at));
-      file->read_exact(at, part);
-      sum.add(part);
-    }
-    if (sum.value() != told.checksum)
-      throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
+void ObjectCheck::check_sum(const storage::ObjectFile& told) const {
+  const auto path = job_.reader.directory() / told.name;
+  const auto file = job_.files.open(path);
+  storage::Checksum sum;
+  std::vector<std::byte> block(std::size_t{1} << 18);
+  for (std::uint64_t at = 0; at < file->size(); at += block.size()) {
+    job_.cancel.check();
+    const auto part =
+        std::span(block).first(std::min<std::uint64_t>(block.size(), file->size() - at));
+    file->read_exact(at, part);
+    sum.add(part);
   }
+  if (sum.value() != told.checksum)
+    throw Error(ErrorCode::corrupt, path.string() + ": its checksum is not the manifest's");
 }
 
 /// The words are taken from the names anew, by the file's own table of letters.

@@ -5,6 +5,7 @@
 #include "hierarchy/published.h"
 #include "partition/object_census.h"
 #include "partition/rows_by_tile.h"
+#include "storage/format/object_facts.h"
 #include "storage/format/object_table.h"
 #include "verify/verify_parts.h"
 
@@ -39,7 +40,7 @@ class ObjectCheck {
   };
   void tell(NodeId node, const std::string& what) const;
   void check_rows();
-  void check_sums() const;
+  void check_sum(const storage::ObjectFile& told) const;
   void check_words() const;
 
   const VerifyJob& job_;

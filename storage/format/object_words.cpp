@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "hierarchy/object_set.h"
 
 #include <algorithm>
 #include <cassert>
@@ -117,19 +118,12 @@ std::vector<std::uint32_t> ObjectWords::objects_of(const ObjectRow& row) const {
 std::vector<std::uint32_t> ObjectWords::objects_with(const AskedWord& asked) const {
   const auto [begin, end] =
       table_.range_of_prefix(asked.is_beginning ? asked.word : asked.word + ' ');
-  std::vector<std::uint32_t> all;
-  for (std::uint32_t row = begin; row < end; ++row) {
-    const std::vector<std::uint32_t> objects = objects_of(table_.row(row));
-    all.insert(all.end(), objects.begin(), objects.end());
-  }
-  if (asked.is_beginning) {
-    std::ranges::sort(all);
-    all.erase(std::ranges::unique(all).begin(), all.end());
-  } else if (std::ranges::adjacent_find(all, std::ranges::greater_equal()) != all.end()) {
-    throw Error(ErrorCode::corrupt, fmt::format("{}: the objects of word \"{}\" do not ascend",
-                                                name_, plain_text(asked.word, kMostShownWord)));
-  }
-  return all;
+  ObjectSet all(objects_);  // rows of very many words may have them all
+  for (std::uint32_t row = begin; row < end; ++row)
+    std::ranges::for_each(objects_of(table_.row(row)), [&](std::uint32_t o) { all.add(o); });
+  std::vector<std::uint32_t> objects;
+  all.for_each([&](std::uint32_t object) { objects.push_back(object); });
+  return objects;
 }
 
 std::vector<std::uint32_t> ObjectWords::find(std::string_view text) const {

@@ -34,6 +34,8 @@ struct Argument {
 const std::set<std::string> kReadTypes{"FILE", "DIR", "LINE|@FILE"};
 const std::set<std::string> kOtherTypes{"",
                                         "SIZE",
+                                        "CONDITION",
+                                        "PROPERTY",
                                         "SOURCE",
                                         "N",
                                         "L",

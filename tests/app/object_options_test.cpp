@@ -1,4 +1,6 @@
 // Objects on the command line: --object, --where, and what exports keep of them.
+#include "storage/format/layout.h"
+#include "support/named_boxes.h"
 #include "tests/app/command_line.h"
 
 #include <algorithm>
@@ -6,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -105,6 +108,24 @@ class ObjectOptions : public CommandLine {
     return rows;
   }
 };
+
+TEST_F(ObjectOptions, NamesAreFoundByTheirWords) {
+  tests::write_named_boxes(work() / "boxes.obj", 300);
+  const std::string made = file("boxes.hier");
+  ASSERT_EQ(run({"build", file("boxes.obj"), "-o", made}).code, 0);
+  const auto words = storage::object_words_path(made);
+  ASSERT_TRUE(std::filesystem::exists(words));
+  EXPECT_THAT(run({"inspect", made, "--find", "BOX 299"}).out, HasSubstr("/box 299  10 triangles"));
+  EXPECT_EQ(run({"inspect", made, "--find", "box 999"}).out, "");
+  EXPECT_EQ(run({"inspect", made, "--find", "box 299", "--where", "height > 100"}).out, "");
+  EXPECT_EQ(run({"inspect", made, "--find", " - "}).code, kUsage);
+  EXPECT_EQ(run({"inspect", made, "--where", "height > 1"}).code, kUsage);
+  EXPECT_THAT(run({"verify", made}).out, HasSubstr("object words: "));
+  std::fstream(words, std::ios::in | std::ios::out | std::ios::binary).seekp(100).put('~');
+  const Outcome damaged = run({"verify", made});
+  EXPECT_EQ(damaged.code, kCorrupt);
+  EXPECT_THAT(damaged.out, HasSubstr("object_words.bin"));
+}
 
 TEST_F(ObjectOptions, ExportTakesObjectsByName) {
   build_city();

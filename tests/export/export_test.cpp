@@ -511,7 +511,7 @@ TEST_F(ExportBoxTest, WhatIsNoneIsTold) {
   EXPECT_THAT(said(Level{0}, {{5, 5, 5}, {6, 6, 6}}), HasSubstr("no triangle lies in the box"));
   EXPECT_THAT(said(Level{0}, {{1, 0, 0}, {0, 1, 1}}), HasSubstr("the box is none"));
   EXPECT_THAT(said(Level{0}, {{0, 0, 0}, {0, 1, std::nan("")}}), HasSubstr("the box is none"));
-  EXPECT_THAT(said(OutlineSelection{}, kSomeBox), HasSubstr("a box takes a piece of a level"));
+  EXPECT_THAT(said(OutlineSelection{}, kSomeBox), HasSubstr("a piece (box) is taken of a level"));
   const auto refused = [&](const RegionRequest& region) {
     try {
       run_all(*files_, {Level{0}, output(), 1 << 30, true, region, false});

@@ -66,7 +66,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
   }
 
   void use_objects() {
-    tests::write_named_boxes(kept_.path() / "boxes.obj", 150);
+    tests::write_named_boxes(kept_.path() / "boxes.obj", 300);
     config_.input = kept_.path() / "boxes.obj";
     config_.objects.table = kept_.path() / "boxes.csv";
     config_.memory_budget = tests::tight_budget(config_, *real_);
