@@ -1,6 +1,7 @@
 // Tells of the objects of a hierarchy, one line each, from the table alone.
 #pragma once
 
+#include "execution/cancel.h"
 #include "storage/io/file.h"
 
 #include <filesystem>
