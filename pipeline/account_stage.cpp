@@ -63,6 +63,62 @@ TileErrors complete_errors(const TextureStore& textures, BuildJournal& journal,
   return source.textures ? with_texels(std::move(errors), context.tree(), textures) : errors;
 }
 
+/// Returns how positions were rounded; nothing if they stay exact.
+std::optional<storage::Quantization> quantization_of(const storage::TileFormat& format,
+                                                     std::span<const Published> tiles) {
+  if (!format.lattice)
+    return std::nullopt;
+  storage::Quantization rounded;
+  rounded.lattice = *format.lattice;
+  for (const Published& tile : tiles)
+    rounded.worst_rounding = std::max(rounded.worst_rounding, tile.rounding);
+  return rounded;
+}
+
+/// Returns the keys of the config that decided something.
+nlohmann::ordered_json deciding_config(const SourceSummary& source, const StageContext& context) {
+  nlohmann::ordered_json keys = config::resolved_json(context.config);
+  if (!source.textures) {
+    keys.erase("texture");
+    keys.erase("missing_images");
+  }
+  if (context.plan.job.normal_map_side == 0)
+    keys.erase("normal_map");
+  return keys;
+}
+
+/// Returns what is known before the files are: of what, and how the tiles were made.
+storage::Manifest begin_manifest(const SourceSummary& source, Vec3d origin,
+                                 const storage::TileFormat& format, const StageContext& context) {
+  storage::Manifest manifest;
+  manifest.generator = "meshhier " MESHHIER_VERSION;
+  manifest.source = source;
+  manifest.origin = origin;
+  manifest.up = format.frame.up;
+  manifest.units = context.config.units ? context.config.units : source.units;
+  manifest.transform = config::tileset_transform(context.config, source.bounds);
+  manifest.licence = context.config.licence;
+  manifest.tileset_pixels = context.config.tileset.pixels;
+  manifest.partition_count = context.tree().partition_count();
+  manifest.compression = format.compression;
+  manifest.computed_normals = format.computed_normals;
+  manifest.textures = format.textures;
+  manifest.normal_maps = format.normal_maps;
+  manifest.config = deciding_config(source, context);
+  return manifest;
+}
+
+/// Adds what the records tell. `others`: bytes of files that are no tiles.
+void add_tiles(storage::Manifest& manifest, const Tree& tree, std::span<const TileRecord> records,
+               std::uint64_t others) {
+  manifest.levels = nlohmann::ordered_json::array();
+  for (const storage::LevelSummary& level : storage::summarize_levels(tree, records))
+    manifest.levels.push_back(storage::to_json(level));
+  manifest.total_bytes = std::accumulate(
+      records.begin(), records.end(), others,
+      [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
+}
+
 }  // namespace
 
 void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
@@ -77,13 +133,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   storage::TileFormat format =
       format_of(*journal.source(), forest.computes_normals(), textures,
                 has_tables ? &known_objects->table.properties : nullptr, context);
-  std::optional<storage::Quantization> quantization;
-  if (format.lattice) {
-    quantization.emplace();
-    quantization->lattice = *format.lattice;
-    for (const Published& tile : tiles)
-      quantization->worst_rounding = std::max(quantization->worst_rounding, tile.rounding);
-  }
+  const auto quantization = quantization_of(format, tiles);
   const std::vector<TileRecord> records =
       complete_records(tiles, complete_errors(textures, journal, context), quantization, tree);
   const std::vector<std::byte> index = storage::encode_index(records);
@@ -104,29 +154,9 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
     storage::write_file(files, storage::preview_path(directory), preview->file);
   }
 
-  storage::Manifest manifest;
-  manifest.generator = "meshhier " MESHHIER_VERSION;
-  manifest.source = source;
-  manifest.origin = journal.source()->origin;
-  manifest.up = format.frame.up;
-  manifest.units = context.config.units ? context.config.units : source.units;
+  storage::Manifest manifest = begin_manifest(source, journal.source()->origin, format, context);
   manifest.first_view = lines.first_view;
-  manifest.transform = config::tileset_transform(context.config, source.bounds);
-  manifest.licence = context.config.licence;
-  manifest.tileset_pixels = context.config.tileset.pixels;
-  manifest.partition_count = tree.partition_count();
-  manifest.compression = format.compression;
   manifest.quantization = quantization;
-  manifest.computed_normals = format.computed_normals;
-  manifest.textures = format.textures;
-  manifest.normal_maps = format.normal_maps;
-  manifest.config = config::resolved_json(context.config);
-  if (!source.textures) {
-    manifest.config.erase("texture");  // it decided nothing
-    manifest.config.erase("missing_images");
-  }
-  if (context.plan.job.normal_map_side == 0)
-    manifest.config.erase("normal_map");
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
   manifest.outline_bytes = outline_file.size();
@@ -137,14 +167,9 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
     manifest.objects->are_in_tiles = format.objects.has_value();
   if (preview)
     manifest.preview = preview->facts;
-  manifest.levels = nlohmann::ordered_json::array();
-  for (const storage::LevelSummary& level : storage::summarize_levels(tree, records))
-    manifest.levels.push_back(storage::to_json(level));
-  manifest.total_bytes = std::accumulate(
-      records.begin(), records.end(),
-      index.size() + outline_file.size() + (preview ? preview->file.size() : 0) +
-          storage::object_file_bytes(known_objects),
-      [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
+  add_tiles(manifest, tree, records,
+            index.size() + outline_file.size() + (preview ? preview->file.size() : 0) +
+                storage::object_file_bytes(known_objects));
   storage::write_tilesets(files, directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
