@@ -14,7 +14,6 @@ import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
-import { parseObjectLink } from './object_link.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -55,8 +54,8 @@ export class ClipTool implements Tool {
   /// The volume was measured of this.
   private measured = '';
   private readonly original = textButton(words.clip.original, () => void this.measureOriginal());
-  /// The original's volume, with the planes that it was measured for.
-  private exact: { planes: string; volume: Volume } | null = null;
+  /// The original's volume, with the planes and objects that it was measured for.
+  private exact: { of: string; volume: Volume } | null = null;
   private measuring = new AbortController();
   private readonly caps: Control<boolean>;
   private readonly modes: Control<CutMode>;
@@ -157,9 +156,13 @@ export class ClipTool implements Tool {
   private apply(): void {
     const { bench } = this.shop;
     this.clipping.cut(this.localPlanes(), this.isCapped);
+    this.stopMeasuring();
+    bench.redraw();
+  }
+
+  private stopMeasuring(): void {
     this.measuring.abort();
     this.note.textContent = '';
-    bench.redraw();
   }
 
   private export(): void {
@@ -184,11 +187,13 @@ export class ClipTool implements Tool {
   drawn(): void {
     const { view } = this.shop.bench;
     if (!this.list.isConnected || !view.stats().settled) return;
-    const tiles = shownSurface(view).map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
-    const key = [this.shownKey, this.shop.scale.sign, this.exact?.planes, ...tiles].join();
+    const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
+    const { shownKey } = this;
+    const key = [shownKey, this.shop.scale.sign, this.exact?.of, ...tiles].join();
     if (key === this.measured) return;
     this.measured = key;
-    const volume = this.exact?.planes === this.shownKey ? this.exact.volume : this.shownVolume();
+    if (this.exact?.of !== shownKey && this.note.textContent === words.clip.isOriginal) this.note.textContent = '';
+    const volume = this.exact?.of === shownKey ? this.exact.volume : this.shownVolume();
     this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
     const name = view.closed ? words.clip.volume : words.clip.between;
     this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
@@ -196,8 +201,7 @@ export class ClipTool implements Tool {
 
   /// Volumes are of these planes and objects.
   private get shownKey(): string {
-    const { hidden, only, shown } = parseObjectLink(this.shop.objectLink.text);
-    return JSON.stringify([this.planes(), hidden, only, shown]);
+    return JSON.stringify([this.planes(), this.shop.bench.view.omissionKey]);
   }
 
   /// Volumes are measured above or within these.
@@ -209,14 +213,19 @@ export class ClipTool implements Tool {
 
   private async measureOriginal(): Promise<void> {
     const { source, omits } = this.shop.bench.view;
-    const planes = this.shownKey;
+    const of = this.shownKey;
     if (source === null) return;
     this.measuring.abort();
     this.measuring = new AbortController();
     const { signal } = this.measuring;
+    const progress = (done: number, all: number): void => {
+      if (of === this.shownKey) this.note.textContent = words.clip.measuring(String(done), String(all));
+      else this.stopMeasuring(); // a sum over two choices of objects is none
+    };
     try {
-      const volume = await originalVolume(source, this.volumePlanes(), { signal, omits, progress: (done, all) => { this.note.textContent = words.clip.measuring(String(done), String(all)); } });
-      this.exact = { planes, volume };
+      const volume = await originalVolume(source, this.volumePlanes(), { signal, omits, progress });
+      signal.throwIfAborted();
+      this.exact = { of, volume };
       this.note.textContent = words.clip.isOriginal;
       this.shop.bench.redraw();
     } catch (problem) {

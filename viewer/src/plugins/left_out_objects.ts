@@ -21,6 +21,7 @@ export interface ObjectLayer extends ObjectRange {
 export class LeftOutObjects implements Omission {
   readonly uniforms = { leavesObjectsOut: { value: false }, leftOutObjects: { value: null as DataTexture | null } };
   isUsed = false;
+  version = 0;
 
   /// `objectAt`: the object of a tile's vertex; null: it has none.
   constructor(private readonly objectAt: (tile: Tile, vertex: number) => number | null) {}
@@ -44,6 +45,7 @@ export class LeftOutObjects implements Omission {
   set(layers: readonly ObjectLayer[], count: number): void {
     const { leavesObjectsOut, leftOutObjects } = this.uniforms;
     const isAny = layers.some(({ isOut }) => isOut);
+    ++this.version;
     this.isUsed ||= isAny;
     leavesObjectsOut.value = isAny;
     leftOutObjects.value?.dispose();

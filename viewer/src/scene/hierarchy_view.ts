@@ -184,6 +184,11 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.tiles.omits;
   }
 
+  /// Another text whenever plug-ins leave out something else: what was measured without it is measured anew.
+  get omissionKey(): string {
+    return this.tiles.omissionKey;
+  }
+
   /// Makes a material, with which tiles are to be drawn in a pass of your own, leave out what plug-ins leave out now: call it before each pass,
   /// which draws tiles alone. Returns whether anything may be left out.
   leaveOut(material: Material): boolean {

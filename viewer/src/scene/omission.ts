@@ -9,6 +9,8 @@ export interface Omission {
   readonly uniforms: Readonly<Record<string, IUniform>>;
   /// True once something was left out: programs are made once.
   readonly isUsed: boolean;
+  /// Another number whenever others are left out.
+  readonly version: number;
   /// Changes the vertex shader: what is left out lies where nothing is drawn.
   readonly edit: (shader: WebGLProgramParametersWithUniforms) => void;
   /// Tells whether a vertex is left out.

@@ -73,6 +73,11 @@ export class Shadings {
     return omissions.length === 0 ? null : (tile, vertex) => omissions.some((each) => each.omits(tile, vertex));
   }
 
+  /// Another text whenever something else is left out.
+  get omissionKey(): string {
+    return this.omissions.map((each) => `${numberOf(each)}:${each.version}`).join();
+  }
+
   /// Makes a material, with which tiles are drawn otherwise, leave out what is left out now.
   leaveOut(material: Material): void {
     leaveOut(material, this.omissions);

@@ -170,6 +170,10 @@ export class TileScene extends Group {
     return this.materials.shadings.omits;
   }
 
+  get omissionKey(): string {
+    return this.materials.shadings.omissionKey;
+  }
+
   /// Makes a material leave out the same.
   leaveOut(material: Material): void {
     this.materials.shadings.leaveOut(material);
