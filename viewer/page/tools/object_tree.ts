@@ -64,7 +64,11 @@ export class ObjectTree {
     [this.rows, this.active] = [[], null];
     this.tree.replaceChildren();
     const rows = await this.read(rootOf(table), null);
-    if (rows === null || table !== this.table) return;
+    if (table !== this.table) return;
+    if (rows === null) {
+      this.table = null; // it is read when it is opened again
+      return;
+    }
     this.tree.replaceChildren(...rows.map(({ root }) => root));
     this.rows = rows;
     this.activate(rows[0], false);
