@@ -5,6 +5,7 @@ import path from 'node:path';
 import { LineBasicMaterial, LineSegments, Points, Scene, Vector3, type BufferGeometry, type WebGLProgramParametersWithUniforms, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
 import { CameraPose, rampColour, type DrawnTile, type Stage } from '../src/index.js';
+import type { ObjectTable } from '../src/hierarchy/object_table.js';
 import { ObjectShading } from '../src/plugins/object_shading.js';
 import { Objects } from '../src/plugins/objects.js';
 import { valuesAt } from '../src/tools/pick.js';
@@ -144,6 +145,21 @@ describe.skipIf(!hasProgram)('objects of a view', () => {
     await objects.colourBy('school');
     await objects.colourBy(null);
     expect([objects.legend, objects.shading.uniforms.coloursObjects.value]).toEqual([null, false]);
+  });
+
+  it('keep their colours along the same ramp when another table comes', async () => {
+    await above(1);
+    objects.drawn();
+    await objects.colourBy('storeys', 'turbo', [2, 4]);
+    const before = objects.shading.uniforms.objectColours.value!.image.data as Uint8Array;
+    const told = new Promise((resolve) => { objects.addEventListener('change', resolve); });
+    vi.spyOn(session.view, 'objects', 'get').mockReturnValue(Object.create(session.view.objects) as ObjectTable);
+    objects.drawn();
+    await told;
+    expect(objects.legend?.range).toEqual([2, 4]);
+    const after = objects.shading.uniforms.objectColours.value!.image.data as Uint8Array;
+    expect(after).not.toBe(before);
+    expect(after).toEqual(before);
   });
 
   it('tell what could not be read', async () => {

@@ -200,7 +200,7 @@ export class Objects extends EventDispatcher<{ change: object; problem: { messag
     if (this.row !== null) void this.chooseNamed(this.row.name);
     if (this.chosen !== ALL_OBJECTS) void this.draw({});
     this.colourBytes = null;
-    if (this.coloured !== null) void this.colourBy(this.coloured.property.name, undefined, this.colours?.range);
+    if (this.coloured !== null) void this.colourBy(this.coloured.property.name, this.colours?.ramp, this.colours?.range);
   }
 
   /// A line around the picked object, as far as it is not cut away.

@@ -45,7 +45,7 @@ export class ObjectColours {
   range: Range | null = null;
 
   /// `count`: of all objects.
-  constructor(private readonly property: ObjectProperty, count: number, private readonly ramp: RampName) {
+  constructor(private readonly property: ObjectProperty, count: number, readonly ramp: RampName) {
     this.numbers = new Float32Array(property.type === 'number' ? count : 0).fill(NaN);
     this.codes = new Uint32Array(property.type === 'number' ? 0 : count);
   }
