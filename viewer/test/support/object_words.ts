@@ -25,7 +25,7 @@ function numberText(number: number): string {
 /// Of a word, or of a part of its objects.
 export function wordRow(word: string, objects: readonly number[]): NewRow {
   const text = objects.slice(1).map((object, i) => numberText(object - objects[i] - 1)).join('');
-  return plainRow(`${word} ${objects[0].toString(16).padStart(6, '0')}`, [text === '' ? null : text]);
+  return plainRow(`${word} ${objects[0].toString(16).padStart(6, '0')}`, [text]);
 }
 
 /// `rows`: ascending, behind the table of letters.
