@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from .checksum import checksum
 from .errors import CorruptError
-from .words import AskedWord, Letters, PlainLetters, fits, objects_of_row
+from .letter_table import LETTER_TABLE
+from .words import AskedWord, Letters, fits, objects_of_row
 
 _FILE = "objects.bin"
 _TYPES = ("number", "boolean", "text", "date")
@@ -178,7 +179,7 @@ class ObjectTable(Sequence[ObjectRow]):
         Case and accents make no difference. Reads the rows of these words, or all names of a hierarchy without a table of words, as one of up to 256 objects.
         """
         if self._letters is None:
-            self._letters = PlainLetters() if self._words is None else self._words._own_letters()
+            self._letters = Letters(LETTER_TABLE, self._corrupt) if self._words is None else self._words._own_letters()
         asked = self._letters.asked(text)
         if not asked:
             return []

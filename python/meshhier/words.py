@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from typing import Callable, NamedTuple, Optional, Sequence
 
 _MOST_LETTERS = 32
@@ -35,7 +34,7 @@ def _hangul(point: int) -> str:
 
 
 class Letters:
-    """What letters become, as a table of the file says; without one as this Python's Unicode has it, nearly the same."""
+    """What letters become, as a table says."""
 
     def __init__(self, text: str, fail: Callable[[str], Exception]) -> None:
         self._ranges: list[_Range] = []
@@ -103,17 +102,6 @@ class Letters:
         if found is None or (point - found.first) % found.step:
             return letter
         return chr(ord(found.to) + point - found.first) if found.is_running else found.to
-
-
-class PlainLetters(Letters):
-    """Of a hierarchy of few objects, which has no table."""
-
-    def __init__(self) -> None:
-        super().__init__("", ValueError)
-
-    def _fold(self, letter: str) -> str:
-        folded = "".join(each for each in unicodedata.normalize("NFKD", letter).casefold() if not unicodedata.combining(each))
-        return re.sub(r"[\W_]", " ", folded)
 
 
 def _range_of(ranges: Sequence[_Range], point: int) -> Optional[_Range]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 import struct
 import subprocess
 from pathlib import Path
@@ -14,8 +15,9 @@ import pytest
 
 import meshhier
 from meshhier.checksum import checksum
+from meshhier.letter_table import LETTER_TABLE
 from meshhier.objects import ObjectTable
-from meshhier.words import Letters
+from meshhier.words import AskedWord, Letters, fits
 
 PROPERTIES = [("height", "number"), ("listed", "boolean"), ("use", "text"), ("built", "date")]
 TYPES = ["number", "boolean", "text", "date"]
@@ -202,6 +204,38 @@ def test_few_names_are_read_whole() -> None:
     table = small_table([(name, None) for name in STREETS], [], "objects.bin")
     assert [STREETS[number] for number in table.search("church mar")] == ["St. Mary's Church", "bldg_7 church of St Mark"]
     assert [STREETS[number] for number in table.search("strasse")] == ["Große Straße"]
+
+
+FOLDED = json.loads((Path(__file__).resolve().parents[2] / "tests/data/folded_words.json").read_text(encoding="utf-8"))
+
+
+def test_names_and_texts_have_the_words_that_all_programs_give_them() -> None:
+    letters = Letters(LETTER_TABLE, ValueError)
+    assert [(each["name"], letters.words(each["name"])) for each in FOLDED["names"]] == [(each["name"], each["words"]) for each in FOLDED["names"]]
+    for each in FOLDED["texts"]:
+        assert letters.asked(each["text"]) == [AskedWord(asked["word"], asked["is_beginning"]) for asked in each["asked"]], each["text"]
+
+
+def test_names_are_found_by_the_same_words_with_a_table_of_words_or_without() -> None:
+    words = {each["name"]: each["words"] for each in FOLDED["names"]}
+    names = sorted(words, key=str.encode)
+    tables = small_table([(name, None) for name in names], [], "objects.bin"), words_of(names, LETTER_TABLE)
+    for each in FOLDED["texts"]:
+        asked = [AskedWord(one["word"], one["is_beginning"]) for one in each["asked"]]
+        expected = [i for i, name in enumerate(names) if asked and fits(words[name], asked)]
+        assert [table.search(each["text"]) for table in tables] == [expected, expected], each["text"]
+
+
+def test_the_program_finds_the_same_among_few_names(built: Callable[..., str], tmp_path: Path) -> None:
+    mesh = tmp_path / "names.obj"
+    lines = [f"o {each['name']}\nv {2 * i} 0 0\nv {2 * i + 1} 0 0\nv {2 * i} 1 0\nf -3 -2 -1\n" for i, each in enumerate(FOLDED["names"])]
+    mesh.write_text("".join(lines), encoding="utf-8")
+    hierarchy = built(str(mesh), "names.hier")
+    with meshhier.open(hierarchy) as model:
+        assert model.objects is not None
+        for text in (each["text"] for each in FOLDED["texts"] if each["asked"]):
+            told = subprocess.run([meshhier.find_program(), "inspect", hierarchy, f"--find={text}", "--json"], check=True, capture_output=True).stdout
+            assert model.objects.search(text) == [json.loads(line)["object"] for line in told.splitlines()], text
 
 
 @pytest.mark.parametrize("letters", ["x\n", "41 1\n", "41 0 1 0\n", "61 1 1 0\n41 1 1 0\n", "41 1 1 1\n", "110000 1 1 0\n"])

@@ -3,7 +3,7 @@
 //
 // A table of words tells which objects have a word. The rarest word's are read first, then those of the others, and what is common to all is
 // found. A word of very many objects, as the first letter of one, is looked for in the names themselves: many have it, so a few are enough.
-import { fits, type AskedWord } from '../hierarchy/letters.js';
+import { fits, Letters, type AskedWord } from '../hierarchy/letters.js';
 import type { ObjectRow } from '../hierarchy/object_blocks.js';
 import type { ObjectRange, ObjectTable } from '../hierarchy/object_table.js';
 import { ObjectWords } from '../hierarchy/object_words.js';
@@ -34,7 +34,7 @@ function waysOf(text: string): string[] {
   return [...new Set([text, capital(text), text.replace(/[^\s/_.-]+/g, capital), text.toLowerCase(), text.toUpperCase()])];
 }
 
-/// Nearly as a table of words has them, of a browser that has none.
+/// A text in letters that have no case and no accents, by this browser's Unicode.
 function plain(text: string): string {
   return text.normalize('NFKD').replace(/\p{Mn}/gu, '').toUpperCase().toLowerCase();
 }
@@ -98,10 +98,23 @@ async function withWords(table: ObjectTable, words: ObjectWords, text: string, m
   return { rows: await Promise.all(objects.slice(0, most).map((object) => table.row(object))), hasMore: objects.length > most };
 }
 
+let known: Letters | null = null;
+
+/// The letters of tables that have no words.
+async function lettersOfAll(): Promise<Letters> {
+  if (known !== null) return known;
+  const { LETTER_TABLE } = await import('../hierarchy/letter_table.js');
+  return (known = new Letters(LETTER_TABLE, (what) => { throw new Error(what); }));
+}
+
+/// Finds what a table of words would, and names that have the parts of the text anywhere.
 async function withoutWords(table: ObjectTable, text: string, most: number): Promise<FoundNames> {
   if (table.count > MOST_READ) return { rows: [], hasMore: false };
+  const letters = await lettersOfAll();
+  const asked = letters.asked(text);
   const parts = plain(text).split(/\s+/).filter((part) => part !== '');
-  const rows = (await table.rows({ begin: 0, end: table.count })).filter(({ name }) => parts.every((part) => plain(name).includes(part)));
+  const hasWords = (name: string): boolean => asked.length > 0 && fits(letters.words(name), asked);
+  const rows = (await table.rows({ begin: 0, end: table.count })).filter(({ name }) => parts.every((part) => plain(name).includes(part)) || hasWords(name));
   return { rows, hasMore: rows.length > most };
 }
 

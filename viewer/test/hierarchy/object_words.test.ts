@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { JsonValue } from '../../src/json_value.js';
+import { LETTER_TABLE } from '../../src/hierarchy/letter_table.js';
 import { fits, Letters } from '../../src/hierarchy/letters.js';
 import { readObjectFacts, type TableFacts } from '../../src/hierarchy/object_facts.js';
 import { ObjectTable } from '../../src/hierarchy/object_table.js';
@@ -9,23 +11,40 @@ import { fittingNames } from '../../src/tools/object_names.js';
 import { tableOfRows, type WrittenTable } from '../support/object_table.js';
 import { byBytes, letters, plainRow, tableOfWordRows, tableOfWords, wordRow } from '../support/object_words.js';
 
-/// A host that counts the bytes it is asked for.
-function opened(names: readonly string[], words: WrittenTable): { table: ObjectTable; read: () => number } {
+/// A host that counts the bytes it is asked for. `words`: null: there is no table of them.
+function opened(names: readonly string[], words: WrittenTable | null): { table: ObjectTable; read: () => number } {
   let read = 0;
   const objects = tableOfRows(names.map((name) => plainRow(name)), []);
-  const facts = readObjectFacts(JsonValue.parse(JSON.stringify({ ...objects.json, words: words.json }), (what) => { throw new Error(what); }));
+  const facts = readObjectFacts(JsonValue.parse(JSON.stringify(words === null ? objects.json : { ...objects.json, words: words.json }), (what) => { throw new Error(what); }));
   const open = (of: TableFacts, bytes: Uint8Array<ArrayBuffer>, own: ObjectTable | null = null): ObjectTable => new ObjectTable(of, (first, end) => {
     read += end - first;
     return Promise.resolve(bytes.slice(first, end));
   }, own);
-  return { table: open(facts, objects.bytes, facts.words && open(facts.words, words.bytes)), read: () => read };
+  return { table: open(facts, objects.bytes, facts.words && words && open(facts.words, words.bytes)), read: () => read };
 }
 
 async function found(table: ObjectTable, text: string, most = 8): Promise<string[]> {
   return (await fittingNames(table, text, most)).rows.map(({ name }) => name);
 }
 
+/// What all programs make of names and of texts that are looked for.
+const FOLDED = JSON.parse(readFileSync(new URL('../../../tests/data/folded_words.json', import.meta.url), 'utf8')) as {
+  readonly names: readonly { readonly name: string; readonly words: readonly string[] }[];
+  readonly texts: readonly { readonly text: string; readonly asked: readonly { readonly word: string; readonly is_beginning: boolean }[] }[];
+};
+
 describe('letters', () => {
+  it('of the program are those of hierarchies of few objects', () => {
+    const source = readFileSync(new URL('../../../storage/format/letter_table.cpp', import.meta.url), 'utf8');
+    expect([...source.matchAll(/^ {4}"(.*)";?$/gm)].map(([, line]) => line.replaceAll('\\n', '\n')).join('')).toBe(LETTER_TABLE);
+  });
+
+  it.each(FOLDED.names)('of "$name" are its words', ({ name, words }) => { expect(letters.words(name)).toEqual(words); });
+
+  it.each(FOLDED.texts)('of "$text" are what it looks for', ({ text, asked }) => {
+    expect(letters.asked(text)).toEqual(asked.map(({ word, is_beginning: isBeginning }) => ({ word, isBeginning })));
+  });
+
   it('are folded as people type them', () => {
     expect(letters.words('bldg_0042 Church of St. Mary')).toEqual(['bldg', '0042', 'church', 'of', 'st', 'mary']);
     expect(letters.words('STRASSE Straße Église E\u0301glise Łódź ＡＢ ﬁn')).toEqual(['strasse', 'strasse', 'eglise', 'eglise', 'lodz', 'ab', 'fin']);
@@ -38,6 +57,23 @@ describe('letters', () => {
 
   it.each(['41 1a 1 1 61', '41 1a 1\n', 'x\n', '41 1a 1 1 61 62\n', '41 0 1 0\n', '41 1 0 0\n', '110000 1 1 0\n', '41 ffffffff 1 0\n', '41 1 1 3\n', '41 2 1 1 10ffff\n', '61 1 1 0\n41 1 1 0\n', '\n'])('of a wrong table %j are refused', (text) => {
     expect(() => new Letters(text, (what) => { throw new HierarchyProblem('w', what); })).toThrow(HierarchyProblem);
+  });
+});
+
+describe('names', () => {
+  const names = FOLDED.names.map(({ name }) => name).sort(byBytes);
+  const few = opened(names, null).table;
+  const indexed = opened(names, tableOfWords(names)).table;
+
+  it.each(FOLDED.texts.map(({ text }) => text))('are found by the words of "%s", with a table of words or without', async (text) => {
+    const asked = letters.asked(text);
+    const expected = asked.length === 0 ? [] : names.filter((name) => fits(letters.words(name), asked));
+    for (const table of [few, indexed]) expect(await found(table, text, 99)).toEqual(expect.arrayContaining(expected));
+  });
+
+  it('that are few are found by what stands within their words, too', async () => {
+    expect(await found(few, 'urch')).toEqual(['bldg_0042 Church of St. Mary']);
+    expect(await found(indexed, 'urch')).toEqual([]);
   });
 });
 

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Makes tables of words for tests, as docs/file_format.md says (section 9.1).
-import { readFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
 import { compareBytes } from '../../src/hierarchy/byte_columns.js';
+import { LETTER_TABLE } from '../../src/hierarchy/letter_table.js';
 import { Letters } from '../../src/hierarchy/letters.js';
 import { tableOfRows, type NewRow, type WrittenTable } from './object_table.js';
 
-/// The table of letters that the program writes.
-export function letterTable(): string {
-  const source = readFileSync(fileURLToPath(new URL('../../../storage/format/letter_table.cpp', import.meta.url)), 'utf8');
-  return [...source.matchAll(/^ {4}"(.*)";?$/gm)].map(([, line]) => line.replaceAll('\\n', '\n')).join('');
-}
-
-export const letters = new Letters(letterTable(), (what) => { throw new Error(what); });
+export const letters = new Letters(LETTER_TABLE, (what) => { throw new Error(what); });
 
 export function plainRow(name: string, values: NewRow['values'] = []): NewRow {
   return { name, values, box: null, triangles: 0, area: 0 };
@@ -29,7 +22,7 @@ export function wordRow(word: string, objects: readonly number[]): NewRow {
 }
 
 /// `rows`: ascending, behind the table of letters.
-export function tableOfWordRows(rows: readonly NewRow[], table = letterTable()): WrittenTable {
+export function tableOfWordRows(rows: readonly NewRow[], table = LETTER_TABLE): WrittenTable {
   const { bytes, json } = tableOfRows([plainRow('', [table]), ...rows], [{ name: 'objects', type: 'text' }]);
   return { bytes, json: { ...json, file: 'object_words.bin' } };
 }
