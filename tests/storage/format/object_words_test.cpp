@@ -6,6 +6,7 @@
 #include "support/memory_files.h"
 
 #include <algorithm>
+#include <fstream>
 #include <random>
 #include <set>
 #include <string>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace meshhier::tests {
 namespace {
@@ -54,6 +56,25 @@ TEST(FoldedWordsTest, AreWhatPeopleType) {
   EXPECT_NE(words("कि"), words("कु")) << "vowels of India are no accents";
   EXPECT_THAT(words(" ./-_\n—"), IsEmpty());
   EXPECT_THAT(words("soft\u00ADhyphen"), ElementsAre("softhyphen"));
+}
+
+/// The viewer and the Python package are tested by the same file.
+TEST(FoldedWordsTest, AreThoseOfOtherReaders) {
+  std::ifstream file(MESHHIER_SOURCE_DIR "/tests/data/folded_words.json");
+  const auto told = nlohmann::json::parse(file);
+  ASSERT_GE(told.at("names").size(), 20U);
+  for (const auto& row : told.at("names")) {
+    const auto name = row.at("name").get<std::string>();
+    EXPECT_EQ(nlohmann::json(words(name)), row.at("words")) << name;
+  }
+  ASSERT_GE(told.at("texts").size(), 20U);
+  for (const auto& row : told.at("texts")) {
+    const auto text = row.at("text").get<std::string>();
+    auto asked = nlohmann::json::array();
+    for (const AskedWord& word : letters().asked_words(text))
+      asked.push_back({{"word", word.word}, {"is_beginning", word.is_beginning}});
+    EXPECT_EQ(asked, row.at("asked")) << text;
+  }
 }
 
 TEST(FoldedWordsTest, ScriptsWithoutSpacesAreWordsByPairs) {
