@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -80,7 +81,8 @@ bool parse_size(std::string_view text, PreviewOptions& options) {
 std::optional<std::array<double, 2>> parse_range(std::string_view text) {
   const auto [from, to] = halves(text, ',');
   const auto first = parse_number<double>(from), last = parse_number<double>(to);
-  return first && last ? std::optional(std::array{*first, *last}) : std::nullopt;
+  const bool are_there = first && last && std::isfinite(*first) && std::isfinite(*last);
+  return are_there ? std::optional(std::array{*first, *last}) : std::nullopt;
 }
 
 std::optional<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {

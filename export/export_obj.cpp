@@ -303,6 +303,9 @@ class ByObjects {
     });
   }
 
+  /// Returns how many objects are read under another name than they have.
+  std::uint64_t changed_names() const { return changed_names_; }
+
  private:
   /// Triangles of no object come first, and have no name.
   void begin(std::uint32_t object) {
@@ -310,8 +313,11 @@ class ByObjects {
     if (!table_)
       return writer_.line(fmt::format("o {}", object));
     const std::string name = object < table_->size() ? table_->row(object).name : "";
-    if (!name.empty())
-      writer_.line("o " + line_name(name));
+    if (name.empty())
+      return;
+    const std::string text = line_name(name);
+    changed_names_ += text != name || name.front() == ' ' || name.back() == ' ' ? 1 : 0;
+    writer_.line("o " + text);
   }
 
   const PartsJob& job_;
@@ -321,6 +327,7 @@ class ByObjects {
   std::unique_ptr<storage::ObjectTable> table_;  ///< null: objects are named by their numbers
   std::vector<PartCorners> corners_;
   std::vector<bool> has_picture_;
+  std::uint64_t changed_names_ = 0;
 };
 
 }  // namespace
@@ -365,8 +372,12 @@ std::string write_obj(const PartsJob& job, const ExportedParts& parts) {
   if (pictures)
     pictures->publish();
   job.output.publish();
-  return fmt::format("{}, {}{}", counted(vertices, "vertices"), counted(triangles, "triangles"),
-                     pictures ? ", " + counted(images, "pictures") : "");
+  const std::uint64_t changed = by_objects ? by_objects->changed_names() : 0;
+  return fmt::format(
+      "{}, {}{}{}", counted(vertices, "vertices"), counted(triangles, "triangles"),
+      pictures ? ", " + counted(images, "pictures") : "",
+      changed > 0 ? fmt::format("; {} that no line can hold as they are", counted(changed, "names"))
+                  : "");
 }
 
 }  // namespace meshhier::exporting

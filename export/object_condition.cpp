@@ -6,6 +6,7 @@
 #include "config/suggest.h"
 #include "export/condition_words.h"
 #include "export/object_value.h"
+#include "import/property_types.h"
 
 #include <algorithm>
 #include <array>
@@ -328,6 +329,9 @@ class Parser {
     if (words_.now().kind != WordKind::text)
       words_.fail_expected("a date in single quotes");
     ConditionWord word = words_.take();
+    if (!importing::is_date(word.text))
+      words_.fail(word.place, fmt::format("'{}' is no date, as '2031-05-17' is",
+                                          plain_text(word.text, kShownNameBytes)));
     words_.require(")");
     std::string text = word.text;
     return literal(std::move(word), OperandKind::text, std::move(text));

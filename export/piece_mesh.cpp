@@ -104,6 +104,7 @@ PieceMesh::PieceMesh(storage::FileSystem& files, const fs::path& hierarchy,
   const bool is_textured = whole.manifest().textures.has_value();
   folder_.emplace(local, options.output);
   if (whole.manifest().objects) {
+    static_cast<void>(whole.open_objects());  // refuses the table of another build
     const fs::path table = storage::objects_path(folder_->path());
     copy_file(*place.files().open(storage::objects_path(hierarchy)), *local.create(table), cancel);
     take_objects(whole, table, is_textured, config_);

@@ -4,8 +4,10 @@
 #include "execution/spool_cursor.h"
 #include "import/place_lookup.h"
 #include "mesh_io/gltf_elements.h"
+#include "storage/io/hash.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -170,13 +172,18 @@ std::string GltfObjects::path_to(std::uint32_t node) const {
 
 /// A name that several nodes have gets a number: "wall", "wall (2)".
 std::string GltfObjects::own_name(const std::string& wanted) {
-  std::uint64_t& count = taken_[wanted];
+  const auto sum_of = [](const std::string& name) {
+    return storage::checksum(std::as_bytes(std::span(name)));
+  };
+  std::uint64_t count = taken_[sum_of(wanted)];
+  std::string name = wanted;
   while (++count > 1) {
-    std::string name = fmt::format("{} ({})", wanted, count);
-    if (taken_.emplace(name, 1).second)
-      return name;
+    name = fmt::format("{} ({})", wanted, count);
+    if (taken_.emplace(sum_of(name), 1).second)
+      break;
   }
-  return wanted;
+  taken_[sum_of(wanted)] = count;
+  return name;
 }
 
 ObjectValues GltfObjects::values_of(std::uint32_t node) {

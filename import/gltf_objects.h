@@ -11,9 +11,9 @@
 #include "mesh_io/gltf_scene.h"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -68,7 +68,9 @@ class GltfObjects {
   UnreadMetadata unread_;  ///< tables: before there are features
   bool are_nodes_ = false, are_materials_ = false;
   std::vector<std::uint32_t> parents_;
-  std::map<std::string, std::uint64_t> taken_;  ///< names of nodes, each with how many have it
+  /// Checksums of nodes' names, each with how many have it: paths are long. Two that are alike by
+  /// chance cost one of them a number.
+  std::unordered_map<std::uint64_t, std::uint64_t> taken_;
   const mesh_io::GltfInstance* instance_ = nullptr;
   std::uint64_t copy_ = 0;
   std::optional<mesh_io::GltfFeatureIds> copy_ids_;    ///< those of the copies, if they have any

@@ -54,13 +54,20 @@ void PropertyTable::read(mesh_io::InputStream& stream, const std::filesystem::pa
   is_row_ = rows_.next();
 }
 
-/// Other names of ids than "id" count in the first row.
-void PropertyTable::choose_id_column(std::span<const mesh_io::RecordField> fields) {
-  for (const std::string_view name : kIdColumns) {
+/// The first row decides: exactly this name comes before others in other letters. Other names of
+/// ids than "id" count there, too.
+void PropertyTable::choose_key_columns(std::span<const mesh_io::RecordField> fields) {
+  const auto choose = [&](std::string_view name, std::string& chosen) {
     for (const mesh_io::RecordField& field : fields) {
-      if (id_name_.empty() && small_letters(field.column) == name)
-        id_name_ = field.column;
+      if (field.column == name || (chosen.empty() && small_letters(field.column) == name))
+        chosen = field.column;
     }
+  };
+  choose("id", id_name_);
+  choose("name", name_name_);
+  for (const std::string_view name : kIdColumns) {
+    if (id_name_.empty())
+      choose(name, id_name_);
   }
 }
 
@@ -82,9 +89,9 @@ PropertyTable::Column& PropertyTable::column_of(const std::string& name, std::si
                 "the table of objects has more than 4096 different keys; are they values?");
   Column column{name};
   const std::string small = small_letters(name);
-  if ((small == "id" || (name == id_name_ && !name.empty())) && !has_id_column_)
+  if (!has_id_column_ && (id_name_.empty() ? small == "id" : name == id_name_))
     column.key = Key::id;
-  else if (small == "name" && !has_name_column_)
+  else if (!has_name_column_ && (name_name_.empty() ? small == "name" : name == name_name_))
     column.key = Key::name;
   has_id_column_ = has_id_column_ || column.key == Key::id;
   has_name_column_ = has_name_column_ || column.key == Key::name;
@@ -94,10 +101,8 @@ PropertyTable::Column& PropertyTable::column_of(const std::string& name, std::si
 
 void PropertyTable::take(std::span<const mesh_io::RecordField> fields, mesh_io::RecordTexts texts) {
   std::string id, name;
-  if (columns_.empty() && std::ranges::none_of(fields, [](const auto& field) {
-        return small_letters(field.column) == "id";
-      }))
-    choose_id_column(fields);
+  if (columns_.empty())
+    choose_key_columns(fields);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto key = column_of(fields[i].column, i).key;
     if (key == Key::id)

@@ -64,14 +64,14 @@ class PropertyTable {
   };
 
   void take(std::span<const mesh_io::RecordField> fields, mesh_io::RecordTexts texts);
-  void choose_id_column(std::span<const mesh_io::RecordField> fields);
+  void choose_key_columns(std::span<const mesh_io::RecordField> fields);
   Column& column_of(const std::string& name, std::size_t likely);
   bool is_property(Key key) const;
   void add(Key kind, const std::string& key, const std::string& bytes);
   void load(std::string_view key);
 
   bool has_ids_, are_numbers_;
-  std::string id_name_{};  ///< of the column that is one for want of an "id"
+  std::string id_name_{}, name_name_{};  ///< of the first row's columns
   PropertyNames& names_;
   PropertyTypes& types_;
   std::vector<Column> columns_;

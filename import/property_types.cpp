@@ -118,7 +118,7 @@ std::optional<double> number_of_text(std::string_view text) {
     return std::nullopt;
   // A whole number that a double does not hold is the number of something, not how many.
   constexpr double kMostWhole = 9007199254740992;  // 2^53
-  if (is_of_digits(size) && std::abs(number->value) > kMostWhole)
+  if (is_of_digits(size) && std::abs(number->value) >= kMostWhole)
     return std::nullopt;
   return number->value;
 }

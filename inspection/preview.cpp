@@ -23,6 +23,7 @@
 #include "storage/io/output_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <numeric>
@@ -278,8 +279,8 @@ void lay_on(const std::array<std::uint8_t, 3>& ground, images::Image& picture) {
 }
 
 /// Returns for people what the picture shows.
-std::string text_of(const HierarchyReader& reader, const Pictured& shown) {
-  if (shown.positions.size() < shown.tiles.size())
+std::string text_of(const HierarchyReader& reader, const Pictured& shown, bool is_part) {
+  if (is_part || shown.positions.size() < shown.tiles.size())
     return fmt::format("{} of {}", shown.positions.size(), counted(shown.tiles.size(), "tiles"));
   std::uint64_t triangles = 0;
   for (const NodeId node : shown.tiles.cut().nodes()) {
@@ -338,6 +339,7 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   Pictured shown =
       pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
   const double point_side = point_side_of(reader, shown, camera);
+  std::atomic<bool> is_any = false;
   const auto load = [&, &axes = axes](std::size_t i) {
     ShownTile tile = load_in(region, shown.tiles, shown.positions[i]);
     if (painter)
@@ -348,6 +350,8 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       drawn = clip_scene(std::move(drawn), *region);
     if (point_side > 0)
       drawn.facets = render::squares_of(drawn.facets, axes, point_side);
+    if (!drawn.facets.empty())
+      is_any = true;
     return drawn;
   };
   const render::Scene scene{boxes_of(reader, shown, point_side), load, look};
@@ -358,12 +362,15 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       }};
   progress.stage("preview", render::painting_steps(scene, camera, painting), "tiles");
   images::Image picture = render::paint(scene, camera, painting);
+  if (region && region->objects && !is_any)
+    fail_empty(reader, options.region);
   if (options.background)
     lay_on(*options.background, picture);
   output.publish(images::encode_image(picture, options.format, kQuality));
   const std::string legend = painter ? painter->legend() : "";
   return fmt::format("{}: {} x {} pixels, {}{}{}", options.output.string(), options.width,
-                     options.height, text_of(reader, shown), legend.empty() ? "" : "\n", legend);
+                     options.height, text_of(reader, shown, region && region->objects),
+                     legend.empty() ? "" : "\n", legend);
 }
 
 }  // namespace meshhier::inspection

@@ -316,7 +316,7 @@ class DocumentReader {
     o.for_each_index(size, [&](const std::string& name, std::uint32_t number) {
       if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" ||
           name.starts_with("TEXCOORD_") || name.starts_with("JOINTS_") ||
-          name.starts_with("WEIGHTS_") || name.starts_with('_'))
+          name.starts_with("WEIGHTS_") || name.starts_with('_') || name == "BATCHID")
         attributes.emplace(name, number);
     });
     return attributes;

@@ -15,7 +15,7 @@ ObjectValue value_of_json(const nlohmann::json& value) {
   if (value.is_string())
     return value.get<std::string>();
   const bool is_exact =
-      value.is_number_float() || (value.is_number() && std::abs(value.get<double>()) <= kMostWhole);
+      value.is_number_float() || (value.is_number() && std::abs(value.get<double>()) < kMostWhole);
   if (is_exact && std::isfinite(value.get<double>()))
     return value.get<double>();
   return storage::json_text(value);

@@ -236,7 +236,8 @@ RecordCounts read_csv(Characters& text, const std::filesystem::path& path,
   std::string head = take_text_line(text);
   const auto told = told_separator(head);  // Excel's first line
   if (told) {
-    pass_line_ends(text);
+    while (text.peek() == '\r' || text.peek() == '\n')
+      text.pass();
     head = take_text_line(text);
   }
   require_text(head, path);

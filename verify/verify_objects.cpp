@@ -222,7 +222,7 @@ void compare_objects(const VerifyJob& job, const std::filesystem::path& imported
       first = plain_text(row.name, 60);
   });
   if (different > 0)
-    tell(fmt::format("{} have other names or properties, the first is \"{}\"",
+    tell(fmt::format("other names or properties than those of {}, the first is \"{}\"",
                      counted(different, "objects"), first));
   job.checks.push_back(
       fmt::format("input: names and properties of {}", counted(input.size(), "objects")));

@@ -270,6 +270,15 @@ TEST_F(ObjectOptions, HierarchiesOfPiecesKeepObjects) {
     EXPECT_GT(row.at("properties").at("height"), 12) << name;
 }
 
+TEST_F(ObjectOptions, TablesOfOtherBuildsAreRefused) {
+  build_city();
+  ASSERT_EQ(run({"build", file("city.obj"), "-o", file("bare.hier")}).code, 0);
+  std::filesystem::copy_file(file("bare.hier/objects.bin"), file("city.hier/objects.bin"),
+                             std::filesystem::copy_options::overwrite_existing);
+  for (const char* name : {"piece.hier", "piece.obj", "piece.glb"})
+    EXPECT_EQ(export_to(name, {"--error", "0"}).code, kCorrupt) << name;
+}
+
 TEST_F(ObjectOptions, ExportedPlyTakesNamesFromTheTable) {
   build_city();
   ASSERT_EQ(export_to("piece.ply", {"--object", "street 2/"}).code, 0);  // of the original

@@ -130,6 +130,7 @@ TEST(ObjectConditionTest, FaultsTellTheirPlace) {
       {"(storey = 3", "expected \")\", but it ends"},
       {"storey == 3", "expected a property or a value, found ="},
       {"storey", "expected a comparison"},
+      {"built < DATE('soon')", "at character 14: 'soon' is no date, as '2031-05-17' is"},
       {"storey = 3;", "at character 11: ; means nothing here"},
       {"storey = 3x", "this is no number"},
       {"storey = 1e999", "this is no number"},

@@ -370,6 +370,13 @@ TEST_F(GltfObjectsTest, BatchTablesOfTiles) {
               ElementsAre(HasSubstr("1 property of objects left out: \"HIERARCHY\"")));
   EXPECT_THAT(mesh.names_of_triangles(), ElementsAre("x1", "x2", "x2", "x3"));
 
+  GltfBuilder old;
+  old.show({{"attributes",
+             {{"POSITION", old.accessor(kPair, "VEC3")},
+              {"BATCHID", old.accessor(std::vector<float>{0, 0, 0, 1, 1, 1}, "SCALAR")}}}});
+  const Imported early = import_tiles({batched_tile(old.glb(), R"({"id":["x1","x2"]})")});
+  EXPECT_THAT(early.names_of_triangles(), ElementsAre("x1", "x2"));
+
   const Imported unnamed =
       import_tiles({batched_tile(gltf.glb(), R"({"id":[0,1],"use":["a","b"]})"),
                     batched_tile(gltf.glb(), R"({"id":[0,1],"use":["c","d"]})")});

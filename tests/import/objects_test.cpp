@@ -302,6 +302,12 @@ TEST_F(ObjectsTest, LinesOfJson) {
                                          "b: 2.5 \"[1,{\"x\":null}]\" true \"7\" -"));
 }
 
+TEST_F(ObjectsTest, KeysInTheirOwnLettersComeFirst) {
+  put_obj("o a\nf 1 2 3\no b\nf 2 4 3\n");
+  const Imported mesh = import_with_table("NAME,name,h\nb,a,1\na,b,2\n");
+  EXPECT_THAT(rows_of(mesh), ElementsAre("a: b 1", "b: a 2"));
+}
+
 TEST_F(ObjectsTest, LabelsAreKnownByIdAndNamedByTheTable) {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "

@@ -10,6 +10,7 @@ import { ICONS } from '../parts/icons.js';
 import { textButton } from './figures.js';
 import { words } from './words/words.js';
 
+const MOST_OPENED = 64; // levels that open by themselves
 const TYPED_TOGETHER = 700; // milliseconds between letters of one word
 const CHECKED: Readonly<Record<Visibility, string>> = { shown: 'true', hidden: 'false', mixed: 'mixed' };
 
@@ -137,7 +138,7 @@ export class ObjectTree {
     row.children = children;
     row.root.setAttribute('aria-expanded', 'true');
     row.root.after(...children.map(({ root }) => root));
-    if (children.length === 1) await this.expand(children[0]);
+    if (children.length === 1 && row.level < MOST_OPENED) await this.expand(children[0]);
   }
 
   private collapse(row: Row): void {
@@ -156,9 +157,10 @@ export class ObjectTree {
 
   /// As they are seen.
   private *all(rows: readonly Row[]): Generator<Row> {
-    for (const row of rows) {
+    const left = [...rows].reverse();
+    for (let row = left.pop(); row !== undefined; row = left.pop()) {
       yield row;
-      yield* this.all(row.children ?? []);
+      left.push(...[...(row.children ?? [])].reverse());
     }
   }
 
