@@ -305,7 +305,7 @@ TEST_F(ObjectsTest, LinesOfJson) {
 TEST_F(ObjectsTest, KeysInTheirOwnLettersComeFirst) {
   put_obj("o a\nf 1 2 3\no b\nf 2 4 3\n");
   const Imported mesh = import_with_table("NAME,name,h\nb,a,1\na,b,2\n");
-  EXPECT_THAT(rows_of(mesh), ElementsAre("a: b 1", "b: a 2"));
+  EXPECT_THAT(rows_of(mesh), ElementsAre("a: \"b\" 1", "b: \"a\" 2"));
 }
 
 TEST_F(ObjectsTest, LabelsAreKnownByIdAndNamedByTheTable) {

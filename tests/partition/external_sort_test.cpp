@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 namespace meshhier::partition {
 namespace {
@@ -51,8 +52,8 @@ class ExternalSortTest : public testing::Test {
 
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("external_sort_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("external_sort_") + info.name() + std::to_string(::getpid()));
   }
 
   /// Sorts with so much memory; the spools may hold `pool_bytes` in memory.

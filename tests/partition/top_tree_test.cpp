@@ -8,6 +8,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::partition {
 namespace {
@@ -48,7 +49,8 @@ class TopTreeTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("top_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("top_") + info.name() + std::to_string(::getpid()));
   }
 
   SettledSplit settle(const std::vector<Vec3f>& positions, const Tree& tree, TopPlan plan,

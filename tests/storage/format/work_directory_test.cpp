@@ -13,6 +13,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -27,7 +28,8 @@ class WorkDirectoryTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    parent_ = std::filesystem::path(testing::TempDir()) / (std::string("work_") + info.name());
+    parent_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("work_") + info.name() + std::to_string(::getpid()));
     clean();
     output_ = parent_ / "x.hier";
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -28,7 +29,8 @@ class BlobStoreTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("blobs_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("blobs_") + info.name() + std::to_string(::getpid()));
     std::filesystem::remove(path_);
   }
 

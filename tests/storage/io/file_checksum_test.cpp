@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -41,7 +42,8 @@ class FileChecksumTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("checksum_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("checksum_") + info.name() + std::to_string(::getpid()));
   }
   std::unique_ptr<File> file_of(std::span<const std::byte> bytes) {
     write_file(files_, path_, bytes);

@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -38,7 +39,8 @@ class FileTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = std::filesystem::path(testing::TempDir()) / (std::string("file_") + info.name());
+    directory_ = std::filesystem::path(testing::TempDir()) /
+                 (std::string("file_") + info.name() + std::to_string(::getpid()));
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_);
     path_ = directory_ / "data";

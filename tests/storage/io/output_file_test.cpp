@@ -33,7 +33,8 @@ class OutputFileTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    parent_ = fs::path(testing::TempDir()) / (std::string("output_") + info.name());
+    parent_ = fs::path(testing::TempDir()) /
+              (std::string("output_") + info.name() + std::to_string(::getpid()));
     fs::remove_all(parent_);
     fs::create_directories(parent_);
     path_ = parent_ / "a.json";

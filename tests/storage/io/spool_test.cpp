@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -36,7 +37,8 @@ class SpoolTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("spool_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("spool_") + info.name() + std::to_string(::getpid()));
     std::filesystem::remove(path_);
     for (int i = 1; i < 16; ++i)
       std::filesystem::remove(path_.string() + "." + std::to_string(i));
