@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A link to what is shown, and the code for other pages; each with a button that copies it.
+import { copyText } from '../parts/clipboard.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 import type { ViewParts } from '../view/view_parts.js';
@@ -8,13 +9,9 @@ import { elementCode, frameCode } from './embed_code.js';
 const TOLD = 2500; // milliseconds that a success is told
 
 async function copy(field: HTMLTextAreaElement): Promise<boolean> {
-  try {
-    await navigator.clipboard.writeText(field.value);
-    return true;
-  } catch {
-    field.select(); // pages that are not secure have no clipboard of that kind: the user copies what is selected
-    return false;
-  }
+  const isCopied = await copyText(field.value);
+  if (!isCopied) field.select(); // the user copies what is selected
+  return isCopied;
 }
 
 class CopyField {

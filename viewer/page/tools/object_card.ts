@@ -4,6 +4,7 @@ import type { ObjectProperty } from '../../src/hierarchy/object_facts.js';
 import type { ObjectRow, ObjectValue } from '../../src/hierarchy/object_blocks.js';
 import type { LengthScale } from '../../src/tools/units.js';
 import { formatCount, formatNumber } from '../numbers.js';
+import { copyText } from '../parts/clipboard.js';
 import { element, icon } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { words } from './words/words.js';
@@ -56,15 +57,6 @@ function valueOf({ shown, link }: Line): HTMLElement {
   return link === null ? text : element('a', { class: 'object-value', href: link, target: '_blank', rel: 'noopener noreferrer' }, shown);
 }
 
-async function copy(text: string): Promise<string> {
-  try {
-    await navigator.clipboard.writeText(text);
-    return words.pick.copied;
-  } catch {
-    return words.pick.notCopied;
-  }
-}
-
 export class ObjectCard {
   readonly root: HTMLElement;
   private readonly list = element('dl', { class: 'figures tool-figures object-figures' });
@@ -85,8 +77,13 @@ export class ObjectCard {
 
   private rowOf(each: Line, isFirst: boolean): HTMLElement {
     const button = element('button', { type: 'button', class: 'object-copy', 'aria-label': words.objects.copy(each.name), title: words.objects.copy(each.name), tabindex: isFirst ? '0' : '-1' }, icon(ICONS.copy));
-    button.addEventListener('click', () => void copy(each.copied).then((said) => { this.said.textContent = `${each.name}: ${said}`; }));
+    button.addEventListener('click', () => void this.copy(each));
     return element('div', {}, element('dt', { dir: 'auto' }, each.name), element('dd', {}, valueOf(each), button));
+  }
+
+  private async copy({ name, copied }: Line): Promise<void> {
+    const said = (await copyText(copied)) ? words.pick.copied : words.pick.notCopied;
+    this.said.textContent = `${name}: ${said}`;
   }
 
   /// The buttons are one stop of the tab key: arrows lead from one to the next.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Coordinates of a point, as the input has them.
 import type { PickedPoint } from '../../src/tools/picked_point.js';
+import { copyText } from '../parts/clipboard.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
@@ -120,12 +121,8 @@ export class PickTool implements Tool {
 
   private async copyPoint(): Promise<void> {
     if (this.picked === null) return;
-    try {
-      await navigator.clipboard.writeText(coordinates(this.picked).join(' '));
-      this.copy.textContent = words.pick.copied;
-    } catch {
-      this.copy.textContent = words.pick.notCopied;
-    }
+    const isCopied = await copyText(coordinates(this.picked).join(' '));
+    this.copy.textContent = isCopied ? words.pick.copied : words.pick.notCopied;
   }
 }
 
