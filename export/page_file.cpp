@@ -208,12 +208,12 @@ std::vector<Besides> besides_of(const PageSource& source, std::uint64_t& room) {
   return files;
 }
 
-/// Returns the entries of those that are in.
-std::string entries_of(std::span<const Besides> files) {
-  std::string entries;
+/// Returns the bytes of the entries of those that are in.
+std::uint64_t entry_bytes(std::span<const Besides> files) {
+  std::uint64_t bytes = 0;
   for (const Besides& file : files)
-    entries += file.is_in ? file.entry : "";
-  return entries;
+    bytes += file.is_in ? file.entry.size() : 0;
+  return bytes;
 }
 
 /// Returns lines that tell of the others.
@@ -248,7 +248,10 @@ std::uint64_t write_files(const PageSource& source, const Filling& filling,
   const auto& [packer, choice] = filling;
   std::vector<TileRecord> records = source.reader.records();
   EntryStream entries(out);
-  entries.put(entries_of(besides));
+  for (const Besides& file : besides) {
+    if (file.is_in)
+      entries.put(file.entry);
+  }
   source.progress.stage("page", choice.tiles.size(), "tiles");
   for (const NodeId tile : choice.tiles) {
     source.cancel.check();
@@ -357,7 +360,7 @@ std::string write_page(storage::FileSystem& files, const fs::path& hierarchy,
   const std::uint64_t bytes = frame.bytes() + write_files(source, filling, besides, out);
   out.put(frame.behind);
   out.flush();
-  const std::string left_out = left_out_text(source, filling, fixed + entries_of(besides).size());
+  const std::string left_out = left_out_text(source, filling, fixed + entry_bytes(besides));
   storage::require_same_build(place.files(), hierarchy, reader.manifest());
   output.publish();
   std::string account = account_text(source, filling, bytes, viewer.size()) + left_out +

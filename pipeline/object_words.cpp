@@ -20,10 +20,9 @@ std::optional<storage::ObjectTableFacts> make_object_words(const storage::Object
   const auto path = storage::object_words_path(directory);
   const auto file = context.files.create(path);
   storage::ObjectTableWriter writer(*file, storage::word_properties());
-  ObjectRow letters = storage::letters_row();
   const storage::LetterTable table(storage::kLetterTable, path.string());
+  writer.add(storage::letters_row());
   std::uint64_t rows = 1;
-  writer.add(std::move(letters));
   const std::uint64_t sort_bytes = std::min(context.memory().work_bytes / 4, kMostWordSortBytes);
   importing::for_each_word_row(objects, table, {scratch, sort_bytes, context.cancel},
                                [&](ObjectRow row) {
