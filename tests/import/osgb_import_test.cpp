@@ -360,17 +360,21 @@ TEST_F(Osgb, DamageIsToldOrDoesNotMatter) {
   make();
   const fs::path finer = tile("_L1_0");
   const std::string bytes = bytes_of(finer);
+  const auto is_told = [&](std::size_t at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(~damaged[at]);
+    write(finer, damaged);
+    return !failure(tile()).empty();
+  };
+  EXPECT_TRUE(is_told(0)) << "the mark of the format";
   std::size_t told = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     // Texels say nothing of the format.
-    if (!tests::share().has(i / 7) || i % 7 != 0 || (i > 700 && i % 91 != 0))
-      continue;
-    std::string damaged = bytes;
-    damaged[i] = static_cast<char>(~damaged[i]);
-    write(finer, damaged);
-    told += failure(tile()).empty() ? 0 : 1;
+    if (tests::share().has(i / 7) && i % 7 == 0 && (i <= 700 || i % 91 == 0))
+      told += is_told(i) ? 1 : 0;
   }
-  EXPECT_GT(told, 0U);
+  // A small share may hold bytes alone that mean nothing.
+  EXPECT_TRUE(told > 10 || tests::share().count > 1) << told;
 }
 
 TEST_F(Osgb, PlugInsAreNotLoaded) {
