@@ -1,99 +1,80 @@
 // SPDX-License-Identifier: MIT
-// How a model is shown: its colours and surface, its light, how it stands; and what a link and the browser keep of it.
+// How a model is shown: its colours and surface, its light, how it stands, its levels; from views, and as the browser keeps it.
 import { asObject, type Json } from '../src/json_value.js';
-import { RAMPS } from '../src/scene/ramps.js';
-import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';
-import { DEFAULT_STANDING, MOST_STRETCH, UPS, type Standing } from '../src/scene/standing.js';
+import { DEFAULT_LOOK, type Look } from '../src/scene/settings.js';
+import { DEFAULT_STANDING, type Standing } from '../src/scene/standing.js';
+import { lookOf, standingOf } from '../src/view/view_look.js';
+import { partsOf, readLink } from '../src/view/view_link.js';
+import { storedValue } from '../src/view/view_json.js';
+import { keysOf, type LightChoice, type View, type ViewKey } from '../src/view/view_table.js';
 
-/// `auto`: the sun over terrains, a studio around all else. `matcap`: no light, the form alone. `relief`: scratches stand out.
-export type LightName = 'auto' | 'studio' | 'raking' | 'relief' | 'flat' | 'sun' | 'matcap';
+export { COLOURS, LIGHTS, type LightName } from '../src/view/view_table.js';
 
-export interface Light {
-  name: LightName;
-  /// Where the key light comes from instead, radians to the right and up; null: as the name says.
-  key: readonly [number, number] | null;
+export interface Light extends LightChoice {
   /// Hollows of what is seen get less of it.
-  occlusion: boolean;
+  readonly occlusion: boolean;
 }
 
 export interface Appearance {
   look: Look;
   light: Light;
   standing: Standing;
+  /// The finest level that is shown; null: all.
+  level: number | null;
 }
 
-export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'relief', 'flat', 'sun', 'matcap'];
-export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
 export const DEFAULT_LIGHT: Light = { name: 'auto', key: null, occlusion: false };
-
-const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline', 'isolines'] as const;
-type Switches = Pick<Look, (typeof SWITCHES)[number]>;
 
 export function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], otherwise: Otherwise): T | Otherwise {
   return choices.find((choice) => choice === value) ?? otherwise;
 }
 
-// ---- kept in the browser
-
-const LONGEST_NAME = 100; // of an attribute
-const MOST_HIDDEN = 256; // labels
-
-function readNumbers(stored: unknown): number[] {
-  const given: unknown[] = Array.isArray(stored) ? stored : [];
-  return given.filter((value): value is number => typeof value === 'number' && Number.isFinite(value));
-}
-
-function readRange(stored: unknown): Look['range'] {
-  const numbers = readNumbers(stored);
-  return numbers.length === 2 ? [numbers[0], numbers[1]] : null;
-}
-
-/// Returns the part of a look that holds for other models too.
-export function lastingLook(look: Partial<Look>): Partial<Look> {
-  return Object.fromEntries(Object.entries(look).filter(([name]) => !['attribute', 'range', 'hidden'].includes(name)));
-}
-
-/// A switch that is neither on nor off is as it is without a choice.
-function readSwitches(valueOf: (name: string) => unknown): Switches {
-  return Object.fromEntries(SWITCHES.map((name) => [name, oneOf(valueOf(name), [true, false], DEFAULT_LOOK[name])])) as unknown as Switches;
-}
-
-/// `relief` follows from the rest.
-export function readLook(stored: unknown): Look {
-  const look = asObject(stored);
+/// What a view says of these, on top of what is given; one that says anything of look and light says all of it.
+export function withChoices(link: string, given: Appearance): Appearance {
+  const [view, parts] = [readLink(link), partsOf(link)];
   return {
-    colours: oneOf(look.colours, COLOURS, DEFAULT_LOOK.colours),
-    ...readSwitches((name) => look[name]),
-    material: DEFAULT_LOOK.material,
-    relief: DEFAULT_LOOK.relief,
-    shading: oneOf(look.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
-    attribute: typeof look.attribute === 'string' ? look.attribute.slice(0, LONGEST_NAME) : '',
-    ramp: oneOf(look.ramp, RAMPS, DEFAULT_LOOK.ramp),
-    range: readRange(look.range),
-    hidden: readNumbers(look.hidden).slice(0, MOST_HIDDEN),
+    ...(parts.has('look') ? { look: lookOf(view), light: lightOf(view) } : { look: given.look, light: given.light }),
+    standing: parts.has('standing') ? standingOf(view) : given.standing,
+    level: parts.has('level') ? (view.level ?? null) : given.level,
   };
 }
 
-function readKey(stored: unknown): Light['key'] {
-  if (!Array.isArray(stored) || stored.length !== 2) return null;
-  const [right, up] = stored as unknown[];
-  return isAngle(right) && isAngle(up) ? [right, up] : null;
+function lightOf({ light, occlusion }: View): Light {
+  return { ...DEFAULT_LIGHT, ...light, occlusion: occlusion ?? DEFAULT_LIGHT.occlusion };
 }
 
-function isAngle(value: unknown): value is number {
-  return typeof value === 'number' && Math.abs(value) <= Math.PI;
+export function viewOf({ look, light: { name, key, occlusion }, standing, level }: Appearance): View {
+  const { attribute, range, tolerance } = look;
+  const unsaid = { attribute: attribute === '' ? undefined : attribute, range: range ?? undefined, tolerance: tolerance ?? undefined };
+  return { ...look, ...unsaid, light: { name, key }, occlusion, ...standing, level: level ?? undefined };
 }
 
+// ---- kept in the browser
+
+/// Returns the part of a look that holds for other models too.
+export function lastingLook(look: Partial<Look>): Partial<Look> {
+  return Object.fromEntries(Object.entries(look).filter(([name]) => !['attribute', 'range', 'tolerance', 'hidden'].includes(name)));
+}
+
+function storedView(keys: readonly ViewKey[], stored: Json): View {
+  return Object.fromEntries(keys.map((key) => [key, storedValue(key, stored[key]) ?? undefined]));
+}
+
+export function readLook(stored: unknown): Look {
+  return lookOf(storedView(keysOf('look'), asObject(stored)));
+}
+
+/// A name alone, and the key beside it.
 export function readLight(stored: unknown): Light {
   const { name, key, occlusion } = asObject(stored);
-  const known = oneOf(name, LIGHTS, null);
-  return { ...(known === null ? DEFAULT_LIGHT : { name: known, key: readKey(key) }), occlusion: occlusion === true };
+  const angles: unknown[] = Array.isArray(key) ? key : [];
+  const light = storedValue('light', name);
+  const turned = light && storedValue('light', [light.name, ...angles].join());
+  return { ...DEFAULT_LIGHT, ...(turned ?? light), occlusion: occlusion === true };
 }
 
 export function readStanding(stored: unknown): Standing {
-  const { up, stretch } = asObject(stored);
-  const isStretch = typeof stretch === 'number' && stretch >= 1 && stretch <= MOST_STRETCH;
-  return { up: oneOf(up, UPS, DEFAULT_STANDING.up), stretch: isStretch ? stretch : DEFAULT_STANDING.stretch };
+  return standingOf(storedView(keysOf('standing'), asObject(stored)));
 }
 
 /// How models stand that do not stand as their files say, by their addresses; the last chosen last.
@@ -112,55 +93,4 @@ export function keepStanding(standings: Standings, url: string, standing: Standi
   return Object.fromEntries([...others, ...(isDefault ? [] : [[url, standing] as const])].slice(-MOST_STANDINGS));
 }
 
-// ---- in links
-
-const DIGITS = 4;
-
-function onOff(is: boolean): string {
-  return is ? 'on' : 'off';
-}
-
-function formatLight({ name, key }: Pick<Light, 'name' | 'key'>): string {
-  return [name, ...(key ?? []).map((angle) => String(Number(angle.toPrecision(DIGITS))))].join(',');
-}
-
-function parseLight(text: string, occlusion: boolean): Light {
-  const [name, ...key] = text.split(',');
-  return readLight({ name, key: key.map(Number), occlusion });
-}
-
-/// `name=value` of all that is not as it is without a choice, with & between.
-export function formatChoices({ look, light, standing }: Appearance): string {
-  const choices: string[] = [];
-  const add = (name: string, value: string, otherwise: string): void => { if (value !== otherwise) choices.push(`${name}=${value}`); };
-  add('colours', look.colours, DEFAULT_LOOK.colours);
-  add('shading', look.shading, DEFAULT_LOOK.shading);
-  add('attribute', encodeURIComponent(look.attribute), '');
-  add('ramp', look.ramp, DEFAULT_LOOK.ramp);
-  add('range', look.range?.join(',') ?? '', '');
-  add('hidden', look.hidden.join(','), '');
-  for (const name of SWITCHES) add(name, onOff(look[name]), onOff(DEFAULT_LOOK[name]));
-  add('light', formatLight(light), formatLight(DEFAULT_LIGHT));
-  add('occlusion', onOff(light.occlusion), onOff(DEFAULT_LIGHT.occlusion));
-  add('up', standing.up, DEFAULT_STANDING.up);
-  add('stretch', String(standing.stretch), String(DEFAULT_STANDING.stretch));
-  return choices.join('&');
-}
-
-function listed(text: string | null): number[] {
-  return text === null || text === '' ? [] : text.split(',').map(Number);
-}
-
-function attributeChoices(choices: URLSearchParams): Json {
-  return { attribute: choices.get('attribute'), ramp: choices.get('ramp'), range: listed(choices.get('range')), hidden: listed(choices.get('hidden')) };
-}
-
-/// Returns what a link chooses, on top of what is given; a link that chooses anything of look and light chooses all of it.
-export function withChoices(text: string, given: Appearance): Appearance {
-  const choices = new URLSearchParams(text);
-  const standing = { ...given.standing, ...(choices.has('up') || choices.has('stretch') ? readStanding({ up: choices.get('up'), stretch: Number(choices.get('stretch') ?? 1) }) : {}) };
-  if (!['colours', 'shading', 'light', 'occlusion', 'attribute', 'ramp', 'range', 'hidden', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
-  const switches = Object.fromEntries(SWITCHES.map((name) => [name, oneOf(choices.get(name), ['on', 'off'], onOff(DEFAULT_LOOK[name])) === 'on']));
-  const look = readLook({ ...switches, colours: choices.get('colours'), shading: choices.get('shading'), ...attributeChoices(choices) });
-  return { look, light: parseLight(choices.get('light') ?? DEFAULT_LIGHT.name, choices.get('occlusion') === 'on'), standing };
-}
+export const DEFAULT_APPEARANCE: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING, level: null };

@@ -11,7 +11,7 @@ export { isLabel, type ScalarAttribute } from './hierarchy/scalar_values.js';
 export type { ObjectTable } from './hierarchy/object_table.js';
 export type { ObjectRow, ObjectValue } from './hierarchy/object_blocks.js';
 export { fittingNames, type FoundNames } from './tools/object_names.js';
-export { labelColour, rampColour, RAMPS, type RampName } from './scene/ramps.js';
+export { labelColour, rampColour, RAMPS, valueColour, type RampName } from './scene/ramps.js';
 export { MOST_STRETCH, UPS, type Standing, type Up } from './scene/standing.js';
 export type { Terrain } from './scene/terrain.js';
 export type { Manifest } from './hierarchy/manifest.js';

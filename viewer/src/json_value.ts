@@ -30,8 +30,19 @@ export class JsonValue {
     return new JsonValue(value, '', refuse);
   }
 
-  private fail(expected: string): never {
+  /// What was read elsewhere; `path`: its name in messages.
+  static of(value: unknown, path: string, refuse: Fail): JsonValue {
+    return new JsonValue(value, path, refuse);
+  }
+
+  /// Says that it is not what was expected.
+  fail(expected: string): never {
     return this.refuse(this.path === '' ? `not ${expected}` : `"${this.path}" is not ${expected}`);
+  }
+
+  /// A value that was made of it, where that is sound.
+  which<Value>(value: Value, isSound: (value: Value) => boolean, expected: string): Value {
+    return isSound(value) ? value : this.fail(expected);
   }
 
   at(key: string | number): JsonValue {

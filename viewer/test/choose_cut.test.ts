@@ -31,7 +31,7 @@ const sources: Sources = {
   mayBeFine: () => true,
 };
 
-const ALL: Limits = { threshold: 1, fine: Infinity, vertices: Infinity, bytes: Infinity };
+const ALL: Limits = { threshold: 1, fine: Infinity, vertices: Infinity, mostLevel: Infinity, bytes: Infinity };
 
 function leaves(chosen: ChosenNode): ChosenNode[] {
   return chosen.children.length === 0 ? [chosen] : chosen.children.flatMap(leaves);

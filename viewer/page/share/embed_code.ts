@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Makes the code that another page is given to show a model, or this one to show it again.
+import type { ViewPart } from '../../src/view/view_table.js';
 import { formatAddress, type Spot } from '../address.js';
 
-export interface Shared extends Spot {
+/// A view that is shared.
+export interface SharedSpot extends Spot {
+  /// Parts that its link has no room for.
+  readonly leftOut: readonly ViewPart[];
+}
+
+export interface Shared extends SharedSpot {
   /// The page's address, without query and hash.
   page: string;
   name: string;

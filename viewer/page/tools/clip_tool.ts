@@ -2,7 +2,7 @@
 // Cuts the model open by a plane or a box, and draws the section.
 import { Clipping } from '../../src/plugins/clipping.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
-import { boxPlanes, flipped, localNormal, type CutPlane } from '../../src/tools/planes.js';
+import { boxPlanes, cutPlane, flipped, localNormal, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
 import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
@@ -10,7 +10,9 @@ import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { originalVolume } from '../../src/tools/original_volume.js';
 import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
-import { checkbox, choice, slider, type Control } from '../parts/controls.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
+import type { View } from '../../src/view/view_table.js';
+import { checkbox, choice, slider, type ChoiceControl, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
 import { figureList, figures, textButton } from './figures.js';
@@ -60,6 +62,9 @@ export class ClipTool implements Tool {
   private readonly caps: Control<boolean>;
   private readonly modes: Control<CutMode>;
   private position = element('div', {});
+  private readonly directions: ChoiceControl<Direction>;
+  private readonly sliders = { min: [] as Control<number>[], max: [] as Control<number>[] };
+  private isFollowing = true; // a link, which stays as it is meanwhile
   private mode: CutMode = 'off';
   private normal: Vector = UNIT_AXES[0];
   private offset = 0;
@@ -81,21 +86,65 @@ export class ClipTool implements Tool {
     this.caps.show(view.closed);
     this.caps.root.hidden = !view.closed;
     this.caps.root.classList.add('tool-extra');
+    this.directions = choice(clip.direction, Object.entries(clip.directions) as [Direction, string][], (direction) => { this.turn(direction); });
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
     const open = view.closed ? null : element('p', { class: 'tool-note tool-extra' }, clip.noCaps);
     this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, this.list, this.original, open, this.note);
+    shop.link('cut').onFollow(() => { this.follow(); });
+    if (shop.link('cut').text !== '') this.follow();
+    else this.begin();
+  }
+
+  private begin(): void {
+    this.isFollowing = false;
     this.setMode('plane');
+  }
+
+  /// As a link says.
+  private follow(): void {
+    const { cut, box, caps = true } = readLink(this.shop.link('cut').text);
+    this.isFollowing = true;
+    this.isCapped = caps;
+    this.caps.show(caps && this.shop.bench.view.closed);
+    if (cut !== undefined) this.takePlane(cut);
+    if (box !== undefined) this.takeBox(box);
+    this.setMode(cut !== undefined ? 'plane' : box !== undefined ? 'box' : 'off');
+    this.isFollowing = false;
+  }
+
+  private takePlane(cut: NonNullable<View['cut']>): void {
+    const { normal, constant } = cutPlane(cut);
+    const axis = normal.findIndex((part) => Math.abs(part) === 1);
+    this.directions.show(axis >= 0 ? AXES[axis] : 'view');
+    this.normal = axis >= 0 ? UNIT_AXES[axis] : normal;
+    this.isFlipped = axis >= 0 && normal[axis] < 0;
+    this.offset = this.isFlipped ? constant : -constant;
+    this.showPosition();
+  }
+
+  private takeBox([a, b, c, d, e, f]: NonNullable<View['box']>): void {
+    Object.assign(this.sides, { min: [a, b, c], max: [d, e, f] });
+    for (const end of ['min', 'max'] as const) this.sliders[end].forEach((made, axis) => { made.show(this.sides[end][axis]); });
+  }
+
+  /// What links tell of it.
+  private get link(): string {
+    const { min, max } = this.sides;
+    if (this.mode === 'off') return '';
+    const caps = this.shop.bench.view.closed ? this.isCapped : undefined;
+    if (this.mode === 'box') return writeLink({ box: [...min, ...max], caps });
+    const [{ normal, constant }] = this.planes();
+    return writeLink({ cut: [...normal, constant], caps });
   }
 
   private makePlaneForm(): void {
     const { clip } = words;
-    const directions = choice(clip.direction, Object.entries(clip.directions) as [Direction, string][], (direction) => { this.turn(direction); });
-    directions.show('x');
+    this.directions.show('x');
     const flip = textButton(clip.flip, () => { this.isFlipped = !this.isFlipped; this.apply(); });
     const save = textButton(clip.export, () => { this.export(); });
     save.classList.add('tool-extra');
-    this.planeForm.append(directions.root, this.position, flip, save);
+    this.planeForm.append(this.directions.root, this.position, flip, save);
     this.turn('x');
   }
 
@@ -107,6 +156,7 @@ export class ClipTool implements Tool {
         this.apply();
       });
       made.show(this.extent[end][axis]);
+      this.sliders[end][axis] = made;
       return made.root;
     }));
     return element('div', { class: 'tool-form' }, ...sliders);
@@ -127,11 +177,15 @@ export class ClipTool implements Tool {
     const ends = rangeAlong(this.extent, this.normal);
     this.offset = (ends[0] + ends[1]) / 2;
     this.isFlipped = dot(this.normal, this.viewDirection()) < 0;
-    const made = slider(words.clip.position, '', rangeOf(ends), (value) => { this.offset = value; this.apply(); });
+    this.showPosition();
+    this.apply();
+  }
+
+  private showPosition(): void {
+    const made = slider(words.clip.position, '', rangeOf(rangeAlong(this.extent, this.normal)), (value) => { this.offset = value; this.apply(); });
     made.show(this.offset);
     this.position.replaceWith(made.root);
     this.position = made.root as HTMLDivElement;
-    this.apply();
   }
 
   private viewDirection(): Vector {
@@ -157,6 +211,7 @@ export class ClipTool implements Tool {
     const { bench } = this.shop;
     this.clipping.cut(this.localPlanes(), this.isCapped);
     this.stopMeasuring();
+    if (!this.isFollowing) this.shop.link('cut').write(this.link);
     bench.redraw();
   }
 

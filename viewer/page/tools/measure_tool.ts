@@ -8,7 +8,8 @@ import { recordedBound } from '../../src/tools/shown_bound.js';
 import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { sectionSvg } from '../../src/tools/section_svg.js';
 import { UNIT_NAMES, UNITS, within, type UnitName } from '../../src/tools/units.js';
-import type { Vector } from '../../src/tools/vectors.js';
+import { triplesOf, type Vector } from '../../src/tools/vectors.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
@@ -59,7 +60,21 @@ export class MeasureTool implements Tool {
     const units = unitsForm(shop, () => { this.show(); });
     this.snap.show(shop.settings.snaps);
     this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list, units, this.snap.root, ...this.saves, this.clear, this.note);
+    shop.link('measure').onFollow(() => { this.follow(); });
+    this.follow();
     this.show();
+  }
+
+  /// As a link says.
+  private follow(): void {
+    const { text } = this.shop.link('measure');
+    if (text !== this.link) this.measuring.place(triplesOf(readLink(text).measure ?? []));
+  }
+
+  /// What links tell of it.
+  private get link(): string {
+    const { points } = this.measuring;
+    return writeLink({ measure: points.length === 0 ? undefined : points.flatMap(({ point }) => point) });
   }
 
   choose(right: number, up: number): void {
@@ -114,6 +129,7 @@ export class MeasureTool implements Tool {
   }
 
   private show(): void {
+    this.shop.link('measure').write(this.link);
     for (const save of this.saves) save.hidden = this.measuring.points.length < 2;
     const [is, off] = [this.measuring.measures(), this.measuring.bounds()];
     const scale = this.shop.scale;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The notes and bookmarks of the open model: in the page's address while they are short.
+import { readLink, writeLink } from '../../src/view/view_link.js';
+import type { ToolLink } from './tool_link.js';
 import { isEmpty, MOST_ENTRIES, packNotes, unpackNotes, type Bookmark, type Note, type Notebook } from '../../src/tools/notes.js';
 
 const NOTHING: Notebook = { notes: [], bookmarks: [] };
@@ -10,22 +12,18 @@ export class NotebookStore {
   bookmarks: Bookmark[] = [];
   /// The page's address has all that is kept, too.
   isInLink = true;
-  private link: string | null = null;
   private readonly listeners: (() => void)[] = [];
 
-  /// `link`: what the address had; `write`: puts it there, or takes it away.
-  constructor(
-    link: string | null,
-    private readonly write: (link: string | null) => void,
-  ) {
-    this.follow(link);
+  constructor(private readonly link: ToolLink) {
+    link.onFollow(() => { this.follow(); });
+    this.follow();
   }
 
   /// Takes what a link has, instead of what the one before had; what no link holds stays.
-  follow(link: string | null): void {
-    if (link === this.link) return;
+  private follow(): void {
+    const { notes } = readLink(this.link.text);
     if (this.isInLink) [this.title, this.notes, this.bookmarks] = ['', [], []];
-    this.add((link === null ? null : unpackNotes(link)) ?? NOTHING);
+    this.add((notes === undefined ? null : unpackNotes(notes)) ?? NOTHING);
   }
 
   onChange(listener: () => void): void {
@@ -47,10 +45,9 @@ export class NotebookStore {
   }
 
   changed(): void {
-    const link = isEmpty(this) ? null : packNotes(this);
-    this.isInLink = isEmpty(this) || link !== null;
-    this.link = link;
-    this.write(link);
+    const notes = isEmpty(this) ? null : packNotes(this);
+    this.isInLink = isEmpty(this) || notes !== null;
+    this.link.write(writeLink({ notes: notes ?? undefined }));
     for (const listener of this.listeners) listener();
   }
 }

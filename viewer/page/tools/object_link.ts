@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What links tell of objects: `object=NAME`, `by=PROPERTY` with `between=FROM,TO`, and once for each text `only=`, `hide=` and `show=`.
+// What links tell of objects: which one is picked, by which property they have colours, and which are drawn.
 import type { ObjectChoice } from '../../src/tools/object_choice.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
 
 export interface ObjectLink extends ObjectChoice {
   /// The name of the object that is picked; null: none is.
@@ -11,34 +12,12 @@ export interface ObjectLink extends ObjectChoice {
   readonly between: readonly [number, number] | null;
 }
 
-const NAMES = ['object', 'by', 'between', 'hide', 'only', 'show'];
-/// Longer links are cut by what people paste them into.
-const LONGEST = 2000;
-const MOST_TEXTS = 100;
-
-/// As links have it; null: nothing is picked, and all is drawn. What would make it too long is left out.
-export function formatObjectLink({ picked, by, between, hidden, only, shown }: ObjectLink): string | null {
-  const write = (name: string, texts: readonly string[]): string[] => texts.map((text) => `${name}=${encodeURIComponent(text)}`);
-  const one = (name: string, text: string | null): string[] => (text === null ? [] : write(name, [text]));
-  const all = [...one('object', picked), ...one('by', by), ...one('between', between?.join(',') ?? null), ...write('only', only), ...write('hide', hidden), ...write('show', shown)];
-  let left = LONGEST;
-  const fitting = all.filter((part) => (left -= part.length + 1) >= 0);
-  return fitting.length === 0 ? null : fitting.join('&');
+/// Empty: nothing is picked, and all is drawn.
+export function formatObjectLink({ picked, by, between, hidden: hide, only, shown: show }: ObjectLink): string {
+  return writeLink({ object: picked ?? undefined, by: by ?? undefined, between: between ?? undefined, only, hide, show });
 }
 
-/// The part of a link's choices that tells of objects; null: none does.
-export function objectsOfChoices(choices: string): string | null {
-  const parts = choices.split('&').filter((part) => NAMES.some((name) => part.startsWith(`${name}=`)));
-  return parts.length === 0 ? null : parts.join('&');
-}
-
-function parseBetween(text: string | null): readonly [number, number] | null {
-  const numbers = text?.split(',').map((part) => (part.trim() === '' ? NaN : Number(part))) ?? [];
-  return numbers.length === 2 && numbers.every(Number.isFinite) ? [numbers[0], numbers[1]] : null;
-}
-
-export function parseObjectLink(text: string | null): ObjectLink {
-  const choices = new URLSearchParams(text ?? '');
-  const all = (name: string): string[] => choices.getAll(name).slice(0, MOST_TEXTS);
-  return { picked: choices.get('object'), by: choices.get('by'), between: parseBetween(choices.get('between')), hidden: all('hide'), only: all('only'), shown: all('show') };
+export function parseObjectLink(link: string): ObjectLink {
+  const { object = null, by = null, between = null, only = [], hide = [], show = [] } = readLink(link);
+  return { picked: object, by, between, only, hidden: hide, shown: show };
 }

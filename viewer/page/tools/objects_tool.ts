@@ -46,7 +46,7 @@ export class ObjectsTool implements Tool {
 
   constructor(private readonly shop: Workshop) {
     const { objects: text } = words;
-    const { bench: { view }, objectLink } = shop;
+    const { bench: { view } } = shop;
     view.registerPlugin(this.objects);
     this.objects.addEventListener('change', () => { this.show(); });
     this.objects.addEventListener('problem', ({ message }) => { this.fail(message); });
@@ -62,7 +62,7 @@ export class ObjectsTool implements Tool {
     this.root = element('div', {}, this.search.root, this.browser, this.note, this.acts, this.card.root, this.all, this.colouring.root);
     // The browser tells a double click from two also while frames take long.
     shop.bench.surface.addEventListener('dblclick', () => { if (this.root.isConnected) this.objects.go(); }, { signal: shop.bench.signal });
-    objectLink.onFollow(() => void this.follow());
+    shop.link('objects').onFollow(() => void this.follow());
     void this.follow();
   }
 
@@ -157,7 +157,7 @@ export class ObjectsTool implements Tool {
 
   /// As a link says, which stays as it is meanwhile.
   private async follow(): Promise<void> {
-    const { picked, by, between, hidden, only, shown } = parseObjectLink(this.shop.objectLink.text);
+    const { picked, by, between, hidden, only, shown } = parseObjectLink(this.shop.link('objects').text);
     ++this.following;
     await Promise.all([this.objects.draw({ hidden, only, shown }), this.colour(by, between), picked === null ? this.objects.choose(null) : this.objects.chooseNamed(picked)]);
     --this.following;
@@ -172,7 +172,7 @@ export class ObjectsTool implements Tool {
     this.tree.update();
     this.all.hidden = hidden.length + only.length + shown.length === 0;
     this.note.textContent = this.problem !== '' ? this.problem : picked === null ? words.objects.hint(formatCount(this.table?.count ?? 0)) : '';
-    if (this.following === 0) this.shop.objectLink.write(this.link());
+    if (this.following === 0) this.shop.link('objects').write(this.link());
     this.shop.bench.redraw();
   }
 
@@ -183,7 +183,7 @@ export class ObjectsTool implements Tool {
     void this.browse();
   }
 
-  private link(): string | null {
+  private link(): string {
     const { picked, legend, choice } = this.objects;
     const between = legend === null || legend.range === legend.whole ? null : legend.range;
     return formatObjectLink({ picked: picked?.name ?? null, by: legend?.property.name ?? null, between, ...choice });

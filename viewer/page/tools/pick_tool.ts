@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Coordinates of a point, as the input has them.
-import type { PickedPoint } from '../../src/tools/picked_point.js';
+import { placedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
+import { rounded } from '../../src/view/kinds.js';
+import { distanceOf } from '../../src/tools/vectors.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
+import { Vector3 } from 'three';
 import { copyText } from '../parts/clipboard.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
@@ -14,6 +18,7 @@ import type { Workshop } from './workshop.js';
 const NORMAL_DIGITS = 5;
 const DEGREE_DIGITS = 9;
 const VALUE_DIGITS = 7;
+const NEAR = 1e-6; // of the model's size: rounding leaves a place of a link so near
 
 type State = 'refining' | 'done' | 'missing';
 
@@ -39,14 +44,15 @@ function valueRows({ values }: PickedPoint): (readonly [string, string])[] {
 
 function originOf(picked: PickedPoint, state: State): string {
   const { isOriginal, level, index } = picked;
+  if (index < 0) return words.pick.given;
   const from = isOriginal ? words.pick.original(String(index)) : words.pick.level(String(level));
   return state === 'refining' && !isOriginal ? words.pick.refining(from) : from;
 }
 
 function rowsOf(picked: PickedPoint, state: State): (readonly [string, string])[] {
   const [x, y, z] = coordinates(picked);
-  const normal = picked.normal.map((value) => value.toFixed(NORMAL_DIGITS)).join(', ');
-  return [['x', x], ['y', y], ['z', z], [words.pick.normal, normal], ...globeRows(picked), ...valueRows(picked), [words.pick.from, originOf(picked, state)]];
+  const normal = picked.normal.every((value) => value === 0) ? [] : [[words.pick.normal, picked.normal.map((value) => value.toFixed(NORMAL_DIGITS)).join(', ')] as const];
+  return [['x', x], ['y', y], ['z', z], ...normal, ...globeRows(picked), ...valueRows(picked), [words.pick.from, originOf(picked, state)]];
 }
 
 export class PickTool implements Tool {
@@ -63,6 +69,39 @@ export class PickTool implements Tool {
     this.copy.hidden = true;
     this.snap.show(shop.settings.snaps);
     this.root = element('div', {}, this.note, this.list, this.snap.root, this.copy);
+    shop.link('pick').onFollow(() => { this.follow(); });
+    this.follow();
+  }
+
+  /// As a link says: at once the place alone, then what is there.
+  private follow(): void {
+    const { view } = this.shop.bench;
+    const { pick } = readLink(this.shop.link('pick').text);
+    this.asking.abort();
+    this.place = null;
+    if (pick === undefined || view.manifest === null) {
+      if (this.picked !== null) this.show(null, 'done');
+      return;
+    }
+    const placed = placedPoint(pick, view.manifest);
+    this.show(placed, 'done');
+    this.asking = new AbortController();
+    void this.recognize(placed, this.asking.signal).catch(() => undefined);
+  }
+
+  /// The vertex that was snapped to, with all of its digits; else what the surface has at that place, as the camera sees it.
+  private async recognize(placed: PickedPoint, signal: AbortSignal): Promise<void> {
+    const { camera, view } = this.shop.bench;
+    const { x, y } = new Vector3(...placed.local).applyMatrix4(view.surfaceMatrix).project(camera);
+    const near = NEAR * view.box.min.distanceTo(view.box.max);
+    for (const snaps of [true, false]) {
+      const found = await this.shop.pointing.at(x, y, snaps, signal)?.original;
+      if (signal.aborted || found == null) return;
+      const isVertex = snaps && found.point.every((value, axis) => rounded(value) === rounded(placed.point[axis]));
+      const { point, local } = placed;
+      if (isVertex) this.show(found, 'done');
+      else if (!snaps && distanceOf(found.point, point) <= near) this.show({ ...found, point, local }, 'done');
+    }
   }
 
   choose(right: number, up: number): void {
@@ -112,6 +151,7 @@ export class PickTool implements Tool {
 
   private show(picked: PickedPoint | null, state: State): void {
     this.picked = picked;
+    this.shop.link('pick').write(writeLink({ pick: picked?.point }));
     this.list.replaceChildren(...(picked ? figures(rowsOf(picked, state)) : []));
     this.copy.hidden = picked === null;
     this.copy.textContent = words.pick.copy;

@@ -11,7 +11,7 @@ import { Cube } from './cube.js';
 import { LastingSign } from './lasting_sign.js';
 import { ScaleLine } from './scale_line.js';
 import type { Tool } from './tool.js';
-import { applies, TOOL_NAMES, TOOLS, type ToolName } from './tools.js';
+import { applies, opensByLink, TOOL_NAMES, TOOLS, type ToolName } from './tools.js';
 import { words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
 import { Workshop, type ToolLinks, type WriteLink } from './workshop.js';
@@ -36,6 +36,8 @@ export class Toolbox implements Plugin {
   private readonly root: HTMLElement;
   private readonly made = new Map<ToolName, Tool>();
   private active: ToolName | null = null;
+  /// A link or a story has marks: they are seen without the bar, too.
+  private isTold = false;
 
   /// As the workshop has them.
   constructor(private readonly bench: PageStage, story: StoryHost, links: ToolLinks, write: WriteLink) {
@@ -63,6 +65,17 @@ export class Toolbox implements Plugin {
     else if (applies(name, this.shop.places.manifest)) await this.put(name === this.active ? null : name);
   }
 
+  /// Loads tools that a link tells of: what it says is seen. `opens`: the card of the last of them that has one for it.
+  async prepare(names: readonly ToolName[], opens: boolean): Promise<void> {
+    const fitting = names.filter((name) => applies(name, this.shop.places.manifest));
+    await Promise.all(fitting.map(async (name) => this.make(name)));
+    if (this.bench.signal.aborted) return;
+    this.isTold = true;
+    const shown = fitting.filter(opensByLink).at(-1);
+    if (opens && shown !== undefined) await this.put(shown);
+    this.bench.redraw();
+  }
+
   /// A tool was in use: what it does goes on.
   has(name: ToolName): boolean {
     return this.made.has(name);
@@ -83,9 +96,10 @@ export class Toolbox implements Plugin {
   drawn(): void {
     for (const tool of this.made.values()) tool.drawn?.();
     this.lasting.show([...this.made.values()].find((tool) => tool !== this.tool && (tool.lasting?.() ?? null) !== null) ?? null);
-    if (this.root.hidden) return;
+    if (this.root.hidden && !this.isTold) return;
     const marks = [...this.made.values()].flatMap((tool) => tool.marks?.() ?? []);
     this.overlay.show(marks, this.bench.camera, this.bench.view.surfaceMatrix);
+    if (this.root.hidden) return;
     this.scaleLine.show();
     this.cube.show();
   }
@@ -99,9 +113,10 @@ export class Toolbox implements Plugin {
   }
 
   /// Another link is followed.
-  follow({ notes, objects }: ToolLinks): void {
-    this.shop.notebook.follow(notes);
-    this.shop.objectLink.follow(objects);
+  follow(links: ToolLinks): void {
+    this.isTold = true;
+    this.shop.follow(links);
+    this.bench.redraw();
   }
 
   private get tool(): Tool | null {
@@ -122,6 +137,7 @@ export class Toolbox implements Plugin {
   private setOpen(open: boolean): void {
     this.root.hidden = !open;
     if (!open) {
+      this.isTold = false;
       void this.put(null);
       this.overlay.show([], this.bench.camera, this.bench.view.surfaceMatrix);
     }
@@ -147,11 +163,16 @@ export class Toolbox implements Plugin {
     if (name !== null) await this.open(name);
   }
 
+  /// Once.
+  private async make(name: ToolName): Promise<void> {
+    const { makeTool } = await TOOLS[name].load();
+    if (!this.bench.signal.aborted && !this.made.has(name)) this.made.set(name, makeTool(this.shop));
+  }
+
   private async open(name: ToolName): Promise<void> {
     try {
-      const { makeTool } = await TOOLS[name].load();
+      await this.make(name);
       if (this.active !== name || this.bench.signal.aborted) return;
-      if (!this.made.has(name)) this.made.set(name, makeTool(this.shop));
     } catch {
       const { noCode, noCodeMore } = pageWords.problems;
       const done = this.bench.tell(noCode, {

@@ -6,37 +6,47 @@ import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import type { PageStage } from '../view/page_stage.js';
 import type { StoryHost } from '../view/story_host.js';
 import { NotebookStore } from './notebook.js';
-import { ObjectLinkStore } from './object_link_store.js';
+import type { ViewPart } from '../../src/view/view_table.js';
+import { ToolLink } from './tool_link.js';
 import { loadToolSettings, saveToolSettings, type ToolSettings } from './tool_settings.js';
 import { words } from './words/words.js';
 
-/// What links have of the tools; null: nothing.
-export interface ToolLinks {
-  readonly notes: string | null;
-  readonly objects: string | null;
-}
+/// What links have of the parts of views that are tools'; '': nothing.
+export type ToolLinks = Readonly<Partial<Record<ViewPart, string>>>;
 
-export type WriteLink = (name: keyof ToolLinks, link: string | null) => void;
+export type WriteLink = (part: ViewPart, link: string) => void;
 
 export class Workshop {
   readonly pointing: Pointing;
   readonly places: Places;
   readonly settings: ToolSettings;
   readonly notebook: NotebookStore;
-  readonly objectLink: ObjectLinkStore;
+  private readonly links = new Map<ViewPart, ToolLink>();
 
-  /// The view's manifest is there. `links`: what the address has; `write`: puts something else there, or takes it away.
-  constructor(readonly bench: PageStage, readonly story: StoryHost, links: ToolLinks, write: WriteLink) {
+  /// The view's manifest is there. `told`: what the address has; `write`: puts something else there, or takes it away.
+  constructor(readonly bench: PageStage, readonly story: StoryHost, private told: ToolLinks, private readonly write: WriteLink) {
     this.pointing = new Pointing(bench);
     this.places = new Places(bench.view);
     this.settings = loadToolSettings(unitOfModel(this.places.manifest));
-    this.notebook = new NotebookStore(links.notes, (link) => { write('notes', link); });
-    this.objectLink = new ObjectLinkStore(links.objects, (link) => { write('objects', link); });
+    this.notebook = new NotebookStore(this.link('notes'));
   }
 
   /// Tells lengths in the unit that was chosen.
   get scale(): LengthScale {
     return new LengthScale(this.settings.modelUnit, this.settings.shownUnit, words.units.unit);
+  }
+
+  /// What links tell of a part, for the tool whose it is.
+  link(part: ViewPart): ToolLink {
+    const link = this.links.get(part) ?? new ToolLink(this.told[part] ?? '', (text) => { this.write(part, text); });
+    this.links.set(part, link);
+    return link;
+  }
+
+  /// Another link is followed.
+  follow(told: ToolLinks): void {
+    this.told = told;
+    for (const [part, link] of this.links) link.follow(told[part] ?? '');
   }
 
   setSettings(change: Partial<ToolSettings>): void {

@@ -20,13 +20,13 @@ export class ModelView {
   constructor(private readonly arrival: Arrival) {
     const parts = new ViewParts(arrival);
     this.parts = parts;
-    const { context, camera, light, tools, story } = parts;
+    const { context, camera, light } = parts;
     new Notices(context, parts.frames);
     this.chrome = new Chrome(parts);
     const { surface, view: { plugins } } = context;
     new Gestures(surface, camera.navigation, (right, up) => plugins.tapped(right, up), (right, up) => light.drag(right, up));
     listenToKeys(parts, this.chrome);
-    for (const part of [tools, story]) part.follow(arrival.spot);
+    parts.follow(arrival.spot);
     context.addEventListener('rested', () => { arrival.entry.write(parts.spot()); });
   }
 
@@ -60,9 +60,8 @@ export class ModelView {
 
   /// As a link says.
   setSpot(spot: Spot): void {
-    const { choices, tools, story } = this.parts;
     this.setPose(spot.pose);
-    for (const part of [choices, tools, story]) part.follow(spot);
+    this.parts.follow(spot);
   }
 
   stats(): Stats {

@@ -24,6 +24,7 @@ export class Navigation {
   private grabbed: Vector3 | null = null;
   private before = 0;
   private seen: CameraPose | null = null;
+  private whole: CameraPose;
   private home: CameraPose;
   private aspect = 1;
   private box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
@@ -33,7 +34,7 @@ export class Navigation {
     private readonly pick: Pick,
     private readonly wake: () => void,
   ) {
-    this.home = wholeView(this.box, 1);
+    this.whole = this.home = wholeView(this.box, 1);
     this.stand = this.home;
   }
 
@@ -55,11 +56,13 @@ export class Navigation {
   }
 
   /// The model's box, the picture's aspect, and from where the whole is seen, as wholeView() has it; what shows the whole goes on showing the whole.
-  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2], points: Iterable<Vector3> = []): void {
+  /// `first`: the model is seen first so instead.
+  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2], points: Iterable<Vector3> = [], first: CameraPose | null = null): void {
     const follow = this.atHome;
     this.box = box.clone();
     this.aspect = aspect;
-    this.home = wholeView(this.box, aspect, direction, points);
+    this.whole = wholeView(this.box, aspect, direction, points);
+    this.home = first ?? this.whole;
     if (follow) this.jump(this.home);
   }
 
@@ -80,15 +83,16 @@ export class Navigation {
     return still.matches ? 0 : flight.milliseconds;
   }
 
+  /// To the first view of the model; from there to all of it.
   goHome(): void {
-    this.fly(this.home);
+    this.fly(this.atHome ? this.whole : this.home);
   }
 
   /// Flies to the surface at a place of the picture, if there is any.
   approach(right: number, up: number): void {
     const point = this.pick(right, up);
     if (point === null) return;
-    const distance = Math.max(point.distanceTo(this.pose.position) * CLOSER, this.home.distance * NEAREST);
+    const distance = Math.max(point.distanceTo(this.pose.position) * CLOSER, this.whole.distance * NEAREST);
     this.fly(new CameraPose(this.pose.forward.multiplyScalar(-distance).add(point), point));
   }
 
@@ -101,9 +105,9 @@ export class Navigation {
   /// A turn begins: close to the surface, around what is in the middle of the picture.
   grabMiddle(): void {
     this.flight = null;
-    if (this.pose.distance > this.home.distance * 0.5) return;
+    if (this.pose.distance > this.whole.distance * 0.5) return;
     const point = this.pick(0, 0);
-    if (point !== null) this.pose = retarget(this.pose, Math.max(depthOf(this.pose, point), this.home.distance * NEAREST));
+    if (point !== null) this.pose = retarget(this.pose, Math.max(depthOf(this.pose, point), this.whole.distance * NEAREST));
   }
 
   move(moves: Partial<Moves>): void {
@@ -155,7 +159,7 @@ export class Navigation {
 
   private allowed(factor: number): number {
     const { distance } = this.pose;
-    const [least, most] = [this.home.distance * NEAREST, this.home.distance * FARTHEST];
+    const [least, most] = [this.whole.distance * NEAREST, this.whole.distance * FARTHEST];
     return Math.min(Math.max(distance * factor, Math.min(least, distance)), Math.max(most, distance)) / distance;
   }
 

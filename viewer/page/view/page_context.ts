@@ -37,6 +37,8 @@ export interface ContextEvents {
   rested: object;
   /// From time to time while frames are drawn; `working`: something is on its way. `known`: from when on there is a manifest.
   report: { stats: Stats; working: boolean };
+  /// The manifest has come, or another one.
+  manifest: { manifest: Manifest };
   known: { manifest: Manifest };
   /// The model has a story.
   story: { isTold: boolean };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The frames of a model's view: what is drawn, how sharp, and when the next one is due.
+import type { Manifest } from '../../src/index.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
 import type { Renewal } from './renewal.js';
 import { Sharpness } from './sharpness.js';
@@ -18,6 +19,7 @@ export class PageFrames {
   private readonly pauses = new Set<object>();
   private isRefused = false;
   private reportedAt = -Infinity;
+  private manifest: Manifest | null = null;
 
   constructor(private readonly context: PageContext, private readonly camera: ViewCamera, private readonly renewal: Renewal) {
     context.addEventListener('wake', this.loop.wake);
@@ -65,6 +67,7 @@ export class PageFrames {
     if (this.pauses.size > 0) return 'rest';
     const { context, camera } = this;
     const { view, canvas } = context;
+    this.greet(view.manifest);
     const moved = camera.step(now);
     const resized = canvas.fit(this.sharpness.at(now, moved, view.settings.framesPerSecond));
     camera.aim(resized);
@@ -72,6 +75,13 @@ export class PageFrames {
     if (moved || news || resized || context.isDirty) this.draw();
     context.isDirty = false;
     return this.pace(now, moved || news || camera.navigation.busy || this.sharpness.blurred);
+  }
+
+  /// Before anything is drawn that it tells of.
+  private greet(manifest: Manifest | null): void {
+    if (manifest === null || manifest === this.manifest) return;
+    this.manifest = manifest;
+    this.context.dispatchEvent({ type: 'manifest', manifest });
   }
 
   private draw(): void {

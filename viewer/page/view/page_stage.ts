@@ -8,8 +8,16 @@ import type { Telling } from '../problems.js';
 import type { Canvas } from './canvas.js';
 import type { PageFrames } from './page_frames.js';
 import { isStanding, type ViewCamera } from './view_camera.js';
+import { fittedLink } from '../../src/view/view_link.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
+
+/// The tools as stories tell of them.
+interface ToldTools {
+  /// As links have what they show; notes, which tell the story, left out.
+  readonly toldText: string;
+  tell(choices: string): void;
+}
 
 export class PageStage implements Stage {
   readonly view: HierarchyView;
@@ -23,6 +31,8 @@ export class PageStage implements Stage {
   readonly name: string;
   /// The file of the hierarchy: its story lies beside it under that name and ".story.json".
   readonly fileName: string;
+  /// They come after the stage, which they stand on.
+  tools: ToldTools | null = null;
 
   constructor(readonly context: PageContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: PageFrames) {
     const { view, canvas, root, surface, signal, model } = context;
@@ -56,13 +66,15 @@ export class PageStage implements Stage {
     return this.frames.pause();
   }
 
+  /// All of the view but the camera and notes.
   present(choices: string): void {
     this.looks.tell(choices);
+    this.tools?.tell(choices);
   }
 
-  /// The look of the model, as links have it.
+  /// All of the view but the camera and notes, as links have it.
   choices(): string {
-    return this.looks.text;
+    return fittedLink([this.looks.text, this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
   }
 
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.

@@ -21,7 +21,7 @@ function materialOf({ name }: Light): Look['material'] {
   return name === 'matcap' || name === 'relief' ? name : 'lit';
 }
 
-export function shownOf({ look, light, standing }: Appearance, model: KnownModel): ShownAppearance {
+export function shownOf({ look, light, standing }: Pick<Appearance, 'look' | 'light' | 'standing'>, model: KnownModel): ShownAppearance {
   const rig = rigOf(light, model);
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
   return { look: { ...shownLook(look, rig, standing.stretch, model), material: materialOf(light) }, rig, key };
@@ -51,6 +51,7 @@ export class Presentation {
     const { look, rig, key } = this.shown;
     if (!isSame(look, this.view.look)) this.view.setLook(look);
     if (!isSame(this.chosen.standing, this.view.standing)) this.view.setStanding(this.chosen.standing);
+    if (this.chosen.level !== this.view.mostLevel) this.view.mostLevel = this.chosen.level;
     this.lighting.set(rig, key);
   }
 

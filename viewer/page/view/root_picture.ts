@@ -3,9 +3,8 @@
 import { MathUtils, Matrix4, NeutralToneMapping, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
 import { HierarchyView } from '../../src/index.js';
-import { DEFAULT_LOOK } from '../../src/scene/settings.js';
-import { DEFAULT_STANDING } from '../../src/scene/standing.js';
-import { DEFAULT_LIGHT } from '../appearance.js';
+import { linkOf, writeLink } from '../../src/view/view_link.js';
+import { DEFAULT_APPEARANCE, withChoices } from '../appearance.js';
 import { DISTANCE, fitAt, fitMatrix, FOCUS, towardsViewer, type Turn } from '../gallery/layout.js';
 import type { Shape } from '../gallery/shape.js';
 import { Lighting } from '../../src/scene/lighting.js';
@@ -32,7 +31,7 @@ export class RootPicture {
     this.canvas.setAttribute('aria-hidden', 'true');
     this.renderer.toneMapping = NeutralToneMapping;
     this.view = new HierarchyView(url, { createWorker: () => new TileWorker(), workers: 1, settings: ROOT_ONLY });
-    this.presentation = new Presentation(this.view, new Lighting(this.scene, this.camera), { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING });
+    this.presentation = new Presentation(this.view, new Lighting(this.scene, this.camera), DEFAULT_APPEARANCE);
     this.scene.add(this.camera, this.view);
     this.view.addEventListener('change', () => { this.ask(); });
     this.view.opened.then(() => { this.begin(); }, () => undefined); // the outline stays
@@ -65,12 +64,19 @@ export class RootPicture {
     this.frame = 0;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.opened || width === 0 || height === 0) return;
-    this.presentation.apply(); // what the model is may choose for it
+    this.present();
     this.fit(width, height);
     this.aim(width / height);
     this.view.update(this.camera, { width, height }, now);
     this.renderer.render(this.scene, this.camera);
     this.drawn();
+  }
+
+  /// What the model is may choose for it, and its first view; but it stands as its outline does.
+  private present(): void {
+    const { manifest } = this.view;
+    if (manifest !== null) this.presentation.chosen = withChoices(linkOf(writeLink(manifest.view), 'look'), DEFAULT_APPEARANCE);
+    this.presentation.apply();
   }
 
   private fit(width: number, height: number): void {

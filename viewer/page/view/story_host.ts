@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The story of a model: found once the model is seen, told where its code is loaded, and at which note a link is.
-import { choiceOf, type Spot } from '../address.js';
 import type { Notebook } from '../../src/tools/note.js';
 import type { StoryPlayer } from '../story/story_player.js';
 import { words } from '../words/words.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
 import type { PageStage } from './page_stage.js';
 
 interface Story {
@@ -23,9 +23,9 @@ export class StoryHost {
     context.addEventListener('known', () => { if (context.isShown) this.seek(); });
   }
 
-  /// As links have it: from 1 on; null: no note is told.
-  get linked(): number | null {
-    return this.step === null ? null : this.step + 1;
+  /// As links have it; '': no note is told.
+  get text(): string {
+    return this.step === null ? '' : writeLink({ story: this.step + 1 });
   }
 
   /// The story that lies beside the model; null: there is none, or it has not come yet.
@@ -39,9 +39,9 @@ export class StoryHost {
   }
 
   /// A link's note.
-  follow(spot: Spot): void {
-    const number = Number(choiceOf(spot, 'story') ?? NaN);
-    this.step = Number.isInteger(number) && number > 0 ? number - 1 : null;
+  follow(choices: string): void {
+    const { story } = readLink(choices);
+    this.step = story === undefined ? null : story - 1;
     if (this.step !== null) this.player?.stories.stand(this.step);
   }
 

@@ -2,10 +2,12 @@
 // The camera of a model's view: where it stands, what of the model is in the picture, and when it rests.
 import { Box3, Vector3 } from 'three';
 import { CameraPose, type Pose } from '../../src/scene/camera_pose.js';
+import type { Standing } from '../../src/scene/standing.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose } from '../address.js';
 import { towardsViewer } from '../gallery/layout.js';
 import type { Moves } from './glide.js';
+import { firstPose } from './first_view.js';
 import { Navigation } from './navigation.js';
 import type { PageContext } from './page_context.js';
 
@@ -22,6 +24,7 @@ export class ViewCamera {
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
   private readonly framed = new Box3();
+  private standing: Readonly<Standing> | null = null;
   /// From where the whole is seen until it is there and the camera flies to its first view.
   private approach: ReturnType<typeof towardsViewer> | null = null;
 
@@ -30,6 +33,7 @@ export class ViewCamera {
     this.navigation = new Navigation((right, up) => canvas.pick(right, up), () => { context.redraw(); });
     if (turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(turn);
     context.addEventListener('opened', () => { this.reframe(); });
+    context.addEventListener('manifest', () => { this.reframe(); });
   }
 
   /// As links have it.
@@ -59,8 +63,8 @@ export class ViewCamera {
 
   /// The manifest knows the box better than the root.
   aim(isResized: boolean): void {
-    const { isOpened, view: { box }, canvas } = this.context;
-    if (isOpened && (isResized || !this.framed.equals(box))) this.reframe();
+    const { isOpened, view, view: { box }, canvas } = this.context;
+    if (isOpened && (isResized || !this.framed.equals(box) || this.standing !== view.standing)) this.reframe();
     canvas.aim(this.frozen ?? CameraPose.from(this.pose()), isOpened ? box : UNKNOWN);
   }
 
@@ -90,7 +94,9 @@ export class ViewCamera {
   private reframe(): void {
     const { view, canvas } = this.context;
     this.framed.copy(view.box);
-    this.navigation.frame(this.framed, canvas.aspect, this.approach ?? view.firstDirection, view.shape());
+    this.standing = view.standing;
+    const first = this.approach === null ? firstPose(view.manifest, view.standing) : null;
+    this.navigation.frame(this.framed, canvas.aspect, this.approach ?? view.firstDirection, view.shape(), first && CameraPose.from(first));
   }
 
   private arrive(): void {

@@ -2,9 +2,9 @@
 // The choices of a model's view: how it is shown, what the browser keeps of that, and what links say instead.
 import type { Look, Settings, Standing } from '../../src/index.js';
 import type { Angles } from '../../src/scene/lighting.js';
-import type { Spot } from '../address.js';
-import { formatChoices, keepStanding, lastingLook, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
-import { ToldLook } from '../story/told_look.js';
+import { writeLink } from '../../src/view/view_link.js';
+import { keepStanding, lastingLook, readStanding, viewOf, withChoices, type Appearance, type Light } from '../appearance.js';
+import { Told } from '../story/told.js';
 import { nextLight, Presentation } from './presentation.js';
 import type { PageContext } from './page_context.js';
 
@@ -12,6 +12,7 @@ export interface ViewChange {
   readonly look?: Partial<Look>;
   readonly light?: Partial<Light>;
   readonly standing?: Partial<Standing>;
+  readonly level?: number | null;
 }
 
 /// Switches in the order of their form, with their keys; null: it has none.
@@ -20,15 +21,15 @@ export type Switch = keyof typeof SWITCH_KEYS;
 
 export class ViewChoices {
   readonly presentation: Presentation;
-  private readonly toldLook = new ToldLook();
+  private readonly told = new Told(withChoices);
 
   constructor(private readonly context: PageContext) {
     const { view, canvas, arrival, page, signal } = context;
-    this.presentation = new Presentation(view, canvas.lighting, this.wished(arrival.spot));
+    this.presentation = new Presentation(view, canvas.lighting, this.wished(arrival.spot.choices));
     this.presentation.apply();
     context.addEventListener('opened', () => { this.present(); }); // what the model is may choose for it
     page.addEventListener('theme', () => { this.show(); }, { signal });
-    context.addEventListener('story', ({ isTold }) => { if (!isTold) this.presentAs(this.toldLook.end(this.chosen)); });
+    context.addEventListener('story', ({ isTold }) => { if (!isTold) this.presentAs(this.told.end(this.chosen)); });
   }
 
   get chosen(): Appearance {
@@ -37,27 +38,28 @@ export class ViewChoices {
 
   /// As links have it.
   get text(): string {
-    return formatChoices(this.chosen);
+    return writeLink(viewOf(this.chosen));
   }
 
   /// As a link says.
-  follow(spot: Spot): void {
-    this.presentAs(this.wished(spot));
+  follow(choices: string): void {
+    this.presentAs(this.wished(choices));
   }
 
   /// As a note of a story wants it, on top of what was chosen before the story.
   tell(choices: string): void {
-    this.presentAs(this.toldLook.tell(choices, this.chosen));
+    this.presentAs(this.told.tell(choices, this.chosen));
   }
 
   /// Kept for other models too; but not how this one stands.
-  choose({ look, light, standing }: ViewChange): void {
+  choose({ look, light, standing, level }: ViewChange): void {
     const { context: { page, model }, chosen } = this;
     const { preferences } = page;
     this.presentation.chosen = {
       look: { ...chosen.look, ...look },
       light: { ...chosen.light, ...light },
       standing: { ...chosen.standing, ...standing },
+      level: level === undefined ? chosen.level : level,
     };
     page.keep({
       look: { ...preferences.look, ...lastingLook(look ?? {}) },
@@ -115,8 +117,8 @@ export class ViewChoices {
   }
 
   /// The wishes that this browser keeps, and what a link says instead.
-  private wished({ choices }: Spot): Appearance {
+  private wished(choices: string): Appearance {
     const { page: { preferences: { look, light, standings } }, model } = this.context;
-    return withChoices(choices, { look, light, standing: readStanding(standings[model.url]) });
+    return withChoices(choices, { look, light, standing: readStanding(standings[model.url]), level: null });
   }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The parts of a model's view that bars, sheets and keys act upon.
-import type { Spot } from '../address.js';
-import type { Shared } from '../share/embed_code.js';
+import { besideFirst, fittedLink, orderedLink, overFirst } from '../../src/view/view_link.js';
+import { NOWHERE, type Spot } from '../address.js';
+import type { Shared, SharedSpot } from '../share/embed_code.js';
+import { FirstView } from './first_view.js';
 import { Extensions } from './extensions.js';
 import { LightDrag } from './light_drag.js';
 import { PageContext, type Arrival } from './page_context.js';
@@ -23,6 +25,7 @@ export class ViewParts {
   readonly story: StoryHost;
   readonly tools: ToolHost;
   readonly light: LightDrag;
+  readonly first: FirstView;
 
   /// Throws Error where there is no WebGL 2.
   constructor(arrival: Arrival) {
@@ -36,14 +39,30 @@ export class ViewParts {
     const stage = new PageStage(context, this.camera, this.choices, this.frames);
     this.story = new StoryHost(stage);
     this.tools = new ToolHost(stage, this.story);
+    stage.tools = this.tools;
+    this.first = new FirstView(context, () => { this.follow(arrival.spot); });
     this.light = new LightDrag((by) => { this.choices.turnLight(by); }, () => { context.dispatchEvent({ type: 'lightKey' }); }, context.signal);
   }
 
-  /// Returns what a link to this view tells.
-  spot(): Spot {
-    const { choices, tools, story, camera } = this;
-    const told = story.linked === null ? '' : `story=${story.linked}`;
-    return { pose: camera.navigation.atHome ? null : camera.pose(), choices: [choices.text, tools.links, told].filter((text) => text !== '').join('&') };
+  /// Returns what a link to this view tells, and what it has no room for.
+  spot(): SharedSpot {
+    const { choices, tools, story, camera, first } = this;
+    const all = orderedLink([choices.text, tools.text, story.text].filter((text) => text !== '').join('&'));
+    const { link, leftOut } = fittedLink(besideFirst(all, first.view));
+    return { pose: camera.navigation.atHome ? null : camera.pose(), choices: link, leftOut };
+  }
+
+  /// What a link says, and of what it says nothing as the model is seen first.
+  follow({ choices }: Spot): void {
+    const shown = overFirst(choices, this.first.view);
+    for (const part of [this.choices, this.tools, this.story]) part.follow(shown);
+  }
+
+  /// As the model is seen first.
+  reset(): void {
+    this.camera.navigation.goHome();
+    this.follow(NOWHERE);
+    this.context.startRest();
   }
 
   /// Returns what other pages need to show the same. The address tells of the camera as it is, even before it has come to rest.
@@ -56,7 +75,7 @@ export class ViewParts {
   /// Out of the depth first, then to the gallery.
   back(): void {
     const { context } = this;
-    if (context.isOpened && context.view.stats().mode !== 'CWV') this.camera.navigation.goHome();
+    if (context.isOpened && context.view.stats().mode !== 'CWV' && !this.camera.navigation.atHome) this.camera.navigation.goHome();
     else {
       context.rest();
       context.page.dispatchEvent(new Event('leave'));

@@ -13,6 +13,8 @@ export interface Limits {
   readonly fine: number;
   /// The vertices of all tiles in view.
   readonly vertices: number;
+  /// The level of the finest tiles.
+  readonly mostLevel: number;
   /// The bytes of all tiles of the cut and above it, in memory, with room for the largest of them on its way.
   readonly bytes: number;
 }
@@ -95,6 +97,7 @@ class Chooser {
     const bytes = this.sources.bytesOf(chosen.record, chosen.node);
     this.bytes += bytes;
     this.largest = Math.max(this.largest, bytes);
+    if (chosen.node.level >= this.limits.mostLevel) return;
     const deserved = chosen.pixels * (this.sources.wasRefined(chosen.key) ? HYSTERESIS : 1);
     if (deserved > this.allowed(chosen)) this.queue.push(chosen, deserved);
   }

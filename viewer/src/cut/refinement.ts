@@ -14,6 +14,8 @@ export interface RefinementLimits {
   /// At rest the error is divided by it: see RestDetail.
   readonly restDetail: number;
   readonly vertices: number;
+  /// No tile of a finer level; Infinity: any.
+  readonly mostLevel: number;
   /// The camera stands still.
   readonly atRest: boolean;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
+import { readView } from '../view/view_json.js';
+import type { View } from '../view/view_table.js';
 import { COMPRESSIONS, COMPRESSION_NAMES } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
 import { readObjectFacts, type ObjectFacts } from './object_facts.js';
@@ -55,6 +57,8 @@ export interface Manifest {
   readonly preview: NamedFile | null;
   /// What is known of the model's objects; null: it has none.
   readonly objects: ObjectFacts | null;
+  /// How the model is seen first; what is undefined in it is not said.
+  readonly view: View;
   /// The name of the build: its own checksum, which covers that of the index, which covers those of all tiles.
   readonly build: string;
 }
@@ -141,6 +145,7 @@ export function readManifest(text: string): Manifest {
     outline: readFile(root.at('outline'), 1, 2 ** 32 - 1),
     preview: root.has('preview') ? readFile(root.at('preview'), 1, MOST_PREVIEW_BYTES) : null,
     objects: root.has('objects') ? readObjectFacts(root.at('objects')) : null,
+    view: root.has('view') ? readView(root.at('view')) : {},
     build: root.at('checksum').checksum(),
     hasNormalMaps: root.at('storage').has('normal_map'),
     packedTiles: COMPRESSIONS[root.at('storage').at('compression').oneOf(...COMPRESSION_NAMES)],

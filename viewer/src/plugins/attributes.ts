@@ -3,7 +3,8 @@
 import { DataTexture, Vector2, type BufferGeometry } from 'three';
 import { isLabel, LEAST_VALUE, type ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
-import { labelTexture, rampTexture } from '../scene/ramps.js';
+import { linear } from '../scene/materials.js';
+import { labelTexture, PLAIN, rampTexture } from '../scene/ramps.js';
 import { attributeIndex, wholeRange, type AttributeLook, type Look } from '../scene/settings.js';
 import { replaceChunk, type Shader, type Shading } from '../scene/shading.js';
 import type { PluginOf } from './plugin.js';
@@ -18,8 +19,10 @@ vValue = scalar;`;
 
 const QUANTITY = `#include <color_fragment>
 if (vValue > ${LEAST_VALUE}) {
-  float valuePart = (vValue - valueRange.x) / (valueRange.y == valueRange.x ? 1.0 : valueRange.y - valueRange.x);
+  vec2 valueEnds = beyond(valueRange);
+  float valuePart = (beyond(vec2(vValue)).x - valueEnds.x) / (valueEnds.y == valueEnds.x ? 1.0 : valueEnds.y - valueEnds.x);
   diffuseColor.rgb = texture2D(valueRamp, vec2(clamp(valuePart, 0.5 / 256.0, 255.5 / 256.0), 0.5)).rgb;
+  if (abs(vValue) <= valueTolerance) diffuseColor.rgb = ${linear(PLAIN)};
   if (isolineStep > 0.0) {
     float lineAt = vValue / isolineStep;
     float lineWidth = max(fwidth(lineAt), 1e-6);
@@ -27,6 +30,12 @@ if (vValue > ${LEAST_VALUE}) {
     if (lineWidth < 0.5) diffuseColor.rgb *= mix(0.25, 1.0, smoothstep(0.6, 1.2, away));
   }
 }`;
+
+/// As rampPart() has it.
+const BEYOND = `vec2 beyond(vec2 value) {
+  return value - clamp(value, -max(valueTolerance, 0.0), max(valueTolerance, 0.0));
+}
+`;
 
 /// Labels beyond the texture begin again at its start.
 const LABEL = `#include <color_fragment>
@@ -52,6 +61,8 @@ export class Attributes implements PluginOf<unknown>, Shading {
     /// Where the texture begins and ends.
     valueRange: { value: new Vector2(0, 1) },
     isolineStep: { value: 0 },
+    /// Below 0: there is none.
+    valueTolerance: { value: -1 },
   };
   /// The place of the attribute among a vertex's values; -1: the model has none, or it is not known yet.
   private index = -1;
@@ -70,7 +81,7 @@ export class Attributes implements PluginOf<unknown>, Shading {
     replaceChunk(shader, 'vertexShader', 'begin_vertex', VALUE);
     replaceChunk(shader, 'fragmentShader', 'color_fragment', this.isLabel ? LABEL : QUANTITY);
     shader.vertexShader = `attribute float scalar;\n${varying}${shader.vertexShader}`;
-    shader.fragmentShader = `uniform sampler2D valueRamp;\nuniform vec2 valueRange;\nuniform float isolineStep;\n${varying}${shader.fragmentShader}`;
+    shader.fragmentShader = `uniform sampler2D valueRamp;\nuniform vec2 valueRange;\nuniform float isolineStep, valueTolerance;\n${BEYOND}${varying}${shader.fragmentShader}`;
   }
 
   show(look: Look, attributes: readonly ScalarAttribute[]): void {
@@ -95,10 +106,11 @@ export class Attributes implements PluginOf<unknown>, Shading {
     this.uniforms.valueRamp.value?.dispose();
   }
 
-  private setRamp(attribute: ScalarAttribute, { ramp, range, isolines }: AttributeLook): void {
+  private setRamp(attribute: ScalarAttribute, { ramp, range, tolerance, isolines }: AttributeLook): void {
     const ends = range ?? wholeRange(attribute, ramp);
     this.uniforms.valueRamp.value = rampTexture(ramp);
     this.uniforms.valueRange.value.set(...ends);
+    this.uniforms.valueTolerance.value = tolerance ?? -1;
     this.uniforms.isolineStep.value = isolines ? isolineStep(ends) : 0;
   }
 

@@ -3,9 +3,10 @@
 import { EventDispatcher } from 'three';
 import type { Plugin, Stage } from '../scene/hierarchy_view.js';
 import { boundsOf, measuresOf, type Measures } from '../tools/measure.js';
-import type { PickedPoint } from '../tools/picked_point.js';
+import { placedPoint, type PickedPoint } from '../tools/picked_point.js';
 import { Pointing } from '../tools/pointing.js';
 import { LengthScale, unitOfModel } from '../tools/units.js';
+import type { Vector } from '../tools/vectors.js';
 import { Overlay, type Mark } from './overlay.js';
 import { Whereabouts } from './whereabouts.js';
 
@@ -75,6 +76,12 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
       if (original) this.set(this.picked.map((point) => (point === shown ? original : point)));
     }, () => undefined);
     return true;
+  }
+
+  /// Takes these points instead, in the input's coordinates. Nothing happens before the view's manifest is there.
+  place(points: readonly Vector[]): void {
+    const manifest = this.stage?.view.manifest ?? null;
+    if (manifest !== null) this.set(points.slice(0, MOST_POINTS).map((point) => placedPoint(point, manifest)));
   }
 
   /// Leaves so many of the points, the first ones.

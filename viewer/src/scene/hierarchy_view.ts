@@ -13,7 +13,7 @@ import { Loading } from './loading.js';
 import type { Viewport } from './motion.js';
 import type { Omits } from './omission.js';
 import { changedSettings, type Look, type Settings, type Stats } from './settings.js';
-import { changedStanding, type Standing } from './standing.js';
+import type { Standing } from './standing.js';
 import type { DrawnTile, TileSource } from './surface.js';
 import type { Terrain } from './terrain.js';
 import { TileScene } from './tile_scene.js';
@@ -74,7 +74,7 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Holds from the next frame on. A look that asks for what the model lacks shows what it has.
   setLook(change: Partial<Look>): void {
-    this.context.look = { ...this.context.look, ...change };
+    this.context.choose(change);
     this.loading.store.recount();
     this.loading.showOutline();
   }
@@ -86,8 +86,7 @@ export class HierarchyView extends Group<ViewEvents> {
   /// `box` is another one afterwards. Throws RangeError for what is out of range, and then changes nothing.
   setStanding(change: Partial<Standing>): void {
     const { context } = this;
-    context.standing = changedStanding(change, context.standing);
-    context.form.stand(context.standing);
+    context.stand(change);
     context.changed();
   }
 
@@ -98,6 +97,16 @@ export class HierarchyView extends Group<ViewEvents> {
 
   set showsInside(shows: boolean) {
     this.context.showsInside = shows;
+    this.context.changed();
+  }
+
+  /// Tiles of this level at the most are shown: the root's is 0. Null: down to the original.
+  get mostLevel(): number | null {
+    return this.context.mostLevel;
+  }
+
+  set mostLevel(level: number | null) {
+    this.context.mostLevel = level;
     this.context.changed();
   }
 

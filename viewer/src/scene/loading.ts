@@ -257,6 +257,7 @@ export class Loading implements FileHost {
     this.manifest = manifest;
     this.objects = this.opening.remote.objects(manifest);
     context.form.takeManifest(manifest);
+    context.takeFirst(manifest.view);
     context.tiles.hasNormalMaps = manifest.hasNormalMaps;
     const [vertexBytes, texelBytes] = [vertexBytesOf(root), texelBytesOf(root)];
     this.cut.refinement = new Refinement(tree, index, this.store, (record, { level }) =>

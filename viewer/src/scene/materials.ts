@@ -7,9 +7,9 @@ import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { makeMatcap } from './matcap.js';
 import type { Look } from './settings.js';
+import { PLAIN } from './ramps.js';
 import { numberOf, replaceChunk, Shadings, type Shader, type Shading } from './shading.js';
 
-const PLAIN = 0xb9b4ab;
 const CLAY = 0xd99a76;
 const WIRES = 0x101418;
 const POINTS = 0xd04a1e;
@@ -53,7 +53,8 @@ vHeight = (dot(position, upwards) - heights.x) / max(heights.y - heights.x, 1e-3
 /// Lowland green, straw, ochre, rock, snow: of a screen, at equal steps.
 const HEIGHT_COLOURS = [0x4f8a63, 0xb9c28a, 0xd8b878, 0x9c7b62, 0xf4f2ee];
 
-function linear(hex: number): string {
+/// As shaders have it.
+export function linear(hex: number): string {
   return `vec3(${new Color(hex).toArray().map((value) => value.toFixed(5)).join(', ')})`;
 }
 

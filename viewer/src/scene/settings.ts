@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The settings and looks that a user of the library may choose, and the figures that a view tells.
 import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
-import type { RampName } from './ramps.js';
+import type { RampName } from './ramp_names.js';
 
 /// Tiles' colours: one for all; those of the input; by one of its attributes; one for each tile; by the error on screen; by height.
 export type Colours = 'plain' | 'vertex' | 'attribute' | 'partition' | 'error' | 'height';
@@ -13,6 +13,8 @@ export interface AttributeLook {
   ramp: RampName;
   /// Values at the ends of the ramp; null: the least and the most, of signed values as far on both sides of 0.
   range: readonly [number, number] | null;
+  /// Values no farther from 0 have one colour, and the ramp begins beyond them; null: 0 is a value like others.
+  tolerance: number | null;
   /// Lines of equal value, about ten.
   isolines: boolean;
   /// Labels that are not drawn.
@@ -54,7 +56,7 @@ export interface Settings {
 /// A view looks so if nothing is said.
 export const DEFAULT_LOOK: Look = {
   colours: 'vertex', texture: true, relight: false, material: 'lit', relief: 1, cavities: true, shading: 'smooth', wires: false, points: false, outline: false,
-  attribute: '', ramp: 'viridis', range: null, isolines: false, hidden: [],
+  attribute: '', ramp: 'viridis', range: null, tolerance: null, isolines: false, hidden: [],
 };
 
 /// Returns the values at the ends of the ramp if a look does not say them.

@@ -3,6 +3,8 @@
 import type { EventDispatcher } from 'three';
 import { Account } from './account.js';
 import { ModelForm } from './model_form.js';
+import { lookOf, standingOf } from '../view/view_look.js';
+import { says, type View } from '../view/view_table.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Settings } from './settings.js';
 import { changedStanding, DEFAULT_STANDING, type Standing } from './standing.js';
 import type { TileScene } from './tile_scene.js';
@@ -14,6 +16,11 @@ export class ViewContext {
   standing: Readonly<Standing>;
   /// The inside is in view, as of a model that is cut open.
   showsInside = false;
+  /// No finer tiles are shown; null: all may be.
+  mostLevel: number | null = null;
+  /// Nobody has chosen how the model looks and stands: its manifest may.
+  private isLookOpen: boolean;
+  private isStandingOpen: boolean;
   readonly form: ModelForm;
   readonly account = new Account();
   /// Aborts when the view is disposed of.
@@ -29,7 +36,28 @@ export class ViewContext {
     this.settings = changedSettings(options.settings ?? {});
     this.look = { ...DEFAULT_LOOK, ...options.look };
     this.standing = changedStanding(options.standing ?? {}, DEFAULT_STANDING);
+    this.isLookOpen = options.look === undefined;
+    this.isStandingOpen = options.standing === undefined;
     this.form = new ModelForm(tiles);
+  }
+
+  choose(look: Partial<Look>): void {
+    this.isLookOpen = false;
+    this.look = { ...this.look, ...look };
+  }
+
+  stand(standing: Partial<Standing>): void {
+    this.standing = changedStanding(standing, this.standing);
+    this.isStandingOpen = false;
+    this.form.stand(this.standing);
+  }
+
+  /// As the model is seen first; what was chosen already stays.
+  takeFirst(view: View): void {
+    if (this.isLookOpen && says(view, 'look')) this.look = lookOf(view);
+    if (!this.isStandingOpen || !says(view, 'standing')) return;
+    this.standing = standingOf(view);
+    this.form.stand(this.standing);
   }
 
   /// The picture is another one.

@@ -46,6 +46,17 @@ function storedBound(local: Vector, { worstRounding, source, place }: Stored): n
   return worstRounding + (source.doublePrecision ? Math.sqrt(3) * HALF_STEP * largest : 0);
 }
 
+/// A point that somebody names: it counts as one of the original. In the input's coordinates.
+export function placedPoint(point: Vector, manifest: Stored): PickedPoint {
+  const coordinates = new Coordinates(manifest);
+  const local = coordinates.fromInput(point);
+  const level = Math.ceil(Math.log2(manifest.partitions));
+  return {
+    point, local, level, normal: [0, 0, 0], index: -1, isVertex: false, isOriginal: true, isExact: false,
+    bound: storedBound(local, manifest), globe: coordinates.toGlobe(point), values: [],
+  };
+}
+
 /// `snaps`: to the nearest corner of the triangle. `bound`: of the tile, where it is no partition.
 export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean, bound = Infinity): PickedPoint {
   const coordinates = new Coordinates(manifest);

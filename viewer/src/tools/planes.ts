@@ -22,6 +22,14 @@ export function planeThrough(point: Vector, normal: Vector): CutPlane {
   return { normal, constant: -dot(normal, point) };
 }
 
+const UNIT_ROUNDING = 1e-9; // of a normal's length: one that was rounded for a link stays as it is
+
+/// A plane as views have it: a normal of any length, and a distance.
+export function cutPlane([x, y, z, d]: readonly [number, number, number, number]): CutPlane {
+  const long = Math.hypot(x, y, z);
+  return Math.abs(long - 1) < UNIT_ROUNDING ? { normal: [x, y, z], constant: d } : { normal: unit([x, y, z]), constant: d / long };
+}
+
 export function flipped({ normal: [x, y, z], constant }: CutPlane): CutPlane {
   return { normal: [-x, -y, -z], constant: -constant };
 }

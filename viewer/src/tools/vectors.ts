@@ -42,3 +42,8 @@ export function unit(a: Vector): Vector {
 export function vertexAt(positions: ArrayLike<number>, vertex: number): Vector {
   return [positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]];
 }
+
+/// x, y, z of each of some points, one after another.
+export function triplesOf(numbers: readonly number[]): Vector[] {
+  return Array.from({ length: Math.floor(numbers.length / 3) }, (_, i) => vertexAt(numbers, i));
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { choiceOf, formatAddress, linkPath, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
+import { formatAddress, linkPath, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
 
 const POSE = { position: [1.25, -3e-7, 123456.789], target: [0, 1e20, -0.333333333333] } as const;
 
@@ -41,11 +41,6 @@ describe('a link', () => {
 
   it.each([[NaN, 0, 0], [Infinity, 0, 0], [1e300, 1, 0], [0, 0, 0]] as const)('has no camera at %s, %s, %s', (...position) => {
     expect(formatAddress({ path: 'a', pose: { position, target: [0, 0, 0] }, choices: 'up=z' })).toBe('#a&up=z');
-  });
-
-  it('tells a choice by its name', () => {
-    const spot = parseAddress('#a&1,2,3,4,5,6&up=z&notes=x-_9')!;
-    expect([choiceOf(spot, 'notes'), choiceOf(spot, 'up'), choiceOf(spot, 'note')]).toEqual(['x-_9', 'z', null]);
   });
 
   it('names no model if it is empty or broken', () => {

@@ -2,14 +2,16 @@
 import { describe, expect, it } from 'vitest';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
-import { DEFAULT_LIGHT, formatChoices, keepStanding, readLight, readStanding, readStandings, withChoices, type Appearance, type Standings } from '../../page/appearance.js';
+import { writeLink } from '../../src/view/view_link.js';
+import { DEFAULT_APPEARANCE as PLAIN, DEFAULT_LIGHT, keepStanding, readLight, readLook, readStanding, readStandings, viewOf, withChoices, type Appearance, type Standings } from '../../page/appearance.js';
 
-const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
 const OTHER: Appearance = {
   look: { ...DEFAULT_LOOK, colours: 'height', texture: false, relight: true, cavities: false, shading: 'flat', wires: true, points: true, outline: true },
   light: { name: 'raking', key: [-1.25, 0.5], occlusion: true },
   standing: { up: '-x', stretch: 12 },
+  level: 3,
 };
+const formatChoices = (appearance: Appearance): string => writeLink(viewOf(appearance));
 
 describe('the choices of a link', () => {
   it('are none where nothing was chosen', () => {
@@ -21,7 +23,7 @@ describe('the choices of a link', () => {
     expect(withChoices(formatChoices(OTHER), PLAIN)).toEqual(OTHER);
     const one = { ...PLAIN, light: { name: 'flat', key: null, occlusion: false } as const };
     expect(formatChoices(one)).toBe('light=flat');
-    expect(withChoices('light=flat', OTHER)).toEqual({ ...one, standing: OTHER.standing });
+    expect(withChoices('light=flat', OTHER)).toEqual({ ...one, standing: OTHER.standing, level: OTHER.level });
   });
 
   it('of how it stands leave the look alone', () => {
@@ -40,6 +42,7 @@ describe('what the browser keeps', () => {
     expect(readLight({ name: 'moon', occlusion: true })).toEqual({ ...DEFAULT_LIGHT, occlusion: true });
     expect(readLight({ occlusion: 1 })).toEqual(DEFAULT_LIGHT);
     for (const key of [7, [1], [1, 'x'], [1, 2, 3], [NaN, 0], null]) expect(readLight({ name: 'sun', key })).toEqual({ name: 'sun', key: null, occlusion: false });
+    expect(readLook({ colours: 'height', wires: true, ramp: 'jet', attribute: 7, hidden: ['x'], texture: 'on', material: 'matcap' })).toEqual({ ...DEFAULT_LOOK, colours: 'height', wires: true });
     expect(readStanding({ up: 'q', stretch: 'x' })).toEqual(DEFAULT_STANDING);
     expect(readStandings({ a: { up: 'z', stretch: 2 }, b: 7 })).toEqual({ a: { up: 'z', stretch: 2 }, b: DEFAULT_STANDING });
   });

@@ -6,6 +6,7 @@ import { setTimeout as later } from 'node:timers/promises';
 import { Vector3 } from 'three';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
 import { ClipTool } from '../../page/tools/clip_tool.js';
+import { ToolLink } from '../../page/tools/tool_link.js';
 import { words } from '../../page/tools/words/words.js';
 import type { Workshop as PageWorkshop } from '../../page/tools/workshop.js';
 import { Objects } from '../../src/plugins/objects.js';
@@ -41,7 +42,7 @@ describe.skipIf(!hasProgram)('the volume of the original', () => {
     await session.settle();
     const closed = new Proxy(view, { get: (of, name) => { const value: unknown = name === 'closed' || Reflect.get(of, name, of); return typeof value === 'function' ? (value.bind(of) as unknown) : value; } });
     const bench = { view: closed, name: 'town', pose: () => ({ forward: new Vector3(0, -1, 0) }), redraw: vi.fn() };
-    tool = new ClipTool({ bench, scale: new LengthScale('m', 'm', words.units.unit), settings: { modelUnit: 'm' } } as unknown as PageWorkshop);
+    tool = new ClipTool({ bench, scale: new LengthScale('m', 'm', words.units.unit), settings: { modelUnit: 'm' }, link: () => new ToolLink('', () => undefined) } as unknown as PageWorkshop);
   });
   afterEach(() => {
     session.view.dispose();

@@ -7,7 +7,7 @@ import { addressAlone, elementCode, frameCode, type Shared } from '../../page/sh
 const POSE = { position: [1.5, -2, 3e9], target: [0, 0.25, 1] } as const;
 
 function shared(change: Partial<Shared> = {}): Shared {
-  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', story: null, pose: null, choices: '', isWhole: false, ...change };
+  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', story: null, pose: null, choices: '', leftOut: [], isWhole: false, ...change };
 }
 
 describe('the address of a model alone', () => {

@@ -24,7 +24,7 @@ describe('preferences', () => {
       order: 'newest',
       panel: true,
       settings: { framesPerSecond: 60, threshold: 2.5, restDetail: 1, memoryBudget: 512e6 },
-      look: { colours: 'error', texture: false, relight: true, material: 'lit', relief: 1, cavities: false, shading: 'flat', wires: true, points: true, outline: true, attribute: 'quality', ramp: 'turbo', range: [1, 2], isolines: true, hidden: [3] },
+      look: { colours: 'error', texture: false, relight: true, material: 'lit', relief: 1, cavities: false, shading: 'flat', wires: true, points: true, outline: true, attribute: 'quality', ramp: 'turbo', range: [1, 2], tolerance: null, isolines: true, hidden: [3] },
       light: { name: 'raking', key: [0.5, 0.25], occlusion: true },
       standings: { 'http://host/a.hier': { up: 'z', stretch: 3 } },
     };

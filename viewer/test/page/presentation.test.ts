@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { DEFAULT_LIGHT, LIGHTS, type Appearance, type Light } from '../../page/appearance.js';
+import { DEFAULT_APPEARANCE as PLAIN, LIGHTS, type Light } from '../../page/appearance.js';
 import { keyOf, turned } from '../../src/scene/lighting.js';
 import { nextLight, shownOf } from '../../page/view/presentation.js';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
-import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 
-const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
 const HILLS = { terrain: { along: [0, 1, 0] as const, upright: true, low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true, hasAttributes: false };
 const SHEET = { ...HILLS, terrain: { ...HILLS.terrain, along: [0, 0, 1] as const, upright: false } };
 const FORM = { terrain: null, hasColours: false, hasTriangles: true, hasAttributes: false };

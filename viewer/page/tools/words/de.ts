@@ -21,6 +21,7 @@ export const de: ToolWords = {
     from: 'Aus',
     original: (partition) => `dem Original, Partition ${partition}`,
     level: (level) => `Stufe ${level}, vereinfacht`,
+    given: 'einem Link',
     refining: (from) => `${from}; das Original wird geholt…`,
     exact: 'Ein Eckpunkt der Eingabe, auf das Bit genau',
     notThere: 'Das Original ließ sich nicht holen; dies ist die Oberfläche, wie sie gezeigt wird.',

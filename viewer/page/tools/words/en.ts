@@ -20,6 +20,7 @@ export const en = {
     from: 'From',
     original: (partition: string) => `the original, partition ${partition}`,
     level: (level: string) => `level ${level}, simplified`,
+    given: 'a link',
     refining: (from: string) => `${from}; asking for the original…`,
     exact: 'A vertex of the input, exact to the bit',
     notThere: 'The original could not be fetched; this is the surface as it is shown.',

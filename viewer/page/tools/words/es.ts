@@ -21,6 +21,7 @@ export const es: ToolWords = {
     from: 'De',
     original: (partition) => `el original, partición ${partition}`,
     level: (level) => `nivel ${level}, simplificado`,
+    given: 'un enlace',
     refining: (from) => `${from}; se pide el original…`,
     exact: 'Un vértice de la entrada, exacto hasta el último bit',
     notThere: 'No se pudo obtener el original; esta es la superficie tal como se muestra.',

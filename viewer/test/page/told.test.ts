@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { DEFAULT_LIGHT, type Appearance } from '../../page/appearance.js';
-import { ToldLook } from '../../page/story/told_look.js';
+import { DEFAULT_APPEARANCE, withChoices, type Appearance } from '../../page/appearance.js';
+import { Told } from '../../page/story/told.js';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
-import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 
-const BEFORE: Appearance = { look: { ...DEFAULT_LOOK, wires: true }, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
+const BEFORE: Appearance = { ...DEFAULT_APPEARANCE, look: { ...DEFAULT_LOOK, wires: true } };
 
 describe('what a story shows', () => {
   it('goes with it', () => {
-    const told = new ToldLook();
+    const told = new Told(withChoices);
     const first = told.tell('light=raking', BEFORE);
     expect([first.light.name, first.look.wires]).toEqual(['raking', false]);
     const second = told.tell('', first);
@@ -18,7 +17,7 @@ describe('what a story shows', () => {
   });
 
   it('stays where the visitor has chosen something else since', () => {
-    const told = new ToldLook();
+    const told = new Told(withChoices);
     const first = told.tell('colours=partition', BEFORE);
     const own = { ...first, look: { ...first.look, points: true } };
     expect(told.end(own)).toBe(own);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the page's address tells of objects, between links and the tool.
+// What the page's address tells of a tool, between links and the tool: `NAME=VALUE` of its keys, with & between; '': nothing.
 
-export class ObjectLinkStore {
+export class ToolLink {
   private readonly listeners: (() => void)[] = [];
 
   /// `text`: what the address had; `put`: puts another one there, or takes it away.
-  constructor(private link: string | null, private readonly put: (link: string | null) => void) {}
+  constructor(private link: string, private readonly put: (link: string) => void) {}
 
-  get text(): string | null {
+  get text(): string {
     return this.link;
   }
 
@@ -16,13 +16,13 @@ export class ObjectLinkStore {
   }
 
   /// Another link is followed.
-  follow(link: string | null): void {
+  follow(link: string): void {
     if (link === this.link) return;
     this.link = link;
     for (const listener of this.listeners) listener();
   }
 
-  write(link: string | null): void {
+  write(link: string): void {
     if (link === this.link) return;
     this.link = link;
     this.put(link);
