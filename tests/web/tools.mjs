@@ -74,6 +74,15 @@ async function figuresOf(page) {
   return Object.fromEntries(await Promise.all(rows.map(async (row) => [await row.locator('dt').innerText(), await row.locator('dd').innerText()])));
 }
 
+/// All digits of the numbers, as their buttons copy them.
+async function copiedOf(page) {
+  const rows = await page.locator('.tool-figures > div').all();
+  return Object.fromEntries(await Promise.all(rows.map(async (row) => {
+    const value = row.locator('.object-value');
+    return [await row.locator('dt').innerText(), Number((await value.getAttribute('title')) ?? (await value.innerText()))];
+  })));
+}
+
 /// A place of the window where the model is: the picture's middle sees through a ring.
 async function placeOnModel(page) {
   const { width, height } = page.viewportSize();
@@ -108,8 +117,11 @@ async function checkPick(visitor) {
   await page.locator('.tool-note', { hasText: 'exact to the bit' }).waitFor();
   const snapped = await figuresOf(page);
   await settle(page);
-  const isFloat = ['x', 'y', 'z'].every((axis) => Math.fround(Number(snapped[axis])) === Number(snapped[axis]));
+  const full = await copiedOf(page);
+  const isFloat = ['x', 'y', 'z'].every((axis) => Math.fround(full[axis]) === full[axis] && Math.fround(Number(snapped[axis])) === full[axis]);
   visitor.check('pick a vertex', isFloat && free.x !== snapped.x, `${snapped.x}, ${snapped.y}, ${snapped.z}`);
+  const isShort = ['x', 'y', 'z'].every((axis) => free[axis].replace(/[-.]/g, '').length <= 9 && snapped[axis].replace(/[-.]/g, '').length <= 10);
+  visitor.check('pick in few digits', isShort, `${free.x}, ${free.y}, ${free.z}`);
   visitor.check('pick marks it', await shows(page, '.tool-overlay circle', 1), 'one point');
   await visitor.picture(page, 'pick');
   await page.keyboard.press('Backspace');
@@ -162,14 +174,14 @@ async function checkMeasure(visitor) {
   await settle(page);
   await until(page, async () => !(await page.locator('.tool-figures').innerText()).includes('±')); // points come from the original
   const figures = await figuresOf(page);
-  const number = (text) => Number.parseFloat(text);
+  const number = (text) => Number.parseFloat(text.replaceAll(',', ''));
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
   visitor.check('measure', figures.Points === '3' && length >= straight && straight > 0, JSON.stringify(figures));
   visitor.check('measure angle and area', /^\d+\.\d\d°/.test(figures['Last angle']) && number(figures.Area) > 0 && figures['Area in plan'] !== undefined, `${figures['Last angle']}, ${figures.Area}`);
   const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Profile as CSV' }).click()]);
   const [head, ...rows] = readFileSync(await file.path(), 'utf8').trimEnd().split('\r\n');
   const distances = rows.map((row) => Number(row.split(',')[1]));
-  const plan = number(figures['In plan']);
+  const plan = (await copiedOf(page))['In plan'];
   visitor.check('measure profile', head === 'profile,distance,height,x,y,z' && rows.length > 4 && Math.min(...distances) >= 0 && Math.max(...distances) <= plan * 1.00001 && Math.max(...distances) > 0.9 * plan, `${rows.length} rows, to ${Math.max(...distances)} of ${plan}`);
   visitor.check('measure marks', (await shows(page, '.tool-overlay line', 4)) && (await shows(page, '.tool-overlay text', 2)), 'two parts');
   await page.getByLabel('The model is in').selectOption('m');
@@ -262,8 +274,9 @@ async function volumeOf(page) {
   await settle(page);
   await page.waitForTimeout(200); // and once more drawn
   const text = await page.locator('.tool-figures dd').innerText();
-  const [, value, , bound] = /^([\d.e+-]+)( ± ([\d.e+-]+))? .*³$/.exec(text);
-  return { value: Number(value), bound: Number(bound ?? 0), text };
+  const [, , bound = '0'] = /^\(?[\d.,]+( ± ([\d.,]+))?.*³$/.exec(text);
+  const { Volume: value } = await copiedOf(page);
+  return { value, bound: Number(bound.replaceAll(',', '')), text };
 }
 
 /// The volumes that a plane keeps and cuts away are that of the whole.

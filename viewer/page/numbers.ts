@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Numbers for people, as their language writes them. Every function takes any number, and what is no number becomes a dash.
+import { figure, magnitude, type WriteDecimal } from '../src/tools/number_text.js';
 import { locale } from './words/words.js';
 
 const DASH = '–';
 const UNITS = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte', 'petabyte'] as const;
 const LAST_SECOND = 8.64e12; // since 1970, that dates know
 const NUMBER_DIGITS = 12;
+const FLOAT_DIGITS = 7; // that a decimal keeps in a float
 const THREE_DIGITS = { minimumSignificantDigits: 3, maximumSignificantDigits: 3 } as const;
 
 type NumberUnit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
@@ -23,10 +25,12 @@ export interface Numbers {
   readonly formatDuration: (seconds: number) => string;
   /// 0.83, 12.5; large ones without a fraction.
   readonly formatDecimal: (value: number) => string;
-  /// Four digits: 0.001235, 12.35, 123,500.
-  readonly formatLength: (value: number) => string;
-  /// Any number, in up to twelve digits: 1,234.5; very large and small ones as powers of ten: 1.2E-7.
+  /// Any number, in up to twelve digits: 1,234.5; very large and small ones with powers of ten: 120 × 10⁻⁹.
   readonly formatNumber: (value: number) => string;
+  /// The same of a float, which has seven.
+  readonly formatFloat: (value: number) => string;
+  /// How the language writes the digits of a number.
+  readonly writeDecimal: WriteDecimal;
   /// A part from 0 to 1: 42%.
   readonly formatPercent: (value: number) => string;
   /// The day of seconds since 1970: Nov 24, 2026.
@@ -42,6 +46,17 @@ function fractionDigits(value: number): number {
   return value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
 }
 
+/// Makes a format for each count of digits that is asked for.
+function decimalsOf(locale: string): WriteDecimal {
+  const made = new Map<string, Intl.NumberFormat>();
+  return (value, most, least) => {
+    const key = `${most} ${least}`;
+    const format = made.get(key) ?? new Intl.NumberFormat(locale, { minimumFractionDigits: least, maximumFractionDigits: most });
+    made.set(key, format);
+    return format.format(value);
+  };
+}
+
 /// As a language writes them.
 export function numbersOf(locale: string): Numbers {
   const formats = (options: Intl.NumberFormatOptions = {}): ((value: number) => string) => {
@@ -52,9 +67,8 @@ export function numbersOf(locale: string): Numbers {
   const count = formats({ maximumFractionDigits: 0 });
   const compact = formats({ notation: 'compact', ...THREE_DIGITS });
   const day = new Intl.DateTimeFormat(locale, { dateStyle: 'medium' });
-  const length = formats({ maximumSignificantDigits: 4 });
-  const plain = formats({ maximumSignificantDigits: NUMBER_DIGITS });
-  const power = formats({ maximumSignificantDigits: NUMBER_DIGITS, notation: 'scientific' });
+  const writeDecimal = decimalsOf(locale);
+  const digits = (count: number) => (value: number) => figure(Number(value.toPrecision(count)), { write: writeDecimal, place: magnitude(value) - count + 1 });
   const percent = formats({ style: 'percent', maximumFractionDigits: 0 });
   const decimals = [0, 1, 2].map((digits) => formats({ minimumFractionDigits: digits, maximumFractionDigits: digits }));
   const bytes = UNITS.map((name, i) => unit(name, i === 0 ? { maximumFractionDigits: 0 } : THREE_DIGITS));
@@ -82,11 +96,12 @@ export function numbersOf(locale: string): Numbers {
     formatMilliseconds: orDash((value) => (value < 999.5 ? milliseconds(value) : seconds(value / 1000))),
     formatDuration: orDash(duration),
     formatDecimal: orDash((value) => (value >= 1000 ? count(value) : decimals[fractionDigits(value)](value))),
-    formatLength: orDash(length),
-    formatNumber: (value) => (!Number.isFinite(value) ? DASH : value === 0 || (Math.abs(value) >= 1e-6 && Math.abs(value) < 1e15) ? plain(value) : power(value)),
+    formatNumber: (value) => (Number.isFinite(value) ? digits(NUMBER_DIGITS)(value) : DASH),
+    formatFloat: (value) => (Number.isFinite(value) ? digits(FLOAT_DIGITS)(value) : DASH),
+    writeDecimal,
     formatPercent: orDash(percent),
     formatDate: orDash((seconds) => (seconds < LAST_SECOND ? day.format(1000 * seconds) : DASH)),
   };
 }
 
-export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatLength, formatNumber, formatPercent, formatDate } = numbersOf(locale);
+export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatNumber, formatFloat, formatPercent, formatDate, writeDecimal } = numbersOf(locale);

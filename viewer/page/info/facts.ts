@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Tells people what is known of a model: of what is not known there is no line.
 import type { Manifest } from '../../src/index.js';
-import { UNITS, unitOfModel } from '../../src/tools/units.js';
+import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import type { Model } from '../listing.js';
-import { formatBytes, formatCount, formatDate, formatLength } from '../numbers.js';
+import { formatBytes, formatCount, formatDate, writeDecimal } from '../numbers.js';
 import { element } from '../parts/element.js';
 import type { PageContext } from '../view/page_context.js';
 import { words } from '../words/words.js';
@@ -13,9 +13,8 @@ export type Fact = readonly [name: string, text: string];
 /// Along the axes of the input, in the model's unit if that is known.
 function extentOf(manifest: Manifest): string {
   const { min, max } = manifest.source;
-  const sides = max.map((value, axis) => formatLength(value - min[axis])).join(' × ');
-  const unit = unitOfModel(manifest);
-  return unit === null ? sides : `${sides} ${UNITS[unit].sign}`;
+  const unit = unitOfModel(manifest) ?? 'unit';
+  return new LengthScale(unit, unit, '', writeDecimal).formatSides(max.map((value, axis) => value - min[axis]));
 }
 
 function colours({ source: { textures, hasColours } }: Manifest): string | null {

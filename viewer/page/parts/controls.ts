@@ -41,15 +41,24 @@ export function choice<Value extends string>(
   };
 }
 
+/// A number to the digits that a slider's step has, and one more.
+function shortOf(value: number, step: number): string {
+  const places = step > 0 ? Math.max(1 - Math.floor(Math.log10(step)), 0) : 0;
+  return String(Number(value.toFixed(Math.min(places, 100))));
+}
+
 /// A slider and a number that say the same.
 export function slider(name: string, unit: string, { least, most, step }: Range, chosen: (value: number) => void): Control<number> {
   const bounds = { min: String(least), max: String(most), step: String(step) };
   const id = `slider-${++made}`;
   const range = element('input', { type: 'range', id, ...bounds });
-  const number = element('input', { type: 'number', 'aria-label': `${name} (${unit})`, ...bounds, step: 'any', inputmode: 'decimal' });
-  const show = (value: number): void => { range.value = number.value = String(value); };
+  const number = element('input', { type: 'number', 'aria-label': unit === '' ? name : `${name} (${unit})`, ...bounds, step: 'any', inputmode: 'decimal' });
+  const show = (value: number): void => {
+    range.value = String(value);
+    number.value = shortOf(value, step);
+  };
   range.addEventListener('input', () => {
-    number.value = range.value;
+    number.value = shortOf(Number(range.value), step);
     chosen(Number(range.value));
   });
   number.addEventListener('change', () => {

@@ -9,13 +9,14 @@ import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
 import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { originalVolume } from '../../src/tools/original_volume.js';
 import { volumeOf, type Volume } from '../../src/tools/volume.js';
+import { UNITS, type LengthScale } from '../../src/tools/units.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
 import { readLink, writeLink } from '../../src/view/view_link.js';
 import type { View } from '../../src/view/view_table.js';
 import { checkbox, choice, slider, type ChoiceControl, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
-import { figureList, figures, textButton } from './figures.js';
+import { FigureList, line, textButton } from './figures.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -52,7 +53,7 @@ export class ClipTool implements Tool {
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
-  private readonly list = figureList();
+  private readonly list = new FigureList();
   /// The volume was measured of this.
   private measured = '';
   private readonly original = textButton(words.clip.original, () => void this.measureOriginal());
@@ -90,7 +91,7 @@ export class ClipTool implements Tool {
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
     const open = view.closed ? null : element('p', { class: 'tool-note tool-extra' }, clip.noCaps);
-    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, this.list, this.original, open, this.note);
+    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, this.list.root, this.original, open, this.note);
     shop.link('cut').onFollow(() => { this.follow(); });
     if (shop.link('cut').text !== '') this.follow();
     else this.begin();
@@ -138,6 +139,12 @@ export class ClipTool implements Tool {
     return writeLink({ cut: [...normal, constant], caps });
   }
 
+  /// Returns the sign of the model's unit; '': it is not known.
+  private get sign(): string {
+    const { modelUnit } = this.shop.settings;
+    return modelUnit === 'unit' ? '' : UNITS[modelUnit].sign;
+  }
+
   private makePlaneForm(): void {
     const { clip } = words;
     this.directions.show('x');
@@ -151,7 +158,7 @@ export class ClipTool implements Tool {
   private makeBoxForm(): HTMLElement {
     const sliders = AXES.flatMap((name, axis) => (['min', 'max'] as const).map((end) => {
       const { from, to } = words.clip.sides(name);
-      const made = slider(end === 'min' ? from : to, '', rangeOf([this.extent.min[axis], this.extent.max[axis]]), (value) => {
+      const made = slider(end === 'min' ? from : to, this.sign, rangeOf([this.extent.min[axis], this.extent.max[axis]]), (value) => {
         this.sides[end][axis] = value;
         this.apply();
       });
@@ -182,7 +189,7 @@ export class ClipTool implements Tool {
   }
 
   private showPosition(): void {
-    const made = slider(words.clip.position, '', rangeOf(rangeAlong(this.extent, this.normal)), (value) => { this.offset = value; this.apply(); });
+    const made = slider(words.clip.position, this.sign, rangeOf(rangeAlong(this.extent, this.normal)), (value) => { this.offset = value; this.apply(); });
     made.show(this.offset);
     this.position.replaceWith(made.root);
     this.position = made.root as HTMLDivElement;
@@ -229,19 +236,19 @@ export class ClipTool implements Tool {
       this.note.textContent = words.clip.nothing;
       return;
     }
-    const length = this.shop.scale.format(lines.reduce((sum, line) => sum + lengthOf(line), 0));
-    const told = words.clip.section(bench.name, String(lines.length), length);
+    const length = lines.reduce((sum, each) => sum + lengthOf(each), 0);
+    const toldIn = (scale: LengthScale): string => words.clip.section(bench.name, String(lines.length), scale.format(length));
     const levels = view.surface.map(({ node }) => node.level);
     const from = words.clip.levels(String(Math.min(...levels)), String(Math.max(...levels)), String(view.source!.tree.lastLevel));
     const axes = drawingAxes(this.normal, view.upwards);
-    download(new Blob([sectionSvg(lines, { axes, unit: settings.modelUnit, title: `${told}; ${from}` })], { type: 'image/svg+xml' }), `${bench.name}-section.svg`);
-    this.note.textContent = told;
+    download(new Blob([sectionSvg(lines, { axes, unit: settings.modelUnit, title: `${toldIn(this.shop.scale.plain)}; ${from}` })], { type: 'image/svg+xml' }), `${bench.name}-section.svg`);
+    this.note.textContent = toldIn(this.shop.scale);
   }
 
   /// Once the view rests: as finer tiles come, the volume is told anew.
   drawn(): void {
     const { view } = this.shop.bench;
-    if (!this.list.isConnected || !view.stats().settled) return;
+    if (!this.list.root.isConnected || !view.stats().settled) return;
     const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
     const { shownKey } = this;
     const key = [shownKey, this.shop.scale.sign, this.exact?.of, ...tiles].join();
@@ -251,7 +258,8 @@ export class ClipTool implements Tool {
     const volume = this.exact?.of === shownKey ? this.exact.volume : this.shownVolume();
     this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
     const name = view.closed ? words.clip.volume : words.clip.between;
-    this.list.replaceChildren(...(volume === null ? [] : figures([[name, this.shop.scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound)]])));
+    const { scale } = this.shop;
+    this.list.show(volume === null ? [] : [line(name, scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound), Math.abs(volume.volume) * scale.factor ** 3)]);
   }
 
   /// Volumes are of these planes and objects.

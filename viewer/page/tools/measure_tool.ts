@@ -4,22 +4,24 @@ import { Measuring } from '../../src/plugins/measuring.js';
 import type { Mark } from '../../src/plugins/overlay.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
 import { PROFILE_AXES, profileCsv, profileLines, profileOf } from '../../src/tools/profile.js';
+import { figure } from '../../src/tools/number_text.js';
 import { recordedBound } from '../../src/tools/shown_bound.js';
 import { shownSurface } from '../../src/tools/shown_triangles.js';
 import { sectionSvg } from '../../src/tools/section_svg.js';
-import { UNIT_NAMES, UNITS, within, type UnitName } from '../../src/tools/units.js';
+import { UNIT_NAMES, UNITS, type LengthScale, type UnitName } from '../../src/tools/units.js';
 import { triplesOf, type Vector } from '../../src/tools/vectors.js';
 import { readLink, writeLink } from '../../src/view/view_link.js';
+import { writeDecimal } from '../numbers.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { download } from './download.js';
-import { figureList, figures, textButton } from './figures.js';
+import { FigureList, line, textButton } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
-const ANGLE_DIGITS = 2;
+const ANGLE_PLACE = -2;
 
 function degrees(radians: number): number {
   return (radians * 180) / Math.PI;
@@ -46,7 +48,7 @@ function unitsForm(shop: Workshop, changed: () => void): HTMLElement {
 
 export class MeasureTool implements Tool {
   readonly root: HTMLElement;
-  private readonly list = figureList();
+  private readonly list = new FigureList();
   private readonly clear = textButton(words.measure.clear, () => { this.measuring.keep(0); });
   private readonly saves = (['svg', 'csv'] as const).map((kind) => textButton(words.measure.profileAs[kind], () => { this.saveProfile(kind); }));
   private readonly note = element('p', { class: 'tool-note', role: 'status' });
@@ -59,7 +61,7 @@ export class MeasureTool implements Tool {
     shop.bench.view.registerPlugin(this.measuring);
     const units = unitsForm(shop, () => { this.show(); });
     this.snap.show(shop.settings.snaps);
-    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list, units, this.snap.root, ...this.saves, this.clear, this.note);
+    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list.root, units, this.snap.root, ...this.saves, this.clear, this.note);
     shop.link('measure').onFollow(() => { this.follow(); });
     this.follow();
     this.show();
@@ -120,12 +122,12 @@ export class MeasureTool implements Tool {
     this.note.textContent = profiles.length === 0 ? words.measure.noProfile : '';
     if (profiles.length === 0) return;
     const bound = Math.max(...view.surface.map(({ node }) => recordedBound(view.source, node)));
-    const scale = this.shop.scale;
-    const off = bound > 0 && bound < Infinity ? `; ± ${scale.format(bound)}` : '';
-    const title = `${words.measure.profile(bench.name, scale.format(this.measuring.measures().level))}${off}`;
+    const off = bound > 0 && bound < Infinity ? bound : null;
+    const titleIn = (scale: LengthScale): string => `${words.measure.profile(bench.name, scale.format(this.measuring.measures().level))}${off === null ? '' : `; ± ${scale.format(off)}`}`;
+    const title = titleIn(this.shop.scale.plain); // files have no language
     const text = kind === 'csv' ? profileCsv(profiles, toInput, upwards) : sectionSvg(profileLines(profiles, toInput, upwards), { axes: PROFILE_AXES, unit: settings.modelUnit, title });
     download(new Blob([text], { type: kind === 'csv' ? 'text/csv' : 'image/svg+xml' }), `${bench.name}-profile.${kind}`);
-    this.note.textContent = title;
+    this.note.textContent = titleIn(this.shop.scale);
   }
 
   private show(): void {
@@ -134,10 +136,10 @@ export class MeasureTool implements Tool {
     const [is, off] = [this.measuring.measures(), this.measuring.bounds()];
     const scale = this.shop.scale;
     const { measure } = words;
-    const lengths = (['length', 'level', 'straight', 'rise'] as const).map((name) => [measure[name], scale.formatWithin(is[name], off[name])] as const);
-    const areas = (['area', 'areaLevel'] as const).flatMap((name) => (is[name] === null ? [] : [[measure[name], scale.formatAreaWithin(is[name], off[name] ?? Infinity)] as const]));
-    const angle = is.angle === null ? [] : [[measure.angle, within(`${degrees(is.angle).toFixed(ANGLE_DIGITS)}°`, degrees(off.angle ?? Infinity))] as const];
-    this.list.replaceChildren(...figures([[measure.points, String(this.measuring.points.length)], ...lengths, ...angle, ...areas]));
+    const lengths = (['length', 'level', 'straight', 'rise'] as const).map((name) => line(measure[name], scale.formatWithin(is[name], off[name]), is[name] * scale.factor));
+    const areas = (['area', 'areaLevel'] as const).flatMap((name) => (is[name] === null ? [] : [line(measure[name], scale.formatAreaWithin(is[name], off[name] ?? Infinity), is[name] * scale.factor ** 2)]));
+    const angle = is.angle === null ? [] : [line(measure.angle, `${figure(degrees(is.angle), { bound: degrees(off.angle ?? Infinity), place: ANGLE_PLACE, write: writeDecimal })}°`, degrees(is.angle))];
+    this.list.show([line(measure.points, String(this.measuring.points.length)), ...lengths, ...angle, ...areas]);
     this.shop.bench.redraw();
   }
 }

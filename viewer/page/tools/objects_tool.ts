@@ -7,8 +7,8 @@ import { ALL_OBJECTS, alone, visibilityOf, withShown, type ObjectChoice } from '
 import { fittingNames, type FoundNames } from '../../src/tools/object_names.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
-import { textButton } from './figures.js';
-import { ObjectCard } from './object_card.js';
+import { FigureList, textButton } from './figures.js';
+import { objectLines } from './object_card.js';
 import { ObjectColouring } from './object_colouring.js';
 import { formatObjectLink, parseObjectLink } from './object_link.js';
 import { ObjectSearch } from './object_search.js';
@@ -30,7 +30,7 @@ export class ObjectsTool implements Tool {
   readonly root: HTMLElement;
   private readonly objects = new Objects({ name: 'page objects', isAlone: false });
   private readonly search = new ObjectSearch((...asked) => this.suggest(...asked), (row) => { this.find(row); });
-  private readonly card = new ObjectCard();
+  private readonly card = new FigureList(false);
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly scope = element('select', { class: 'tool-select', 'aria-label': words.objects.scope });
   private readonly acts: HTMLElement;
@@ -179,7 +179,7 @@ export class ObjectsTool implements Tool {
   private showPicked(picked: ObjectRow | null): void {
     this.scoped = picked;
     this.scope.replaceChildren(...(picked === null ? [] : scopesOf(picked.name)).map((name) => element('option', { value: name }, name === '' ? words.objects.noName : name)));
-    this.card.show(picked, this.table?.properties ?? [], this.shop.scale);
+    this.card.show(objectLines(picked, this.table?.properties ?? [], this.shop.scale));
     void this.browse();
   }
 

@@ -1,45 +1,58 @@
 // SPDX-License-Identifier: MIT
 // Coordinates of a point, as the input has them.
-import { placedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
-import { rounded } from '../../src/view/kinds.js';
-import { distanceOf } from '../../src/tools/vectors.js';
-import { readLink, writeLink } from '../../src/view/view_link.js';
 import { Vector3 } from 'three';
+import { Coordinates } from '../../src/tools/coordinates.js';
+import { figure } from '../../src/tools/number_text.js';
+import { placedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
+import { UNITS } from '../../src/tools/units.js';
+import { distanceOf } from '../../src/tools/vectors.js';
+import { rounded } from '../../src/view/kinds.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
+import { formatFloat, writeDecimal } from '../numbers.js';
 import { copyText } from '../parts/clipboard.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
-import { figureList, figures, textButton } from './figures.js';
+import { FigureList, line, textButton, type Figure } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
 import type { Mark } from '../../src/plugins/overlay.js';
 import type { Tool } from './tool.js';
+import type { ToolSettings } from './tool_settings.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
-const NORMAL_DIGITS = 5;
-const DEGREE_DIGITS = 9;
-const VALUE_DIGITS = 7;
+const NORMAL_PLACE = -4;
+const LEAST_PLACES = { degrees: -9, height: -4 };
+const METRES_A_DEGREE = 111_320; // at the equator
 const NEAR = 1e-6; // of the model's size: rounding leaves a place of a link so near
 
 type State = 'refining' | 'done' | 'missing';
 
-/// Writes all digits that a double has.
-function coordinates({ point }: PickedPoint): string[] {
-  return point.map((value) => (Object.is(value, -0) ? '-0' : String(value)));
+const AXES = ['x', 'y', 'z'] as const;
+
+/// To the digits that mean something, in the model's unit if that is known.
+function coordinateRows({ point, places, bound, isOriginal }: PickedPoint, { modelUnit }: ToolSettings): Figure[] {
+  const sign = modelUnit === 'unit' ? '' : ` ${UNITS[modelUnit].sign}`;
+  const off = isOriginal ? 0 : bound;
+  return AXES.map((name, i) => line(name, `${figure(point[i], { bound: off, place: places[i], write: writeDecimal })}${sign}`, point[i]));
 }
 
-function globeRows({ globe }: PickedPoint): (readonly [string, string])[] {
+/// To the place of the coordinates, which is so many metres.
+function globeRows({ globe, places }: PickedPoint, metresPerUnit: number): Figure[] {
   if (globe === null) return [];
   const { longitude, latitude, height } = globe;
+  const metres = 10 ** Math.max(...places) * metresPerUnit;
+  const told = (value: number, step: number, least: number): string => figure(value, { place: Math.max(Math.floor(Math.log10(step)), least), write: writeDecimal });
+  const degrees = (value: number): string => `${told(value, metres / METRES_A_DEGREE, LEAST_PLACES.degrees)}°`;
   return [
-    [words.pick.longitude, `${longitude.toFixed(DEGREE_DIGITS)}°`],
-    [words.pick.latitude, `${latitude.toFixed(DEGREE_DIGITS)}°`],
-    [words.pick.height, `${height.toFixed(4)} m`],
+    line(words.pick.longitude, degrees(longitude), longitude),
+    line(words.pick.latitude, degrees(latitude), latitude),
+    line(words.pick.height, `${told(height, metres, LEAST_PLACES.height)} m`, height),
   ];
 }
 
 /// As the tiles have them: of floats.
-function valueRows({ values }: PickedPoint): (readonly [string, string])[] {
-  return values.map(({ name, value, label }) => [name, label || (value === null ? '–' : String(Number(value.toPrecision(VALUE_DIGITS))))]);
+function valueRows({ values }: PickedPoint): Figure[] {
+  return values.map(({ name, value, label }) => line(name, label || (value === null ? '–' : formatFloat(value)), label || (value ?? '')));
 }
 
 function originOf(picked: PickedPoint, state: State): string {
@@ -49,15 +62,21 @@ function originOf(picked: PickedPoint, state: State): string {
   return state === 'refining' && !isOriginal ? words.pick.refining(from) : from;
 }
 
-function rowsOf(picked: PickedPoint, state: State): (readonly [string, string])[] {
-  const [x, y, z] = coordinates(picked);
-  const normal = picked.normal.every((value) => value === 0) ? [] : [[words.pick.normal, picked.normal.map((value) => value.toFixed(NORMAL_DIGITS)).join(', ')] as const];
-  return [['x', x], ['y', y], ['z', z], ...normal, ...globeRows(picked), ...valueRows(picked), [words.pick.from, originOf(picked, state)]];
+function rowsOf(picked: PickedPoint, state: State, { settings, places }: Workshop): Figure[] {
+  const isNormal = picked.normal.some((value) => value !== 0);
+  const normal = picked.normal.map((value) => figure(value, { place: NORMAL_PLACE, write: writeDecimal })).join('; ');
+  return [
+    ...coordinateRows(picked, settings),
+    ...(isNormal ? [line(words.pick.normal, normal, picked.normal.join(' '))] : []),
+    ...globeRows(picked, new Coordinates(places.manifest).metresPerUnit ?? 1),
+    ...valueRows(picked),
+    line(words.pick.from, originOf(picked, state)),
+  ];
 }
 
 export class PickTool implements Tool {
   readonly root: HTMLElement;
-  private readonly list = figureList();
+  private readonly list = new FigureList();
   private readonly note = element('p', { class: 'tool-note' }, words.pick.hint);
   private readonly snap = checkbox(words.pick.snap, INNER_KEYS.snap, (on) => { this.setSnap(on); });
   private readonly copy = textButton(words.pick.copy, () => void this.copyPoint());
@@ -68,7 +87,7 @@ export class PickTool implements Tool {
   constructor(private readonly shop: Workshop) {
     this.copy.hidden = true;
     this.snap.show(shop.settings.snaps);
-    this.root = element('div', {}, this.note, this.list, this.snap.root, this.copy);
+    this.root = element('div', {}, this.note, this.list.root, this.snap.root, this.copy);
     shop.link('pick').onFollow(() => { this.follow(); });
     this.follow();
   }
@@ -152,7 +171,7 @@ export class PickTool implements Tool {
   private show(picked: PickedPoint | null, state: State): void {
     this.picked = picked;
     this.shop.link('pick').write(writeLink({ pick: picked?.point }));
-    this.list.replaceChildren(...(picked ? figures(rowsOf(picked, state)) : []));
+    this.list.show(picked ? rowsOf(picked, state, this.shop) : []);
     this.copy.hidden = picked === null;
     this.copy.textContent = words.pick.copy;
     this.note.textContent = picked === null ? words.pick.hint : picked.isExact ? words.pick.exact : state === 'missing' ? words.pick.notThere : '';
@@ -161,7 +180,7 @@ export class PickTool implements Tool {
 
   private async copyPoint(): Promise<void> {
     if (this.picked === null) return;
-    const isCopied = await copyText(coordinates(this.picked).join(' '));
+    const isCopied = await copyText(this.picked.point.map((value, i) => line(AXES[i], '', value).copied).join(' '));
     this.copy.textContent = isCopied ? words.pick.copied : words.pick.notCopied;
   }
 }

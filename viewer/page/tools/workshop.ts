@@ -3,6 +3,7 @@
 import { Places } from '../../src/tools/places.js';
 import { Pointing } from '../../src/tools/pointing.js';
 import { LengthScale, unitOfModel } from '../../src/tools/units.js';
+import { writeDecimal } from '../numbers.js';
 import type { PageStage } from '../view/page_stage.js';
 import type { StoryHost } from '../view/story_host.js';
 import { NotebookStore } from './notebook.js';
@@ -33,7 +34,7 @@ export class Workshop {
 
   /// Tells lengths in the unit that was chosen.
   get scale(): LengthScale {
-    return new LengthScale(this.settings.modelUnit, this.settings.shownUnit, words.units.unit);
+    return new LengthScale(this.settings.modelUnit, this.settings.shownUnit, words.units.unit, writeDecimal);
   }
 
   /// What links tell of a part, for the tool whose it is.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which attribute colours the model, and how: a legend that one can change.
 import { attributeIndex, isLabel, labelColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
-import { formatCount, formatLength } from '../numbers.js';
+import { formatCount, formatFloat } from '../numbers.js';
 import { checkbox, choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { css, RangeLegend } from '../parts/range_legend.js';
@@ -69,7 +69,7 @@ export class AttributeForm {
   /// A box for each that shows or hides it.
   private showLabels({ labels, labelNames, min, max }: ScalarAttribute, hidden: readonly number[]): void {
     if (labels.length === 0) {
-      this.labels.replaceChildren(element('li', {}, words.attribute.manyLabels(formatLength(min), formatLength(max))));
+      this.labels.replaceChildren(element('li', {}, words.attribute.manyLabels(formatFloat(min), formatFloat(max))));
       return;
     }
     const focused = [...this.labels.querySelectorAll('input')].findIndex((input) => input === document.activeElement);

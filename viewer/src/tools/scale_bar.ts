@@ -26,5 +26,5 @@ export function scaleBar(perPixel: number, mostPixels: number, scale: LengthScal
   const shownPerPixel = perPixel * scale.factor;
   if (!(shownPerPixel > 0) || !Number.isFinite(shownPerPixel)) return null;
   const length = roundLength(shownPerPixel * mostPixels);
-  return { pixels: length / shownPerPixel, text: `${length} ${scale.sign}` };
+  return { pixels: length / shownPerPixel, text: scale.format(length / scale.factor) };
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
 import { boundsOf, measuresOf } from '../../src/tools/measure.js';
+import { numbersOf } from '../../page/numbers.js';
 import { roundLength, scaleBar, unitsPerPixel } from '../../src/tools/scale_bar.js';
-import { isUnitName, LengthScale, unitOfMetres, within } from '../../src/tools/units.js';
+import { isUnitName, LengthScale, unitOfMetres } from '../../src/tools/units.js';
 import type { Vector } from '../../src/tools/vectors.js';
 
 /// Spread over a sphere.
@@ -80,12 +81,37 @@ describe('boundsOf', () => {
 describe('LengthScale', () => {
   it('tells bounds rounded up, and none that is 0 or not known', () => {
     const scale = new LengthScale('m', 'cm');
-    expect(scale.formatWithin(1.234567, 0.01011)).toBe('123.457 ± 1.1 cm');
+    expect(scale.formatWithin(1.234567, 0.01011)).toBe('123.5 ± 1.1 cm');
     expect(scale.formatWithin(1, 0.1)).toBe('100 ± 10 cm');
     expect(scale.formatWithin(1, 0)).toBe('100 cm');
     expect(scale.formatWithin(1, Infinity)).toBe('100 cm');
     expect(scale.formatAreaWithin(2, 0.5)).toBe('20000 ± 5000 cm²');
-    expect(within('90.00°', 1.234)).toBe('90.00 ± 1.3°');
+    expect(scale.formatWithin(0.123456, 0.0003)).toBe('12.35 ± 0.03 cm');
+    expect(scale.formatWithin(3, 40)).toBe('0 ± 4000 cm');
+  });
+
+  it('takes the unit that reads well where the model has a metric one', () => {
+    const metres = new LengthScale('m', 'm');
+    expect([1.2345e-4, 5e-4, 3.3e-9, 0.001, 9_999_999, 12_345_678, 0].map((length) => metres.format(length))).toEqual(['123.45 µm', '500 µm', '3.3 nm', '0.001 m', '9999999 m', '12345.7 km', '0 m']);
+    expect(metres.formatArea(0.00012317)).toBe('1.2317 cm²');
+    expect([metres.formatVolume(4.2e8), metres.formatVolume(4.2e9)]).toEqual(['420000000 m³', '4.2 km³']);
+    expect(metres.formatWithin(0, 0.00012)).toBe('0 ± 120 µm');
+    expect(metres.formatWithin(0.00012346, 0.0000003)).toBe('123.5 ± 0.3 µm');
+    expect(new LengthScale('ft', 'ft').format(0.00012)).toBe('0.00012 ft');
+    expect(new LengthScale('unit', 'unit').formatArea(0.00012317)).toBe('123.17\u202f×\u202f10⁻⁶ units²');
+  });
+
+  it('tells sides together, to the place of the longest', () => {
+    expect(new LengthScale('m', 'm').formatSides([1.5, 2, 5.0001 - 5])).toBe('1.5 × 2 × 0.0001 m');
+    expect(new LengthScale('m', 'm').formatSides([1.5e-5, 2e-4, 0])).toBe('15 × 200 × 0 µm');
+    expect(new LengthScale('unit', 'unit', '').formatSides([1.25, 2, 3])).toBe('1.25 × 2 × 3');
+    expect(new LengthScale('unit', 'unit').formatSides([1.2345e-6, 2e-6, 3e-6])).toBe('(1.2345 × 2 × 3)\u202f×\u202f10⁻⁶ units');
+  });
+
+  it.each([['en', '1,234.57 m', '12.35 ± 0.03 m', '0.5 × 2,000 m'], ['de', '1.234,57 m', '12,35 ± 0,03 m', '0,5 × 2.000 m'], ['es', '1234,57 m', '12,35 ± 0,03 m', '0,5 × 2000 m']])('writes as %s does, and plainly for files', (locale, long, bounded, sides) => {
+    const scale = new LengthScale('m', 'm', 'units', numbersOf(locale).writeDecimal);
+    expect([scale.format(1234.567), scale.formatWithin(12.346, 0.03), scale.formatSides([0.5, 2000])]).toEqual([long, bounded, sides]);
+    expect([scale.plain.format(1234.567), scale.plain.formatWithin(12.346, 0.03)]).toEqual(['1234.57 m', '12.35 ± 0.03 m']);
   });
 
   it('converts where both units are known', () => {

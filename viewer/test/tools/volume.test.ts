@@ -98,7 +98,7 @@ describe('the volume', () => {
   });
 
   it('is told in cubes of the unit', () => {
-    expect(new LengthScale('mm', 'cm').formatVolumeWithin(12_345.678, 10)).toBe('12.3457 ± 0.01 cm³');
+    expect(new LengthScale('mm', 'cm').formatVolumeWithin(12_345.678, 10)).toBe('12.346 ± 0.010 cm³');
     expect(new LengthScale('unit', 'unit').formatVolume(8)).toBe('8 units³');
   });
 });
