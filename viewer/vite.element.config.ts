@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 import { defineConfig } from 'vite';
+import { leanThree } from './lean/three.js';
 import { packedCopies, withoutTranscoder } from './vite.config.js';
 
 /// dist/page/meshhier-viewer.js, beside the page. The transcoder of KTX2 is a script beside it, for pages with such pictures alone.
 export default defineConfig({
-  plugins: [withoutTranscoder(), packedCopies()],
+  plugins: [leanThree(), withoutTranscoder(), packedCopies()],
   build: {
     outDir: 'dist/page',
     emptyOutDir: false,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vite';
+import { leanThree } from './lean/three.js';
 import { withoutTranscoder } from './vite.config.js';
 
 /// Workers as part of the script: a page that was opened from a disk may load none.
@@ -50,7 +51,7 @@ function singleFile(): Plugin {
 export default defineConfig({
   root: 'page',
   base: './',
-  plugins: [inlineWorkers(), withoutTranscoder(), singleFile()], // the worker alone has it
+  plugins: [leanThree(), inlineWorkers(), withoutTranscoder(), singleFile()], // the worker alone has it
   build: {
     outDir: '../dist/page',
     emptyOutDir: false,
