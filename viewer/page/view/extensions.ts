@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: MIT
 // The plug-ins of a view that have no part of the page: each is loaded when it is first wanted.
+import type { Dollhouse } from '../../src/plugins/dollhouse.js';
 import type { Immersion } from '../../src/plugins/immersion.js';
 import type { ImmersionMode } from '../../src/plugins/immersion_modes.js';
 import type { Occlusion } from '../../src/plugins/occlusion.js';
+import { parseRoomsLink, roomsOfChoices } from '../tools/rooms_link.js';
 import { words } from '../words/words.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
 
+export const DOLLHOUSE = 'page dollhouse';
+
 export class Extensions {
+  private dollhouse: Dollhouse | null = null;
+  private wished: Dollhouse['mode'] = 'auto';
   private occlusion: Occlusion | null = null;
   private immersion: Immersion | null = null;
 
   constructor(private readonly context: PageContext, private readonly choices: ViewChoices) {
     context.addEventListener('chosen', () => { this.occlude(); });
+    context.addEventListener('known', () => { if (this.dollhouse === null) this.openRooms().catch(() => undefined); });
   }
 
   async immerse(mode: ImmersionMode): Promise<void> {
@@ -32,6 +39,23 @@ export class Extensions {
       const why = error instanceof Error ? error.message : String(error);
       context.page.problems.tell(words.problems.noImmersion, { more: why, subject: 'immersion' });
     }
+  }
+
+  /// As a link says.
+  follow(choices: string): void {
+    this.wished = parseRoomsLink(roomsOfChoices(choices)).dollhouse;
+    if (this.dollhouse !== null) this.dollhouse.mode = this.wished;
+  }
+
+  /// Looks into rooms, once there is a first picture: what the model is, is found out then. Without its code the page shows all faces.
+  private async openRooms(): Promise<void> {
+    const { view, signal } = this.context;
+    const { Dollhouse } = await import('../../src/plugins/dollhouse.js');
+    if (signal.aborted || this.dollhouse !== null) return;
+    const dollhouse = new Dollhouse(DOLLHOUSE);
+    dollhouse.mode = this.wished;
+    this.dollhouse = dollhouse;
+    view.registerPlugin(dollhouse);
   }
 
   /// Gives hollows less light, or as much as all else, as it is chosen.

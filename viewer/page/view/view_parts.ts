@@ -55,7 +55,7 @@ export class ViewParts {
   /// What a link says, and of what it says nothing as the model is seen first.
   follow({ choices }: Spot): void {
     const shown = overFirst(choices, this.first.view);
-    for (const part of [this.choices, this.tools, this.story]) part.follow(shown);
+    for (const part of [this.choices, this.tools, this.story, this.extensions]) part.follow(shown);
   }
 
   /// As the model is seen first.

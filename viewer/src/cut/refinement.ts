@@ -53,6 +53,8 @@ const OUTSIDE = 0.25;
 export class Refinement {
   /// Backs are seen from outside, too: the model is cut open.
   showsInside = false;
+  /// No backs are seen, from wherever.
+  hidesBacks = false;
   private refined: ReadonlySet<number> = NONE;
   /// The last drawing showed these finer.
   private shown = new Set<number>();
@@ -104,7 +106,7 @@ export class Refinement {
   }
 
   private sources(view: Viewpoint, atRest: boolean, now: number): Sources {
-    const culls = this.isOutside(view.eye);
+    const culls = this.hidesBacks || this.isOutside(view.eye);
     const margin = atRest ? HIDDEN_MARGIN_AT_REST : HIDDEN_MARGIN;
     const before = atRest ? NONE : this.refined;
     return {
@@ -129,7 +131,8 @@ export class Refinement {
   private isHidden(view: Viewpoint, key: number, record: TileRecord, margin: number): boolean {
     const cone = this.store.get(key)?.tile.cone;
     if (cone === undefined) return false;
-    return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
+    const isTurned = !this.hidesBacks && this.store.get(ROOT)!.tile.insideOut;
+    return looksAway(view, record, isTurned ? opposite(cone) : cone, margin);
   }
 
   private wanted(refined: readonly ChosenNode[]): Wanted[] {

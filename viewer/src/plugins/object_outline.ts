@@ -70,6 +70,7 @@ export class ObjectOutline {
     renderer.clippingPlanes = [...view.plugins.cuts];
     renderer.setRenderTarget(this.target);
     alone(scene, view, () => {
+      this.mask.side = view.side;
       scene.overrideMaterial = this.mask;
       renderer.render(scene, camera);
     });

@@ -86,6 +86,7 @@ class Hollows {
     const { overrideMaterial } = scene;
     const { visible } = view;
     const leavesOut = view.leaveOut(this.tiles);
+    bare.side = this.tiles.side = view.side;
     scene.overrideMaterial = bare;
     renderer.setRenderTarget(this.depth);
     view.visible &&= !leavesOut;

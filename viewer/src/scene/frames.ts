@@ -129,10 +129,10 @@ export class Frames {
 
   /// Returns whether other tiles are drawn, or otherwise, than before. The root is drawn before anything else is asked for.
   private refine(viewpoint: Viewpoint, now: number): boolean {
-    const { context: { settings, showsInside, mostLevel }, loading: { cut, store }, motion: { isMoving } } = this;
+    const { context: { settings, showsInside, hidesBacks, mostLevel }, loading: { cut, store }, motion: { isMoving } } = this;
     const vertices = isMoving ? this.rate.budget : Infinity;
     const refinement = cut.isFirstFrame ? null : cut.refinement;
-    if (refinement !== null) refinement.showsInside = showsInside;
+    if (refinement !== null) Object.assign(refinement, { showsInside, hidesBacks });
     cut.state = refinement?.refine(viewpoint, { ...settings, vertices, mostLevel: mostLevel ?? Infinity, atRest: !isMoving }, now) ?? null;
     store.keepWithin(now);
     const isElse = this.show();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
-import { Group, type Box3, type Material, type Matrix4, type PerspectiveCamera, type Scene, type Vector3, type WebGLRenderer } from 'three';
+import { Group, type Box3, type Material, type Matrix4, type PerspectiveCamera, type Scene, type Side, type Vector3, type WebGLRenderer } from 'three';
 import type { Vector } from '../cut/viewpoint.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import type { ObjectTable } from '../hierarchy/object_table.js';
+import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import { Attributes } from '../plugins/attributes.js';
 import { Plugins, type PluginOf, type StageOf } from '../plugins/plugin.js';
@@ -110,7 +111,23 @@ export class HierarchyView extends Group<ViewEvents> {
     this.context.changed();
   }
 
+  /// True while faces that look away from the camera are not drawn, by the order of their corners: from outside one looks into rooms. Then rays
+  /// that pick meet none of them, and tiles that show nothing else stay coarse.
+  get hidesBacks(): boolean {
+    return this.context.hidesBacks;
+  }
+
+  set hidesBacks(hides: boolean) {
+    this.context.hidesBacks = this.tiles.hidesBacks = hides;
+    this.context.changed();
+  }
+
   // ---- what the model is
+
+  /// All of the model in one tile, coarse; null: it has not come yet.
+  get root(): Tile | null {
+    return this.context.form.root;
+  }
 
   /// The model's box, upright, in the coordinates of this group; empty until the root is there.
   get box(): Box3 {
@@ -186,6 +203,11 @@ export class HierarchyView extends Group<ViewEvents> {
   /// The triangles that are drawn, in view or not, in coordinates that `surfaceMatrix` brings into the world.
   get surface(): readonly DrawnTile[] {
     return this.tiles.drawn();
+  }
+
+  /// Which sides of tiles are drawn: so are those of a material with which they are drawn in a pass of your own.
+  get side(): Side {
+    return this.tiles.side;
   }
 
   /// Tells of a vertex of a tile whether plug-ins leave it out; null: they leave out nothing.

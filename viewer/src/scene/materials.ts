@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The materials of tiles: three's own, so that any scene's lights do.
 import {
-  Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type MaterialParameters, type Texture,
+  Color, DoubleSide, FrontSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type MaterialParameters, type Side, type Texture,
 } from 'three';
 import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Tile } from '../hierarchy/tile.js';
@@ -18,6 +18,11 @@ const DOTS = 0x8d887f; // of a model without triangles, on light and dark ground
 const DOT_SIZE = 4;
 const ROUND = `#include <clipping_planes_fragment>
 if (distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;`;
+/// Edges and points of faces that are not drawn are not, either.
+const FACING = `#include <project_vertex>
+facing = hidesBacks ? -dot(normalMatrix * normal, mvPosition.xyz) : 1.0;`;
+const FACING_ONLY = `#include <clipping_planes_fragment>
+if (facing < 0.0) discard;`;
 /// How far the surface stands back behind its own wires and points: more than programs differ by rounding.
 const BEHIND = { slopes: 2, units: 16 };
 const GOLDEN = 0.618034; // colours of neighbours in a list lie far apart
@@ -73,9 +78,9 @@ diffuseColor.rgb *= clamp(1.0 + ${strength.toFixed(1)} * bend, ${least.toFixed(2
 const CAVITIES = cavitiesBy({ strength: 1.8, least: 0.5, most: 1.4 });
 
 /// A tile's surfaces of one key are the same.
-export function surfaceKey(look: Look, tile: Tile, { shadings }: SharedMaterials): string {
+export function surfaceKey(look: Look, tile: Tile, { shadings, hidesBacks }: SharedMaterials): string {
   const { colours, texture, relight, material, cavities, shading, wires, points } = look;
-  return [colours, texture, relight, material, cavities, shading, wires || points, ...shadings.keyed(look, tile).map((each) => `${numberOf(each.shading)}:${each.key}`)].join();
+  return [colours, texture, relight, material, cavities, shading, wires || points, hidesBacks.value, ...shadings.keyed(look, tile).map((each) => `${numberOf(each.shading)}:${each.key}`)].join();
 }
 
 /// The materials of a model's tiles share this.
@@ -90,6 +95,8 @@ export interface SharedMaterials {
   readonly upwards: { value: Vector3 };
   readonly heights: { value: Vector2 };
   readonly matcap: Texture;
+  /// Faces that look away are not drawn.
+  readonly hidesBacks: { value: boolean };
   /// Those of plug-ins.
   readonly shadings: Shadings;
 }
@@ -118,10 +125,16 @@ function standing({ wires, points }: Look): { polygonOffset: boolean; polygonOff
   return { polygonOffset: wires || points, polygonOffsetFactor: BEHIND.slopes, polygonOffsetUnits: BEHIND.units };
 }
 
+/// The sides of tiles that are drawn.
+export function sideOf({ hidesBacks }: SharedMaterials): Side {
+  return hidesBacks.value ? FrontSide : DoubleSide;
+}
+
 /// The picture's colours, and what tints them.
-function unlitMaterial(look: Look, { tile, texture }: Painting, { shadings }: SharedMaterials): MeshBasicMaterial {
+function unlitMaterial(look: Look, { tile, texture }: Painting, shared: SharedMaterials): MeshBasicMaterial {
   const { picture, coloursTint } = tile;
-  const material = new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, vertexColors: coloursTint, ...standing(look), ...picturing(picture, texture) });
+  const { shadings } = shared;
+  const material = new MeshBasicMaterial({ side: sideOf(shared), toneMapped: false, vertexColors: coloursTint, ...standing(look), ...picturing(picture, texture) });
   const keyed = shadings.keyed(look, tile).filter(({ shading }) => shading.isForUnlit === true);
   if (!coloursTint && keyed.length === 0) return material;
   material.onBeforeCompile = (shader) => {
@@ -160,7 +173,7 @@ function litMaterial(look: Look, { tile, texture, normals }: Painting, shared: S
   const { outwards, upwards, heights } = shared;
   const vertexColors = colours === 'vertex' && tile.colours !== null && (texture === null || tile.coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
-  const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
+  const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: sideOf(shared), flatShading: shading === 'flat', vertexColors };
   const keyed = shared.shadings.keyed(look, tile);
   const shadings = keyed.map((each) => each.shading);
   const besides = shadings.map((each) => shared.shadings.ask(each, () => each.parameters?.(look) ?? {}, {}));
@@ -198,15 +211,28 @@ export function errorColour(pixels: number, threshold: number): Color {
   return new Color().setHSL(0.36 * (1 - Math.min(1, heat)), 0.7, 0.5);
 }
 
-function wireMaterial(): Material {
-  return new LineBasicMaterial({ color: WIRES, transparent: true, opacity: 0.45, depthWrite: false });
+/// Gives a shader of edges or points what leaves out those that look away.
+function showFacing(shader: Shader, hidesBacks: SharedMaterials['hidesBacks']): void {
+  shader.uniforms.hidesBacks = hidesBacks;
+  replaceChunk(shader, 'vertexShader', 'project_vertex', FACING);
+  replaceChunk(shader, 'fragmentShader', 'clipping_planes_fragment', FACING_ONLY);
+  shader.vertexShader = `uniform bool hidesBacks;\nvarying float facing;\n${shader.vertexShader}`;
+  shader.fragmentShader = `varying float facing;\n${shader.fragmentShader}`;
+}
+
+function wireMaterial(hidesBacks: SharedMaterials['hidesBacks']): Material {
+  const material = new LineBasicMaterial({ color: WIRES, transparent: true, opacity: 0.45, depthWrite: false });
+  material.onBeforeCompile = (shader) => { showFacing(shader, hidesBacks); };
+  material.customProgramCacheKey = () => 'meshhier-wires';
+  return material;
 }
 
 /// Makes the material of points: round, and over the wires.
-function pointMaterial(color: number, size: number, vertexColors = false): Material {
+function pointMaterial(hidesBacks: SharedMaterials['hidesBacks'], color: number, size: number, vertexColors = false): Material {
   const material = new PointsMaterial({ color, size, vertexColors, sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace('#include <clipping_planes_fragment>', ROUND);
+    replaceChunk(shader, 'fragmentShader', 'clipping_planes_fragment', ROUND);
+    showFacing(shader, hidesBacks);
     takeScreenColours(shader);
   };
   material.customProgramCacheKey = () => 'meshhier-round';
@@ -215,6 +241,7 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
 
 export function sharedMaterials(shadings = new Shadings()): SharedMaterials {
   const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) } };
-  const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
-  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), shadings, ...uniforms };
+  const hidesBacks = { value: false };
+  const dots = { plain: pointMaterial(hidesBacks, DOTS, DOT_SIZE), coloured: pointMaterial(hidesBacks, 0xffffff, DOT_SIZE, true) };
+  return { wires: wireMaterial(hidesBacks), points: pointMaterial(hidesBacks, POINTS, POINT_SIZE), dots, matcap: makeMatcap(), hidesBacks, shadings, ...uniforms };
 }

@@ -235,7 +235,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.wires = this.discard(this.wires);
     if (!on) return;
     const geometry = new BufferGeometry();
-    geometry.setAttribute('position', this.geometry.attributes.position);
+    for (const name of ['position', 'normal']) geometry.setAttribute(name, this.geometry.attributes[name]);
     geometry.setIndex(new BufferAttribute(edgesOf(this.resident.tile.indices, 3 * this.triangles), 1));
     geometry.setDrawRange(0, 6 * this.triangles);
     geometry.boundingSphere = this.geometry.boundingSphere;
@@ -247,7 +247,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     this.points = this.discard(this.points);
     if (!on) return;
     const geometry = new BufferGeometry();
-    geometry.setAttribute('position', this.geometry.attributes.position);
+    for (const name of ['position', 'normal']) geometry.setAttribute(name, this.geometry.attributes[name]);
     const { color } = this.geometry.attributes;
     if (color !== undefined) geometry.setAttribute('color', color);
     if (this.shared.shadings.omits === null) geometry.setDrawRange(0, this.resident.tile.own);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tiles of a cut in a three scene, joined along their seams.
-import { Group, type Camera, type Material, type Scene, type WebGLRenderer } from 'three';
+import { Group, type Camera, type Material, type Scene, type Side, type WebGLRenderer } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Vector } from '../cut/viewpoint.js';
@@ -8,7 +8,7 @@ import type { ScalarAttribute } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
-import { errorColour, partitionColour, sharedMaterials, type SharedMaterials } from './materials.js';
+import { errorColour, partitionColour, sharedMaterials, sideOf, type SharedMaterials } from './materials.js';
 import type { Omits } from './omission.js';
 import type { Look } from './settings.js';
 import { Shadings, type Shading } from './shading.js';
@@ -47,6 +47,16 @@ export class TileScene extends Group {
   /// The whole model's triangles show their backs to the outside.
   set insideOut(is: boolean) {
     this.materials.outwards.value = is ? -1 : 1;
+  }
+
+  /// Backs are not drawn, from the next cut on.
+  set hidesBacks(hides: boolean) {
+    this.materials.hidesBacks.value = hides;
+    this.look = null;
+  }
+
+  get side(): Side {
+    return sideOf(this.materials);
   }
 
   /// Those of plug-ins, from the next cut on.

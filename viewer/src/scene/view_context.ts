@@ -21,6 +21,8 @@ export class ViewContext {
   /// Nobody has chosen how the model looks and stands: its manifest may.
   private isLookOpen: boolean;
   private isStandingOpen: boolean;
+  /// Faces that look away from the camera are not drawn.
+  hidesBacks = false;
   readonly form: ModelForm;
   readonly account = new Account();
   /// Aborts when the view is disposed of.

@@ -23,7 +23,7 @@ export class Pointing {
     const { view, camera } = this.stage;
     const { manifest, source } = view;
     const keeps: Keeps = (point, values) => view.plugins.keeps(new Vector3(...point).applyMatrix4(view.surfaceMatrix), values);
-    const ray = rayThrough(camera, right, up, view.surfaceMatrix);
+    const ray = { ...rayThrough(camera, right, up, view.surfaceMatrix), meetsFronts: view.hidesBacks };
     const hit = this.picker.pick(view.surface, ray, keeps);
     if (hit === null || manifest === null || source === null) return null;
     const tell = (found: Hit): PickedPoint => pickedPoint(found, manifest, snaps, shownBound(found.node, view.surface, (node) => recordedBound(source, node)));

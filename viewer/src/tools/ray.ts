@@ -9,6 +9,8 @@ export interface Ray {
   readonly direction: Vector;
   /// The ray meets no triangle nearer than this; 0 if it is not given.
   readonly begin?: number;
+  /// The ray meets only triangles that look at where it comes from, by the order of their corners.
+  readonly meetsFronts?: boolean;
 }
 
 /// Exits are put off by what products round: a box is never missed for that.
@@ -48,7 +50,7 @@ export class RayProbe {
     return entry <= exit + SLACK * Math.abs(exit) ? entry : Infinity;
   }
 
-  /// Distance at which a triangle is hit from either side, and `weights`; Infinity: it is missed.
+  /// Distance at which a triangle is hit from a side that the ray meets, and `weights`; Infinity: it is missed.
   hits(positions: ArrayLike<number>, a: number, b: number, c: number): number {
     const [ax, ay, az] = this.sheared(positions, a);
     const [bx, by, bz] = this.sheared(positions, b);
@@ -58,6 +60,7 @@ export class RayProbe {
     const w = bx * ay - by * ax;
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return Infinity;
     const sum = u + v + w;
+    if (this.ray.meetsFronts === true && !(sum * this.shear[2] > 0)) return Infinity;
     const distance = (u * az + v * bz + w * cz) / sum;
     if (!(distance >= (this.ray.begin ?? 0))) return Infinity; // behind the eye, too near, or no area
     this.weights = [u / sum, v / sum, w / sum];
