@@ -7,7 +7,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { RayProbe, type Ray } from './ray.js';
-import { TriangleTree } from './triangle_tree.js';
+import { ShownTrees } from './shown_trees.js';
 import { add, cross, distanceOf, scale, subtract, unit, vertexAt, type Vector } from './vectors.js';
 
 export interface Hit {
@@ -88,21 +88,22 @@ function entersSphere({ ray, direction }: RayProbe, { sphere: { center, radius }
   return aside > reach || along < -reach ? Infinity : Math.max(0, along - reach);
 }
 
-/// Picks on what is drawn; keeps the trees of tiles that rays have met, while they are drawn and fit.
+/// Picks on what is drawn.
 export class Picker {
-  private readonly trees = new Map<Tile, TriangleTree>();
-  private usedBytes = 0;
+  private readonly trees: ShownTrees;
 
   /// `mostBytes`: of trees.
-  constructor(private readonly mostBytes = 32e6) {}
+  constructor(mostBytes?: number) {
+    this.trees = new ShownTrees(mostBytes);
+  }
 
   get bytes(): number {
-    return this.usedBytes;
+    return this.trees.bytes;
   }
 
   /// Null: the ray meets nothing.
   pick(surface: readonly DrawnTile[], ray: Ray, keeps: Keeps = KEEPS_ALL): Hit | null {
-    this.forgetAllBut(surface);
+    this.trees.forgetAllBut(surface);
     const search = new Search(new RayProbe(ray), keeps);
     const met = surface.map((drawn) => ({ drawn, entry: entersSphere(search.probe, drawn) })).filter(({ entry }) => entry < Infinity);
     for (const { drawn, entry } of met.sort((a, b) => a.entry - b.entry)) if (entry < search.limit) this.searchTile(search, drawn);
@@ -114,27 +115,7 @@ export class Picker {
     const { indices, interiorCount } = tile;
     const look = (triangle: number): number =>
       search.look(node, tile, [indices[3 * triangle], indices[3 * triangle + 1], indices[3 * triangle + 2]]);
-    this.treeOf(tile).visit(search.probe, search.limit, look);
+    this.trees.of(tile).visit(search.probe, search.limit, look);
     for (let triangle = interiorCount; triangle < triangles; ++triangle) look(triangle);
-  }
-
-  private treeOf(tile: Tile): TriangleTree {
-    const known = this.trees.get(tile);
-    if (known) return known;
-    const tree = new TriangleTree(tile.positions, tile.indices, tile.interiorCount);
-    for (const each of this.trees.keys()) if (this.usedBytes + tree.bytes > this.mostBytes) this.forget(each);
-    this.trees.set(tile, tree);
-    this.usedBytes += tree.bytes;
-    return tree;
-  }
-
-  private forgetAllBut(surface: readonly DrawnTile[]): void {
-    const drawn = new Set(surface.map(({ tile }) => tile));
-    for (const tile of this.trees.keys()) if (!drawn.has(tile)) this.forget(tile);
-  }
-
-  private forget(tile: Tile): void {
-    this.usedBytes -= this.trees.get(tile)?.bytes ?? 0;
-    this.trees.delete(tile);
   }
 }

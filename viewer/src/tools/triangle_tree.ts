@@ -93,6 +93,17 @@ export class TriangleTree {
     }
   }
 
+  /// Calls for triangles that may touch a box: six numbers, least, then most.
+  visitBox(box: ArrayLike<number>, look: (triangle: number) => void): void {
+    const waiting = [0];
+    const touches = (each: number): boolean => [0, 1, 2].every((axis) => this.boxes[FLOATS * each + axis] <= box[axis + 3] && this.boxes[FLOATS * each + axis + 3] >= box[axis]);
+    for (let each = waiting.pop(); each !== undefined; each = waiting.pop()) {
+      if (!touches(each)) continue;
+      if (each < this.firstRun) waiting.push(2 * each + 1, 2 * each + 2);
+      else this.visitRun(each - this.firstRun, 0, (triangle) => { look(triangle); return 0; });
+    }
+  }
+
   private farFirst(probe: RayProbe, box: number): [number, number] {
     const [one, other] = [2 * box + 1, 2 * box + 2];
     return probe.enters(this.boxes, FLOATS * one) < probe.enters(this.boxes, FLOATS * other) ? [other, one] : [one, other];
