@@ -4,11 +4,12 @@ import type { Dollhouse } from '../../src/plugins/dollhouse.js';
 import type { Immersion } from '../../src/plugins/immersion.js';
 import type { ImmersionMode } from '../../src/plugins/immersion_modes.js';
 import type { Occlusion } from '../../src/plugins/occlusion.js';
-import { parseRoomsLink, roomsOfChoices } from '../tools/rooms_link.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
 import { words } from '../words/words.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
 
+/// The plug-in that every view of the page has.
 export const DOLLHOUSE = 'page dollhouse';
 
 export class Extensions {
@@ -41,9 +42,16 @@ export class Extensions {
     }
   }
 
+  /// As links have it; empty: nothing was chosen.
+  get text(): string {
+    const mode = this.dollhouse?.mode ?? this.wished;
+    return mode === 'auto' ? '' : writeLink({ dollhouse: mode === 'on' });
+  }
+
   /// As a link says.
   follow(choices: string): void {
-    this.wished = parseRoomsLink(roomsOfChoices(choices)).dollhouse;
+    const { dollhouse } = readLink(choices);
+    this.wished = dollhouse === undefined ? 'auto' : dollhouse ? 'on' : 'off';
     if (this.dollhouse !== null) this.dollhouse.mode = this.wished;
   }
 
@@ -55,6 +63,7 @@ export class Extensions {
     const dollhouse = new Dollhouse(DOLLHOUSE);
     dollhouse.mode = this.wished;
     this.dollhouse = dollhouse;
+    dollhouse.addEventListener('change', () => { this.context.startRest(); });
     view.registerPlugin(dollhouse);
   }
 

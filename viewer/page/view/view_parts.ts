@@ -46,8 +46,8 @@ export class ViewParts {
 
   /// Returns what a link to this view tells, and what it has no room for.
   spot(): SharedSpot {
-    const { choices, tools, story, camera, first } = this;
-    const all = orderedLink([choices.text, tools.text, story.text].filter((text) => text !== '').join('&'));
+    const { choices, tools, story, camera, first, extensions } = this;
+    const all = orderedLink([choices.text, extensions.text, tools.text, story.text].filter((text) => text !== '').join('&'));
     const { link, leftOut } = fittedLink(besideFirst(all, first.view));
     return { pose: camera.navigation.atHome ? null : camera.pose(), choices: link, leftOut };
   }

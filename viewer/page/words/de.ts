@@ -259,6 +259,8 @@ export const de: Words = {
       ['L', 'Aussehen und Einstellungen'],
       ['S', 'Messwerte'],
       ['I J M X N K', 'Werkzeuge: Punkt wählen, Objekte, messen, aufschneiden, Notizen, Kamera und Bilder'],
+      ['Y', 'Räume: von außen hineinsehen, gehen, Stockwerke'],
+      ['W A S D, Umschalt', 'zu Fuß: gehen, laufen; Pfeile drehen, Bild auf und ab blicken'],
       ['Enter, V, Rücktaste', 'im Werkzeug: Bildmitte nehmen, an Eckpunkten einrasten, ein Schritt zurück'],
       ['B R E', 'bei der Kamera: merken, Drehteller, ganzer Bildschirm'],
       ['?', 'diese Hilfe'],

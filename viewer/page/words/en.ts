@@ -266,6 +266,8 @@ export const en = {
       ['L', 'look and settings'],
       ['S', 'figures'],
       ['I J M X N K', 'tools: pick a point, objects, measure, cut open, notes, camera and pictures'],
+      ['Y', 'rooms: look in from outside, walk, storeys'],
+      ['W A S D, Shift', 'walking: go, run; arrows turn, Page up and down look'],
       ['Enter, V, Backspace', 'in a tool: take the middle of the picture, snap to vertices, a step back'],
       ['B R E', 'with the camera: bookmark, turntable, full screen'],
       ['?', 'this help'],

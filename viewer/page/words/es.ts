@@ -259,6 +259,8 @@ export const es: Words = {
       ['L', 'aspecto y ajustes'],
       ['S', 'cifras'],
       ['I J M X N K', 'herramientas: elegir un punto, objetos, medir, cortar, notas, cámara e imágenes'],
+      ['Y', 'habitaciones: mirar dentro desde fuera, caminar, plantas'],
+      ['W A S D, Mayús', 'a pie: ir, correr; las flechas giran, Re Pág y Av Pág miran'],
       ['Intro, V, Retroceso', 'en una herramienta: tomar el centro de la imagen, ajustar a los vértices, un paso atrás'],
       ['B R E', 'con la cámara: recordar, plato giratorio, pantalla completa'],
       ['?', 'esta ayuda'],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a model cut open by planes, a closed one with caps. The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
+// Draws a model cut open by planes, a closed one with caps; by those of other plug-ins, too. The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
 import { Sphere, type Plane, type Vector3 } from 'three';
 import type { HierarchyView, Plugin } from '../scene/hierarchy_view.js';
 import { ClippedPainter } from '../tools/caps.js';
@@ -32,7 +32,7 @@ export class Clipping implements Plugin {
     [this.planes, this.hasCaps] = [planes, hasCaps];
     if (this.view === null) return;
     this.places.haveChanged(this.view.manifest); // the planes are of this one
-    this.view.showsInside = planes.length > 0; // a frame comes
+    this.view.showsInside = this.view.plugins.cuts.length > 0; // a frame comes
   }
 
   /// However the model stands now.
@@ -42,7 +42,7 @@ export class Clipping implements Plugin {
     if (this.places.haveChanged(view.manifest) && this.planes.length > 0) this.cut([]);
     if (this.planes.length === 0) return false;
     painter.isCapped = this.hasCaps && view.closed;
-    painter.planes = this.cuts;
+    painter.planes = view.plugins.cuts;
     painter.paint(renderer, scene, camera);
     return true;
   }

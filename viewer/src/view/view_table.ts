@@ -34,7 +34,7 @@ const MOST_HIDDEN = 256; // labels
 const MOST_TEXTS = 100; // objects
 const ANGLE_DIGITS = 4;
 
-export const VIEW_PARTS = ['camera', 'look', 'standing', 'level', 'cut', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
+export const VIEW_PARTS = ['camera', 'look', 'standing', 'dollhouse', 'level', 'cut', 'rooms', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
 export type ViewPart = (typeof VIEW_PARTS)[number];
 type Box = readonly [number, number, number, number, number, number];
 
@@ -116,10 +116,15 @@ export const VIEW_TABLE = {
   occlusion: row('look', flag(), false),
   up: row('standing', word(UPS), DEFAULT_STANDING.up),
   stretch: row('standing', number((value) => value >= 1 && value <= MOST_STRETCH, `from 1 to ${MOST_STRETCH}`), DEFAULT_STANDING.stretch),
+  /// Faces that look away are not drawn; unsaid: as the model is.
+  dollhouse: row('dollhouse', flag()),
   level: row('level', number((value) => Number.isInteger(value) && value >= 0 && value <= MOST_LEVEL, `a whole number from 0 to ${MOST_LEVEL}`)),
   cut: row('cut', numbers<readonly [number, number, number, number]>(isPlane, 'four numbers: a normal that is not 0, and a distance')),
   box: row('cut', numbers<Box>(isBox, 'six numbers: the least corner, then the greatest')),
   caps: row('cut', flag(), true),
+  walk: row('rooms', flag(), false),
+  /// Heights of the input between which all is drawn.
+  storey: row('rooms', numbers<readonly [number, number]>(([from, to, ...more]) => more.length === 0 && from < to, 'two numbers, the lower first')),
   measure: row('measure', numbers(arePlaces, `three numbers for each of 1 to ${MOST_MEASURED} points`)),
   pick: row('pick', numbers<readonly [number, number, number]>((values) => values.length === 3 && areNear(values), 'three numbers')),
   object: row('objects', text(() => true, 'a text')),
