@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Bookmarks, turntable, full screen, and pictures of any size.
 import type { Bookmark } from '../../src/tools/notes.js';
+import type { Projection } from '../../src/scene/projection.js';
 import { MOST_SIZE, takePicture } from '../../src/tools/screenshot.js';
 import { STEP, Turntable } from '../../src/tools/turntable.js';
 import { isTyped } from '../../src/typing.js';
-import { checkbox } from '../parts/controls.js';
+import { checkbox, choice, type ChoiceControl } from '../parts/controls.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { CameraPose } from '../../src/scene/camera_pose.js';
@@ -37,6 +38,9 @@ export class CameraTool implements Tool {
   private readonly spinButton = textButton(words.camera.spin, () => { this.spin(); });
   private readonly width: HTMLInputElement;
   private readonly height: HTMLInputElement;
+  private readonly projection: ChoiceControl<Projection> = choice(words.camera.projection, Object.entries(words.camera.projections) as [Projection, string][], (projection) => {
+    this.shop.bench.projection = projection;
+  });
   private readonly shot = textButton(words.camera.shot, () => void this.takeShot());
   private isTransparent = false;
   private readonly ending = new AbortController();
@@ -53,10 +57,11 @@ export class CameraTool implements Tool {
     full.hidden = !document.fullscreenEnabled;
     this.spinButton.setAttribute('aria-pressed', 'false');
     for (const { root } of [width, height, bare]) root.classList.add('tool-extra');
-    this.root = element('div', {}, this.list, textButton(camera.add, () => { this.bookmark(); }), this.spinButton, full, width.root, height.root, bare.root, this.shot, this.note);
+    this.root = element('div', {}, this.projection.root, this.list, textButton(camera.add, () => { this.bookmark(); }), this.spinButton, full, width.root, height.root, bare.root, this.shot, this.note);
     for (const sign of ['pointerdown', 'wheel'] as const) surface.addEventListener(sign, () => { this.stop(); }, { signal: this.ending.signal, passive: true });
     root.addEventListener('keydown', (event) => { if (event.key.startsWith('Arrow') && !isTyped(event)) this.stop(); }, { signal: this.ending.signal });
     shop.notebook.onChange(() => { this.show(); });
+    shop.bench.onProjection((projection) => { this.projection.show(projection); });
     this.show();
   }
 

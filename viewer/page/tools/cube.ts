@@ -27,7 +27,7 @@ export class Cube {
 
   private look(side: Side): void {
     const { target, distance } = this.bench.pose();
-    const position = positionFor(side, target.toArray(), distance);
+    const position = positionFor(side, target.toArray(), distance, this.bench.projection === 'parallel');
     this.bench.fly(CameraPose.from({ position: [position[0], position[1], position[2]], target: [target.x, target.y, target.z] }));
   }
 }

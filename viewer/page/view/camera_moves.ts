@@ -3,6 +3,7 @@
 import { Vector3, type Box3 } from 'three';
 import { CameraPose } from '../../src/scene/camera_pose.js';
 import { axesOf, frameWhole } from '../../src/scene/framing.js';
+import { heightAt, type Projection } from '../../src/scene/projection.js';
 
 /// Radians, from the lower to the upper edge of the picture.
 export const VIEW_ANGLE = Math.PI / 4;
@@ -23,7 +24,7 @@ export function turn(pose: CameraPose, right: number, up: number): CameraPose {
 /// Moves along the picture, by parts of its height of what lies at `depth` in front of the camera.
 export function pan(pose: CameraPose, right: number, up: number, depth: number): CameraPose {
   const axes = axesOf(pose.forward);
-  const height = 2 * depth * Math.tan(VIEW_ANGLE / 2);
+  const height = heightAt(depth, VIEW_ANGLE);
   const move = axes.right.multiplyScalar(right * height).addScaledVector(axes.up, up * height);
   return new CameraPose(pose.position.clone().add(move), pose.target.clone().add(move));
 }
@@ -39,14 +40,20 @@ export function retarget(pose: CameraPose, depth: number): CameraPose {
   return new CameraPose(pose.position.clone(), pose.forward.multiplyScalar(depth).add(pose.position));
 }
 
+/// The same picture of parallel rays, to be turned around what lies at `depth`: it is as large wherever the camera is along them.
+export function slide(pose: CameraPose, depth: number): CameraPose {
+  const move = pose.forward.multiplyScalar(depth - pose.distance);
+  return new CameraPose(pose.position.clone().add(move), pose.target.clone().add(move));
+}
+
 export function depthOf(pose: CameraPose, point: Vector3): number {
   return point.clone().sub(pose.position).dot(pose.forward);
 }
 
 /// All of a shape within the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
 /// `points`: of the shape; none: the box's corners.
-export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = []): CameraPose {
-  const { position, target } = frameWhole(points, box, direction, VIEW_ANGLE, aspect);
+export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = [], projection: Projection = 'perspective'): CameraPose {
+  const { position, target } = frameWhole(points, box, direction, VIEW_ANGLE, aspect, projection);
   return new CameraPose(position, target);
 }
 
@@ -56,6 +63,14 @@ export function depthRange(pose: CameraPose, box: Box3): { near: number; far: nu
   const away = pose.position.distanceTo(box.getCenter(new Vector3()));
   const near = Math.max(away - radius, pose.distance * 0.02);
   return { near, far: Math.max(away + radius, near * 2) };
+}
+
+/// Where a camera of parallel rays stands, with its planes: outside of the box, which it holds, wherever the pose is along its rays.
+export function parallelStand(pose: CameraPose, box: Box3): { position: Vector3; near: number; far: number } {
+  const radius = Math.max(box.getSize(new Vector3()).length() * 0.52, pose.distance * 0.02);
+  const forward = pose.forward;
+  const middle = box.getCenter(new Vector3()).sub(pose.target).dot(forward);
+  return { position: pose.target.clone().addScaledVector(forward, middle - 2 * radius), near: radius, far: 3 * radius };
 }
 
 /// Part `t` of the way from `a` to `b`: distances grow by equal factors in equal times.

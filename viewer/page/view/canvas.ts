@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Draws: canvas, scene, camera and light.
-import { NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, WebGLRenderer, type Box3, type Vector3 } from 'three';
+import { Matrix4, NeutralToneMapping, Raycaster, Scene, Vector2, WebGLRenderer, type Box3, type Vector3 } from 'three';
 import { words } from '../words/words.js';
 import { partDrawer } from '../../src/tools/draw_part.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import type { CameraPose } from '../../src/scene/camera_pose.js';
-import { depthRange, VIEW_ANGLE } from './camera_moves.js';
+import { axesOf } from '../../src/scene/framing.js';
+import { heightAt, SwitchingCamera, type Projection } from '../../src/scene/projection.js';
+import { depthRange, parallelStand, VIEW_ANGLE } from './camera_moves.js';
 import type { HierarchyView } from '../../src/index.js';
 import { Lighting } from '../../src/scene/lighting.js';
 import { TileObject } from '../../src/scene/tile_object.js';
@@ -21,8 +23,15 @@ function makeRenderer(): WebGLRenderer {
   }
 }
 
+/// Upright; a camera that looks straight down has the back of the model above.
+function face(camera: SwitchingCamera, pose: CameraPose): void {
+  camera.lookAt(pose.target);
+  const { right, up, forward } = axesOf(pose.forward);
+  if (forward.x === 0 && forward.z === 0) camera.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(right, up, forward.negate()));
+}
+
 export class Canvas {
-  readonly camera = new PerspectiveCamera((VIEW_ANGLE * 180) / Math.PI, 1);
+  readonly camera = new SwitchingCamera((VIEW_ANGLE * 180) / Math.PI, 1);
   readonly element: HTMLCanvasElement;
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
@@ -67,11 +76,13 @@ export class Canvas {
     return true;
   }
 
-  aim(pose: CameraPose, box: Box3): void {
-    this.camera.position.copy(pose.position);
-    this.camera.lookAt(pose.target);
+  aim(pose: CameraPose, box: Box3, projection: Projection): void {
+    const isParallel = projection === 'parallel';
+    const { position, near, far } = isParallel ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
+    this.camera.position.copy(position);
+    face(this.camera, pose);
     this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;
-    Object.assign(this.camera, depthRange(pose, box));
+    Object.assign(this.camera, { near, far, parallelHeight: isParallel ? heightAt(pose.distance, VIEW_ANGLE) : null });
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }

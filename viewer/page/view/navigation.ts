@@ -3,7 +3,8 @@
 import { Box3, Vector3 } from 'three';
 import { areNear } from '../../src/farthest.js';
 import { CameraPose } from '../../src/scene/camera_pose.js';
-import { depthOf, pan, retarget, turn, wholeView, zoom } from './camera_moves.js';
+import type { Projection } from '../../src/scene/projection.js';
+import { depthOf, pan, retarget, slide, turn, wholeView, zoom } from './camera_moves.js';
 import { Flight } from './flight.js';
 import { Glide, type Moves } from './glide.js';
 
@@ -17,6 +18,15 @@ const LONGEST_FRAME = 100; // milliseconds
 
 const still = matchMedia('(prefers-reduced-motion: reduce)');
 
+export interface Framing {
+  readonly aspect: number;
+  readonly projection?: Projection;
+  readonly direction: Parameters<typeof wholeView>[2];
+  readonly points?: Iterable<Vector3>;
+  /// The model is seen first so instead; null: all of it.
+  readonly first?: CameraPose | null;
+}
+
 export class Navigation {
   private stand: CameraPose;
   private readonly glide = new Glide();
@@ -27,6 +37,7 @@ export class Navigation {
   private whole: CameraPose;
   private home: CameraPose;
   private aspect = 1;
+  private projection: Projection = 'perspective';
   private box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 
   /// `wake`: a frame is wanted.
@@ -55,13 +66,14 @@ export class Navigation {
     return this.flight !== null || this.glide.busy;
   }
 
-  /// The model's box, the picture's aspect, and from where the whole is seen, as wholeView() has it; what shows the whole goes on showing the whole.
-  /// `first`: the model is seen first so instead.
-  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2], points: Iterable<Vector3> = [], first: CameraPose | null = null): void {
+  /// The model's box, the picture's aspect and projection, and from where the whole is seen, as wholeView() has it; what shows the whole goes on
+  /// showing the whole.
+  frame(box: Box3, { aspect, projection = 'perspective', direction, points = [], first = null }: Framing): void {
     const follow = this.atHome;
     this.box = box.clone();
     this.aspect = aspect;
-    this.whole = wholeView(this.box, aspect, direction, points);
+    this.projection = projection;
+    this.whole = wholeView(this.box, aspect, direction, points, projection);
     this.home = first ?? this.whole;
     if (follow) this.jump(this.home);
   }
@@ -92,7 +104,8 @@ export class Navigation {
   approach(right: number, up: number): void {
     const point = this.pick(right, up);
     if (point === null) return;
-    const distance = Math.max(point.distanceTo(this.pose.position) * CLOSER, this.whole.distance * NEAREST);
+    const away = this.isParallel ? this.pose.distance : point.distanceTo(this.pose.position);
+    const distance = Math.max(away * CLOSER, this.whole.distance * NEAREST);
     this.fly(new CameraPose(this.pose.forward.multiplyScalar(-distance).add(point), point));
   }
 
@@ -107,7 +120,8 @@ export class Navigation {
     this.flight = null;
     if (this.pose.distance > this.whole.distance * 0.5) return;
     const point = this.pick(0, 0);
-    if (point !== null) this.pose = retarget(this.pose, Math.max(depthOf(this.pose, point), this.whole.distance * NEAREST));
+    if (point !== null && this.isParallel) this.pose = slide(this.pose, depthOf(this.pose, point));
+    else if (point !== null) this.pose = retarget(this.pose, Math.max(depthOf(this.pose, point), this.whole.distance * NEAREST));
   }
 
   move(moves: Partial<Moves>): void {
@@ -125,6 +139,10 @@ export class Navigation {
     const moved = this.seen?.equals(this.pose) !== true;
     this.seen = this.pose;
     return moved;
+  }
+
+  private get isParallel(): boolean {
+    return this.projection === 'parallel';
   }
 
   private start(flight: Flight, to: CameraPose): void {
@@ -153,6 +171,7 @@ export class Navigation {
   }
 
   private depthFor(point: Vector3): number {
+    if (this.isParallel) return this.pose.distance;
     const depth = depthOf(this.pose, point);
     return depth > 0 ? depth : this.pose.distance;
   }

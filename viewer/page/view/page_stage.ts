@@ -2,12 +2,13 @@
 // A model's view for plug-ins and tools.
 import type { HierarchyView, Stage } from '../../src/index.js';
 import type { CameraPose } from '../../src/scene/camera_pose.js';
+import type { Projection } from '../../src/scene/projection.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { fileOf } from '../listing.js';
 import type { Telling } from '../problems.js';
 import type { Canvas } from './canvas.js';
 import type { PageFrames } from './page_frames.js';
-import { isStanding, type ViewCamera } from './view_camera.js';
+import { isStanding, type Sight, type ViewCamera } from './view_camera.js';
 import { fittedLink } from '../../src/view/view_link.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
@@ -46,6 +47,20 @@ export class PageStage implements Stage {
     return this.moves.navigation.pose;
   }
 
+  get projection(): Projection {
+    return this.moves.projection;
+  }
+
+  set projection(projection: Projection) {
+    this.moves.projection = projection;
+  }
+
+  /// Tells the projection now and whenever it is another one.
+  onProjection(tell: (projection: Projection) => void): void {
+    this.context.addEventListener('chosen', () => { tell(this.projection); });
+    tell(this.projection);
+  }
+
   jump(pose: CameraPose): void {
     if (isStanding(pose)) this.moves.navigation.jump(pose);
   }
@@ -78,8 +93,9 @@ export class PageStage implements Stage {
   }
 
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.
-  freeze(size: PictureSize): { readonly draw: DrawPart; release(): void } {
-    return this.moves.freeze(size);
+  /// `sight`: the picture's own.
+  freeze(size: PictureSize, sight?: Sight): { readonly draw: DrawPart; release(): void } {
+    return this.moves.freeze(size, sight);
   }
 
   /// Tells a message, which the function that it returns takes away.

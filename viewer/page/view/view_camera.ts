@@ -2,8 +2,10 @@
 // The camera of a model's view: where it stands, what of the model is in the picture, and when it rests.
 import { Box3, Vector3 } from 'three';
 import { CameraPose, type Pose } from '../../src/scene/camera_pose.js';
+import type { Projection } from '../../src/scene/projection.js';
 import type { Standing } from '../../src/scene/standing.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
+import { readLink, writeLink } from '../../src/view/view_link.js';
 import { problemOfPose, roundedPose } from '../address.js';
 import { towardsViewer } from '../gallery/layout.js';
 import type { Moves } from './glide.js';
@@ -19,10 +21,17 @@ export function isStanding(pose: CameraPose): boolean {
   return problemOfPose(position, target) === null;
 }
 
+/// How a camera sees the model.
+export interface Sight {
+  readonly pose: CameraPose;
+  readonly projection: Projection;
+}
+
 export class ViewCamera {
   readonly navigation: Navigation;
+  private seesBy: Projection = 'perspective';
   /// While a picture is taken.
-  private frozen: CameraPose | null = null;
+  private frozen: Sight | null = null;
   private readonly framed = new Box3();
   private standing: Readonly<Standing> | null = null;
   /// From where the whole is seen until it is there and the camera flies to its first view.
@@ -47,6 +56,34 @@ export class ViewCamera {
     else this.navigation.jump(CameraPose.from(pose));
   }
 
+  get projection(): Projection {
+    return this.seesBy;
+  }
+
+  /// What lies at the camera's target stays as large.
+  set projection(projection: Projection) {
+    if (projection === this.seesBy) return;
+    this.seesBy = projection;
+    if (this.context.isOpened) this.reframe();
+    this.context.redraw();
+    this.context.startRest();
+    this.context.dispatchEvent({ type: 'chosen' });
+  }
+
+  toggleProjection(): void {
+    this.projection = this.projection === 'parallel' ? 'perspective' : 'parallel';
+  }
+
+  /// As links have it, but for the pose.
+  get text(): string {
+    return writeLink({ projection: this.projection });
+  }
+
+  /// As a link says.
+  follow(choices: string): void {
+    this.projection = readLink(choices).projection ?? 'perspective';
+  }
+
   /// A picture is being taken: the page's waits.
   get isFrozen(): boolean {
     return this.frozen !== null;
@@ -65,13 +102,15 @@ export class ViewCamera {
   aim(isResized: boolean): void {
     const { isOpened, view, view: { box }, canvas } = this.context;
     if (isOpened && (isResized || !this.framed.equals(box) || this.standing !== view.standing)) this.reframe();
-    canvas.aim(this.frozen ?? CameraPose.from(this.pose()), isOpened ? box : UNKNOWN);
+    const { pose, projection } = this.frozen ?? this.sight;
+    canvas.aim(pose, isOpened ? box : UNKNOWN, projection);
   }
 
-  freeze(size: PictureSize): { readonly draw: DrawPart; release(): void } {
+  /// `sight`: of the picture, whatever the page goes on showing.
+  freeze(size: PictureSize, sight: Sight = this.sight): { readonly draw: DrawPart; release(): void } {
     const { canvas } = this.context;
     const hold = (asked: PictureSize | null): void => {
-      this.frozen = asked && CameraPose.from(this.pose());
+      this.frozen = asked && sight;
       canvas.asked = asked;
       this.context.redraw();
     };
@@ -91,12 +130,18 @@ export class ViewCamera {
     this.navigation.move(moves);
   }
 
+  private get sight(): Sight {
+    return { pose: CameraPose.from(this.pose()), projection: this.projection };
+  }
+
   private reframe(): void {
     const { view, canvas } = this.context;
     this.framed.copy(view.box);
     this.standing = view.standing;
     const first = this.approach === null ? firstPose(view.manifest, view.standing) : null;
-    this.navigation.frame(this.framed, canvas.aspect, this.approach ?? view.firstDirection, view.shape(), first && CameraPose.from(first));
+    this.navigation.frame(this.framed, {
+      aspect: canvas.aspect, projection: this.projection, direction: this.approach ?? view.firstDirection, points: view.shape(), first: first && CameraPose.from(first),
+    });
   }
 
   private arrive(): void {

@@ -47,7 +47,7 @@ export class ViewParts {
   /// Returns what a link to this view tells, and what it has no room for.
   spot(): SharedSpot {
     const { choices, tools, story, camera, first, extensions } = this;
-    const all = orderedLink([choices.text, extensions.text, tools.text, story.text].filter((text) => text !== '').join('&'));
+    const all = orderedLink([camera.text, choices.text, extensions.text, tools.text, story.text].filter((text) => text !== '').join('&'));
     const { link, leftOut } = fittedLink(besideFirst(all, first.view));
     return { pose: camera.navigation.atHome ? null : camera.pose(), choices: link, leftOut };
   }
@@ -55,7 +55,7 @@ export class ViewParts {
   /// What a link says, and of what it says nothing as the model is seen first.
   follow({ choices }: Spot): void {
     const shown = overFirst(choices, this.first.view);
-    for (const part of [this.choices, this.tools, this.story, this.extensions]) part.follow(shown);
+    for (const part of [this.camera, this.choices, this.tools, this.story, this.extensions]) part.follow(shown);
   }
 
   /// As the model is seen first.

@@ -255,6 +255,7 @@ export const de: Words = {
       ['Esc, Rücktaste', 'zurück'],
       ['1 2 3 4 5 6', 'Farben: einfarbig, Original, Stücke, Fehler, Höhe, Attribut'],
       ['T W P O C A F', 'Textur, Gitter, Punkte, Umriss, Furchen, dunkle Höhlungen, kantig'],
+      ['Y', 'Perspektive, oder parallel wie in Zeichnungen'],
       ['G', 'nächstes Licht'],
       ['L', 'Aussehen und Einstellungen'],
       ['S', 'Messwerte'],

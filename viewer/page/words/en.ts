@@ -262,6 +262,7 @@ export const en = {
       ['Esc, Backspace', 'back'],
       ['1 2 3 4 5 6', "colours: plain, the input's, partitions, error, height, attribute"],
       ['T W P O C A F', 'texture, wires, points, outline, creases, dark hollows, flat shading'],
+      ['Y', 'perspective, or parallel as in drawings'],
       ['G', 'next light'],
       ['L', 'look and settings'],
       ['S', 'figures'],

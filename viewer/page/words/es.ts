@@ -255,6 +255,7 @@ export const es: Words = {
       ['Esc, Retroceso', 'atrás'],
       ['1 2 3 4 5 6', 'colores: liso, original, partes, error, altura, atributo'],
       ['T W P O C A F', 'textura, aristas, puntos, contorno, surcos, huecos oscuros, facetas'],
+      ['Y', 'perspectiva, o paralela como en los planos'],
       ['G', 'luz siguiente'],
       ['L', 'aspecto y ajustes'],
       ['S', 'cifras'],

@@ -6,7 +6,7 @@ import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 import { chooseCut, LOADING, type ChosenNode, type Sources } from './choose_cut.js';
 import { RestDetail } from './rest_detail.js';
 import type { TileStore, Wanted } from './tile_store.js';
-import { looksAway, type Vector, type Viewpoint } from './viewpoint.js';
+import { comesFromOutside, looksAway, type Viewpoint } from './viewpoint.js';
 import { windingNumber } from './winding.js';
 
 export interface RefinementLimits {
@@ -106,7 +106,7 @@ export class Refinement {
   }
 
   private sources(view: Viewpoint, atRest: boolean, now: number): Sources {
-    const culls = this.hidesBacks || this.isOutside(view.eye);
+    const culls = this.hidesBacks || this.isOutside(view);
     const margin = atRest ? HIDDEN_MARGIN_AT_REST : HIDDEN_MARGIN;
     const before = atRest ? NONE : this.refined;
     return {
@@ -121,9 +121,12 @@ export class Refinement {
   }
 
   /// From outside of a closed surface none of its back is seen.
-  private isOutside(eye: Vector): boolean {
+  private isOutside(view: Viewpoint): boolean {
     const root = this.store.get(ROOT)?.tile;
     if (!root?.closed || this.showsInside) return false;
+    const [a, b, c, d, e, f] = root.box;
+    if (view.towards !== undefined) return comesFromOutside(view, { min: [a, b, c], max: [d, e, f] });
+    const { eye } = view;
     const inBox = eye.every((value, axis) => value >= root.box[axis] && value <= root.box[axis + 3]);
     return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
   }

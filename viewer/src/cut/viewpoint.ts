@@ -8,12 +8,15 @@ export interface Viewpoint {
   readonly eye: Vector;
   /// Inside is where x * a + y * b + z * c + d >= 0, of each plane; (a, b, c) of unit length.
   readonly planes: readonly (readonly [number, number, number, number])[];
-  /// Pixels that one unit takes at distance 1.
+  /// Pixels that one unit takes at distance 1; at all distances where rays are parallel.
   readonly pixels: number;
   /// Nothing closer is drawn; above 0.
   readonly near: number;
   /// How many times longer a length along each axis is seen than along the one that is seen shortest: 1 or more.
   readonly stretch: Vector;
+  /// Where rays are parallel: how much nearer to the viewer one unit along each axis leads, as it is seen; of length 1 where nothing is
+  /// stretched. Without it they meet in the eye.
+  readonly towards?: Vector;
 }
 
 export interface Box {
@@ -39,8 +42,15 @@ export function areInView({ planes }: Viewpoint, points: ArrayLike<number>): boo
   });
 }
 
+/// From the plane across parallel rays that has the eye to the box's nearest corner; less than 0 behind it.
+function depthAlong(towards: Vector, eye: Vector, { min, max }: Box): number {
+  return towards.reduce((sum, part, axis) => sum + part * eye[axis] - Math.max(part * min[axis], part * max[axis]), 0);
+}
+
 /// From the eye to the box, as it is seen; 0 inside.
-export function distance({ eye, stretch }: Viewpoint, { min, max }: Box): number {
+export function distance({ eye, stretch, towards }: Viewpoint, box: Box): number {
+  if (towards !== undefined) return Math.max(depthAlong(towards, eye, box), 0);
+  const { min, max } = box;
   let squared = 0;
   for (let axis = 0; axis < 3; ++axis) {
     const outside = stretch[axis] * Math.max(min[axis] - eye[axis], 0, eye[axis] - max[axis]);
@@ -51,7 +61,13 @@ export function distance({ eye, stretch }: Viewpoint, { min, max }: Box): number
 
 /// Pixels that a length in the box takes, at most, along the axis that is seen shortest.
 function leastPixels(view: Viewpoint, box: Box, length: number): number {
+  if (view.towards !== undefined) return length * view.pixels;
   return (length * view.pixels) / Math.max(distance(view, box), view.near);
+}
+
+/// Tells whether parallel rays come to the box from outside: nothing of it is nearer than what is drawn.
+export function comesFromOutside({ eye, near, towards }: Viewpoint, box: Box): boolean {
+  return towards !== undefined && depthAlong(towards, eye, box) >= near;
 }
 
 /// Pixels that a length in the box takes, at most.
@@ -68,14 +84,13 @@ export function squarePixels(view: Viewpoint, box: Box, squares: number): number
 
 /// Tells whether all directions of the cone look away from the eye, from anywhere in the box, by `margin` radians more
 /// than they must. Of what is stretched nobody knows.
-export function looksAway({ eye, stretch }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
+export function looksAway({ eye, stretch, towards }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
   if (cosine <= 0 || Math.max(...stretch) > 1) return false;
-  const to = [0, 1, 2].map((k) => eye[k] - (min[k] + max[k]) / 2);
-  const radius = Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2;
+  const to = towards ?? [0, 1, 2].map((k) => eye[k] - (min[k] + max[k]) / 2);
+  const radius = towards === undefined ? Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2 : 0;
   const far = Math.hypot(to[0], to[1], to[2]);
   if (far <= radius) return false;
   const slack = Math.acos(cosine) + Math.asin(radius / far) + margin;
   if (slack >= Math.PI / 2) return false;
-  const towards = (axis[0] * to[0] + axis[1] * to[1] + axis[2] * to[2]) / far;
-  return towards < -Math.sin(slack);
+  return (axis[0] * to[0] + axis[1] * to[1] + axis[2] * to[2]) / far < -Math.sin(slack);
 }

@@ -3,12 +3,13 @@
 // occlusion, Jimenez et al. 2016), multiplied onto a picture that is drawn already.
 import {
   CustomBlending, DepthTexture, DoubleSide, MeshBasicMaterial, OneFactor, ShaderMaterial, SrcColorFactor, UnsignedIntType, Vector2, WebGLRenderTarget, ZeroFactor,
-  Vector3, type PerspectiveCamera, type Scene, type WebGLRenderer,
+  Vector3, type Scene, type WebGLRenderer,
 } from 'three';
 import { GTAOPass } from 'three/addons/postprocessing/GTAOPass.js';
 import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import { alone } from '../scene/alone.js';
 import type { HierarchyView, Plugin, Stage } from '../scene/hierarchy_view.js';
+import { isParallel, type ViewCamera } from '../scene/projection.js';
 import type { Frame } from './plugin.js';
 
 /// Hollows of this part of the camera's distance are shaded, however near the camera is.
@@ -39,7 +40,11 @@ class Hollows {
   private readonly quad = new FullScreenQuad(this.multiply);
   private readonly size = new Vector2();
 
-  constructor(readonly scene: Scene, readonly camera: PerspectiveCamera, private readonly view: HierarchyView) {
+  /// The pass is made for one projection.
+  readonly isParallel: boolean;
+
+  constructor(readonly scene: Scene, readonly camera: ViewCamera, private readonly view: HierarchyView) {
+    this.isParallel = isParallel(camera);
     this.pass = new GTAOPass(scene, camera, 1, 1, { depthTexture: this.depth.depthTexture! });
     this.pass.updateGtaoMaterial(QUALITY);
     this.pass.updatePdMaterial(SMOOTHING);
@@ -127,7 +132,7 @@ export class Occlusion implements Plugin {
   /// A part of a larger picture does not know what lies beside it: there hollows are as they are.
   shade({ renderer, scene, camera }: Frame): void {
     if (camera.view?.enabled === true) return;
-    if (this.hollows?.scene !== scene || this.hollows.camera !== camera) {
+    if (this.hollows?.scene !== scene || this.hollows.camera !== camera || this.hollows.isParallel !== isParallel(camera)) {
       this.hollows?.dispose();
       this.hollows = new Hollows(scene, camera, this.view!);
     }
@@ -140,7 +145,7 @@ export class Occlusion implements Plugin {
   }
 
   /// To what the camera looks at: without a stage, the middle of the model.
-  private distanceOf(camera: PerspectiveCamera): number {
+  private distanceOf(camera: ViewCamera): number {
     if (this.stage !== null) return this.stage.pose().distance;
     const middle = this.view!.box.getCenter(new Vector3()).applyMatrix4(this.view!.matrixWorld);
     return middle.distanceTo(new Vector3().setFromMatrixPosition(camera.matrixWorld));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Marks over the picture: points, lines and texts, at their places in each frame.
-import { Vector4, type Matrix4, type PerspectiveCamera } from 'three';
+import { Vector4, type Matrix4 } from 'three';
+import type { ViewCamera } from '../scene/projection.js';
 import { placeOf, type PicturePlace } from '../tools/picture_place.js';
 import type { Vector } from '../tools/vectors.js';
 
@@ -37,7 +38,7 @@ export class Overlay {
     this.root.setAttribute('aria-hidden', 'true'); // cards tell the same in words
   }
 
-  show(marks: readonly Mark[], camera: PerspectiveCamera, matrix: Readonly<Matrix4>): void {
+  show(marks: readonly Mark[], camera: ViewCamera, matrix: Readonly<Matrix4>): void {
     if (marks.length === 0 && this.root.childElementCount === 0) return;
     this.root.replaceChildren();
     const clipOf = ([x, y, z]: Vector): Vector4 =>

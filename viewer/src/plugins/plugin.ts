@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Plug-ins: what a view can do besides showing tiles, in modules that are loaded where they are wanted.
-import type { PerspectiveCamera, Plane, Scene, Vector3, WebGLRenderer } from 'three';
+import type { Plane, Scene, Vector3, WebGLRenderer } from 'three';
 import type { CameraPose } from '../scene/camera_pose.js';
+import type { ViewCamera } from '../scene/projection.js';
 import type { Shading } from '../scene/shading.js';
 import { attempt } from './attempt.js';
 
@@ -9,7 +10,7 @@ import { attempt } from './attempt.js';
 export interface Frame {
   readonly renderer: WebGLRenderer;
   readonly scene: Scene;
-  readonly camera: PerspectiveCamera;
+  readonly camera: ViewCamera;
 }
 
 /// A stage shows a view, with a camera that can be moved: the page is one, and so is `<meshhier-viewer>`.

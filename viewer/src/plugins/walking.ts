@@ -371,7 +371,8 @@ export class Walking extends EventDispatcher<{ change: object }> implements Plug
 
   /// What is under the pointer stays there.
   private drag(right: number, up: number): void {
-    const angle = (this.stage!.camera.fov * Math.PI) / 180;
+    const { camera } = this.stage!;
+    const angle = 'fov' in camera ? (camera.fov * Math.PI) / 180 : Math.PI / 4;
     this.look(-right * angle, -up * angle);
     this.wake();
   }

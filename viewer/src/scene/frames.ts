@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // A view frame by frame: how the camera moves, which tiles that asks for, and what became of it in figures.
-import type { PerspectiveCamera } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { PAUSE_MS } from '../cut/rest_detail.js';
@@ -11,6 +10,7 @@ import { Alarm } from './alarm.js';
 import type { Loading } from './loading.js';
 import { modeOf } from './mode.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
+import type { ViewCamera } from './projection.js';
 import type { Mode, Stats } from './settings.js';
 import type { ViewContext } from './view_context.js';
 
@@ -33,7 +33,7 @@ export class Frames {
   }
 
   /// Returns whether the picture is another one than that of the last frame.
-  update(camera: PerspectiveCamera, viewport: Viewport, now: number): boolean {
+  update(camera: ViewCamera, viewport: Viewport, now: number): boolean {
     const { context, loading, motion } = this;
     if (!loading.store.has(ROOT_KEY)) return false;
     camera.updateWorldMatrix(true, false);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From where all of a shape fills a picture.
-import { Vector3, type Box3 } from 'three';
+import { Box2, Vector2, Vector3, type Box3 } from 'three';
+import type { Projection } from './projection.js';
 
 /// Right, up and forward, of length 1 and at right angles to each other.
 export interface Axes {
@@ -80,10 +81,27 @@ export function frameShape(points: Iterable<Vector3>, box: Box3, { right, up, fo
   return { position: target.clone().addScaledVector(forward, -away), target };
 }
 
+/// The same for parallel rays: the target is as far away as in a picture that is so large at it in perspective.
+function frameParallel(points: Iterable<Vector3>, box: Box3, { right, up, forward }: Axes, { across, upwards }: Slopes): Framed {
+  const centre = box.getCenter(new Vector3());
+  const seen = new Box2();
+  const add = (point: Vector3): void => {
+    const from = point.clone().sub(centre);
+    seen.expandByPoint(new Vector2(from.dot(right), from.dot(up)));
+  };
+  for (const point of points) add(point);
+  if (seen.isEmpty()) cornersOf(box).forEach(add);
+  const [middle, size] = [seen.getCenter(new Vector2()), seen.getSize(new Vector2())];
+  const away = Math.max(size.x / (2 * across), size.y / (2 * upwards), LEAST_DISTANCE * box.getSize(new Vector3()).length()) || 1;
+  const target = centre.addScaledVector(right, middle.x).addScaledVector(up, middle.y);
+  return { position: target.clone().addScaledVector(forward, -away), target };
+}
+
 /// Frames all of a shape, with a margin, in a picture of that aspect whose height is seen at `angle`, in radians. `direction`: to the viewer, of
 /// length 1; null: none is better than others. `points`, `box`: as for frameShape().
-export function frameWhole(points: Iterable<Vector3>, box: Box3, direction: readonly [number, number, number] | null, angle: number, aspect: number): Framed {
+export function frameWhole(points: Iterable<Vector3>, box: Box3, direction: readonly [number, number, number] | null, angle: number, aspect: number, projection: Projection = 'perspective'): Framed {
   const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
   const slope = Math.tan(angle / 2) / MARGIN;
-  return frameShape(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
+  const frame = projection === 'parallel' ? frameParallel : frameShape;
+  return frame(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
-import { Group, type Box3, type Material, type Matrix4, type PerspectiveCamera, type Scene, type Side, type Vector3, type WebGLRenderer } from 'three';
+import { Group, type Box3, type Material, type Matrix4, type Scene, type Side, type Vector3, type WebGLRenderer } from 'three';
 import type { Vector } from '../cut/viewpoint.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import type { ObjectTable } from '../hierarchy/object_table.js';
@@ -13,6 +13,7 @@ import { Frames } from './frames.js';
 import { Loading } from './loading.js';
 import type { Viewport } from './motion.js';
 import type { Omits } from './omission.js';
+import type { ViewCamera } from './projection.js';
 import { changedSettings, type Look, type Settings, type Stats } from './settings.js';
 import type { Standing } from './standing.js';
 import type { DrawnTile, TileSource } from './surface.js';
@@ -183,13 +184,13 @@ export class HierarchyView extends Group<ViewEvents> {
   // ---- what is shown
 
   /// Chooses the cut, and asks for what it lacks. Call it before each frame; `now` as given to callbacks of requestAnimationFrame, `viewport` in
-  /// pixels of the picture. Returns whether the picture is another one than that of the last frame; false until the root is there.
-  update(camera: PerspectiveCamera, viewport: Viewport, now: number): boolean {
+  /// pixels of the picture, whose rays may be parallel. Returns whether the picture is another one than that of the last frame; false until the root is there.
+  update(camera: ViewCamera, viewport: Viewport, now: number): boolean {
     return this.frames.update(camera, viewport, now);
   }
 
   /// Draws a frame as plug-ins want it: call it instead of `renderer.render(scene, camera)` where there are some that draw.
-  draw(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void {
+  draw(renderer: WebGLRenderer, scene: Scene, camera: ViewCamera): void {
     const frame = { renderer, scene, camera };
     this.plugins.paint(frame);
     this.plugins.drawn(frame);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tells whether the camera moves, and what a mesh looks like from where it is.
-import { Frustum, Matrix4, Plane, Vector3, type Object3D, type PerspectiveCamera } from 'three';
+import { Frustum, Matrix4, Plane, Vector3, type Object3D } from 'three';
 import type { Viewpoint } from '../cut/viewpoint.js';
+import { isParallel, towardsViewer, type ViewCamera } from './projection.js';
 
 export interface Viewport {
   readonly width: number;
@@ -19,7 +20,7 @@ export class Motion {
   private changedAt = -Infinity;
 
   /// true if the picture of an unchanged scene is another one than last time.
-  see(camera: PerspectiveCamera, object: Object3D, { width, height }: Viewport, now: number): boolean {
+  see(camera: ViewCamera, object: Object3D, { width, height }: Viewport, now: number): boolean {
     const state = [...camera.matrixWorld.elements, ...camera.projectionMatrix.elements, ...object.matrixWorld.elements, width, height];
     const text = state.join();
     const changed = text !== this.last;
@@ -44,19 +45,28 @@ function stretchOf(object: Object3D): Viewpoint['stretch'] {
   return [x, y, z];
 }
 
+/// For each axis of the object, how much nearer to the viewer one unit along it leads, in units of the shortest.
+function towardsIn(object: Object3D, camera: ViewCamera, shortest: number): Viewpoint['towards'] {
+  const towards = towardsViewer(camera);
+  const [x, y, z] = [0, 1, 2].map((axis) => new Vector3().setFromMatrixColumn(object.matrixWorld, axis).dot(towards) / shortest);
+  return [x, y, z];
+}
+
 /// `object`: what holds the tiles; its matrices and the camera's are up to date. Scaled along its axes only.
-export function viewpointOf(camera: PerspectiveCamera, object: Object3D, { height }: Viewport): Viewpoint {
+export function viewpointOf(camera: ViewCamera, object: Object3D, { height }: Viewport): Viewpoint {
   const toLocal = object.matrixWorld.clone().invert();
   const frustum = new Frustum().setFromProjectionMatrix(
     new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse),
   );
   const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal);
   const scale = toLocal.getMaxScaleOnAxis();
+  const pixels = (height * camera.projectionMatrix.elements[5]) / 2;
+  const seen = isParallel(camera) ? { pixels: pixels / scale, towards: towardsIn(object, camera, 1 / scale) } : { pixels };
   return {
     eye: [eye.x, eye.y, eye.z],
     planes: frustum.planes.map((plane) => planeIn(toLocal, plane)),
-    pixels: (height * camera.projectionMatrix.elements[5]) / 2,
     near: camera.near * scale,
     stretch: stretchOf(object),
+    ...seen,
   };
 }

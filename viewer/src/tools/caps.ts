@@ -6,6 +6,7 @@ import {
   PlaneGeometry, Scene, Vector3, type Camera, type ColorRepresentation, type Material, type Object3D, type Plane, type Side, type StencilOp, type WebGLRenderer,
 } from 'three';
 import { alone } from '../scene/alone.js';
+import { isParallel, towardsViewer, type ViewCamera } from '../scene/projection.js';
 
 const COLOUR = 0xd9825b;
 
@@ -14,6 +15,12 @@ function counting(side: Side, op: StencilOp): MeshBasicMaterial {
     side, colorWrite: false, depthWrite: false, depthTest: false,
     stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilFail: op, stencilZFail: op, stencilZPass: op,
   });
+}
+
+/// Tells whether a plane is seen from the side that is cut away.
+function seesBehind(camera: ViewCamera, plane: Plane): boolean {
+  if (isParallel(camera)) return plane.normal.dot(towardsViewer(camera)) < 0;
+  return plane.distanceToPoint(new Vector3().setFromMatrixPosition(camera.matrixWorld)) < 0;
 }
 
 export class ClippedPainter {
@@ -39,14 +46,13 @@ export class ClippedPainter {
   }
 
   /// Instead of `renderer.render(scene, camera)`.
-  paint(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
+  paint(renderer: WebGLRenderer, scene: Scene, camera: ViewCamera): void {
     const { autoClear, clippingPlanes } = renderer;
     renderer.clippingPlanes = [...this.planes];
     renderer.render(scene, camera);
     renderer.autoClear = false;
-    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
     // From its kept side no cap is seen.
-    if (this.isCapped) for (const plane of this.planes) if (plane.distanceToPoint(eye) < 0) this.paintCap(renderer, scene, camera, plane);
+    if (this.isCapped) for (const plane of this.planes) if (seesBehind(camera, plane)) this.paintCap(renderer, scene, camera, plane);
     Object.assign(renderer, { autoClear, clippingPlanes });
   }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Parts of a picture by a renderer of three: on its own canvas, so that they look as the page does.
-import { Vector2, type PerspectiveCamera, type WebGLRenderer } from 'three';
+import { Vector2, type WebGLRenderer } from 'three';
+import type { ViewCamera } from '../scene/projection.js';
 import type { DrawPart } from './screenshot.js';
 
 /// `draw`: draws the scene with the camera. Between two parts the canvas has its size, and shows what it did.
-export function partDrawer(renderer: WebGLRenderer, camera: PerspectiveCamera, draw: () => void): DrawPart {
+export function partDrawer(renderer: WebGLRenderer, camera: ViewCamera, draw: () => void): DrawPart {
   return ({ width, height }, part) => {
     const pixels = new Uint8Array(4 * part.width * part.height);
     const [ratio, size] = [renderer.getPixelRatio(), renderer.getSize(new Vector2())];

@@ -16,11 +16,12 @@ export const SIDES: Readonly<Record<Side, Vector>> = {
 /// Straight from above nobody knows which way is up: so much aside, in radians.
 const ASIDE = 0.01;
 
-/// Where the camera stands that sees a side, `distance` away from its target.
-export function positionFor(side: Side, target: Vector, distance: number): Vector {
+/// Where the camera stands that sees a side, `distance` away from its target. `isExact`: not aside, as drawings want it: the front is below.
+export function positionFor(side: Side, target: Vector, distance: number, isExact = false): Vector {
   const [x, y, z] = SIDES[side];
-  const aside = y === 0 ? z : Math.sin(ASIDE);
-  const up = y * Math.cos(ASIDE);
+  const angle = isExact ? 0 : ASIDE;
+  const aside = y === 0 ? z : Math.sin(angle);
+  const up = y * Math.cos(angle);
   return [target[0] + distance * x, target[1] + distance * up, target[2] + distance * aside];
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The point of the drawn surface that a ray meets first.
-import type { PerspectiveCamera, Matrix4 } from 'three';
+import type { Matrix4 } from 'three';
 import { Vector3 } from 'three';
 import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
+import { isParallel, type ViewCamera } from '../scene/projection.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { RayProbe, type Ray } from './ray.js';
 import { ShownTrees } from './shown_trees.js';
@@ -39,11 +40,20 @@ export type Keeps = (point: Vector, values: readonly number[]) => boolean;
 
 const KEEPS_ALL: Keeps = () => true;
 
+/// From the near plane; parallel rays have no other beginning.
+function parallelRay(camera: ViewCamera, right: number, up: number, toLocal: Readonly<Matrix4>): Ray {
+  const { elements: e } = camera.projectionMatrix;
+  const from = new Vector3((right - e[12]) / e[0], (up - e[13]) / e[5], -camera.near).applyMatrix4(camera.matrixWorld).applyMatrix4(toLocal);
+  const direction = new Vector3(0, 0, -1).transformDirection(camera.matrixWorld).transformDirection(toLocal);
+  return { from: from.toArray(), direction: direction.toArray() };
+}
+
 /// From the camera's eye through a place of the picture, from -1 to 1 to the right and up, in the coordinates that `matrix` brings into
 /// the world. It meets nothing before the near plane: that is not drawn. Matrices are up to date.
-export function rayThrough(camera: PerspectiveCamera, right: number, up: number, matrix: Readonly<Matrix4>): Ray {
+export function rayThrough(camera: ViewCamera, right: number, up: number, matrix: Readonly<Matrix4>): Ray {
   const { elements: e } = camera.projectionMatrix;
   const toLocal = matrix.clone().invert();
+  if (isParallel(camera)) return parallelRay(camera, right, up, toLocal);
   const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal);
   const ahead = new Vector3((right + e[8]) / e[0], (up + e[9]) / e[5], -1);
   const seen = ahead.clone().multiplyScalar(camera.near).applyMatrix4(camera.matrixWorld).applyMatrix4(toLocal);

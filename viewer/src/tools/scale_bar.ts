@@ -16,7 +16,7 @@ export function roundLength(most: number): number {
   return Number((digit * power).toPrecision(1));
 }
 
-/// Returns the model's units that a pixel is at a depth ahead of the camera. `steepness`: the projection's for heights, `height`: pixels.
+/// Returns the model's units that a pixel is at a depth ahead of the camera; at all depths, where rays are parallel, as at 1. `steepness`: the projection's for heights, `height`: pixels.
 export function unitsPerPixel(depth: number, steepness: number, height: number): number {
   return (2 * depth) / (steepness * height);
 }

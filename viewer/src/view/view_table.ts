@@ -8,6 +8,7 @@
 // Keys of one part are said together: whoever says one of them says all, and the others are then as without a choice.
 import { areNear } from '../farthest.js';
 import { RAMPS } from '../scene/ramp_names.js';
+import type { Projection } from '../scene/projection.js';
 import { DEFAULT_LOOK, type Colours } from '../scene/settings.js';
 import { DEFAULT_STANDING, MOST_STRETCH, UPS } from '../scene/standing.js';
 import { flag, formatNumber, number, numbers, text, texts, word, type Kind } from './kinds.js';
@@ -34,7 +35,7 @@ const MOST_HIDDEN = 256; // labels
 const MOST_TEXTS = 100; // objects
 const ANGLE_DIGITS = 4;
 
-export const VIEW_PARTS = ['camera', 'look', 'standing', 'dollhouse', 'level', 'cut', 'rooms', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
+export const VIEW_PARTS = ['camera', 'projection', 'look', 'standing', 'dollhouse', 'level', 'cut', 'rooms', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
 export type ViewPart = (typeof VIEW_PARTS)[number];
 type Box = readonly [number, number, number, number, number, number];
 
@@ -98,6 +99,7 @@ function row<Value>(part: ViewPart, kind: Kind<Value>, otherwise: Value | null =
 /// In the order of links.
 export const VIEW_TABLE = {
   camera: row('camera', numbers<CameraNumbers>(isCamera, 'six numbers: a position and another place that is looked at')),
+  projection: row('projection', word<Projection>(['perspective', 'parallel']), 'perspective'),
   colours: row('look', word(COLOURS), DEFAULT_LOOK.colours),
   shading: row('look', word(['smooth', 'flat'] as const), DEFAULT_LOOK.shading),
   attribute: row('look', text(({ length }) => length >= 1 && length <= MOST_NAME, `of 1 to ${MOST_NAME} characters`)),

@@ -96,6 +96,8 @@ export const de: ToolWords = {
   },
   list: { go: (name) => `Zu ${name}`, remove: (name) => `${name} entfernen` },
   camera: {
+    projection: 'Projektion (Y)',
+    projections: { perspective: 'Perspektive', parallel: 'Parallel' },
     add: 'Diese Ansicht merken (B)',
     bookmark: (number) => `Ansicht ${number}`,
     spin: 'Drehteller (R)',
@@ -154,4 +156,5 @@ export const de: ToolWords = {
   },
   units: { model: 'Das Modell ist in', shown: 'Zeigen in', unknown: 'Einheiten (unbekannt)', asModel: 'denselben', unit: 'Einheiten' },
   scale: (length) => `${length} in der Entfernung, auf die die Kamera blickt`,
+  scaleEverywhere: (length) => `${length} in jeder Tiefe`,
 };

@@ -95,6 +95,8 @@ export const en = {
   },
   list: { go: (name: string) => `Go to ${name}`, remove: (name: string) => `Remove ${name}` },
   camera: {
+    projection: 'Projection (Y)',
+    projections: { perspective: 'Perspective', parallel: 'Parallel' },
     add: 'Bookmark this view (B)',
     bookmark: (number: string) => `View ${number}`,
     spin: 'Turntable (R)',
@@ -153,6 +155,7 @@ export const en = {
   },
   units: { model: 'The model is in', shown: 'Show', unknown: 'units (not known)', asModel: 'the same', unit: 'units' },
   scale: (length: string) => `${length} at the distance of what the camera looks at`,
+  scaleEverywhere: (length: string) => `${length} at all depths`,
 };
 
 export type ToolWords = typeof en;

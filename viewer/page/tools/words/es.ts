@@ -96,6 +96,8 @@ export const es: ToolWords = {
   },
   list: { go: (name) => `Ir a ${name}`, remove: (name) => `Quitar ${name}` },
   camera: {
+    projection: 'Proyección (Y)',
+    projections: { perspective: 'Perspectiva', parallel: 'Paralela' },
     add: 'Recordar esta vista (B)',
     bookmark: (number) => `Vista ${number}`,
     spin: 'Plato giratorio (R)',
@@ -154,4 +156,5 @@ export const es: ToolWords = {
   },
   units: { model: 'El modelo está en', shown: 'Mostrar en', unknown: 'unidades (sin saber cuáles)', asModel: 'las mismas', unit: 'unidades' },
   scale: (length) => `${length} a la distancia de lo que mira la cámara`,
+  scaleEverywhere: (length) => `${length} a cualquier distancia`,
 };
