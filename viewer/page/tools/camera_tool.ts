@@ -14,11 +14,10 @@ import { download } from './download.js';
 import { textButton } from './figures.js';
 import { isKey } from './keys.js';
 import type { Tool } from './tool.js';
+import { untilSettled } from './until_settled.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
-const PATIENCE = 120_000; // milliseconds until a picture is taken of what is there
-const POLL = 100; // milliseconds
 const MOST_LETTERS = 500; // of a bookmark's name
 const WHITE = [255, 255, 255];
 
@@ -153,7 +152,7 @@ export class CameraTool implements Tool {
     this.note.textContent = words.camera.working;
     const stage = bench.freeze(size);
     try {
-      await this.settled();
+      await untilSettled(bench.view, this.ending.signal);
       const picture = await takePicture(size, stage.draw, this.isTransparent ? null : WHITE);
       if (!this.ending.signal.aborted) download(picture, `${bench.name}.png`);
       this.note.textContent = '';
@@ -163,13 +162,6 @@ export class CameraTool implements Tool {
       stage.release();
       this.shot.disabled = false;
     }
-  }
-
-  /// As fine as the picture asks for.
-  private async settled(): Promise<void> {
-    const end = performance.now() + PATIENCE;
-    do await new Promise((resolve) => setTimeout(resolve, POLL));
-    while (!this.shop.bench.view.stats().settled && performance.now() < end && !this.ending.signal.aborted);
   }
 }
 

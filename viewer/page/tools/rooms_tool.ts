@@ -90,7 +90,13 @@ class RoomsTool implements Tool {
 
   private toggleWalk(): void {
     if (this.walking.isWalking) this.walking.stop();
-    else this.note.textContent = this.walking.start() ? '' : words.rooms.nowhere;
+    else this.note.textContent = this.startWalk() ? '' : words.rooms.nowhere;
+  }
+
+  /// Nobody walks with parallel rays.
+  private startWalk(): boolean {
+    this.shop.bench.projection = 'perspective';
+    return this.walking.start();
   }
 
   private chooseStorey(): void {
@@ -105,7 +111,7 @@ class RoomsTool implements Tool {
     this.isFollowing = true;
     this.storeys.range = storey ?? null;
     this.isOnly = this.storeys.shown?.isAlone ?? false;
-    if (walk === true) this.walking.start();
+    if (walk === true) this.startWalk();
     else this.walking.stop();
     this.isFollowing = false;
     this.show();

@@ -42,7 +42,7 @@ export class Clipping implements Plugin {
     if (this.places.haveChanged(view.manifest) && this.planes.length > 0) this.cut([]);
     if (this.planes.length === 0) return false;
     painter.isCapped = this.hasCaps && view.closed;
-    painter.planes = view.plugins.cuts;
+    painter.planes = view.plugins.cuts; // others' too: one paints for all
     painter.paint(renderer, scene, camera);
     return true;
   }

@@ -10,6 +10,8 @@ export interface Mark {
   readonly at: Vector;
   readonly to?: Vector;
   readonly text?: string;
+  /// The text alone, around the place.
+  readonly isBare?: boolean;
 }
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -45,13 +47,17 @@ export class Overlay {
       new Vector4(x, y, z, 1).applyMatrix4(matrix).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix);
     for (const mark of marks) {
       if (mark.to) this.line(clipOf(mark.at), clipOf(mark.to), mark.text);
-      else this.point(clipOf(mark.at), mark.text);
+      else this.point(clipOf(mark.at), mark.text, mark.isBare);
     }
   }
 
-  private point(clip: Vector4, text: string | undefined): void {
+  private point(clip: Vector4, text: string | undefined, isBare = false): void {
     const { x, y } = placeOf(clip, this.root);
     if (clip.w <= 0 || !Number.isFinite(x + y)) return; // notes may be anywhere
+    if (isBare) {
+      this.text({ x, y }, text, { 'text-anchor': 'middle', 'dominant-baseline': 'central' });
+      return;
+    }
     make('circle', this.root, { ...POINT, cx: x, cy: y, r: POINT_RADIUS });
     this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
   }
@@ -67,7 +73,7 @@ export class Overlay {
     if (Math.hypot(one.x - other.x, one.y - other.y) >= LEAST_LINE) this.text({ x: (one.x + other.x) / 2 + TEXT_OFF, y: (one.y + other.y) / 2 - TEXT_OFF }, text);
   }
 
-  private text({ x, y }: PicturePlace, text: string | undefined): void {
-    if (text !== undefined) make('text', this.root, { ...TEXT, x, y }).textContent = text;
+  private text({ x, y }: PicturePlace, text: string | undefined, more: Readonly<Record<string, string>> = {}): void {
+    if (text !== undefined) make('text', this.root, { ...TEXT, ...more, x, y }).textContent = text;
   }
 }

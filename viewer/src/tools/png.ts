@@ -39,6 +39,17 @@ function header(width: number, height: number): Uint8Array<ArrayBuffer> {
   return chunk('IHDR', content);
 }
 
+const INCH = 0.0254; // metres
+
+/// Pixels of a metre on both axes: programs print the picture so large.
+function density(dotsPerInch: number): Uint8Array<ArrayBuffer> {
+  const content = new Uint8Array(9);
+  const view = new DataView(content.buffer);
+  for (const at of [0, 4]) view.setUint32(at, Math.round(dotsPerInch / INCH));
+  content[8] = 1; // the unit is the metre
+  return chunk('pHYs', content);
+}
+
 export class PngWriter {
   private readonly parts: Uint8Array<ArrayBuffer>[];
   private readonly packer = new CompressionStream('deflate');
@@ -50,8 +61,9 @@ export class PngWriter {
   constructor(
     private readonly width: number,
     private readonly height: number,
+    dotsPerInch: number | null = null,
   ) {
-    this.parts = [Uint8Array.from(SIGNATURE), header(width, height)];
+    this.parts = [Uint8Array.from(SIGNATURE), header(width, height), ...(dotsPerInch === null ? [] : [density(dotsPerInch)])];
     this.above = new Uint8Array(4 * width);
     this.done = this.collect();
     this.done.catch(() => undefined); // finish() tells

@@ -16,6 +16,17 @@ export interface Part extends PictureSize {
 /// Draws a part: r, g, b, a with the colours multiplied by a, the lowest row first, as WebGL reads pixels.
 export type DrawPart = (size: PictureSize, part: Part) => Uint8Array;
 
+export interface PictureOptions {
+  /// Pixels of a part's sides, at the most.
+  readonly side?: number;
+  /// The file tells how large the picture is in print.
+  readonly dotsPerInch?: number;
+  /// Ends it.
+  readonly signal?: AbortSignal;
+  /// Is told how many of the parts are done.
+  readonly progress?: (done: number, all: number) => void;
+}
+
 /// Pixels of a side.
 export const MOST_SIZE = 32768;
 const PART_SIDE = 1024;
@@ -39,25 +50,40 @@ function settle(pixels: Uint8Array, ground: readonly number[] | null): void {
   }
 }
 
-/// Writes one row of parts, put side by side, the uppermost row first.
-function rowsOf(size: PictureSize, parts: readonly Part[], draw: DrawPart): Uint8Array {
+/// Time for the page: to show how far it is, and to be told that it is enough.
+function pause(): Promise<void> {
+  return new Promise((resolve) => { setTimeout(resolve); });
+}
+
+/// Makes one row of parts, put side by side, the uppermost row first.
+async function rowsOf(size: PictureSize, parts: readonly Part[], draw: (part: Part) => Promise<Uint8Array>): Promise<Uint8Array> {
   const bytes = 4 * size.width;
   const rows = new Uint8Array(bytes * parts[0].height);
   for (const part of parts) {
-    const pixels = draw(size, part);
+    const pixels = await draw(part);
     for (let row = 0; row < part.height; ++row)
       rows.set(pixels.subarray(4 * part.width * row, 4 * part.width * (row + 1)), (part.height - 1 - row) * bytes + 4 * part.x);
   }
   return rows;
 }
 
-/// `ground`: r, g, b from 0 to 255; null: nothing, transparent. Throws RangeError of sizes that are none.
-export async function takePicture(size: PictureSize, draw: DrawPart, ground: readonly number[] | null, side = PART_SIDE): Promise<Blob> {
+/// `ground`: r, g, b from 0 to 255; null: nothing, transparent. Rejects with RangeError for sizes that are none, and when the signal aborts.
+export async function takePicture(size: PictureSize, draw: DrawPart, ground: readonly number[] | null, options: PictureOptions = {}): Promise<Blob> {
+  const { side = PART_SIDE, dotsPerInch = null, signal, progress } = options;
   for (const length of [size.width, size.height])
     if (!Number.isInteger(length) || length < 1 || length > MOST_SIZE) throw new RangeError(`a side of ${length} pixels, not from 1 to ${MOST_SIZE}`);
-  const writer = new PngWriter(size.width, size.height);
-  for (const parts of partsOf(size, side)) {
-    const rows = rowsOf(size, parts, draw);
+  const writer = new PngWriter(size.width, size.height, dotsPerInch);
+  const all = partsOf(size, side);
+  let done = 0;
+  const drawn = async (part: Part): Promise<Uint8Array> => {
+    await pause();
+    signal?.throwIfAborted();
+    const pixels = draw(size, part);
+    progress?.(++done, all.length * all[0].length);
+    return pixels;
+  };
+  for (const parts of all) {
+    const rows = await rowsOf(size, parts, drawn);
     settle(rows, ground);
     await writer.write(rows);
   }

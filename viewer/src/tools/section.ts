@@ -2,8 +2,9 @@
 // Where a plane cuts what is drawn: segments of triangles, joined into polylines. Each edge of the mesh is cut in one point,
 // the same for all triangles at it, so that lines meet exactly.
 import type { DrawnTile } from '../scene/surface.js';
+import type { Triangles } from './volume.js';
 import { sideOf, type CutPlane } from './planes.js';
-import { distanceOf, type Vector } from './vectors.js';
+import { distanceOf, vertexAt, type Vector } from './vectors.js';
 
 export interface Polyline {
   /// In the tiles' coordinates. The last is not the first again.
@@ -38,12 +39,20 @@ function cutTriangle(plane: CutPlane, corners: readonly Vector[]): readonly Cut[
   return ends.length === 2 ? ends : null;
 }
 
-class Joiner {
+/// Joins what a plane cuts out of triangles, which may come in any order.
+export class SectionTracer {
   private readonly points = new Map<string, Vector>();
   private readonly next = new Map<string, Set<string>>();
 
-  /// Once, however often a mesh repeats a triangle.
-  add([one, other]: readonly Cut[]): void {
+  constructor(private readonly plane: CutPlane) {}
+
+  /// A segment is there once, however often a mesh repeats a triangle.
+  addTriangle(corners: readonly Vector[]): void {
+    const cut = cutTriangle(this.plane, corners);
+    if (cut !== null) this.add(cut);
+  }
+
+  private add([one, other]: readonly Cut[]): void {
     for (const { name, point } of [one, other]) {
       this.points.set(name, point);
       if (!this.next.has(name)) this.next.set(name, new Set());
@@ -88,24 +97,25 @@ class Joiner {
   }
 }
 
-function cornersOf({ positions, indices }: DrawnTile['tile'], triangle: number): Vector[] {
-  return [0, 1, 2].map((k) => {
-    const at = 3 * indices[3 * triangle + k];
-    return [positions[at], positions[at + 1], positions[at + 2]];
-  });
+/// Calls `look` with the corners of each triangle.
+export function eachTriangle({ positions, corners, count }: Triangles, look: (corners: readonly Vector[]) => void): void {
+  for (let i = 0; i < 3 * count; i += 3) look([0, 1, 2].map((k) => vertexAt(positions, corners[i + k])));
+}
+
+/// The triangles of a tile as it is drawn.
+export function trianglesOf({ tile: { positions, indices }, triangles }: DrawnTile): Triangles {
+  return { positions, corners: indices, count: triangles };
 }
 
 /// A closed surface is cut in closed lines.
 export function sectionOf(surface: readonly DrawnTile[], plane: CutPlane): Polyline[] {
-  const joiner = new Joiner();
-  for (const { tile, triangles, sphere } of surface) {
+  const tracer = new SectionTracer(plane);
+  for (const drawn of surface) {
+    const { sphere } = drawn;
     if (Math.abs(sideOf(plane, sphere.center.toArray())) > sphere.radius * (1 + 1e-6)) continue;
-    for (let triangle = 0; triangle < triangles; ++triangle) {
-      const cut = cutTriangle(plane, cornersOf(tile, triangle));
-      if (cut) joiner.add(cut);
-    }
+    eachTriangle(trianglesOf(drawn), (corners) => { tracer.addTriangle(corners); });
   }
-  return joiner.join();
+  return tracer.join();
 }
 
 export function lengthOf({ points, isClosed }: Polyline): number {

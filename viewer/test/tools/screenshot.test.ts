@@ -56,7 +56,7 @@ function painted(_: unknown, { x, y, width, height }: Part): Uint8Array {
 
 describe('a screenshot', () => {
   it.each([[1, 1], [700, 3], [300, 520], [513, 257]])('of %d x %d pixels has each pixel in its place, however it was drawn', async (width, height) => {
-    const { pixels, ...size } = await decode(await takePicture({ width, height }, painted, null, 256));
+    const { pixels, ...size } = await decode(await takePicture({ width, height }, painted, null, { side: 256 }));
     expect(size).toEqual({ width, height });
     for (let i = 0; i < width * height; ++i)
       if (pixels[4 * i] !== (i % width & 255) || pixels[4 * i + 1] !== (Math.floor(i / width) & 255) || pixels[4 * i + 2] !== (i % width) >> 8) throw new Error(`pixel ${i}`);
@@ -81,5 +81,25 @@ describe('a screenshot', () => {
     const writer = new PngWriter(2, 2);
     await writer.write(new Uint8Array(8));
     await expect(writer.finish()).rejects.toThrow('1 rows of 2');
+  });
+});
+
+describe('a picture for print', () => {
+  it('tells how large it is', async () => {
+    const bytes = Buffer.from(await (await takePicture({ width: 3, height: 2 }, painted, null, { dotsPerInch: 300 })).arrayBuffer());
+    const at = bytes.indexOf('pHYs');
+    expect([bytes.readUInt32BE(at + 4), bytes.readUInt32BE(at + 8), bytes[at + 12]]).toEqual([11811, 11811, 1]);
+    expect(at).toBeLessThan(bytes.indexOf('IDAT'));
+  });
+
+  it('tells how far it is, and ends when it is told to', async () => {
+    const told: string[] = [];
+    const ending = new AbortController();
+    const progress = (done: number, all: number): void => {
+      told.push(`${done}/${all}`);
+      if (done === 3) ending.abort(new Error('enough'));
+    };
+    await expect(takePicture({ width: 30, height: 30 }, painted, null, { side: 10, signal: ending.signal, progress })).rejects.toThrow('enough');
+    expect(told).toEqual(['1/9', '2/9', '3/9']);
   });
 });
