@@ -5,6 +5,7 @@ import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
+import { inlineBoot } from './lean/boot.js';
 import { leanThree } from './lean/three.js';
 
 /// Beside each script and style a copy in gzip, for hosts that send those.
@@ -32,7 +33,7 @@ export function withoutTranscoder(): Plugin {
 export default defineConfig({
   root: 'page',
   base: './',
-  plugins: [leanThree(), packedCopies()],
+  plugins: [leanThree(), inlineBoot(), packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
   test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', poolOptions: { threads: { minThreads: availableParallelism(), maxThreads: availableParallelism() } }, isolate: false, testTimeout: 120_000 }, // time decides no test

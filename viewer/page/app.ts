@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Shows what the address says: the gallery, or a model.
 import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './address.js';
+import { takeBooted } from './booted.js';
 import { EarlyStart } from './early_start.js';
-import { Gallery } from './gallery/gallery.js';
+import type { Gallery } from './gallery/gallery.js';
 import type { Turn } from './gallery/layout.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, readable, withoutWarnings, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
 import { Page } from './page.js';
+import type { Poster } from './poster.js';
 import { readQuery, shortened, type Query } from './query.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
 import { maySend } from './upload/permission.js';
@@ -48,6 +50,8 @@ export class App {
   private gallery: Gallery | null = null;
   private uploads: UploadPlace | null = null;
   private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
+  private poster: Poster | null = null;
+  private said = '';
   private left: string | null = null;
 
   /// `embedded`: what the page shows instead of what its address says; null: nothing.
@@ -57,7 +61,7 @@ export class App {
     this.watch = new ListingWatch(
       this.query.listing,
       (listing) => { this.listed(listing); },
-      (message) => { this.gallery?.tell(`${words.gallery.nothingToShow(message)} ${words.gallery.howToList}`); },
+      (message) => { this.say(`${words.gallery.nothingToShow(message)} ${words.gallery.howToList}`); },
       (listing) => (maySend(listing.upload, this.query.listing) ? listing : withoutWarnings(listing)),
     );
     document.documentElement.lang = language;
@@ -115,20 +119,41 @@ export class App {
     this.gallery?.update(listing);
     this.uploads?.offer(listing.upload);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
-    if (isEmpty) this.gallery?.tell(emptyText(listing, this.query.listing));
+    if (isEmpty) this.say(emptyText(listing, this.query.listing));
+  }
+
+  /// In the gallery, as soon as there is one.
+  private say(text: string): void {
+    this.said = text;
+    this.gallery?.tell(text);
   }
 
   private showGallery(): void {
     this.closeView();
-    this.gallery ??= this.makeGallery();
+    takeBooted(null);
     document.title = 'meshhier';
-    this.gallery.show();
     if (this.query.only === null) this.watch.start();
-    if (this.left !== null) this.gallery.focus(this.left);
+    if (this.gallery !== null) this.enter(this.gallery);
+    else this.loadGallery().catch((error: unknown) => { this.page.problems.tell(messageOf(error), { more: words.problems.noCodeMore, retry: () => { this.route(); } }); });
   }
 
-  private makeGallery(): Gallery {
-    const gallery = new Gallery(this.page);
+  private enter(gallery: Gallery): void {
+    gallery.show();
+    if (this.left !== null) gallery.focus(this.left);
+  }
+
+  /// Its code is of no use to who comes for one model.
+  private async loadGallery(): Promise<void> {
+    const { Gallery } = await import('./gallery/gallery.js');
+    if (this.gallery !== null) return;
+    const gallery = this.makeGallery(new Gallery(this.page));
+    this.gallery = gallery;
+    gallery.tell(this.said);
+    if (this.watch.listing !== null) this.listed(this.watch.listing);
+    if (this.entry === null) this.enter(gallery);
+  }
+
+  private makeGallery(gallery: Gallery): Gallery {
     this.root.prepend(gallery.root);
     watchLinks(gallery.root);
     this.uploads = new UploadPlace(gallery, this.page.problems, new URL('inbox/', this.query.listing).href);
@@ -158,12 +183,13 @@ export class App {
   private async load(entry: ModelEntry, spot: Spot, turn: Turn | null): Promise<void> {
     const { model } = entry;
     const early = new EarlyStart(model.files === undefined ? model.url : null);
+    this.poster = early.poster;
     try {
       const { ModelView } = await loadView();
       if (entry !== this.entry) return;
-      const { fetch, createWorker } = early;
+      const { fetch, createWorker, poster } = early;
       const findStory = (signal: AbortSignal): Promise<string | null> => this.storyOf(model, signal);
-      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, findStory, hasGallery: this.query.only === null });
+      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, poster, findStory, hasGallery: this.query.only === null });
     } finally {
       early.close();
     }
@@ -203,5 +229,7 @@ export class App {
     this.entry = null;
     this.view?.close();
     this.view = null;
+    this.poster?.end();
+    this.poster = null;
   }
 }

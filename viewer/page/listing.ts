@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
-import { isArchiveUrl } from '../src/hierarchy/archive_format.js';
 import type { RemoteFiles } from '../src/hierarchy/files.js';
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 import type { Json } from '../src/json_value.js';
+import { resolveHierarchy, resolveUrl } from './hierarchy_url.js';
 import { words } from './words/words.js';
+
+export { resolveUrl };
 
 export interface Model {
   name: string;
@@ -101,26 +103,6 @@ export function nameOfPath(path: string): string {
 /// Returns the file name of its hierarchy: `dragon.hier`.
 export function fileOf({ name, path, files }: Model): string {
   return files === undefined ? lastPart(path) : `${name}.hier`;
-}
-
-/// Null of what cannot be fetched; of nothing, too, which would be `base` itself.
-export function resolveUrl(path: string, base: string): string | null {
-  if (path.trim() === '') return null;
-  try {
-    const url = new URL(path, base);
-    return ['http:', 'https:'].includes(url.protocol) ? url.href : null;
-  } catch {
-    return null;
-  }
-}
-
-/// Returns the URL of an archive, or of the directory of a hierarchy, without slashes at its end but where it could be taken for an archive.
-/// Null of a directory that its files' names cannot follow.
-function resolveHierarchy(path: string, base: string): string | null {
-  const url = resolveUrl(path, base);
-  if (url === null || isArchiveUrl(url)) return url;
-  const directory = withoutLastSlashes(url);
-  return /[?#]/.test(url) ? null : isArchiveUrl(directory) ? `${directory}/` : directory;
 }
 
 /// A model of which nothing but the path is known. Null if it cannot be fetched, or is longer than a path may be.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import './style/base.css';
 import './style/gallery.css';
+import './style/poster.css';
 import { App } from './app.js';
 import { embeddedModel } from './embedded.js';
 import { installHook } from './hook.js';

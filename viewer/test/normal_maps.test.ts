@@ -4,7 +4,8 @@ import { MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, NoColorSpa
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
-import { letGo, partsOf, readTile, type Tile } from '../src/hierarchy/tile.js';
+import { letGo } from '../src/hierarchy/let_go.js';
+import { partsOf, readTile, type Tile } from '../src/hierarchy/tile.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
 import { sharedMaterials } from '../src/scene/materials.js';
 import { DEFAULT_LOOK, type Look } from '../src/scene/settings.js';

@@ -51,9 +51,9 @@ export function depthOf(pose: CameraPose, point: Vector3): number {
 }
 
 /// All of a shape within the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
-/// `points`: of the shape; none: the box's corners.
-export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = [], projection: Projection = 'perspective'): CameraPose {
-  const { position, target } = frameWhole(points, box, direction, VIEW_ANGLE, aspect, projection);
+/// `points`: of the shape; none: the box's corners. `angle`: of the picture's height.
+export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null, points: Iterable<Vector3> = [], projection: Projection = 'perspective', angle = VIEW_ANGLE): CameraPose {
+  const { position, target } = frameWhole(points, box, direction, angle, aspect, projection);
   return new CameraPose(position, target);
 }
 

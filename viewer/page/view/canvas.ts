@@ -76,9 +76,11 @@ export class Canvas {
     return true;
   }
 
-  aim(pose: CameraPose, box: Box3, projection: Projection): void {
+  /// `angle`: radians from the lower to the upper edge of the picture.
+  aim(pose: CameraPose, box: Box3, { projection = 'perspective', angle = VIEW_ANGLE }: { projection?: Projection; angle?: number } = {}): void {
     const isParallel = projection === 'parallel';
     const { position, near, far } = isParallel ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
+    this.camera.fov = (angle * 180) / Math.PI;
     this.camera.position.copy(position);
     face(this.camera, pose);
     this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;

@@ -57,7 +57,7 @@ export class Chrome {
     const all = [this.info, ...inBar];
     this.sheets = new Sheets(all, all.filter((sheet) => sheet !== this.panel), (sheet, open) => { this.sheetChanged(sheet, open); }, signal);
     surface.setAttribute('aria-describedby', this.summary.id);
-    root.append(surface, this.summary, this.busy, this.topBar(inBar), this.zoomBar(), ...all.map((sheet) => sheet.root));
+    root.append(this.summary, this.busy, this.topBar(inBar), this.zoomBar(), ...all.map((sheet) => sheet.root));
     this.listen();
   }
 
@@ -67,7 +67,9 @@ export class Chrome {
     context.addEventListener('known', ({ manifest }) => { this.summarize(manifest); });
     context.addEventListener('report', (report) => { this.report(report); });
     context.addEventListener('story', ({ isTold }) => { this.tellStory(isTold); });
-    context.addEventListener('opened', () => { immersionModes().then((modes) => { this.tellImmersions(modes); }, () => undefined); });
+    const offerImmersions = (): void => { immersionModes().then((modes) => { this.tellImmersions(modes); }, () => undefined); };
+    if (context.isOpened) offerImmersions();
+    else context.addEventListener('opened', offerImmersions);
   }
 
   /// Shows buttons for what the device can do.

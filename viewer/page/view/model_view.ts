@@ -2,39 +2,46 @@
 // A model, as large as the window, and all that can be done with it.
 import type { HierarchyView, Stats } from '../../src/index.js';
 import type { Pose, Spot } from '../address.js';
-import { Chrome } from './chrome.js';
+import { FirstParts } from './first_parts.js';
+import type { Furniture } from './furniture.js';
 import { Gestures } from './gestures.js';
-import { listenToKeys } from './keys.js';
 import { Notices } from './notices.js';
 import type { Arrival } from './page_context.js';
-import { ViewParts } from './view_parts.js';
 import '../style/view.css';
 
 export { RootPicture } from './root_picture.js'; // for the gallery, which has loaded this by then
 
+/// So long the rest of the view waits for the first picture.
+const PATIENCE = 3000; // milliseconds
+
 export class ModelView {
-  private readonly parts: ViewParts;
-  private readonly chrome: Chrome;
+  private readonly parts: FirstParts;
+  /// Null: the first picture comes first.
+  private furniture: Furniture | null = null;
+  private isFurnishing = false;
+  private spot: Spot;
 
   /// Throws Error where there is no WebGL 2.
   constructor(private readonly arrival: Arrival) {
-    const parts = new ViewParts(arrival);
-    this.parts = parts;
-    const { context, camera, light } = parts;
-    new Notices(context, parts.frames);
-    this.chrome = new Chrome(parts);
-    const { surface, view: { plugins } } = context;
-    new Gestures(surface, camera.navigation, (right, up) => plugins.tapped(right, up), (right, up) => light.drag(right, up));
-    listenToKeys(parts, this.chrome);
-    parts.follow(arrival.spot);
-    context.addEventListener('rested', () => { arrival.entry.write(parts.spot()); });
+    const parts = new FirstParts(arrival, () => { this.follow(); });
+    [this.parts, this.spot] = [parts, arrival.spot];
+    const { context, camera, frames } = parts;
+    new Notices(context, frames);
+    const { root, surface, view: { plugins } } = context;
+    new Gestures(surface, camera.navigation, (right, up) => plugins.tapped(right, up), (right, up) => this.furniture?.parts.light.drag(right, up) ?? false);
+    root.append(surface);
+    context.addEventListener('shown', () => { arrival.poster?.fade(); });
+    context.addEventListener('refused', () => { arrival.poster?.end(); });
+    for (const type of ['shown', 'refused'] as const) context.addEventListener(type, () => void this.furnish());
+    const timer = window.setTimeout(() => void this.furnish(), PATIENCE);
+    context.signal.addEventListener('abort', () => { window.clearTimeout(timer); });
   }
 
   /// Once it is on the page.
   start(): void {
-    const { parts: { choices, context, renewal, frames }, arrival: { page, spot } } = this;
+    const { parts: { choices, context, renewal, frames }, arrival: { spot } } = this;
     choices.show();
-    if (page.preferences.panel) this.chrome.panel.open();
+    this.follow();
     if (spot.pose !== null) this.setPose(spot.pose);
     context.surface.focus({ preventScroll: true });
     void renewal.open();
@@ -60,8 +67,14 @@ export class ModelView {
 
   /// As a link says.
   setSpot(spot: Spot): void {
+    this.spot = spot;
     this.setPose(spot.pose);
-    this.parts.follow(spot);
+    this.follow();
+  }
+
+  /// What the link says, as far as there is somebody to hear it.
+  private follow(): void {
+    (this.furniture?.parts ?? this.parts).follow(this.spot);
   }
 
   stats(): Stats {
@@ -69,7 +82,21 @@ export class ModelView {
   }
 
   settled(): boolean {
-    return this.parts.frames.isSettled;
+    return this.furniture !== null && this.parts.frames.isSettled;
+  }
+
+  /// Once; again if the code did not come.
+  private async furnish(): Promise<void> {
+    const { parts, parts: { context } } = this;
+    if (this.isFurnishing) return;
+    this.isFurnishing = true;
+    try {
+      const { Furniture } = await import('./furniture.js');
+      if (!context.signal.aborted) this.furniture = new Furniture(parts, this.spot);
+    } catch {
+      this.isFurnishing = false;
+      if (!context.signal.aborted) context.missCode(() => void this.furnish());
+    }
   }
 
   close(): void {

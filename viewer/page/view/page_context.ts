@@ -8,6 +8,7 @@ import type { Model } from '../listing.js';
 import type { ModelEntry } from '../model_entry.js';
 import type { Page } from '../page.js';
 import { element } from '../parts/element.js';
+import type { Poster } from '../poster.js';
 import { words } from '../words/words.js';
 import { Canvas } from './canvas.js';
 
@@ -21,6 +22,8 @@ export interface Arrival extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   readonly turn: Turn | null;
   /// False: there is nothing to go back to.
   readonly hasGallery: boolean;
+  /// Stands in the model's place until it is drawn; null: nothing does.
+  readonly poster: Poster | null;
   /// The address of what is told about the model, or itself; null: nothing is.
   readonly findStory: (signal: AbortSignal) => Promise<string | null>;
 }
@@ -30,6 +33,8 @@ export interface ContextEvents {
   wake: object;
   /// The model can be drawn, or cannot be had.
   opened: object;
+  /// The first picture of it is drawn.
+  shown: object;
   refused: { error: unknown };
   /// Something else was chosen, or more is known of what was.
   chosen: object;

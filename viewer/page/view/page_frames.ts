@@ -60,7 +60,7 @@ export class PageFrames {
   /// The picture is complete, and stays as it is.
   get isSettled(): boolean {
     const { isOpened, isDirty, view } = this.context;
-    return isOpened && !isDirty && this.pauses.size === 0 && !this.camera.navigation.busy && !this.sharpness.blurred && view.stats().settled;
+    return isOpened && !isDirty && this.pauses.size === 0 && !this.camera.busy && !this.sharpness.blurred && view.stats().settled;
   }
 
   private frame(now: number): Pace {
@@ -74,7 +74,7 @@ export class PageFrames {
     const news = view.update(canvas.camera, canvas.size, now);
     if (moved || news || resized || context.isDirty) this.draw();
     context.isDirty = false;
-    return this.pace(now, moved || news || camera.navigation.busy || this.sharpness.blurred);
+    return this.pace(now, moved || news || camera.busy || this.sharpness.blurred);
   }
 
   /// Before anything is drawn that it tells of.
@@ -88,8 +88,10 @@ export class PageFrames {
     const { context } = this;
     if (this.camera.isFrozen) return;
     context.canvas.draw();
-    if (context.isOpened && !context.isShown) performance.mark(FIRST_PICTURE);
-    context.isShown = context.isOpened;
+    if (context.isShown || !context.isOpened) return;
+    context.isShown = true;
+    performance.mark(FIRST_PICTURE);
+    context.dispatchEvent({ type: 'shown' });
   }
 
   private pace(now: number, busy: boolean): Pace {

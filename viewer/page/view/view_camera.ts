@@ -8,8 +8,10 @@ import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { readLink, writeLink } from '../../src/view/view_link.js';
 import { problemOfPose, roundedPose } from '../address.js';
 import { towardsViewer } from '../gallery/layout.js';
+import { wholeView } from './camera_moves.js';
 import type { Moves } from './glide.js';
 import { firstPose } from './first_view.js';
+import { Lens } from './lens.js';
 import { Navigation } from './navigation.js';
 import type { PageContext } from './page_context.js';
 
@@ -34,6 +36,7 @@ export class ViewCamera {
   private frozen: Sight | null = null;
   private readonly framed = new Box3();
   private standing: Readonly<Standing> | null = null;
+  private readonly lens = new Lens();
   /// From where the whole is seen until it is there and the camera flies to its first view.
   private approach: ReturnType<typeof towardsViewer> | null = null;
 
@@ -41,7 +44,10 @@ export class ViewCamera {
     const { canvas, arrival: { turn } } = context;
     this.navigation = new Navigation((right, up) => canvas.pick(right, up), () => { context.redraw(); });
     if (turn !== null && context.view.standing.up === 'file') this.approach = towardsViewer(turn);
-    context.addEventListener('opened', () => { this.reframe(); });
+    context.addEventListener('opened', () => {
+      if (context.arrival.poster?.isMoving !== true || this.projection === 'parallel' || this.firstPose() !== null) this.lens.end();
+      this.reframe();
+    });
     context.addEventListener('manifest', () => { this.reframe(); });
   }
 
@@ -84,6 +90,11 @@ export class ViewCamera {
     this.projection = readLink(choices).projection ?? 'perspective';
   }
 
+  /// It will stand elsewhere in the next frame.
+  get busy(): boolean {
+    return this.navigation.busy || (this.context.isShown && !this.lens.isUsual);
+  }
+
   /// A picture is being taken: the page's waits.
   get isFrozen(): boolean {
     return this.frozen !== null;
@@ -95,15 +106,18 @@ export class ViewCamera {
     if (this.approach !== null && isShown && view.manifest !== null) this.arrive();
     const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.context.startRest();
-    return moved;
+    if (!this.navigation.atHome) this.lens.end();
+    return this.lens.step(now, isShown) || moved;
   }
 
   /// The manifest knows the box better than the root.
   aim(isResized: boolean): void {
     const { isOpened, view, view: { box }, canvas } = this.context;
     if (isOpened && (isResized || !this.framed.equals(box) || this.standing !== view.standing)) this.reframe();
-    const { pose, projection } = this.frozen ?? this.sight;
-    canvas.aim(pose, isOpened ? box : UNKNOWN, projection);
+    if (this.lens.isUsual || this.frozen !== null || !isOpened) {
+      const { pose, projection } = this.frozen ?? this.sight;
+      canvas.aim(pose, isOpened ? box : UNKNOWN, { projection });
+    } else canvas.aim(this.whole(this.lens.angle), box, { angle: this.lens.angle });
   }
 
   /// `sight`: of the picture, whatever the page goes on showing.
@@ -134,13 +148,25 @@ export class ViewCamera {
     return { pose: CameraPose.from(this.pose()), projection: this.projection };
   }
 
+  /// All of the model in the picture.
+  private whole(angle: number): CameraPose {
+    const { view, canvas } = this.context;
+    return wholeView(this.framed, canvas.aspect, view.firstDirection, view.shape(), 'perspective', angle);
+  }
+
+  /// As the manifest says; null: all of the model.
+  private firstPose(): CameraPose | null {
+    const { view: { manifest, standing } } = this.context;
+    const pose = this.approach === null ? firstPose(manifest, standing) : null;
+    return pose && CameraPose.from(pose);
+  }
+
   private reframe(): void {
     const { view, canvas } = this.context;
     this.framed.copy(view.box);
     this.standing = view.standing;
-    const first = this.approach === null ? firstPose(view.manifest, view.standing) : null;
     this.navigation.frame(this.framed, {
-      aspect: canvas.aspect, projection: this.projection, direction: this.approach ?? view.firstDirection, points: view.shape(), first: first && CameraPose.from(first),
+      aspect: canvas.aspect, projection: this.projection, direction: this.approach ?? view.firstDirection, points: view.shape(), first: this.firstPose(),
     });
   }
 

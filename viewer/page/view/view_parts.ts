@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The parts of a model's view that bars, sheets and keys act upon.
+// The parts of a model's view that bars, sheets and keys act upon. Comes once the first picture is drawn.
 import { besideFirst, fittedLink, orderedLink, overFirst } from '../../src/view/view_link.js';
 import { NOWHERE, type Spot } from '../address.js';
 import type { Shared, SharedSpot } from '../share/embed_code.js';
-import { FirstView } from './first_view.js';
 import { Extensions } from './extensions.js';
+import type { FirstParts } from './first_parts.js';
+import type { FirstView } from './first_view.js';
 import { LightDrag } from './light_drag.js';
-import { PageContext, type Arrival } from './page_context.js';
-import { PageFrames } from './page_frames.js';
+import type { PageContext } from './page_context.js';
+import type { PageFrames } from './page_frames.js';
 import { PageStage } from './page_stage.js';
-import { Renewal } from './renewal.js';
+import type { Renewal } from './renewal.js';
 import { StoryHost } from './story_host.js';
 import { ToolHost } from './tool_host.js';
-import { ViewCamera } from './view_camera.js';
-import { ViewChoices } from './view_choices.js';
+import type { ViewCamera } from './view_camera.js';
+import type { ViewChoices } from './view_choices.js';
 
 export class ViewParts {
   readonly context: PageContext;
@@ -27,20 +28,13 @@ export class ViewParts {
   readonly light: LightDrag;
   readonly first: FirstView;
 
-  /// Throws Error where there is no WebGL 2.
-  constructor(arrival: Arrival) {
-    const context = new PageContext(arrival);
-    this.context = context;
-    this.choices = new ViewChoices(context);
-    this.camera = new ViewCamera(context);
-    this.renewal = new Renewal(context);
-    this.frames = new PageFrames(context, this.camera, this.renewal);
+  constructor({ context, choices, camera, renewal, frames, first }: FirstParts) {
+    [this.context, this.choices, this.camera, this.renewal, this.frames, this.first] = [context, choices, camera, renewal, frames, first];
     this.extensions = new Extensions(context, this.choices);
     const stage = new PageStage(context, this.camera, this.choices, this.frames);
     this.story = new StoryHost(stage);
     this.tools = new ToolHost(stage, this.story);
     stage.tools = this.tools;
-    this.first = new FirstView(context, () => { this.follow(arrival.spot); });
     this.light = new LightDrag((by) => { this.choices.turnLight(by); }, () => { context.dispatchEvent({ type: 'lightKey' }); }, context.signal);
   }
 

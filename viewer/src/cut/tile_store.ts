@@ -2,7 +2,8 @@
 // The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
 import { Seam } from './seam.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
-import { letGo, type Tile } from '../hierarchy/tile.js';
+import { letGo } from '../hierarchy/let_go.js';
+import type { Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 

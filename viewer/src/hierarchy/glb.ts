@@ -2,23 +2,8 @@
 // Tiles as glTF binaries (docs/file_format.md, sections 4.3, 4.4 and 4.8): the sections of the BIN chunk, out of their
 // compression.
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
-import { readContainer } from './glb_container.js';
+import { readContainer, type BufferView, type Compressed } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
-
-interface Compressed {
-  byteOffset?: number;
-  byteLength: number;
-  byteStride: number;
-  count: number;
-  mode: string;
-  filter?: string;
-}
-
-interface BufferView {
-  byteOffset?: number;
-  byteLength: number;
-  extensions?: { EXT_meshopt_compression?: Compressed };
-}
 
 export interface Gltf {
   nodes: { matrix?: number[]; translation?: number[]; scale?: number[] }[];
@@ -31,12 +16,6 @@ export interface Gltf {
   extensions: Record<string, Record<string, number>>;
   /// The root has them.
   extras?: unknown;
-}
-
-/// Returns the end of a section's bytes in the BIN chunk.
-export function endOf({ byteOffset = 0, byteLength, extensions }: BufferView): number {
-  const packed = extensions?.EXT_meshopt_compression;
-  return packed ? (packed.byteOffset ?? 0) + packed.byteLength : byteOffset + byteLength;
 }
 
 /// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers; three indices

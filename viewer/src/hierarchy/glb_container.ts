@@ -8,6 +8,22 @@ export interface Container {
   readonly bin: Uint8Array | null;
 }
 
+/// As EXT_meshopt_compression has it.
+export interface Compressed {
+  byteOffset?: number;
+  byteLength: number;
+  byteStride: number;
+  count: number;
+  mode: string;
+  filter?: string;
+}
+
+export interface BufferView {
+  byteOffset?: number;
+  byteLength: number;
+  extensions?: { EXT_meshopt_compression?: Compressed };
+}
+
 const MAGIC = 0x46546c67; // "glTF"
 const JSON_CHUNK = 0x4e4f534a;
 const BIN_CHUNK = 0x004e4942;
@@ -58,4 +74,10 @@ export function readContainer(bytes: Uint8Array, name: string): Container {
   const isWhole = begin <= bytes.byteLength && view.getUint32(end, true) === bytes.byteLength - begin;
   need(isWhole && view.getUint32(end + 4, true) === BIN_CHUNK, name, 'has no BIN chunk that fits');
   return { document, bin: bytes.subarray(begin) };
+}
+
+/// Returns the end of a section's bytes in the BIN chunk.
+export function endOf({ byteOffset = 0, byteLength, extensions }: BufferView): number {
+  const packed = extensions?.EXT_meshopt_compression;
+  return packed ? (packed.byteOffset ?? 0) + packed.byteLength : byteOffset + byteLength;
 }

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A tile out of its file as it is stored, if it is the file that the index tells of.
-import { isGzip, unpacked } from './bytes.js';
+import { unpacked } from './bytes.js';
 import { checksum } from './checksum.js';
 import { HierarchyProblem } from './problem.js';
+import { fits, type Seal } from './seal.js';
 import { readTile, type Tile } from './tile.js';
 import type { ExpectedCounts } from './tile_counts.js';
-
-/// The index says this of a file.
-export interface Seal {
-  readonly bytes: number;
-  readonly checksum: bigint;
-  /// It is stored in gzip: a host may unpack it.
-  readonly isPacked: boolean;
-}
 
 export interface TileWanted {
   readonly name: string;
@@ -30,12 +23,6 @@ export interface OpenedTile {
   readonly tile: Tile;
   /// They are those that the seal is of. False: a host has unpacked them, or there was no seal.
   readonly isSealed: boolean;
-}
-
-/// Tells whether bytes with that checksum are the file of the seal; null: nobody can tell, a host has unpacked them.
-export function fits(bytes: Uint8Array, sum: bigint, seal: Seal): boolean | null {
-  if (seal.isPacked && !isGzip(bytes)) return null;
-  return bytes.length === seal.bytes && sum === seal.checksum;
 }
 
 /// Unpacks, compares and decodes a tile. Throws HierarchyProblem of `wanted.name`.

@@ -241,9 +241,3 @@ export function partsOf(tile: Tile): Transferable[] {
   const buffers = arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
   return [...buffers, ...[picture, normalMap].flatMap((each) => (each ? partsOfPicture(each) : []))];
 }
-
-/// Frees the pictures of a tile that nothing draws any longer: collectors of garbage know little of their size.
-export function letGo({ picture, normalMap }: Tile): void {
-  if (picture) dropPicture(picture);
-  if (normalMap) dropPicture(normalMap);
-}

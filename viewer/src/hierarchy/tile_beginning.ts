@@ -4,8 +4,8 @@
 //   head | JSON | positions … indices | normal map
 //                                     ^ from here on the tile can be drawn without its map
 import { isGzip } from './bytes.js';
-import { CHUNK_HEAD_BYTES, HEAD_BYTES, parseDocument, readHead } from './glb_container.js';
-import { endOf, type Gltf } from './glb.js';
+import { CHUNK_HEAD_BYTES, endOf, HEAD_BYTES, parseDocument, readHead } from './glb_container.js';
+import type { Gltf } from './glb.js';
 
 /// Nothing is begun of a file that says to be longer.
 const MOST_BYTES = 2 ** 26;

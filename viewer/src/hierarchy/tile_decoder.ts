@@ -3,7 +3,7 @@
 import { transcoderUrl } from './basis.js';
 import { NOT_DECODED } from './picture.js';
 import { HierarchyProblem } from './problem.js';
-import { openTile, type OpenedTile, type TileWanted } from './stored_tile.js';
+import type { OpenedTile, TileWanted } from './stored_tile.js';
 
 interface Answer {
   id: number;
@@ -55,7 +55,9 @@ export class TileDecoder {
     this.tasks.clear();
   }
 
+  /// The code for it comes when it is first wanted: where workers are, it seldom is.
   private async decodeHere(bytes: Uint8Array<ArrayBuffer>, wanted: TileWanted): Promise<OpenedTile> {
+    const { openTile } = await import('./stored_tile.js');
     const began = performance.now();
     const opened = await openTile(bytes, wanted);
     this.milliseconds += performance.now() - began;

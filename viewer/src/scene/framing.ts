@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From where all of a shape fills a picture.
 import { Box2, Vector2, Vector3, type Box3 } from 'three';
+import { FRAME_MARGIN } from './frame_margin.js';
 import type { Projection } from './projection.js';
 
 /// Right, up and forward, of length 1 and at right angles to each other.
@@ -23,7 +24,6 @@ export interface Framed {
 }
 
 const LEAST_DISTANCE = 0.01; // of the box's diagonal
-const MARGIN = 1.08;
 const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
 const WORLD_UP = new Vector3(0, 1, 0);
 
@@ -101,7 +101,7 @@ function frameParallel(points: Iterable<Vector3>, box: Box3, { right, up, forwar
 /// length 1; null: none is better than others. `points`, `box`: as for frameShape().
 export function frameWhole(points: Iterable<Vector3>, box: Box3, direction: readonly [number, number, number] | null, angle: number, aspect: number, projection: Projection = 'perspective'): Framed {
   const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
-  const slope = Math.tan(angle / 2) / MARGIN;
+  const slope = Math.tan(angle / 2) / FRAME_MARGIN;
   const frame = projection === 'parallel' ? frameParallel : frameShape;
   return frame(points, box, axesOf(back.clone().negate()), { across: slope * aspect, upwards: slope });
 }

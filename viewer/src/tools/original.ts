@@ -2,7 +2,7 @@
 // The point of the original mesh that a ray meets first: down the tree, always where the ray enters next, to partitions
 // that are asked for, looked at, and let go.
 import { PriorityQueue } from '../cut/priority_queue.js';
-import { letGo } from '../hierarchy/tile.js';
+import { letGo } from '../hierarchy/let_go.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Node } from '../hierarchy/tree.js';
 import type { TileSource } from '../scene/surface.js';

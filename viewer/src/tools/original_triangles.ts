@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The triangles of the original mesh, partition by partition: they are asked for, looked at, and let go, a few at once.
 import { placeOf, type Indices } from '../hierarchy/copies.js';
-import { letGo, type Tile } from '../hierarchy/tile.js';
+import { letGo } from '../hierarchy/let_go.js';
+import type { Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Omits } from '../scene/omission.js';
 import type { TileSource } from '../scene/surface.js';
