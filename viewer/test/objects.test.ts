@@ -8,7 +8,7 @@ import { CameraPose, rampColour, type DrawnTile, type Stage } from '../src/index
 import type { ObjectTable } from '../src/hierarchy/object_table.js';
 import { ObjectShading } from '../src/plugins/object_shading.js';
 import { Objects } from '../src/plugins/objects.js';
-import { valuesAt } from '../src/tools/pick.js';
+import { valuesAt } from '../src/tools/values_at.js';
 import { shownSurface } from '../src/tools/shown_triangles.js';
 import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
 import { Session } from './support/session.js';

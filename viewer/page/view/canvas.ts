@@ -11,7 +11,7 @@ import { depthRange, parallelStand, VIEW_ANGLE } from './camera_moves.js';
 import type { HierarchyView } from '../../src/index.js';
 import { Lighting } from '../../src/scene/lighting.js';
 import { TileObject } from '../../src/scene/tile_object.js';
-import { valuesAt } from '../../src/tools/pick.js';
+import { valuesAt } from '../../src/tools/values_at.js';
 
 const MOST_RATIO = 2;
 

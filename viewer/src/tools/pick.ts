@@ -2,13 +2,13 @@
 // The point of the drawn surface that a ray meets first.
 import type { Matrix4 } from 'three';
 import { Vector3 } from 'three';
-import { valueWidth } from '../hierarchy/scalar_values.js';
 import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import { isParallel, type ViewCamera } from '../scene/projection.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { RayProbe, type Ray } from './ray.js';
 import { ShownTrees } from './shown_trees.js';
+import { valuesAt } from './values_at.js';
 import { add, cross, distanceOf, scale, subtract, unit, vertexAt, type Vector } from './vectors.js';
 
 export interface Hit {
@@ -28,12 +28,6 @@ export interface Hit {
 
 /// A tile is looked at for these.
 export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
-
-/// All values of a vertex.
-export function valuesAt(tile: PickedTile, vertex: number): number[] {
-  const width = valueWidth(tile);
-  return Array.from((tile.values ?? new Float32Array(0)).subarray(width * vertex, width * (vertex + 1)));
-}
 
 /// Tells whether a point may be hit: what is cut away may not. `values`: of a corner of its triangle.
 export type Keeps = (point: Vector, values: readonly number[]) => boolean;
