@@ -3,7 +3,7 @@
 //
 //   page ─┬─ its own script ── gallery
 //         └─ boot ─┬─ the model's picture: shown at once
-//                  ├─ the root tile
+//                  ├─ the root tile, after that
 //                  └─ code of the view
 //
 // What the address means is told by app.ts: where this takes it for something else, what is begun here is of no use, and does no harm.
@@ -72,7 +72,7 @@ function boot(): void {
   showTheme(choices.theme);
   const poster = isPictured ? posterOf(url) : null;
   preloadCode();
-  window.meshhierBooted = { url, first: sendFirstRequest(url), poster };
+  window.meshhierBooted = { url, first: sendFirstRequest(url, poster?.came), poster };
 }
 
 boot();

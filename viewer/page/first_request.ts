@@ -13,14 +13,14 @@ export interface FirstRequest {
   readonly ending: AbortController;
 }
 
-/// `url`: of the hierarchy.
-export function sendFirstRequest(url: string): FirstRequest {
+/// `url`: of the hierarchy. `after`: what is more urgent on a slow line.
+export function sendFirstRequest(url: string, after = Promise.resolve()): FirstRequest {
   const ending = new AbortController();
   const isArchive = isArchiveUrl(url);
   const file = isArchive ? url : `${withoutLastSlashes(url)}/${tilePath({ level: 0, index: 0 })}`;
   const init: RequestInit = { priority: 'high', signal: ending.signal };
   if (isArchive) Object.assign(init, { headers: rangeHeader(0, HEAD_BYTES), cache: 'no-cache' } satisfies RequestInit); // which version it is
-  const response = fetch(file, init);
+  const response = after.then(() => fetch(file, init));
   response.catch(() => undefined); // whoever asks for it is told
   return { url: file, response, ending };
 }

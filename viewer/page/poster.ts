@@ -15,6 +15,8 @@ const FADE = 200; // milliseconds
 const STILL = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Poster {
+  /// Resolves once it has come, or does not.
+  readonly came: Promise<void>;
   private readonly image = new Image();
   private readonly stage = document.createElement('div');
   private readonly ending = new AbortController();
@@ -24,7 +26,7 @@ export class Poster {
     const { image, stage } = this;
     stage.className = 'poster';
     Object.assign(image, { alt: name, crossOrigin: 'anonymous', fetchPriority: 'high', src: url });
-    image.decode().then(() => { this.show(); }, () => undefined); // not every hierarchy has one
+    this.came = image.decode().then(() => { this.show(); }, () => undefined); // not every hierarchy has one
   }
 
   /// It is on the page, and what takes its place may move.
