@@ -15,8 +15,8 @@
 namespace meshhier::server {
 namespace {
 
-// No collection of models has so many, and they are still looked through within a second.
-constexpr std::size_t kMostDirectories = 10'000;
+// Ten times as many as a large collection has; they are looked through within a few seconds.
+constexpr std::size_t kMostDirectories = 100'000;
 
 class Scanner {
  public:

@@ -1,6 +1,7 @@
 #include "server/hierarchies.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "progressive/stream_index.h"
 #include "server/folder_scan.h"
 #include "storage/format/archive_files.h"
@@ -28,6 +29,7 @@ constexpr std::int64_t kNanoseconds = 1'000'000'000;  // a second has so many
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
 constexpr std::size_t kMostNotes = 1000;
+constexpr std::size_t kMostNamedBytes = 200;  // bytes of a name in a message
 
 std::string name_of(const std::filesystem::path& path) {
   const bool is_usual = path.extension() == ".hier" || is_archive_name(path.native());
@@ -67,7 +69,10 @@ std::optional<Split> split(std::string_view path) {
 }  // namespace
 
 Hierarchies::Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell)
-    : folder_(std::move(folder)), tell_(std::move(tell)), pictures_(folder_) {}
+    : folder_(std::move(folder)),
+      tell_(std::move(tell)),
+      pictures_(folder_),
+      descriptions_(folder_, [this](const std::string& message) { tell_once(message); }) {}
 
 std::vector<Model> Hierarchies::list() {
   const FolderScan scan = scan_folder(*folder_);
@@ -86,7 +91,27 @@ std::vector<Model> Hierarchies::list() {
   }
   std::sort(models.begin(), models.end(),
             [](const Model& a, const Model& b) { return a.path < b.path; });
+  describe(models);
   return models;
+}
+
+/// Adds what people say of models, which are sorted by path. What they say of others is told.
+void Hierarchies::describe(std::vector<Model>& models) {
+  const std::shared_ptr<const DescriptionTable> table = descriptions_.read();
+  for (const auto& [path, said] : *table) {
+    const auto model = std::ranges::lower_bound(models, path, {}, &Model::path);
+    if (model == models.end() || model->path != path) {
+      tell_once(fmt::format("{}: {}: there is no such model; not used",
+                            (folder_->path() / kDescriptionsName).string(),
+                            plain_text(path, kMostNamedBytes)));
+      continue;
+    }
+    model->title = said.title;
+    model->folder = said.folder;
+    model->tags = said.tags;
+    if (said.place)
+      model->place = said.place;
+  }
 }
 
 std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
@@ -356,6 +381,7 @@ Model Hierarchies::model_of(const std::string& path, const storage::File& file) 
               manifest.source.checksum,
               manifest.preview.has_value()};
   model.build = storage::build_name(text);
+  model.place = place_on_globe(manifest);
   return model;
 }
 

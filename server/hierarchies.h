@@ -1,6 +1,7 @@
 // The hierarchies below a folder: which there are, and their files.
 #pragma once
 
+#include "server/descriptions.h"
 #include "server/model.h"
 #include "server/story_pictures.h"
 #include "storage/format/archive.h"
@@ -40,9 +41,9 @@ class Hierarchies {
 
   Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell);
 
-  /// Returns all that can be read, by path: directories, and archives whose names end in ".3tz".
-  /// Directories whose names begin with a dot are work in progress and left out. Throws Error(io)
-  /// if the folder itself cannot be listed.
+  /// Returns all that can be read, by path, with what gallery.json says of them: directories, and
+  /// archives whose names end in ".3tz". Directories whose names begin with a dot are work in
+  /// progress and left out. Throws Error(io) if the folder itself cannot be listed.
   std::vector<Model> list();
 
   /// Returns the hierarchy of that path; nothing if there is none, or it is damaged. Throws
@@ -99,12 +100,14 @@ class Hierarchies {
   void tell_once(const std::string& message);
   Model model_of(const std::string& path, const storage::File& manifest) const;
 
+  void describe(std::vector<Model>& models);
   std::vector<std::string> warnings_of(const Model& model);
   std::vector<std::string> noted_warnings(const Model& model);
 
   std::shared_ptr<const storage::Folder> folder_;
   Tell tell_;
   StoryPictures pictures_;
+  Descriptions descriptions_;
   std::mutex mutex_;  ///< guards all below
   std::map<std::string, Known> known_;
   std::map<std::string, Warned> warned_;

@@ -1,7 +1,10 @@
 // The facts on a hierarchy that the page lists.
 #pragma once
 
+#include "server/globe_place.h"
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +25,10 @@ struct Model {
   std::int64_t modified = 0;            ///< when it was made: seconds since 1970; 0: not known
   std::string build{};                  ///< the build's name; "" for a stream
   std::vector<std::string> warnings{};  ///< its build's, if a watched folder made it
+  std::optional<GlobePlace> place{};    ///< as people say, else by the manifest's transform
+  std::string title{};                  ///< people say these three (server/descriptions.h)
+  std::string folder{};
+  std::vector<std::string> tags{};
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -163,9 +163,13 @@ bool Site::is_upload(const Request& request) const {
 }
 
 Reply Site::models_json(const Request& request) {
-  const auto jobs = jobs_ ? std::optional(jobs_()) : std::nullopt;
-  const auto offer = options_.uploads == nullptr ? std::nullopt : options_.uploads->offer();
-  const std::string text = gallery_json(gallery_.models(), jobs, options_.places, offer);
+  const Surroundings around{
+      .jobs = jobs_ ? std::optional(jobs_()) : std::nullopt,
+      .places = options_.places,
+      .offer = options_.uploads == nullptr ? std::nullopt : options_.uploads->offer()};
+  const std::optional<ListingWish> wish = read_wish(request.target);
+  const auto catalogue = gallery_.catalogue(wish ? wish->state : std::string());
+  const std::string text = gallery_json(*catalogue, wish, around);
   const std::string tag = text_tag(text);
   const bool is_known = request.if_none_match && names_tag(*request.if_none_match, tag);
   Reply reply{.headers = {{"ETag", tag}, {"Cache-Control", kRevalidate}}, .text = text};

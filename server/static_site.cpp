@@ -85,8 +85,11 @@ class SiteMaker {
       if (is_archive_name(model.path) && model.has_preview)
         write_picture(model);
     }
-    const std::string listing = static_gallery_json(models_);
-    storage::write_file(files_, place_ / kListing, std::as_bytes(std::span(listing)));
+    for (const ListingFile& part : static_gallery_json(models_)) {
+      const fs::path to = place_ / part.path;
+      files_.make_directories(to.parent_path());
+      storage::write_file(files_, to, std::as_bytes(std::span(part.text)));
+    }
     storage::write_file(files_, place_ / kAsItIs, {});
     return fmt::format("{}: {}, {} bytes", job_.output.string(), counted(models_.size(), "models"),
                        bytes_);

@@ -701,20 +701,57 @@ TEST_F(SiteTest, ADamagedArchiveIsLeftOutAndToldOnce) {
               testing::UnorderedElementsAre(HasSubstr("packed.3tz"), HasSubstr("broken.hier")));
 }
 
+TEST_F(SiteTest, WhatPeopleSayOfModelsIsListed) {
+  tests::write_text(folder_.models() / "gallery.json",
+                    R"({"models": {"packed.3tz": {"title": "Packed", "tags": ["a", "b"]},
+                                   "sub dir/zipped.hier": {"folder": "Other", "place": [7, 50]},
+                                   "gone.hier": {}}})");
+  site_->refresh();
+  const json models = json::parse(get("/models.json").text)["models"];
+  EXPECT_EQ(models[0]["title"], "Packed");
+  EXPECT_EQ(models[0]["name"], "packed");
+  EXPECT_EQ(models[0]["tags"], json({"a", "b"}));
+  EXPECT_FALSE(models[1].contains("title"));
+  EXPECT_EQ(models[2]["folder"], "Other");
+  EXPECT_EQ(models[2]["place"], json({7.0, 50.0}));
+  EXPECT_THAT(told_, testing::Contains(HasSubstr("gone.hier: there is no such model")));
+  const json part = json::parse(get("/models.json?count=1&search=packed").text);
+  EXPECT_EQ(part["found"], 1);
+  EXPECT_EQ(part["models"][0]["path"], "models/packed.3tz/");
+  const json one = json::parse(get("/models.json?count=1&path=models%2Fpacked.3tz%2F").text);
+  EXPECT_EQ(one["models"], part["models"]);
+  EXPECT_EQ(get("/models/gallery.json").status, 404);
+  tests::write_text(folder_.models() / "gallery.json", "{");
+  site_->refresh();
+  EXPECT_FALSE(json::parse(get("/models.json").text)["models"][0].contains("title"));
+  EXPECT_THAT(told_, testing::Contains(HasSubstr("gallery.json: line 1")));
+}
+
+TEST_F(SiteTest, PartsThatNameAListingAreOfIt) {
+  const std::string state = json::parse(get("/models.json?count=1").text)["state"];
+  fs::remove_all(folder_.models() / "plain.hier");
+  EXPECT_EQ(json::parse(get("/models.json?count=9&state=" + state).text)["found"], 3);
+  site_->refresh();
+  const json now = json::parse(get("/models.json?count=9").text);
+  EXPECT_EQ(now["found"], 2);
+  EXPECT_NE(now["state"], state);
+  EXPECT_EQ(json::parse(get("/models.json?count=9&state=" + state).text)["state"], now["state"]);
+}
+
 TEST(GalleryTest, TheDiskIsAskedOnceASecond) {
   const tests::ServedFolder folder;
   Hierarchies hierarchies(storage::open_folder(folder.models()), [](const std::string&) {});
   auto now = std::chrono::steady_clock::time_point();
   Gallery gallery(hierarchies, [&] { return now; });
-  EXPECT_THAT(gallery.models(), SizeIs(3));
+  EXPECT_THAT(gallery.catalogue()->models(), SizeIs(3));
   fs::remove_all(folder.models() / "plain.hier");
   now += std::chrono::milliseconds(999);
-  EXPECT_THAT(gallery.models(), SizeIs(3));
+  EXPECT_THAT(gallery.catalogue()->models(), SizeIs(3));
   now += std::chrono::milliseconds(1);
-  EXPECT_THAT(gallery.models(), SizeIs(2));
+  EXPECT_THAT(gallery.catalogue()->models(), SizeIs(2));
   fs::remove_all(folder.models() / "packed.3tz");
   gallery.refresh();
-  EXPECT_THAT(gallery.models(), SizeIs(1));
+  EXPECT_THAT(gallery.catalogue()->models(), SizeIs(1));
 }
 
 }  // namespace
