@@ -3,7 +3,8 @@
 import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './address.js';
 import { takeBooted } from './booted.js';
 import { EarlyStart } from './early_start.js';
-import type { Gallery } from './gallery/gallery.js';
+import type { Gallery, GallerySource } from './gallery/gallery.js';
+import { partAddress } from './gallery/wish.js';
 import type { Turn } from './gallery/layout.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, readable, withoutWarnings, type Listing, type Model } from './listing.js';
@@ -63,6 +64,7 @@ export class App {
       (listing) => { this.listed(listing); },
       (message) => { this.say(`${words.gallery.nothingToShow(message)} ${words.gallery.howToList}`); },
       (listing) => (maySend(listing.upload, this.query.listing) ? listing : withoutWarnings(listing)),
+      () => partAddress(this.query.listing, this.gallery?.wish ?? { search: '', tag: '', order: this.page.preferences.order }),
     );
     document.documentElement.lang = language;
     root.append(this.page.problems.root);
@@ -146,11 +148,20 @@ export class App {
   private async loadGallery(): Promise<void> {
     const { Gallery } = await import('./gallery/gallery.js');
     if (this.gallery !== null) return;
-    const gallery = this.makeGallery(new Gallery(this.page));
+    const gallery = this.makeGallery(new Gallery(this.page, this.gallerySource()));
     this.gallery = gallery;
     gallery.tell(this.said);
     if (this.watch.listing !== null) this.listed(this.watch.listing);
     if (this.entry === null) this.enter(gallery);
+  }
+
+  private gallerySource(): GallerySource {
+    const { query: { listing }, watch } = this;
+    return {
+      wished: () => { watch.start(); },
+      fetchPart: (wish, first, state, signal) => watch.fetch(partAddress(listing, wish, { first: String(first), state }), signal),
+      fetchPlaces: async (wish, signal) => (await watch.fetch(partAddress(listing, wish, { count: '0', places: '1' }), signal)).part?.places ?? [],
+    };
   }
 
   private makeGallery(gallery: Gallery): Gallery {
@@ -215,8 +226,7 @@ export class App {
   private async storyOf(model: Model, signal: AbortSignal): Promise<string | null> {
     if (model.story !== null || this.query.only !== null) return model.story;
     try {
-      const { models } = await this.watch.once(signal);
-      return models.find((one) => linkPath(one.path) === linkPath(model.path))?.story ?? null;
+      return (await this.watch.find(linkPath(model.path), signal))?.story ?? null;
     } catch {
       return null; // a model may be shown without any listing
     }

@@ -24,6 +24,11 @@ export interface Model {
   preview: string | null;
   /// The address of what people tell about it (src/tools/annotations.ts), or itself: JSON.
   story: string | null;
+  /// The folder that people see it in, instead of its path's; missing: not told.
+  folder?: string;
+  tags?: readonly string[];
+  /// Longitude and latitude, degrees.
+  place?: readonly [longitude: number, latitude: number];
   /// Warnings of its build; missing: there are none, or they are not told.
   warnings?: readonly string[];
   /// Where its files are, if not at its URL.
@@ -42,8 +47,38 @@ export interface Job {
   preview: string | null;
 }
 
+/// A listing is a part of a longer one, in an order and of a search that were asked for.
+export interface ListingPart {
+  /// Of the whole, and of those that a search finds.
+  readonly total: number;
+  readonly found: number;
+  /// The number of the first model, of those that are found.
+  readonly first: number;
+  /// The whole listing's name: parts that name it fit together.
+  readonly state: string;
+  /// How many of those that are found lie in each folder, in order; empty: they are in another order.
+  readonly groups: readonly { readonly folder: string; readonly count: number }[];
+  readonly tags: readonly TagCount[];
+  /// So many of those that are found have a place.
+  readonly placed: number;
+  /// Where they lie, if that was asked for.
+  readonly places: readonly ModelSpot[];
+}
+
+export interface TagCount {
+  readonly tag: string;
+  readonly count: number;
+}
+
+/// Longitude, latitude, and the number of the model that lies there.
+export type ModelSpot = readonly [longitude: number, latitude: number, index: number];
+
 export interface Listing {
   models: Model[];
+  /// Null: it has all models that there are, but for those of `parts`.
+  part: ListingPart | null;
+  /// The addresses of listings that go on.
+  parts: readonly string[];
   /// Null: the listing has none and never will.
   jobs: Job[] | null;
   /// Where the models lie, and where meshes are put; null: it does not say so.
@@ -62,9 +97,12 @@ export interface UploadOffer {
 
 export class ListingError extends Error {}
 
-const MOST_ENTRIES = 10_000;
+const MOST_ENTRIES = 10_000; // of one file
+const MOST_FOUND = 1_000_000; // models, of which a window holds a few
 const MOST_TEXT = 1000;
 const MOST_WARNINGS = 100; // of a model
+const MOST_TAGS = 100;
+const MOST_PARTS = 1000;
 
 function isObject(value: unknown): value is Json {
   return typeof value === 'object' && value !== null && !Array.isArray(value);
@@ -117,11 +155,24 @@ function addressOf(value: unknown, base: string): string | null {
   return resolveUrl(textOf(value), base);
 }
 
+function placeOf(value: unknown): [number, number] | null {
+  if (!Array.isArray(value) || value.length < 2 || !value.slice(0, 2).every(Number.isFinite)) return null;
+  const [longitude, latitude] = value as number[];
+  return Math.abs(longitude) <= 180 && Math.abs(latitude) <= 90 ? [longitude, latitude] : null;
+}
+
+/// What people say of a model.
+function readDescription(value: Json): Partial<Model> {
+  const [folder, tags, place] = [textOf(value.folder), textsOf(value.tags), placeOf(value.place)];
+  return { ...(folder !== '' && { folder }), ...(tags.length > 0 && { tags }), ...(place !== null && { place }) };
+}
+
 function readModel(value: unknown, base: string): Model | null {
   if (!isObject(value) || typeof value.path !== 'string') return null;
   const model = modelOfPath(value.path, base);
   if (model === null) return null;
-  model.name = textOf(value.name).trim() || model.name;
+  model.name = textOf(value.title).trim() || textOf(value.name).trim() || model.name;
+  Object.assign(model, readDescription(value));
   model.vertices = countOf(value.vertices);
   model.triangles = countOf(value.triangles);
   model.bytes = countOf(value.bytes);
@@ -156,6 +207,32 @@ function readUpload(value: unknown): UploadOffer | null {
   return limit === null ? null : { limit, token: value.token === true };
 }
 
+/// Returns a whole number from 0 on.
+function wholeOf(value: unknown): number {
+  return Math.floor(countOf(value) ?? 0);
+}
+
+function itemsOf(value: unknown, most = MOST_ENTRIES): unknown[] {
+  return Array.isArray(value) ? value.slice(0, most) : [];
+}
+
+function readPart(document: Json): ListingPart | null {
+  const { state } = document;
+  const [total, found] = [countOf(document.total), countOf(document.found)];
+  if (typeof state !== 'string' || total === null || found === null || found > MOST_FOUND) return null;
+  const counted = (values: unknown, key: string, most: number): [string, number][] =>
+    itemsOf(values, most).filter(isObject).map((each) => [textOf(each[key]), wholeOf(each.count)]);
+  return {
+    total, found: wholeOf(found), first: wholeOf(document.first), state: textOf(state), placed: wholeOf(document.placed),
+    groups: counted(document.groups, 'folder', MOST_FOUND).map(([folder, count]) => ({ folder, count })),
+    tags: counted(document.tags, 'tag', MOST_TAGS).map(([tag, count]) => ({ tag, count })),
+    places: itemsOf(document.places, MOST_FOUND).flatMap((spot) => {
+      const place = placeOf(spot);
+      return place === null ? [] : [[...place, wholeOf((spot as unknown[])[2])] as const];
+    }),
+  };
+}
+
 /// Returns what `read` makes of the entries, without what it refuses; of several with one key the first.
 function readAll<T>(values: unknown[], read: (value: unknown) => T | null, key: (item: T) => string): T[] {
   const found = new Map<string, T>();
@@ -173,7 +250,7 @@ export function withoutWarnings(listing: Listing): Listing {
   return { ...listing, models };
 }
 
-/// The listing that was fetched from `url`. Entries that are not as they should be are left out.
+/// The listing that was fetched from `url`, to which all its addresses are relative; parts of it are elsewhere. Entries that are not as they should be are left out.
 /// Throws ListingError if all of it is something else.
 export function parseListing(text: string, url: string): Listing {
   let document: unknown;
@@ -185,5 +262,6 @@ export function parseListing(text: string, url: string): Listing {
   if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(words.listing.noModels(url));
   const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
   const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, (value) => readJob(value, url), (job) => job.name) : null;
-  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null, upload: readUpload(document.upload) };
+  const parts = itemsOf(document.parts, MOST_PARTS).map((part) => addressOf(part, url)).filter((part) => part !== null);
+  return { models, part: readPart(document), parts, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null, upload: readUpload(document.upload) };
 }

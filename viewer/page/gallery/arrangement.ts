@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Chooses what of the listing is shown, in which order and in which groups.
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
-import { readable, type Job, type Model } from '../listing.js';
+import { readable, type Job, type ListingPart, type Model, type TagCount } from '../listing.js';
 import { locale } from '../words/words.js';
 import type { Order } from '../preferences.js';
-
-export interface Wish {
-  /// Words that a name or a folder must have, in any order; empty: all.
-  search: string;
-  order: Order;
-}
+import type { Wish } from './wish.js';
 
 export interface Group<Item> {
   /// No two groups have the same one.
@@ -26,8 +21,8 @@ function plain(text: string): string {
 }
 
 /// As people read it: of `models/a%20b/c.hier` it is `models/a b`.
-function folderOf({ path }: Model): string {
-  return readable(path.slice(0, Math.max(withoutLastSlashes(path).lastIndexOf('/'), 0)));
+function folderOf({ path, folder }: Model): string {
+  return folder ?? readable(path.slice(0, Math.max(withoutLastSlashes(path).lastIndexOf('/'), 0)));
 }
 
 /// Tells whether a text has all the words of a search.
@@ -36,7 +31,7 @@ function matches(words: readonly string[], text: string): boolean {
   return words.every((word) => plainText.includes(word));
 }
 
-function wordsOf({ search }: Wish): string[] {
+function wordsOf({ search }: Pick<Wish, 'search'>): string[] {
   return plain(search).split(/\s+/).filter((word) => word !== '');
 }
 
@@ -79,12 +74,28 @@ function grouped(models: readonly Model[]): Group<Model>[] {
 
 export function arrangeModels(models: readonly Model[], wish: Wish): Group<Model>[] {
   const words = wordsOf(wish);
-  const found = models.filter((model) => matches(words, `${model.name} ${folderOf(model)}`)).sort(COMPARISONS[wish.order]);
+  const isWanted = ({ tags = [] }: Model): boolean => wish.tag === '' || tags.includes(wish.tag);
+  const found = models.filter((model) => isWanted(model) && matches(words, `${model.name} ${folderOf(model)} ${(model.tags ?? []).join(' ')}`)).sort(COMPARISONS[wish.order]);
   return wish.order === 'folder' ? grouped(found) : [{ key: 'models', name: '', items: found }];
 }
 
+/// Returns groups of slots, as a server tells how many models each has.
+export function arrangeSlots<Slot>(slots: readonly Slot[], { groups }: ListingPart): Group<Slot>[] {
+  if (groups.length === 0) return [{ key: 'models', name: '', items: slots }];
+  const names = withoutCommonStart(groups.map(({ folder }) => folder));
+  let end = 0;
+  return groups.map(({ folder, count }, i) => ({ key: `folder ${folder}`, name: names[i], items: slots.slice(end, (end += count)) }));
+}
+
+/// Counts how many models have each tag: the most frequent ones first.
+export function tagsOf(models: readonly Model[]): TagCount[] {
+  const counts = new Map<string, number>();
+  for (const { tags = [] } of models) for (const tag of tags) counts.set(tag, (counts.get(tag) ?? 0) + 1);
+  return [...counts].map(([tag, count]) => ({ tag, count })).sort((a, b) => b.count - a.count || collator.compare(a.tag, b.tag));
+}
+
 /// In the order of the listing: that of the builds.
-export function findJobs(jobs: readonly Job[], wish: Wish): Job[] {
+export function findJobs(jobs: readonly Job[], wish: Pick<Wish, 'search'>): Job[] {
   const words = wordsOf(wish);
   return jobs.filter(({ name }) => matches(words, name));
 }

@@ -26,12 +26,13 @@ function roughSizes({ triangles, bytes }: Sizes): string[] {
   return parts;
 }
 
-function exactText({ name, source, modified, warnings = [] }: Model, { vertices, triangles, bytes }: Sizes): string {
+function exactText({ name, source, modified, tags = [], warnings = [] }: Model, { vertices, triangles, bytes }: Sizes): string {
   const parts = [source ?? name];
   if (vertices !== null) parts.push(words.counts.vertices(vertices, formatCount(vertices)));
   if (triangles !== null) parts.push(words.counts.triangles(triangles, formatCount(triangles)));
   if (bytes !== null) parts.push(words.counts.bytes(bytes, formatCount(bytes)));
   if (modified !== null) parts.push(formatDate(modified));
+  if (tags.length > 0) parts.push(tags.join(', '));
   return [...parts, ...warnings].join('\n');
 }
 

@@ -85,6 +85,30 @@ export class VisibleCells<One extends Entry> {
     return this.cellOf(this.entryAt(spot));
   }
 
+  focusFirst(): void {
+    this.focusAt(0);
+  }
+
+  /// Moves the focus from a cell by a key: arrows, Home, End. False: no cell has it, or the key says nothing.
+  step(key: string): boolean {
+    const focused = this.focused();
+    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -this.grid.columns, ArrowDown: this.grid.columns }[key];
+    if (focused === undefined || (step === undefined && key !== 'Home' && key !== 'End')) return false;
+    const before = this.groups.slice(0, focused.group).reduce((sum, { items }) => sum + items.length, 0);
+    const last = this.spots.size - 1;
+    this.focusAt(step === undefined ? (key === 'Home' ? 0 : last) : Math.min(Math.max(before + focused.item + step, 0), last));
+    return true;
+  }
+
+  /// Focuses a cell, counted over all groups; one that cannot have the focus yet is only shown.
+  private focusAt(index: number): void {
+    let group = 0;
+    let item = index;
+    while (group < this.groups.length && item >= this.groups[group].items.length) item -= this.groups[group++].items.length;
+    const entry = this.groups[group]?.items[item];
+    if (entry !== undefined) this.reveal(entry.key)?.root.querySelector('a')?.focus({ preventScroll: true });
+  }
+
   redraw(): void {
     for (const cell of this.shown.keys()) cell.redraw();
   }

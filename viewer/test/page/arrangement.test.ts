@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { arrangeModels, findJobs, type Wish } from '../../page/gallery/arrangement.js';
+import { arrangeModels, arrangeSlots, findJobs, tagsOf } from '../../page/gallery/arrangement.js';
+import type { Wish } from '../../page/gallery/wish.js';
 import { modelOfPath, type Model } from '../../page/listing.js';
 
 function model(path: string, known: Partial<Model> = {}): Model {
@@ -9,7 +10,7 @@ function model(path: string, known: Partial<Model> = {}): Model {
 
 /// Names of groups, and in each the paths.
 function arranged(models: readonly Model[], wish: Partial<Wish>): [string, string[]][] {
-  return arrangeModels(models, { search: '', order: 'folder', ...wish }).map(({ name, items }) => [name, items.map(({ path }) => path)]);
+  return arrangeModels(models, { search: '', tag: '', order: 'folder', ...wish }).map(({ name, items }) => [name, items.map(({ path }) => path)]);
 }
 
 const MODELS = [
@@ -44,12 +45,30 @@ describe('models', () => {
   });
 
   it('have groups of their own, whatever folders are called', () => {
-    const keys = arrangeModels(['a/b/1', 'a/b', 'c', 'a/b/%', '%/x', 'constructor/x'].map((path) => model(path)), { search: '', order: 'folder' }).map(({ key }) => key);
+    const keys = arrangeModels(['a/b/1', 'a/b', 'c', 'a/b/%', '%/x', 'constructor/x'].map((path) => model(path)), { search: '', tag: '', order: 'folder' }).map(({ key }) => key);
     expect(new Set(keys).size).toBe(keys.length);
+  });
+});
+
+describe('what people say of models', () => {
+  const described = [model('a/1.hier', { folder: 'Florence/Statues', tags: ['marble', 'scan'] }), model('a/2.hier', { tags: ['scan'] }), model('b/3.hier')];
+
+  it('is found, and groups them', () => {
+    expect(arranged(described, {})).toEqual([['a', ['a/2.hier']], ['b', ['b/3.hier']], ['Florence/Statues', ['a/1.hier']]]);
+    expect(arranged(described, { search: 'marb flor', order: 'name' })).toEqual([['', ['a/1.hier']]]);
+    expect(arranged(described, { tag: 'scan', order: 'name' })).toEqual([['', ['a/1.hier', 'a/2.hier']]]);
+    expect(arranged(described, { tag: 'sca', order: 'name' })).toEqual([['', []]]);
+    expect(tagsOf(described)).toEqual([{ tag: 'scan', count: 2 }, { tag: 'marble', count: 1 }]);
+  });
+
+  it('groups slots as a server counts them', () => {
+    const part = { total: 9, found: 4, first: 0, state: 's', tags: [], placed: 0, places: [] };
+    expect(arrangeSlots([0, 1, 2, 3], { ...part, groups: [{ folder: 'm/a', count: 3 }, { folder: 'm/b', count: 1 }] }).map(({ name, items }) => [name, items])).toEqual([['a', [0, 1, 2]], ['b', [3]]]);
+    expect(arrangeSlots([0, 1], { ...part, groups: [] })).toEqual([{ key: 'models', name: '', items: [0, 1] }]);
   });
 });
 
 it('jobs are found, in their order', () => {
   const jobs = ['b.ply', 'a.ply', 'ab.obj'].map((name) => ({ name, state: 'waiting', stage: '', progress: null, secondsLeft: null, message: '', preview: null }) as const);
-  expect(findJobs(jobs, { search: 'B', order: 'name' }).map(({ name }) => name)).toEqual(['b.ply', 'ab.obj']);
+  expect(findJobs(jobs, { search: 'B' }).map(({ name }) => name)).toEqual(['b.ply', 'ab.obj']);
 });

@@ -28,6 +28,19 @@ describe('a listing', () => {
     expect(parse({ models: [], jobs: [] }).jobs).toEqual([]);
   });
 
+  it('has what people say of models', () => {
+    const [model, other] = parse({ models: [{ path: 'a.hier', name: 'a', title: 'Anna', folder: 'x/y', tags: ['t', 5, ''], place: [7.5, -50] }, { path: 'b.hier', tags: 'x', place: [200, 0] }] }).models;
+    expect(model).toMatchObject({ name: 'Anna', folder: 'x/y', tags: ['t'], place: [7.5, -50] });
+    expect(['folder', 'tags', 'place'].some((key) => key in other)).toBe(false);
+  });
+
+  it('may be a part of a longer one, or go on elsewhere', () => {
+    const whole = { total: 10_000, found: 500, first: 0, state: 'ab', groups: [{ folder: 'x', count: 500 }, 5], tags: [{ tag: 't', count: 3 }], placed: 2, places: [[7, 50, 3], [1], [999, 0, 1]] };
+    expect(parse({ models: [], ...whole }).part).toEqual({ ...whole, groups: [{ folder: 'x', count: 500 }], places: [[7, 50, 3]] });
+    for (const broken of [{ found: undefined }, { found: 1e12 }, { state: 5 }, { total: -1 }]) expect(parse({ models: [], ...whole, ...broken }).part).toBeNull();
+    expect(parse({ models: [], parts: ['listing/1.json', 'javascript:x', 7] }).parts).toEqual(['http://host/dir/listing/1.json']);
+  });
+
   it.each(['', '{', 'null', '[]', '5', '{}', '{"models":{}}', '{"models":"x"}'])('is refused as %s', (text) => {
     expect(() => parseListing(text, URL_)).toThrow(ListingError);
   });
@@ -35,7 +48,7 @@ describe('a listing', () => {
   it('leaves out entries that are none', () => {
     const bad = [null, 5, 'x', [], {}, { path: 5 }, { path: '' }, { path: 'javascript:alert(1)' }, { path: 'http://[' },
       { path: 'data:text/html,x' }, { path: { toString: 'x' } }];
-    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null, upload: null });
+    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], part: null, parts: [], jobs: [], folder: null, inbox: null, upload: null });
   });
 
   it('says whether meshes are taken', () => {
