@@ -120,7 +120,7 @@ export class App {
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
     this.uploads?.offer(listing.upload);
-    const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
+    const isEmpty = (listing.part?.total ?? listing.models.length) + (listing.jobs?.length ?? 0) === 0;
     if (isEmpty) this.say(emptyText(listing, this.query.listing));
   }
 

@@ -83,7 +83,7 @@ export class Gallery {
     page.addEventListener('theme', () => { this.visible.redraw(); });
     const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, languageSelect(page), themeButton(page));
     this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.map.root, this.visible.root);
-    this.root.addEventListener('keydown', (event) => { this.key(event); }, { capture: true });
+    document.addEventListener('keydown', (event) => { if (this.open) this.key(event); }, { capture: true });
     for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
     this.toolbar.root.hidden = true;
   }
@@ -199,7 +199,7 @@ export class Gallery {
     let done = true;
     if (event.key === '/' && !isField) this.toolbar.focus();
     else if (event.key === 'ArrowDown' && isSearch) this.visible.focusFirst();
-    else if (!isField && (event.shiftKey || ['Home', 'End'].includes(event.key))) done = this.visible.step(event.key);
+    else if (!isField && !this.map.shown && (event.shiftKey || ['Home', 'End'].includes(event.key))) done = this.visible.step(event.key);
     else done = false;
     if (!done) return;
     event.preventDefault();

@@ -31,6 +31,7 @@ const ALONE_SCALE = 40; // of spots at one place
 const STEPS = [45, 30, 15, 10, 5, 2, 1];
 const LEAST_LINES = 90; // pixels between two lines
 const SQUARE = 48;
+const MARK = 42; // as wide as a mark is drawn
 const MOST_LINES = 60;
 
 function shrink(latitude: number): number {
@@ -85,11 +86,24 @@ export function clustersOf(spots: readonly ModelSpot[], frame: MapFrame, size: S
     if (square === undefined) squares.set(key, [spot]);
     else square.push(spot);
   }
-  return [...squares.values()].map((own) => {
-    const middle = [0, 1].map((axis) => own.reduce((sum, spot) => sum + spot[axis], 0) / own.length) as [number, number];
-    const [x, y] = toMap(frame, size, middle);
-    return { x, y, spots: own };
-  });
+  return merged([...squares.values()].map((own) => clusterOf(own, frame, size)), frame, size);
+}
+
+function clusterOf(spots: readonly ModelSpot[], frame: MapFrame, size: Size): Cluster {
+  const middle = [0, 1].map((axis) => spots.reduce((sum, spot) => sum + spot[axis], 0) / spots.length) as [number, number];
+  const [x, y] = toMap(frame, size, middle);
+  return { x, y, spots };
+}
+
+/// Large ones take in those that their marks would cover.
+function merged(clusters: Cluster[], frame: MapFrame, size: Size): Cluster[] {
+  const done: Cluster[] = [];
+  for (const each of clusters.sort((a, b) => b.spots.length - a.spots.length)) {
+    const near = done.findIndex(({ x, y }) => Math.hypot(x - each.x, y - each.y) < MARK);
+    if (near < 0) done.push(each);
+    else done[near] = clusterOf([...done[near].spots, ...each.spots], frame, size);
+  }
+  return done;
 }
 
 /// Degrees between two lines: a round number.
