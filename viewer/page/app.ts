@@ -13,7 +13,7 @@ import { Page } from './page.js';
 import type { Poster } from './poster.js';
 import { readQuery, shortened, type Query } from './query.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
-import { maySend } from './upload/permission.js';
+import { mayAsk, maySend } from './upload/permission.js';
 import { UploadPlace } from './upload/upload_place.js';
 import { language, words } from './words/words.js';
 import type { ModelView } from './view/model_view.js';
@@ -54,6 +54,7 @@ export class App {
   private poster: Poster | null = null;
   private said = '';
   private left: string | null = null;
+  private asksToken = false;
 
   /// `embedded`: what the page shows instead of what its address says; null: nothing.
   constructor(private readonly root: HTMLElement, embedded: Model | null) {
@@ -200,7 +201,9 @@ export class App {
       if (entry !== this.entry) return;
       const { fetch, createWorker, poster } = early;
       const findStory = (signal: AbortSignal): Promise<string | null> => this.storyOf(model, signal);
-      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, poster, findStory, hasGallery: this.query.only === null });
+      const findPermission = (signal: AbortSignal): Promise<boolean> => this.mayWriteViews(model, signal);
+      const asksToken = (): boolean => this.asksToken;
+      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, poster, findStory, findPermission, asksToken, hasGallery: this.query.only === null });
     } finally {
       early.close();
     }
@@ -230,6 +233,14 @@ export class App {
     } catch {
       return null; // a model may be shown without any listing
     }
+  }
+
+  /// A model within the page, or one that was named without a listing, has nobody who would keep its view.
+  private async mayWriteViews({ files, url }: Model, signal: AbortSignal): Promise<boolean> {
+    if (files !== undefined || this.query.only !== null || new URL(url).origin !== location.origin) return false;
+    const { upload } = await this.watch.once(signal);
+    this.asksToken = upload?.token ?? false;
+    return upload?.views === true && mayAsk(upload, this.query.listing);
   }
 
   /// Makes room for something else. What was told before anything was shown stays.

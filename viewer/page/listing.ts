@@ -93,6 +93,8 @@ export interface UploadOffer {
   limit: number;
   /// The server asks for a word.
   token: boolean;
+  /// It keeps first views of models, for the same people.
+  views: boolean;
 }
 
 export class ListingError extends Error {}
@@ -204,7 +206,7 @@ function readJob(value: unknown, base: string): Job | null {
 function readUpload(value: unknown): UploadOffer | null {
   if (!isObject(value)) return null;
   const limit = countOf(value.limit);
-  return limit === null ? null : { limit, token: value.token === true };
+  return limit === null ? null : { limit, token: value.token === true, views: value.views === true };
 }
 
 /// Returns a whole number from 0 on.

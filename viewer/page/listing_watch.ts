@@ -47,6 +47,11 @@ export class ListingWatch {
     private readonly address: () => string = () => url,
   ) {}
 
+  /// What the listing says but for its models, known or asked for once.
+  async once(signal: AbortSignal): Promise<Listing> {
+    return this.listing ?? this.fetch(partAddress(this.url, ANY, { count: '1' }), signal);
+  }
+
   /// What it says by now of the model of that path, as links have it, without watching it; null: nothing. Throws ListingError.
   async find(path: string, signal: AbortSignal): Promise<Model | null> {
     const known = this.listing ?? (await this.fetch(partAddress(this.url, ANY, { count: '1', path }), signal));

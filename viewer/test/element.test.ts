@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { formatCamera, parseCamera } from '../src/element/camera_attribute.js';
+import { formatCamera, parseCamera } from '../src/element/viewer_element.js';
 import { defineViewer, MeshhierViewerElement } from '../src/element/index.js';
 import { moveByKey } from '../src/element/keyboard.js';
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes the code that another page is given to show a model, or this one to show it again.
+import { readLink, writeLink } from '../../src/view/view_link.js';
 import type { ViewPart } from '../../src/view/view_table.js';
 import { formatAddress, type Spot } from '../address.js';
 
@@ -47,8 +48,10 @@ export function frameCode(shared: Shared): string {
 }
 
 /// With the script that lies beside the page.
-export function elementCode({ page, name, url, pose }: Shared): string {
+/// Of notes and stories the element knows nothing.
+export function elementCode({ page, name, url, pose, choices }: Shared): string {
+  const view = writeLink({ ...readLink(choices), notes: undefined, story: undefined });
   const camera = pose === null ? '' : ` camera="${[...pose.position, ...pose.target].join(',')}"`;
   return `<script type="module" src="${escaped(new URL('meshhier-viewer.js', page).href)}"></script>\n` +
-    `<meshhier-viewer src="${escaped(url)}" label="${escaped(name)}"${camera} style="height: 480px"></meshhier-viewer>`;
+    `<meshhier-viewer src="${escaped(url)}" label="${escaped(name)}"${camera}${view === '' ? '' : ` view="${escaped(view)}"`} style="height: 480px"></meshhier-viewer>`;
 }

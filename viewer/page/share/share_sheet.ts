@@ -1,39 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A link to what is shown, and the code for other pages; each with a button that copies it.
-import { copyText } from '../parts/clipboard.js';
+// A link to what is shown, the code for other pages, and how the model is seen first.
 import { element } from '../parts/element.js';
-import { words } from '../words/words.js';
 import type { ViewParts } from '../view/view_parts.js';
+import { words } from '../words/words.js';
+import { CopyField } from './copy_field.js';
 import { elementCode, frameCode } from './embed_code.js';
-
-const TOLD = 2500; // milliseconds that a success is told
-
-async function copy(field: HTMLTextAreaElement): Promise<boolean> {
-  const isCopied = await copyText(field.value);
-  if (!isCopied) field.select(); // the user copies what is selected
-  return isCopied;
-}
-
-class CopyField {
-  readonly root: HTMLElement;
-  readonly field: HTMLTextAreaElement;
-  private readonly button = element('button', { type: 'button', class: 'text-button' }, words.share.copy);
-  private timer = 0;
-
-  constructor(name: string, rows: number, private readonly status: HTMLElement) {
-    this.field = element('textarea', { class: 'code', rows: String(rows), readonly: true, spellcheck: 'false', 'aria-label': name });
-    this.root = element('div', { class: 'copy-field' }, element('div', { class: 'copy-head' }, element('span', {}, name), this.button), this.field);
-    this.button.addEventListener('click', () => { void this.copy(); });
-    this.field.addEventListener('focus', () => { this.field.select(); });
-  }
-
-  private async copy(): Promise<void> {
-    const done = await copy(this.field);
-    this.status.textContent = done ? words.share.copied : words.share.selected;
-    window.clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => { this.status.textContent = ''; }, TOLD);
-  }
-}
+import { FirstViewForm } from './first_view_form.js';
 
 export class ShareSheet {
   readonly root: HTMLElement;
@@ -41,11 +13,13 @@ export class ShareSheet {
   private readonly link = new CopyField(words.share.link, 2, this.status);
   private readonly frame = new CopyField(words.share.frame, 4, this.status);
   private readonly element = new CopyField(words.share.element, 4, this.status);
-
+  private readonly leftOut = element('p', { class: 'hint', hidden: true });
   private readonly codes = element('div', { class: 'share' }, this.frame.root, this.element.root, element('p', { class: 'hint' }, words.share.elementHint));
+  private readonly first: FirstViewForm;
 
   constructor(private readonly parts: ViewParts) {
-    this.root = element('div', { class: 'share' }, this.link.root, this.codes, this.status);
+    this.first = new FirstViewForm(parts, this.status);
+    this.root = element('div', { class: 'share' }, this.link.root, this.leftOut, this.codes, this.first.root, this.status);
   }
 
   /// Takes what is seen now: the page's address tells of it once the view was asked.
@@ -55,5 +29,8 @@ export class ShareSheet {
     this.codes.hidden = shared.isWhole;
     this.frame.field.value = frameCode(shared);
     this.element.field.value = elementCode(shared);
+    this.leftOut.hidden = shared.leftOut.length === 0;
+    this.leftOut.textContent = words.share.leftOut(shared.leftOut.map((part) => words.share.parts[part]).join(', '));
+    this.first.show();
   }
 }

@@ -2,7 +2,7 @@
 // Cuts the model open by a plane or a box, and draws the section.
 import { Clipping } from '../../src/plugins/clipping.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
-import { boxPlanes, cutPlane, flipped, localNormal, type CutPlane } from '../../src/tools/planes.js';
+import { boxPlanes, cutPlane, flipped, localNormal, planesInTiles, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
 import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
@@ -210,8 +210,7 @@ export class ClipTool implements Tool {
 
   /// Returns the planes in the tiles' coordinates.
   private localPlanes(): CutPlane[] {
-    const shift = this.coordinates.toInput([0, 0, 0]);
-    return this.planes().map(({ normal, constant }) => ({ normal, constant: constant + dot(normal, shift) }));
+    return planesInTiles(this.planes(), this.coordinates);
   }
 
   private apply(): void {

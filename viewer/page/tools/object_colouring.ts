@@ -59,7 +59,7 @@ export class ObjectColouring {
     this.select.value = legend?.property.name ?? NONE;
     this.numbers.hidden = range === null;
     this.list.hidden = values.length === 0;
-    if (range !== null && whole !== null) this.range.show({ min: whole[0], max: whole[1], bins: [], firstBin: 0, binWidth: 0 }, 'viridis', range);
+    if (range !== null && whole !== null) this.range.show({ min: whole[0], max: whole[1], bins: [], firstBin: 0, binWidth: 0 }, { ramp: 'viridis', tolerance: null }, range);
     this.whole.hidden = range === null || (range[0] === whole?.[0] && range[1] === whole[1]);
     const others = values.length - MOST_TOLD;
     this.list.replaceChildren(...values.slice(0, MOST_TOLD).map(entry), ...(others > 0 ? [element('li', {}, words.objects.others(formatCount(others)))] : []));

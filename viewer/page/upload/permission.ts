@@ -28,6 +28,11 @@ function isLoopback(host: string): boolean {
   return host === 'localhost' || host === '[::1]' || /^127(\.\d+){3}$/.test(host);
 }
 
+/// The same, where the visitor can be asked for the word.
+export function mayAsk(offer: UploadOffer, url: string, page: Pick<Location, 'origin' | 'hostname'> = location): boolean {
+  return maySend({ ...offer, token: false }, url, page);
+}
+
 /// `offer`: of the listing at `url`. Where nothing is taken over the network, whoever is at the machine puts files into its folder.
 export function maySend(offer: UploadOffer | null, url: string, page: Pick<Location, 'origin' | 'hostname'> = location): boolean {
   if (new URL(url).origin !== page.origin) return false;

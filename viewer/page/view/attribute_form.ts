@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Which attribute colours the model, and how: a legend that one can change.
-import { attributeIndex, isLabel, labelColour, RAMPS, wholeRange, type AttributeLook, type RampName, type ScalarAttribute } from '../../src/index.js';
+import { attributeIndex, isLabel, labelColour, RAMPS, wholeRange, type AttributeLook, type Manifest, type RampName, type ScalarAttribute } from '../../src/index.js';
 import { formatCount, formatFloat } from '../numbers.js';
 import { checkbox, choice, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { css, RangeLegend } from '../parts/range_legend.js';
 import { words } from '../words/words.js';
+import { signOfValues, toleranceText } from './view_legend.js';
 import type { ViewChoices } from './view_choices.js';
 
 export class AttributeForm {
@@ -13,6 +14,8 @@ export class AttributeForm {
   private readonly select = element('select', { 'aria-label': words.attribute.which });
   private readonly ramp: Control<RampName>;
   private readonly isolines: Control<boolean>;
+  private readonly tolerance = element('input', { type: 'number', min: '0', step: 'any', inputmode: 'decimal' });
+  private manifest: Manifest | null = null;
   private readonly whole = element('button', { type: 'button', class: 'text-button' }, words.attribute.wholeRange);
   private readonly legend: RangeLegend;
   private readonly labels = element('ul', { class: 'labels' });
@@ -25,17 +28,23 @@ export class AttributeForm {
   constructor(private readonly choices: ViewChoices) {
     const text = words.attribute;
     const chosen = (change: Partial<AttributeLook>): void => { choices.choose({ look: change }); };
-    this.select.addEventListener('change', () => { chosen({ attribute: this.select.value, range: null, hidden: [] }); });
+    this.select.addEventListener('change', () => { chosen({ attribute: this.select.value, range: null, tolerance: null, hidden: [] }); });
     this.ramp = choice(text.ramp, RAMPS.map((name) => [name, name] as const), (ramp) => { chosen({ ramp }); });
     this.isolines = checkbox(text.isolines, null, (isolines) => { chosen({ isolines }); });
     this.legend = new RangeLegend((range) => { chosen({ range }); });
     this.whole.addEventListener('click', () => { chosen({ range: null }); });
-    this.quantity = element('div', { class: 'settings' }, this.legend.root, this.whole, this.ramp.root, this.isolines.root);
+    this.tolerance.addEventListener('change', () => {
+      const { valueAsNumber: tolerance } = this.tolerance;
+      chosen({ tolerance: tolerance > 0 ? tolerance : null });
+    });
+    const band = element('label', { class: 'language-row tolerance' }, text.tolerance, this.tolerance);
+    this.quantity = element('div', { class: 'settings' }, this.legend.root, this.whole, band, this.ramp.root, this.isolines.root);
     this.root = element('div', { class: 'attribute settings' }, this.select, this.missing, this.quantity, this.labels);
   }
 
   /// The model has these.
-  tell(attributes: readonly ScalarAttribute[]): void {
+  tell(attributes: readonly ScalarAttribute[], manifest: Manifest): void {
+    this.manifest = manifest;
     if (attributes === this.attributes) return;
     this.attributes = attributes;
     this.select.replaceChildren(...attributes.map(({ name }) => element('option', { value: name }, name)));
@@ -62,7 +71,9 @@ export class AttributeForm {
   private showQuantity(attribute: ScalarAttribute, look: AttributeLook): void {
     this.ramp.show(look.ramp);
     this.isolines.show(look.isolines);
-    this.legend.show(attribute, look.ramp, look.range ?? wholeRange(attribute, look.ramp));
+    const sign = this.manifest === null ? '' : signOfValues(attribute, this.manifest);
+    this.tolerance.value = look.tolerance === null ? '' : String(look.tolerance);
+    this.legend.show(attribute, look, look.range ?? wholeRange(attribute, look.ramp), toleranceText(look.tolerance, sign));
     this.whole.disabled = look.range === null;
   }
 

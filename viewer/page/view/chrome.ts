@@ -11,6 +11,7 @@ import { Panel } from './panel.js';
 import type { ContextEvents } from './page_context.js';
 import { SettingsForm } from './settings_form.js';
 import { Sheet, Sheets } from './sheets.js';
+import { ViewLegend } from './view_legend.js';
 import type { ViewParts } from './view_parts.js';
 
 const ZOOM_STEP = 0.45;
@@ -57,7 +58,7 @@ export class Chrome {
     const all = [this.info, ...inBar];
     this.sheets = new Sheets(all, all.filter((sheet) => sheet !== this.panel), (sheet, open) => { this.sheetChanged(sheet, open); }, signal);
     surface.setAttribute('aria-describedby', this.summary.id);
-    root.append(this.summary, this.busy, this.topBar(inBar), this.zoomBar(), ...all.map((sheet) => sheet.root));
+    root.append(this.summary, this.busy, this.topBar(inBar), this.zoomBar(), new ViewLegend(parts).root, ...all.map((sheet) => sheet.root));
     this.listen();
   }
 

@@ -26,6 +26,10 @@ export interface Arrival extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   readonly poster: Poster | null;
   /// The address of what is told about the model, or itself; null: nothing is.
   readonly findStory: (signal: AbortSignal) => Promise<string | null>;
+  /// Tells whether the visitor may say how the model is seen first, as far as the page can tell.
+  readonly findPermission: (signal: AbortSignal) => Promise<boolean>;
+  /// The server asks for a word before it keeps anything; known once the permission is.
+  readonly asksToken: () => boolean;
 }
 
 export interface ContextEvents {

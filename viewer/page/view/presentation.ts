@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shows a model as it was chosen; what was left open is chosen by what the model is.
 import type { HierarchyView, Look } from '../../src/index.js';
-import { rigFor, shownLook, type KnownModel } from '../../src/scene/shown_look.js';
+import { materialOf, rigOf, shownLook, type KnownModel } from '../../src/scene/shown_look.js';
 import { LIGHTS, type Appearance, type Light } from '../appearance.js';
 import { keyOf, turned, type Angles, type Lighting, type Rig } from '../../src/scene/lighting.js';
 
@@ -12,19 +12,10 @@ export interface ShownAppearance {
   key: Angles;
 }
 
-function rigOf({ name }: Light, model: KnownModel): Rig {
-  if (name === 'matcap' || name === 'relief') return 'studio';
-  return name === 'auto' ? rigFor(model) : name;
-}
-
-function materialOf({ name }: Light): Look['material'] {
-  return name === 'matcap' || name === 'relief' ? name : 'lit';
-}
-
 export function shownOf({ look, light, standing }: Pick<Appearance, 'look' | 'light' | 'standing'>, model: KnownModel): ShownAppearance {
-  const rig = rigOf(light, model);
+  const rig = rigOf(light.name, model);
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
-  return { look: { ...shownLook(look, rig, standing.stretch, model), material: materialOf(light) }, rig, key };
+  return { look: { ...shownLook(look, rig, standing.stretch, model), material: materialOf(light.name) }, rig, key };
 }
 
 function isSame(a: object, b: object): boolean {

@@ -8,8 +8,9 @@ import { COLOURS } from '../appearance.js';
 import { MEGABYTE, RANGES, THEMES, type Theme } from '../preferences.js';
 import { words } from '../words/words.js';
 import { PRESETS, QUALITIES, qualityOf, type Quality } from './quality.js';
-import type { ScalarAttribute } from '../../src/index.js';
+import type { Manifest } from '../../src/index.js';
 import { AttributeForm } from './attribute_form.js';
+import { LevelForm } from './level_form.js';
 import { LightForm, switchBox } from './light_form.js';
 import { SWITCH_KEYS, type Switch } from './view_choices.js';
 import type { ViewParts } from './view_parts.js';
@@ -30,13 +31,15 @@ export class SettingsForm {
   private readonly toggles: readonly (readonly [Switch, Control<boolean>])[];
   private readonly light: LightForm;
   private readonly finer: Control<boolean>;
+  private readonly level: LevelForm;
+  private readonly reset = element('button', { type: 'button', class: 'text-button', hidden: true }, words.firstView.reset);
   private readonly sliders: Record<Exclude<keyof Settings, 'restDetail'>, Control<number>>;
 
   constructor(private readonly parts: ViewParts) {
     const { choices, context } = parts;
     const { page } = context;
     context.addEventListener('chosen', () => { this.show(); });
-    context.addEventListener('known', ({ manifest }) => { this.tellAttributes(manifest.source.values); });
+    context.addEventListener('known', ({ manifest }) => { this.tell(manifest); });
     const text = words.settings;
     const settings = (change: Partial<Settings>): void => { choices.setSettings(change); };
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { choices.choose({ look: { colours } }); });
@@ -46,6 +49,8 @@ export class SettingsForm {
     this.quality = choice<Quality | ''>(text.quality, named(QUALITIES, text.qualities), (quality) => { if (quality !== '') settings(PRESETS[quality]); });
     this.toggles = (Object.keys(SWITCH_KEYS) as Switch[]).filter((what) => what !== 'occlusion').map((what) => [what, switchBox(choices, what)]);
     this.finer = checkbox(text.finer, null, (finer) => { settings({ restDetail: finer ? FINER : 1 }); });
+    this.level = new LevelForm((level) => { choices.choose({ level }); });
+    this.reset.addEventListener('click', () => { parts.reset(); });
     this.sliders = {
       framesPerSecond: slider(text.frameRate, text.frameRateUnit, RANGES.framesPerSecond, (framesPerSecond) => { settings({ framesPerSecond }); }),
       threshold: slider(text.threshold, text.pixels, RANGES.threshold, (threshold) => { settings({ threshold }); }),
@@ -54,21 +59,25 @@ export class SettingsForm {
     this.light = new LightForm(choices, parts.light);
     const toggles = element('div', { class: 'checks' }, ...this.toggles.map(([, { root }]) => root));
     const sliders = Object.values(this.sliders).map(({ root }) => root);
-    const numbers = element('details', { class: 'numbers' }, element('summary', {}, text.numbers), ...sliders, this.finer.root);
+    const numbers = element('details', { class: 'numbers' }, element('summary', {}, text.numbers), ...sliders, this.finer.root, this.level.root);
     const languages = element('label', { class: 'language-row' }, words.parts.language, languageSelect(page));
-    this.root = element('div', { class: 'settings' }, this.colours.root, this.attribute.root, toggles, this.light.root, this.quality.root, numbers, this.theme.root, languages);
+    this.root = element('div', { class: 'settings' }, this.colours.root, this.attribute.root, toggles, this.light.root, this.quality.root, numbers, this.theme.root, languages, this.reset);
   }
 
-  /// The model can be coloured by these.
-  private tellAttributes(attributes: readonly ScalarAttribute[]): void {
-    this.attribute.tell(attributes);
-    this.colours.offer('attribute', attributes.length > 0);
+  /// The model can be coloured by its attributes, has levels, and perhaps a first view.
+  private tell(manifest: Manifest): void {
+    const { values } = manifest.source;
+    this.attribute.tell(values, manifest);
+    this.colours.offer('attribute', values.length > 0);
+    this.level.tell(manifest);
+    this.reset.hidden = Object.keys(manifest.view).length === 0;
   }
 
   /// As it is chosen now.
   private show(): void {
     const { choices, context: { page: { preferences: { settings, theme } } } } = this.parts;
-    const { look } = choices.chosen;
+    const { look, level } = choices.chosen;
+    this.level.show(level);
     this.light.show();
     this.colours.show(look.colours);
     this.attribute.show(look, look.colours === 'attribute');

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The parts of a model's view that bars, sheets and keys act upon. Comes once the first picture is drawn.
-import { besideFirst, fittedLink, orderedLink, overFirst } from '../../src/view/view_link.js';
+import { cameraOf } from '../../src/view/pose.js';
+import { besideFirst, fittedLink, orderedLink, overFirst, readLink, writeLink } from '../../src/view/view_link.js';
+import type { View } from '../../src/view/view_table.js';
 import { NOWHERE, type Spot } from '../address.js';
 import type { Shared, SharedSpot } from '../share/embed_code.js';
 import { Extensions } from './extensions.js';
 import type { FirstParts } from './first_parts.js';
-import type { FirstView } from './first_view.js';
+import { firstPose, type FirstView } from './first_view.js';
 import { LightDrag } from './light_drag.js';
 import type { PageContext } from './page_context.js';
 import type { PageFrames } from './page_frames.js';
@@ -44,6 +46,19 @@ export class ViewParts {
     const all = orderedLink([camera.text, choices.text, extensions.text, tools.text, story.text].filter((text) => text !== '').join('&'));
     const { link, leftOut } = fittedLink(besideFirst(all, first.view));
     return { pose: camera.navigation.atHome ? null : camera.pose(), choices: link, leftOut };
+  }
+
+  /// All that is seen, as a view that others may see first: a story and notes are told beside it.
+  seen(): View {
+    const { pose, choices } = this.firstSpot();
+    return { ...readLink(choices), camera: pose === null ? undefined : cameraOf(pose) };
+  }
+
+  /// The same as a link has it. The first view's camera is said, too.
+  firstSpot(): Spot {
+    const { pose, choices } = this.spot();
+    const first = firstPose(this.context.view.manifest, this.context.view.standing);
+    return { pose: pose ?? first, choices: writeLink({ ...readLink(choices), notes: undefined, story: undefined }) };
   }
 
   /// What a link says, and of what it says nothing as the model is seen first.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // <meshhier-viewer src="URL of a hierarchy">: a model in any page.
+import type { Pose } from '../scene/camera_pose.js';
 import type { Plugin } from '../scene/hierarchy_view.js';
 import type { ViewOptions } from '../scene/view_options.js';
 import type { Settings } from '../scene/settings.js';
-import { formatCamera, parseCamera } from './camera_attribute.js';
+import { cameraOf, poseOf } from '../view/pose.js';
+import { writeLink } from '../view/view_link.js';
+import { VIEW_TABLE } from '../view/view_table.js';
 import { ShownModel } from './shown_model.js';
 
 const NEAR = '300px'; // of the window: what is farther away is not loaded yet
@@ -30,11 +33,21 @@ function make<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, attributes: Rea
   return made;
 }
 
+/// Reads the attribute; null: it is no camera.
+export function parseCamera(text: string | null): Pose | null {
+  const camera = VIEW_TABLE.camera.kind.parse([text ?? '']);
+  return camera && poseOf(camera);
+}
+
+export function formatCamera(pose: Pose): string {
+  return writeLink({ camera: cameraOf(pose) });
+}
+
 /// Events: `load`, the model is drawn; `problem`, `event.detail.message` says what failed, the view goes on with what it has;
 /// `replaced`, the host has another model by now, what is shown stays (a message offers `reload()`, unless a listener prevents it);
 /// `camerachange`, the user has moved it.
 export class MeshhierViewerElement extends Base {
-  static readonly observedAttributes = ['src', 'camera', 'label'];
+  static readonly observedAttributes = ['src', 'camera', 'view', 'label'];
   /// Makes a worker of the module `tile_worker`, which decodes tiles beside the page; for all elements made later.
   static createWorker: (() => Worker) | undefined = undefined;
 
@@ -112,6 +125,7 @@ export class MeshhierViewerElement extends Base {
     if (before === now) return;
     if (name === 'src' && this.wanted) this.open();
     if (name === 'camera') this.shown?.look(parseCamera(now));
+    if (name === 'view') this.shown?.show(now ?? '');
     if (name === 'label' && this.shown !== null) this.name(this.shown.surface);
   }
 
@@ -157,6 +171,7 @@ export class MeshhierViewerElement extends Base {
       this.tell(error instanceof Error ? error.message : String(error));
       return;
     }
+    this.shown.show(this.getAttribute('view') ?? '');
     const { surface: canvas } = this.shown;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'application');

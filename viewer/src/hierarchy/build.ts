@@ -12,7 +12,7 @@ export class Build {
   /// `name`: as the manifest that was read has it. `signal`: ends all that is under way.
   constructor(
     private readonly files: RemoteFiles,
-    private readonly name: string,
+    public name: string,
     private readonly signal: AbortSignal,
   ) {}
 

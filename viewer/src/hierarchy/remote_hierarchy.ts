@@ -126,6 +126,12 @@ export class RemoteHierarchy {
     return fetchManifest(this.files, this.signal);
   }
 
+  /// The build has another name from now on, and the same files but for its manifest.
+  rename(name: string): void {
+    this.files.setBuild?.(name);
+    if (this.build !== null) this.build.name = name;
+  }
+
   /// The host has another build by now: what it has is left out. False: then there is nothing.
   leaveHost(): boolean {
     return this.files.leaveHost?.() ?? false;

@@ -18,6 +18,7 @@ import { changedSettings, type Look, type Settings, type Stats } from './setting
 import type { Standing } from './standing.js';
 import type { DrawnTile, TileSource } from './surface.js';
 import type { Terrain } from './terrain.js';
+import type { View } from '../view/view_table.js';
 import { TileScene } from './tile_scene.js';
 import { ViewContext } from './view_context.js';
 import type { ViewEvents, ViewOptions } from './view_options.js';
@@ -265,6 +266,11 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Resolves and rejects as `opened` does.
   async reload(): Promise<void> {
     return this.loading.reload();
+  }
+
+  /// The host keeps another first view of the model: `build` is its name from now on. What is shown stays as it is.
+  takeFirstView(build: string, first: View): void {
+    this.loading.takeFirstView(build, first);
   }
 
   /// Asks at once for what failed; the view does so by itself, but later.

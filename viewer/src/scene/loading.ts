@@ -18,6 +18,7 @@ import { Opening, type FileHost } from './opening.js';
 import { OutlineLayer } from './outline_layer.js';
 import type { TileSource } from './surface.js';
 import { memoryOf, mostMemory, texelBytesOf, vertexBytesOf } from './tile_object.js';
+import type { View } from '../view/view_table.js';
 import { isOnlyOnGpu } from './tile_texture.js';
 import type { ViewContext } from './view_context.js';
 
@@ -78,6 +79,13 @@ export class Loading implements FileHost {
     this.isReplaced = this.hasLeft = false;
     this.missing.clear();
     return this.open();
+  }
+
+  takeFirstView(build: string, view: View): void {
+    if (this.manifest === null) return;
+    this.manifest = { ...this.manifest, build, view };
+    this.opening.remote.rename(build);
+    this.context.changed();
   }
 
   /// Asks at once for what failed.

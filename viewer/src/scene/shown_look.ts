@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How a model is shown where that was left open: by what it is.
+import type { LightName } from '../view/view_table.js';
 import type { Rig } from './lighting.js';
 import type { Look } from './settings.js';
 import type { Terrain } from './terrain.js';
@@ -19,6 +20,16 @@ export interface KnownModel {
 /// The sun over terrains, a studio around all else.
 export function rigFor({ terrain }: KnownModel): Rig {
   return terrain?.upright === true ? 'sun' : 'studio';
+}
+
+/// The lamps of a light by its name, and the surface that it shows.
+export function rigOf(name: LightName, model: KnownModel): Rig {
+  if (name === 'matcap' || name === 'relief') return 'studio';
+  return name === 'auto' ? rigFor(model) : name;
+}
+
+export function materialOf(name: LightName): Look['material'] {
+  return name === 'matcap' || name === 'relief' ? name : 'lit';
 }
 
 function reliefOf({ slope }: Terrain, stretch: number): number {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Planes that cut a model open: what lies behind any of them is cut away.
 import { Matrix4, Plane, Vector3 } from 'three';
+import type { Coordinates } from './coordinates.js';
 import { dot, unit, type Vector } from './vectors.js';
+import type { View } from '../view/view_table.js';
 
 /// Kept is where normal · point + constant >= 0.
 export interface CutPlane {
@@ -41,6 +43,18 @@ export function boxPlanes(min: Vector, max: Vector): CutPlane[] {
     { normal: along(axis, 1), constant: -min[axis] },
     { normal: along(axis, -1), constant: max[axis] },
   ]);
+}
+
+/// The planes that a view cuts by, in the input's coordinates.
+export function planesOf({ cut, box }: View): CutPlane[] {
+  if (cut !== undefined) return [cutPlane(cut)];
+  return box === undefined ? [] : boxPlanes([box[0], box[1], box[2]], [box[3], box[4], box[5]]);
+}
+
+/// Planes of the input's coordinates in the tiles'.
+export function planesInTiles(planes: readonly CutPlane[], coordinates: Coordinates): CutPlane[] {
+  const shift = coordinates.toInput([0, 0, 0]);
+  return planes.map(({ normal, constant }) => ({ normal, constant: constant + dot(normal, shift) }));
 }
 
 /// In the world that `matrix` brings the plane's coordinates into.

@@ -46,4 +46,9 @@ describe('code for other pages', () => {
     expect(code).toContain('camera="1.5,-2,3000000000,0,0.25,1"');
     expect(elementCode(shared())).not.toContain('camera=');
   });
+
+  it('tells the element of the view, but for notes and stories', () => {
+    expect(elementCode(shared({ choices: 'colours=height&light=flat&cut=1,0,0,2&notes=abc&story=2' }))).toContain(' view="colours=height&amp;light=flat&amp;cut=1,0,0,2" ');
+    expect(elementCode(shared({ choices: 'story=2' }))).not.toContain(' view=');
+  });
 });

@@ -52,9 +52,9 @@ describe('a listing', () => {
   });
 
   it('says whether meshes are taken', () => {
-    expect(parse({ models: [], upload: { limit: 1000, token: true } }).upload).toEqual({ limit: 1000, token: true });
-    expect(parse({ models: [], upload: { limit: 0 } }).upload).toEqual({ limit: 0, token: false });
-    for (const upload of [true, 5, [], {}, { limit: -1 }, { limit: '5' }, { token: true }]) expect(parse({ models: [], upload }).upload).toBeNull();
+    expect(parse({ models: [], upload: { limit: 1000, token: true, views: false } }).upload).toEqual({ limit: 1000, token: true, views: false });
+    expect(parse({ models: [], upload: { limit: 0 } }).upload).toEqual({ limit: 0, token: false, views: false });
+    for (const upload of [true, 5, [], {}, { limit: -1 }, { limit: '5' }, { token: true, views: false }]) expect(parse({ models: [], upload }).upload).toBeNull();
   });
 
   it('says where the models lie', () => {
@@ -131,7 +131,7 @@ describe('warnings of a build', () => {
 
   it.each([
     [null, 'localhost', true], [null, '127.0.0.1', true], [null, '[::1]', true], [null, 'museum.example', false],
-    [{ limit: 1, token: false }, 'museum.example', true], [{ limit: 1, token: true }, 'museum.example', false],
+    [{ limit: 1, token: false, views: false }, 'museum.example', true], [{ limit: 1, token: true, views: false }, 'museum.example', false],
   ])('are for those who may send meshes: %j at %s: %s', (offer, hostname, may) => {
     expect(maySend(offer, `http://${hostname}/models.json`, { origin: `http://${hostname}`, hostname })).toBe(may);
     expect(maySend(offer, 'http://other/models.json', { origin: `http://${hostname}`, hostname })).toBe(false);
