@@ -9,12 +9,14 @@ export declare const HOUSE: {
   readonly table: Plan;
   readonly cupboard: Plan;
   readonly bed: Plan;
+  readonly colours: Readonly<Record<'floor' | 'ceiling' | 'wall', readonly [number, number, number]>>;
   readonly stairs: { readonly plan: Plan; readonly steps: number; readonly rise: number; readonly tread: number };
 };
 
 export interface HouseMesh {
   readonly positions: number[];
   readonly corners: number[];
+  readonly colours: number[];
 }
 
 export declare function house(options?: { readonly outside?: boolean; readonly cell?: number }): HouseMesh;

@@ -22,6 +22,7 @@ export const HOUSE = {
   table: [2, 2, 3.5, 3],
   cupboard: [0, 5, 0.6, 7],
   bed: [1, 1, 3, 3],
+  colours: { floor: [60, 190, 60], ceiling: [60, 60, 220], wall: [210, 200, 190] },
   stairs: { plan: [9, 1, 10, 4.92], steps: 14, rise: 0.2, tread: 0.28 },
 };
 
@@ -29,6 +30,7 @@ export const HOUSE = {
 class Mesh {
   positions = [];
   corners = [];
+  colours = [];
 
   /// `cell`: the longest side of a square.
   constructor(cell) {
@@ -36,12 +38,15 @@ class Mesh {
   }
 
   /// A parallelogram whose front is where `along` × `up` points to.
-  face(corner, along, up) {
+  face(corner, along, up, colour) {
     const length = (v) => Math.hypot(...v);
     const [columns, rows] = [along, up].map((v) => Math.max(1, Math.ceil(length(v) / this.cell - 1e-9)));
     const first = this.positions.length / 3;
     for (let v = 0; v <= rows; ++v)
-      for (let u = 0; u <= columns; ++u) this.positions.push(...corner.map((start, axis) => start + along[axis] * (u / columns) + up[axis] * (v / rows)));
+      for (let u = 0; u <= columns; ++u) {
+        this.positions.push(...corner.map((start, axis) => start + along[axis] * (u / columns) + up[axis] * (v / rows)));
+        this.colours.push(...colour);
+      }
     for (let v = 0; v < rows; ++v)
       for (let u = 0; u < columns; ++u) {
         const a = first + v * (columns + 1) + u;
@@ -51,16 +56,16 @@ class Mesh {
 
   /// Level, in plan.
   floor([x0, z0, x1, z1], y) {
-    if (x1 > x0 && z1 > z0) this.face([x0, y, z1], [x1 - x0, 0, 0], [0, 0, z0 - z1]);
+    if (x1 > x0 && z1 > z0) this.face([x0, y, z1], [x1 - x0, 0, 0], [0, 0, z0 - z1], HOUSE.colours.floor);
   }
 
   ceiling([x0, z0, x1, z1], y) {
-    if (x1 > x0 && z1 > z0) this.face([x0, y, z0], [x1 - x0, 0, 0], [0, 0, z1 - z0]);
+    if (x1 > x0 && z1 > z0) this.face([x0, y, z0], [x1 - x0, 0, 0], [0, 0, z1 - z0], HOUSE.colours.ceiling);
   }
 
   /// Upright, from one place in plan to another; its front is to the left of the way.
   wall([x0, z0], [x1, z1], [low, high]) {
-    this.face([x0, low, z0], [x1 - x0, 0, z1 - z0], [0, high - low, 0]);
+    this.face([x0, low, z0], [x1 - x0, 0, z1 - z0], [0, high - low, 0], HOUSE.colours.wall);
   }
 
   /// Walls around, seen from outside of it.
@@ -143,9 +148,10 @@ export function house({ outside = false, cell = 0.5 } = {}) {
   return mesh;
 }
 
-export function plyOf({ positions, corners }) {
+export function plyOf({ positions, corners, colours }) {
   const rows = (values) => Array.from({ length: values.length / 3 }, (_, i) => values.slice(3 * i, 3 * i + 3).join(' '));
   const faces = rows(corners).map((row) => `3 ${row}`);
-  const header = ['ply', 'format ascii 1.0', `element vertex ${positions.length / 3}`, ...['x', 'y', 'z'].map((axis) => `property float ${axis}`), `element face ${faces.length}`, 'property list uchar int vertex_indices', 'end_header'];
-  return `${[...header, ...rows(positions), ...faces].join('\n')}\n`;
+  const header = ['ply', 'format ascii 1.0', `element vertex ${positions.length / 3}`, ...['x', 'y', 'z'].map((axis) => `property float ${axis}`), ...['red', 'green', 'blue'].map((channel) => `property uchar ${channel}`), `element face ${faces.length}`, 'property list uchar int vertex_indices', 'end_header'];
+  const tints = rows(colours);
+  return `${[...header, ...rows(positions).map((row, i) => `${row} ${tints[i]}`), ...faces].join('\n')}\n`;
 }

@@ -33,6 +33,8 @@ const ARRIVING = 2500; // milliseconds
 const RING = 24; // sides of the mark
 /// Places of the picture where one may stand, the middle first.
 const PLACES = [[0, 0], ...[0.15, 0.3, 0.5, 0.7].flatMap((r) => Array.from({ length: 8 }, (_, i) => [r * Math.cos((i * Math.PI) / 4), r * Math.sin((i * Math.PI) / 4)]))] as [number, number][];
+/// Directions to look at first, and eye heights beyond which a view is long.
+const [FACINGS, FAR] = [16, 8];
 const GRID = 7; // places of the model on a side, where none of the picture is one
 
 export interface WalkingOptions {
@@ -215,8 +217,22 @@ export class Walking extends EventDispatcher<{ change: object }> implements Plug
     this.surface!.haveTilesChanged();
     const feet = this.standAt(right, up);
     if (feet === null) return false;
-    this.begin(stage, feet, { yaw: lookingOf(stage.pose()).yaw, pitch: 0 });
+    this.begin(stage, feet, { yaw: this.openYaw(feet, lookingOf(stage.pose()).yaw), pitch: 0 });
     return true;
+  }
+
+  /// Where one looks first: as the camera did, unless a wall is near there; then where the view is long.
+  private openYaw({ x, y, z }: Feet, yaw: number): number {
+    const { view } = this.stage!;
+    const toLocal = view.surfaceMatrix.clone().invert();
+    const from = new Vector3(x, y + this.eyes, z).applyMatrix4(toLocal).toArray();
+    const free = (angle: number): number => {
+      const direction = new Vector3(-Math.sin(angle), 0, -Math.cos(angle)).transformDirection(toLocal).toArray();
+      return Math.min(this.picker.pick(view.surface, { from, direction })?.distance ?? Infinity, FAR * this.eyes);
+    };
+    const angles = Array.from({ length: FACINGS }, (_, i) => yaw + (2 * Math.PI * i) / FACINGS);
+    const lengths = angles.map(free);
+    return lengths[0] >= AHEAD * this.eyes ? yaw : angles[lengths.indexOf(Math.max(...lengths))];
   }
 
   /// From the middle of the model outwards, upper floors first.
@@ -231,7 +247,7 @@ export class Walking extends EventDispatcher<{ change: object }> implements Plug
         const ground = this.spaceAt({ ...place, y }).ground(place, y);
         const feet = ground === -Infinity ? null : this.walker.stand(this.spaceAt({ ...place, y: ground }), { ...place, y: ground });
         if (feet !== null) {
-          this.begin(stage, feet, { yaw: lookingOf(stage.pose()).yaw, pitch: 0 });
+          this.begin(stage, feet, { yaw: this.openYaw(feet, lookingOf(stage.pose()).yaw), pitch: 0 });
           return true;
         }
         y = ground - 0.5 * this.eyes;

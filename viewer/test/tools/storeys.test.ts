@@ -5,25 +5,26 @@ import { hullFacing, isInterior } from '../../src/tools/interior.js';
 import { storeysOf } from '../../src/tools/storeys.js';
 import type { Vector } from '../../src/tools/vectors.js';
 import { cube } from '../support/drawn.js';
-import { house, HOUSE, type HouseMesh } from '../support/house.js';
+import { house, HOUSE } from '../support/house.js';
 import { random } from '../support/random.js';
 
+type Triangles = Pick<ReturnType<typeof house>, 'positions' | 'corners'>;
 type Mesh = Pick<Tile, 'positions' | 'indices' | 'interiorCount' | 'box' | 'closed'>;
 
 const UP: Vector = [0, 1, 0];
 
-function meshOf({ positions, corners }: HouseMesh, closed = false): Mesh {
+function meshOf({ positions, corners }: Triangles, closed = false): Mesh {
   const along = (axis: number): number[] => positions.filter((_, i) => i % 3 === axis);
   const box = [Math.min, Math.max].flatMap((most) => [0, 1, 2].map((axis) => along(axis).reduce((a, b) => most(a, b), most())));
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(corners), interiorCount: corners.length / 3, box, closed };
 }
 
-function turned({ positions, corners }: HouseMesh): HouseMesh {
+function turned({ positions, corners }: Triangles): Triangles {
   return { positions, corners: corners.map((_, i) => corners[i + [0, 1, -1][i % 3]]) };
 }
 
 /// A square of hills.
-function hills(): HouseMesh {
+function hills(): Triangles {
   const side = 40;
   const positions = Array.from({ length: side * side }, (_, i) => [i % side, 3 * Math.sin(i * 0.37) * Math.cos((i / side) * 0.5), Math.floor(i / side)]).flat();
   const corners = Array.from({ length: (side - 1) ** 2 }, (_, i) => i + Math.floor(i / (side - 1))).flatMap((a) => [a, a + side, a + 1, a + 1, a + side, a + side + 1]);
