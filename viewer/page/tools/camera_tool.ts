@@ -152,7 +152,7 @@ export class CameraTool implements Tool {
     this.note.textContent = words.camera.working;
     const stage = bench.freeze(size);
     try {
-      await untilSettled(bench.view, this.ending.signal);
+      await untilSettled(bench, this.ending.signal);
       const picture = await takePicture(size, stage.draw, this.isTransparent ? null : WHITE);
       if (!this.ending.signal.aborted) download(picture, `${bench.name}.png`);
       this.note.textContent = '';

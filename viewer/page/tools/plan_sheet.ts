@@ -38,6 +38,8 @@ export interface PlanChoices {
 export type TitlesOf = () => readonly string[];
 
 const WHITE = [255, 255, 255];
+/// Drawings are as fine as a view can be at rest: triangles are down to a pixel, or exact.
+const FINEST = { restDetail: 16 };
 const PAD = 3; // millimetres around the whole model
 
 export class PlanSheet {
@@ -133,12 +135,15 @@ export class PlanSheet {
     const { shop: { bench }, choices: { dotsPerInch } } = this;
     const size = this.size(titlesOf());
     const stage = bench.freeze(size, this.sightOf(this.paper(titlesOf(), false), size));
+    const { restDetail } = bench.view.settings;
+    bench.view.setSettings(FINEST);
     try {
-      await untilSettled(bench.view, options.signal);
+      await untilSettled(bench, options.signal);
       options.signal.throwIfAborted();
       const paper = this.paper(titlesOf(), false);
       return await takePicture(size, paperDrawer(stage.draw, paper, this.shownLines(false), dotsPerInch), WHITE, { ...options, dotsPerInch });
     } finally {
+      bench.view.setSettings({ restDetail });
       stage.release();
     }
   }

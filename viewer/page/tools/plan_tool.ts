@@ -198,10 +198,15 @@ export class PlanTool implements Tool {
     const { sheet } = this;
     const problem = this.problem(sheet);
     if (problem !== null) return problem;
-    const picture = await sheet.takePicture(() => this.titles(sheet), { signal, progress: this.progress });
-    signal.throwIfAborted();
-    download(picture, `${this.fileName(sheet)}.png`);
-    return '';
+    this.contours.hide(); // the drawing has its own, in its own widths
+    try {
+      const picture = await sheet.takePicture(() => this.titles(sheet), { signal, progress: this.progress });
+      signal.throwIfAborted();
+      download(picture, `${this.fileName(sheet)}.png`);
+      return '';
+    } finally {
+      this.apply();
+    }
   }
 
   private fileName(sheet: PlanSheet): string {

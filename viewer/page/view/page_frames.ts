@@ -57,10 +57,11 @@ export class PageFrames {
     this.loop.wake();
   }
 
-  /// The picture is complete, and stays as it is.
+  /// The picture is complete, and stays as it is; while one is taken it is that one.
   get isSettled(): boolean {
-    const { isOpened, isDirty, view } = this.context;
-    return isOpened && !isDirty && this.pauses.size === 0 && !this.camera.busy && !this.sharpness.blurred && view.stats().settled;
+    const { context: { isOpened, isDirty, view }, camera } = this;
+    const isBusy = camera.busy && !camera.isFrozen;
+    return isOpened && !isDirty && this.pauses.size === 0 && !isBusy && !this.sharpness.blurred && view.stats().settled;
   }
 
   private frame(now: number): Pace {

@@ -98,6 +98,11 @@ export class PageStage implements Stage {
     return this.moves.freeze(size, sight);
   }
 
+  /// A frame was drawn since whatever was last changed, and nothing is left to refine.
+  get isSettled(): boolean {
+    return this.frames.isSettled;
+  }
+
   /// Tells a message, which the function that it returns takes away.
   tell(message: string, telling?: Pick<Telling, 'more' | 'retry'>): () => void {
     return this.context.page.problems.tell(message, { ...telling, subject: 'tools' });

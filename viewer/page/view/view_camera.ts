@@ -126,6 +126,7 @@ export class ViewCamera {
     const hold = (asked: PictureSize | null): void => {
       this.frozen = asked && sight;
       canvas.asked = asked;
+      this.aim(false); // parts may be drawn before the next frame
       this.context.redraw();
     };
     hold(size);
