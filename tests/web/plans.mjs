@@ -77,16 +77,16 @@ function boundsOf({ width, height, pixels }, holds) {
 async function checkParallel(visitor) {
   const page = await visitor.open();
   const before = await page.locator('.surface').screenshot();
-  await page.keyboard.press('y');
+  await page.keyboard.press('q');
   await settle(page);
   const parallel = await page.locator('.surface').screenshot();
-  visitor.check('parallel is another picture', !before.equals(parallel), 'Y');
+  visitor.check('parallel is another picture', !before.equals(parallel), 'Q');
   await until(page, () => page.url().includes('projection=parallel'));
   const again = await visitor.open('&projection=parallel');
   const linked = await again.locator('.surface').screenshot();
   visitor.check('links keep the projection', linked.equals(parallel), page.url().split('&').slice(1).join('&'));
   await visitor.close(again, 'link');
-  await page.keyboard.press('y');
+  await page.keyboard.press('q');
   await settle(page);
   visitor.check('back in perspective', before.equals(await page.locator('.surface').screenshot()), 'the same picture');
   await visitor.close(page, 'parallel');
@@ -146,7 +146,7 @@ async function checkLines(visitor, page) {
 
 async function checkPlan(visitor) {
   const page = await visitor.open();
-  await page.keyboard.press('u');
+  await page.keyboard.press('d');
   await page.locator('.tool-card', { hasText: 'Plans and sections' }).waitFor();
   await settle(page);
   const { min, max } = visitor.source.bounds;

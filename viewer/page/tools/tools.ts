@@ -23,8 +23,8 @@ export const TOOLS = {
   objects: { key: 'J', part: 'objects', icon: 'M3 21V10l6-4v15M9 21V3l12 5v13zM13 10v1M17 11v1M13 15v1M17 15v1', applies: ({ objects }) => objects !== null, load: () => import('./objects_tool.js') },
   measure: { key: 'M', part: 'measure', icon: 'M3 16L16 3l5 5L8 21zM7 12l2 2M10 9l3 3M13 6l2 2', load: () => import('./measure_tool.js') },
   clip: { key: 'X', part: 'cut', isQuiet: true, icon: 'M4 8l8-4 8 4v8l-8 4-8-4zM2 18L22 6', load: () => import('./clip_tool.js') },
-  plan: { key: 'U', part: null, icon: 'M4 3h16v18H4zM4 10h7M11 3v4M11 10v4M15 21v-7h5', load: () => import('./plan_tool.js') },
-  rooms: { key: 'Z', part: 'rooms', icon: 'M3 11l9-7 9 7M5 9.5V20h14V9.5M9 20v-7h6v7M14 16.5v.1', load: () => import('./rooms_tool.js') },
+  plan: { key: 'D', part: null, icon: 'M4 3h16v18H4zM4 10h7M11 3v4M11 10v4M15 21v-7h5', load: () => import('./plan_tool.js') },
+  rooms: { key: 'Y', part: 'rooms', icon: 'M3 11l9-7 9 7M5 9.5V20h14V9.5M9 20v-7h6v7M14 16.5v.1', load: () => import('./rooms_tool.js') },
   notes: { key: 'N', part: 'notes', icon: 'M4 4h16v12h-9l-5 4v-4H4zM8 8h8M8 12h5', load: () => import('./notes_tool.js') },
   camera: { key: 'K', part: null, icon: 'M4 7h4l2-2h4l2 2h4v12H4zM12 9.5a3.5 3.5 0 1 0 0 7a3.5 3.5 0 1 0 0-7', load: () => import('./camera_tool.js') },
 } as const satisfies Record<string, ToolRow>;

@@ -37,7 +37,7 @@ export const KEYS: readonly (readonly [string, Act])[] = [
   ['+', zoom(-ZOOM)], ['=', zoom(-ZOOM)], ['-', zoom(ZOOM)], ['_', zoom(ZOOM)],
   ['Home', home], ['0', home], ['Escape', back], ['Backspace', back],
   ['1', colours(0)], ['2', colours(1)], ['3', colours(2)], ['4', colours(3)], ['5', colours(4)], ['6', colours(5)],
-  ['y', ({ camera }) => { camera.toggleProjection(); }],
+  ['q', ({ camera }) => { camera.toggleProjection(); }],
   ['l', ({ light }) => { light.hold(); }], ['g', ({ choices }) => { choices.nextLight(); }],
   ['s', sheet('panel')], ['?', sheet('help')], ['h', sheet('help')], ...switches, ...tools,
 ];

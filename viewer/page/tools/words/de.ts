@@ -96,7 +96,7 @@ export const de: ToolWords = {
   },
   list: { go: (name) => `Zu ${name}`, remove: (name) => `${name} entfernen` },
   camera: {
-    projection: 'Projektion (Y)',
+    projection: 'Projektion (Q)',
     projections: { perspective: 'Perspektive', parallel: 'Parallel' },
     add: 'Diese Ansicht merken (B)',
     bookmark: (number) => `Ansicht ${number}`,

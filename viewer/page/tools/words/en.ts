@@ -95,7 +95,7 @@ export const en = {
   },
   list: { go: (name: string) => `Go to ${name}`, remove: (name: string) => `Remove ${name}` },
   camera: {
-    projection: 'Projection (Y)',
+    projection: 'Projection (Q)',
     projections: { perspective: 'Perspective', parallel: 'Parallel' },
     add: 'Bookmark this view (B)',
     bookmark: (number: string) => `View ${number}`,

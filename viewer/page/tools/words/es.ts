@@ -96,7 +96,7 @@ export const es: ToolWords = {
   },
   list: { go: (name) => `Ir a ${name}`, remove: (name) => `Quitar ${name}` },
   camera: {
-    projection: 'Proyección (Y)',
+    projection: 'Proyección (Q)',
     projections: { perspective: 'Perspectiva', parallel: 'Paralela' },
     add: 'Recordar esta vista (B)',
     bookmark: (number) => `Vista ${number}`,
