@@ -24,6 +24,15 @@ const AS_IS = (point: Vector): Vector => point;
 const Z_UP = new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 const REQUEST: PaperRequest = { scale: 50, metres: 1, sign: 'm', axes: [paperAxis([1, 0, 0]), paperAxis([0, 1, 0])], hasGrid: true, titles: ['a', 'b'] };
 
+interface Contoured {
+  readonly coordinates_of?: string;
+  readonly features: readonly { readonly properties: object; readonly geometry: { readonly coordinates: readonly (readonly number[])[] } }[];
+}
+
+function read(text: string): Contoured {
+  return JSON.parse(text) as Contoured;
+}
+
 describe('contours', () => {
   const HEIGHTS = { up: [0, 0, 1] as const, shift: 100 };
   const slope = drawnTile([0, 0, 0, 10, 0, 10, 0, 10, 0, 10, 10, 10], [0, 1, 2, 2, 1, 3]);
@@ -58,11 +67,11 @@ describe('contours', () => {
 
   it('are GeoJSON that names heights', () => {
     const contours = contoursOf([slope], HEIGHTS, 5);
-    const { features, coordinates_of } = JSON.parse(contourGeoJson(contours, PLAN, ([x, y, z]) => [x, y, z + 100], () => null));
+    const { features, coordinates_of } = read(contourGeoJson(contours, PLAN, ([x, y, z]) => [x, y, z + 100], () => null));
     expect(coordinates_of).toContain('no place');
-    expect(features.map(({ properties }: { properties: object }) => properties)).toEqual([{ elevation: 105, index: false, closed: false }, { elevation: 110, index: false, closed: false }]);
+    expect(features.map(({ properties }) => properties)).toEqual([{ elevation: 105, index: false, closed: false }, { elevation: 110, index: false, closed: false }]);
     expect(features[0].geometry.coordinates).toContainEqual([5, 0, 105]);
-    const placed = JSON.parse(contourGeoJson(contours, PLAN, AS_IS, ([x, y, z]) => ({ longitude: x / 10, latitude: y / 10, height: z })));
+    const placed = read(contourGeoJson(contours, PLAN, AS_IS, ([x, y, z]) => ({ longitude: x / 10, latitude: y / 10, height: z })));
     expect([placed.coordinates_of, placed.features[0].geometry.coordinates[0].length]).toEqual([undefined, 3]);
   });
 });
@@ -126,7 +135,7 @@ describe('a paper', () => {
   });
 
   it('has room for its titles, and is refused where nothing would be seen', () => {
-    expect(paperFor({ left: 0, right: 0.1, bottom: 0, top: 0.1 }, REQUEST).inner).toEqual({ width: expect.closeTo(60, 9), height: expect.closeTo(2, 9) });
+    expect(paperFor({ left: 0, right: 0.1, bottom: 0, top: 0.1 }, REQUEST).inner).toEqual({ width: expect.closeTo(60, 9) as number, height: expect.closeTo(2, 9) as number });
     expect([problemOfPaper({ width: 0.2, height: 0.9 })?.what, problemOfPaper({ width: 5, height: 1e6 })?.what, problemOfPaper({ width: 5, height: 5 })]).toEqual(['small', 'large', null]);
     expect([scaleText(50), scaleText(0.5), scaleText(1), coordinateText(-0.00001, 0.5), coordinateText(1e6, 1000)]).toEqual(['1:50', '2:1', '1:1', '0.0', '1000000']);
   });
