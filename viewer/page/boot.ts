@@ -72,7 +72,7 @@ function boot(): void {
   showTheme(choices.theme);
   const poster = isPictured ? posterOf(url) : null;
   preloadCode();
-  window.meshhierBooted = { url, first: sendFirstRequest(url, poster?.came), poster };
+  globalThis.meshhierBooted = { url, first: sendFirstRequest(url, poster?.came), poster };
 }
 
 boot();

@@ -12,15 +12,13 @@ export interface Booted {
 }
 
 declare global {
-  interface Window {
-    meshhierBooted?: Booted;
-  }
+  var meshhierBooted: Booted | undefined;
 }
 
 /// Once; null: nothing was begun for that hierarchy, and what was begun for another one ends. `url`: null: none is opened.
 export function takeBooted(url: string | null): Booted | null {
-  const booted = window.meshhierBooted;
-  delete window.meshhierBooted;
+  const booted = globalThis.meshhierBooted;
+  globalThis.meshhierBooted = undefined;
   if (booted === undefined || booted.url === url) return booted ?? null;
   booted.first.ending.abort();
   booted.poster?.end();

@@ -14,13 +14,14 @@ export interface FirstRequest {
 }
 
 /// `url`: of the hierarchy. `after`: what is more urgent on a slow line.
-export function sendFirstRequest(url: string, after = Promise.resolve()): FirstRequest {
+export function sendFirstRequest(url: string, after?: Promise<void>): FirstRequest {
   const ending = new AbortController();
   const isArchive = isArchiveUrl(url);
   const file = isArchive ? url : `${withoutLastSlashes(url)}/${tilePath({ level: 0, index: 0 })}`;
   const init: RequestInit = { priority: 'high', signal: ending.signal };
   if (isArchive) Object.assign(init, { headers: rangeHeader(0, HEAD_BYTES), cache: 'no-cache' } satisfies RequestInit); // which version it is
-  const response = after.then(() => fetch(file, init));
+  const send = (): Promise<Response> => fetch(file, init);
+  const response = after === undefined ? send() : after.then(send);
   response.catch(() => undefined); // whoever asks for it is told
   return { url: file, response, ending };
 }
