@@ -8,7 +8,7 @@ import { isParallel, type ViewCamera } from '../scene/projection.js';
 import type { DrawnTile } from '../scene/surface.js';
 import { RayProbe, type Ray } from './ray.js';
 import { ShownTrees } from './shown_trees.js';
-import { valuesAt } from './values_at.js';
+import { valuesAt, type PickedTile } from './values_at.js';
 import { add, cross, distanceOf, scale, subtract, unit, vertexAt, type Vector } from './vectors.js';
 
 export interface Hit {
@@ -25,9 +25,6 @@ export interface Hit {
   readonly between: readonly number[];
   readonly atCorner: readonly number[];
 }
-
-/// A tile is looked at for these.
-export type PickedTile = Pick<Tile, 'positions'> & Partial<Pick<Tile, 'values'>>;
 
 /// Tells whether a point may be hit: what is cut away may not. `values`: of a corner of its triangle.
 export type Keeps = (point: Vector, values: readonly number[]) => boolean;
