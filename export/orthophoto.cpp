@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "execution/parallel.h"
-#include "export/clip_part.h"
-#include "export/common_box.h"
 #include "export/cut_part.h"
+#include "export/drawn_cut.h"
 #include "export/map_frame.h"
 #include "export/named_cut.h"
 #include "export/pixel_grid.h"
@@ -59,115 +58,13 @@ NamedCut chosen_cut(storage::FileSystem& files, const HierarchyReader& reader,
   return std::move(*cut);
 }
 
-/// Returns the part of space over the box around the polygons.
-BoundsD column_over(const PlanRegion& plan, UpAxis up) {
-  const auto& [least, most] = plan.corners();
-  const double any = std::numeric_limits<double>::infinity();
-  if (up == UpAxis::z)
-    return {{least.x, least.y, -any}, {most.x, most.y, any}};
-  return {{least.x, -any, -most.y}, {most.x, any, -least.y}};  // the north is -z
-}
-
-/// Returns the box on the map of what may be drawn. On axes of its own a box around small boxes is
-/// closer than one around all.
-BoundsD drawn_box(const HierarchyReader& reader, const MapFrame& frame,
-                  const RasterOptions& options, const std::optional<Region>& region) {
-  const storage::Manifest& manifest = reader.manifest();
-  const double any = std::numeric_limits<double>::infinity();
-  BoundsD limits{{-any, -any, -any}, {any, any, any}};
-  if (options.region.box && options.region.crs.empty())
-    limits = {options.region.box->min - manifest.origin, options.region.box->max - manifest.origin};
-  if (region && region->plan)
-    limits = common_part(limits, column_over(*region->plan, manifest.up));
-  if (region && region->objects)
-    limits = common_part(limits, region->objects->box());
-  BoundsD all;
-  for (const TileRecord& record : reader.records()) {
-    if (!is_of_input(reader, record) || record.bounds.empty())
-      continue;
-    const BoundsD box =
-        common_part({to_double(record.bounds.min), to_double(record.bounds.max)}, limits);
-    if (!box.empty())
-      all.add(frame.around(box));
-  }
-  return all;
-}
-
 // ---- drawing ------------------------------------------------------------------------------------
 
 /// All that drawing needs, the same for all windows.
 struct Drawing {
-  const HierarchyReader& reader;
+  DrawnCut shown;
   PlanView view;
-  Cut cut;
-  std::optional<Region> region;
-  const execution::CancelToken& cancel;
-
-  /// Returns what a tile draws within the region.
-  CutPart load(CutParts& parts, std::size_t tile) const {
-    cancel.check();
-    CutPart part = parts.load(tile);
-    return region ? clip_part(part, reader.tile_format().attributes, *region, Clipping::at_border)
-                  : std::move(part);
-  }
 };
-
-/// Cuts at work: one for each item in flight, as each is for one thread.
-class Benches {
- public:
-  Benches(const Drawing& drawing, std::size_t count, std::uint64_t cache_bytes) {
-    for (std::size_t i = 0; i < count; ++i)
-      parts_.push_back(
-          std::make_unique<CutParts>(drawing.reader, drawing.cut, cache_bytes / count));
-  }
-  std::size_t size() const { return parts_.size(); }
-  CutParts& of(std::size_t item) { return *parts_[item % parts_.size()]; }
-
- private:
-  std::vector<std::unique_ptr<CutParts>> parts_;
-};
-
-bool mixes_levels(const HierarchyReader& reader, const Cut& cut) {
-  const auto level = [&](NodeId node) { return reader.record(node).node.level; };
-  return std::ranges::any_of(cut.nodes(),
-                             [&](NodeId node) { return level(node) != level(cut[0]); });
-}
-
-/// Returns the box of what each tile of the cut draws; an empty one if that is nothing. Where
-/// levels meet, a tile reaches to the vertices of its coarser neighbour, which its record does not
-/// tell: it is read.
-std::vector<BoundsD> boxes_of(const Drawing& drawing, Benches& benches,
-                              execution::Progress& progress) {
-  const Cut& cut = drawing.cut;
-  std::vector<BoundsD> boxes(cut.size());
-  const bool is_read = mixes_levels(drawing.reader, cut);
-  for (std::size_t i = 0; i < cut.size() && !is_read; ++i) {
-    const Bounds& box = drawing.reader.record(cut[i]).bounds;
-    if (!box.empty())
-      boxes[i] = {to_double(box.min), to_double(box.max)};
-  }
-  if (is_read) {
-    progress.stage("measure", cut.size(), "tiles");
-    drawing.reader.will_read(cut.nodes());
-    execution::ordered_for(
-        cut.size(), benches.size(), drawing.cancel,
-        [&](std::size_t i) {
-          BoundsD box;
-          for (const Vec3f& position : benches.of(i).load(i).vertices.positions)
-            box.add(to_double(position));
-          return box;
-        },
-        [&](std::size_t i, const BoundsD& box) {
-          boxes[i] = box;
-          progress.advance(1);
-        });
-  }
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!boxes[i].empty() && drawing.region && !drawing.region->may_show(cut[i], boxes[i]))
-      boxes[i] = {};
-  }
-  return boxes;
-}
 
 /// The rasters that are asked for.
 struct Pyramids {
@@ -222,8 +119,8 @@ std::uint64_t draw_window(const Drawing& drawing, const PlannedWindow& planned, 
                           Pyramids& pyramids, execution::Progress& progress) {
   render::PlanRaster raster(planned.window, drawing.view.has_colours);
   for (const std::uint32_t tile : planned.tiles) {
-    raster.draw(plan_mesh(drawing.view, drawing.load(parts, tile),
-                          "the picture of tile " + to_text(drawing.cut[tile])));
+    raster.draw(plan_mesh(drawing.view, drawing.shown.load(parts, tile),
+                          "the picture of tile " + to_text(drawing.shown.cut[tile])));
     progress.advance(1);
   }
   put_tiles(planned.window, raster, pyramids);
@@ -286,14 +183,6 @@ std::unique_ptr<RasterOutput> open_output(storage::FileSystem& files, const fs::
   if (!storage::is_standard_output(files, other))
     request.inputs.push_back(other);
   return std::make_unique<RasterOutput>(files, request, cancel, pool);
-}
-
-void require_surface(const HierarchyReader& reader) {
-  if (reader.manifest().source.triangles == 0) {
-    throw Error(ErrorCode::usage,
-                reader.directory().string() +
-                    ": it has points alone; a raster needs a surface, which triangles make");
-  }
 }
 
 /// Where the rasters go; a null one is not asked for.
@@ -361,14 +250,14 @@ Drawn draw(const Drawing& drawing, std::uint64_t memory_budget, Pyramids& pyrami
            execution::Progress& progress) {
   const PlanView& view = drawing.view;
   std::uint64_t tile_bytes = 0;
-  for (const NodeId node : drawing.cut.nodes()) {
-    tile_bytes = std::max(tile_bytes, drawn_bytes(drawing.reader.record(node),
+  for (const NodeId node : drawing.shown.cut.nodes()) {
+    tile_bytes = std::max(tile_bytes, drawn_bytes(drawing.shown.reader.record(node),
                                                   static_cast<std::size_t>(view.layout.channels()),
                                                   view.has_colours));
   }
   const WindowPlan plan = plan_windows(view.grid, tile_bytes, memory_budget);
-  Benches benches(drawing, plan.in_flight, memory_budget / 8);
-  const std::vector<BoundsD> boxes = boxes_of(drawing, benches, progress);
+  Benches benches(drawing.shown, plan.in_flight, memory_budget / 8);
+  const std::vector<BoundsD> boxes = boxes_of(drawing.shown, benches, progress);
   const std::vector<PlannedWindow> windows = windows_over(view.frame, view.grid, plan.side, boxes);
   std::uint64_t steps = 0;
   for (const PlannedWindow& window : windows)
@@ -376,7 +265,7 @@ Drawn draw(const Drawing& drawing, std::uint64_t memory_budget, Pyramids& pyrami
   progress.stage("draw", steps, "tiles");
   Drawn drawn{boxes.size() - static_cast<std::size_t>(std::ranges::count(boxes, BoundsD{})), 0};
   execution::ordered_for(
-      windows.size(), benches.size(), drawing.cancel,
+      windows.size(), benches.size(), drawing.shown.cancel,
       [&](std::size_t i) {
         return draw_window(drawing, windows[i], benches.of(i), pyramids, progress);
       },
@@ -410,7 +299,7 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
   const RasterOutputs outputs = open_outputs(files, hierarchy, options, cancel, pool);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
-  require_surface(reader);
+  require_surface(reader, "a raster");
 
   PlanView view{.frame = map_frame(reader.manifest()),
                 .grid = {},
@@ -421,7 +310,7 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
   std::optional<Region> region;
   if (options.region.is_any())
     region = region_of(files, reader, options.region, cancel);
-  const BoundsD box = drawn_box(reader, view.frame, options, region);
+  const BoundsD box = drawn_box(reader, view.frame, options.region, region);
   if (box.empty())
     fail_empty(reader, options.region);
   view.grid = grid_over(box, pixel, options.corner);
@@ -432,9 +321,9 @@ std::string export_rasters(storage::FileSystem& files, const fs::path& hierarchy
     pyramids.picture.emplace(TiffPixel::rgba, size, outputs.picture->scratch);
   if (outputs.heights)
     pyramids.heights.emplace(TiffPixel::height, size, outputs.heights->scratch);
-  const Drawing drawing{reader, view, std::move(cut.cut), std::move(region), cancel};
+  const Drawing drawing{{reader, std::move(cut.cut), std::move(region), cancel}, view};
   const Drawn drawn = draw(drawing, options.memory_budget, pyramids, progress);
-  if (drawn.covered == 0 && drawing.region)
+  if (drawn.covered == 0 && drawing.shown.region)
     fail_empty(reader, options.region);
   if (drawn.covered == 0) {
     throw Error(ErrorCode::usage,
