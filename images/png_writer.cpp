@@ -84,6 +84,8 @@ void PngWriter::write_head(const WrittenImage& image) {
                image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png_, head_, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (image.dots_per_metre > 0)
+    png_set_pHYs(png_, head_, image.dots_per_metre, image.dots_per_metre, PNG_RESOLUTION_METER);
   png_write_info(png_, head_);
 }
 

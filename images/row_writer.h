@@ -20,6 +20,7 @@ struct WrittenImage {
   int quality = 90;
   std::uint32_t width = 0, height = 0;  ///< 1 ... FormatCoders::most_side each
   std::uint32_t channels = 3;           ///< 3; formats other than jpeg: or 4
+  std::uint32_t dots_per_metre = 0;     ///< of its print, as a png tells it; 0: not told
 };
 
 /// Writes a picture from the top. Without finish() the file is not whole. For one thread.
