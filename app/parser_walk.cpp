@@ -27,8 +27,10 @@ std::string_view file_in(std::string_view value, std::string_view type) {
 }
 
 void add_arguments(const CLI::App& command, Arguments& arguments) {
-  for (const CLI::Option* option : command.get_options())
-    (option->nonpositional() ? arguments.options : arguments.positionals).push_back(option);
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_group().empty())
+      (option->nonpositional() ? arguments.options : arguments.positionals).push_back(option);
+  }
   const auto is_group = [](const CLI::App* below) { return below->get_name().empty(); };
   for (const CLI::App* group : command.get_subcommands(is_group))
     add_arguments(*group, arguments);

@@ -12,7 +12,7 @@ namespace meshhier::app {
 /// Returns the commands that --help lists.
 std::vector<const CLI::App*> commands_of(const CLI::App& parser);
 
-/// All arguments of a command, those of its option groups included.
+/// All arguments of a command that --help lists, those of its option groups included.
 struct Arguments {
   std::vector<const CLI::Option*> positionals;
   std::vector<const CLI::Option*> options;  ///< flags too

@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -256,10 +257,30 @@ void add_colours(CLI::App& command, PreviewArguments& arguments) {
                     });
 }
 
+/// Options of drawings at a scale, which another command makes: they are answered with it.
+void add_hints_at_drawings(CLI::App& command) {
+  for (const char* name : {"--plan", "--elevation", "--section", "--plane", "--cut-height",
+                           "--contours", "--scale", "--dpi"}) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [name](const std::vector<std::string>&) {
+              throw CLI::ValidationError(
+                  name,
+                  "drawings at a scale are made by \"meshhier draw HIERARCHY --plan --scale 1:50 "
+                  "--dpi 300 -o plan.png\"; \"meshhier draw --help\" tells more");
+            })
+        ->expected(0, 2)
+        ->group("");  // not listed
+  }
+}
+
 constexpr const char* kPreviewFooter =
     R"(Without --level, --cut or --error the tiles are at most a quarter of a pixel off. They are drawn
 one by one, so memory holds the picture and one tile. The front is where +z is, or -y if z points
 up; --view 90,20 looks at the right side from 20 degrees above it.
+
+Plans, elevations and sections at a scale are made by "meshhier draw".
 
 Every hierarchy has a small picture already, preview.webp, unless its config says "preview": false.
 
@@ -288,6 +309,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
                           arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
+  add_hints_at_drawings(*command);
   command->footer(kPreviewFooter);
   command->callback([arguments, &invocation] {
     invocation.run = [arguments, &invocation](Environment& environment) {

@@ -46,7 +46,8 @@ std::vector<Vec3f> normals_of(const AttributeLayout& layout, const CutPart& part
 }
 
 /// Returns the light that a slope sends up; both of its sides are alike.
-float relief_light(const MapFrame& frame, Vec3f normal) {
+float relief_light(const PlanView& view, Vec3f normal) {
+  const MapFrame& frame = view.frame;
   constexpr Vec3d kSun{-0.5, 0.5, 0.70710678118654752};
   constexpr double kDarkest = 0.1;  // slopes away from the sun
   const Vec3d n = to_double(normal);
@@ -56,14 +57,15 @@ float relief_light(const MapFrame& frame, Vec3f normal) {
     map = {0, 0, 1};
   else
     map = map * ((map.z < 0 ? -1 : 1) / size);
-  return static_cast<float>(light_of(std::max(dot(map, kSun), kDarkest)));
+  const double sun = dot(map, kSun);
+  return static_cast<float>(light_of(view.is_soft ? (1 + sun) / 2 : std::max(sun, kDarkest)));
 }
 
 std::vector<Vec3f> relief_lights(const PlanView& view, const CutPart& part) {
   std::vector<Vec3f> lights;
   lights.reserve(part.vertices.size());
   for (const Vec3f& normal : normals_of(view.layout, part)) {
-    const float light = relief_light(view.frame, normal);
+    const float light = relief_light(view, normal);
     lights.push_back({light, light, light});
   }
   return lights;

@@ -17,6 +17,8 @@ struct PlanView {
   PixelGrid grid;
   AttributeLayout layout;
   bool has_colours = false;  ///< else heights alone are drawn
+  /// A relief has light from all around, too: upright sides and hollows of things are not dark.
+  bool is_soft = false;
 };
 
 /// Returns the part over the pixels: its picture, else its colours, else, of a surface without

@@ -30,7 +30,7 @@ TEST_F(CommandLine, HelpTeaches) {
 }
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
-  for (const char* command : {"build", "inspect", "verify", "compare", "export", "preview",
+  for (const char* command : {"build", "inspect", "verify", "compare", "export", "preview", "draw",
                               "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
@@ -123,6 +123,24 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"preview", "x", "-o", "y.png", "--error", "-1"}, "--error"},
       {{"preview", "x", "-o", "y.png", "--error", "nan"}, "--error"},
       {{"preview", "x", "-o", "y.png", "--level", "1", "--error", "2"}, "--error"},
+      {{"preview", "x", "--plan", "--scale", "1:50", "-o", "y.png"}, "meshhier draw HIERARCHY"},
+      {{"draw", "x"}, "--output"},
+      {{"draw", "x", "-o", "y.jpg"}, ".png, .svg, .dxf, .geojson"},
+      {{"draw", "x", "-o", "-"}, "--format"},
+      {{"draw", "x", "-o", "y.png", "--format", "pdf"}, "--format"},
+      {{"draw", "x", "-o", "y.png", "--scale", "0"}, "1:N"},
+      {{"draw", "x", "-o", "y.png", "--scale", "1:0"}, "1:N"},
+      {{"draw", "x", "-o", "y.png", "--scale", "1:-5"}, "1:N"},
+      {{"draw", "x", "-o", "y.png", "--dpi", "5"}, "10 to 4800"},
+      {{"draw", "x", "-o", "y.png", "--elevation", "up"}, "front, right, back or left"},
+      {{"draw", "x", "-o", "y.png", "--plan", "--elevation", "left"}, "at most 1"},
+      {{"draw", "x", "-o", "y.png", "--section", "1,2", "3"}, "X,Y X,Y"},
+      {{"draw", "x", "-o", "y.png", "--plane", "1,2,3"}, "NX,NY,NZ,D"},
+      {{"draw", "x", "-o", "y.png", "--cut-height", "nan"}, "Z,Z"},
+      {{"draw", "x", "-o", "y.png", "--contours", "0"}, "above 0"},
+      {{"draw", "x", "-o", "y.png", "--contours", "1", "--cut-height", "2"}, "at most 1"},
+      {{"draw", "x", "-o", "y.png", "--units", "mile"}, "us_ft"},
+      {{"draw", "x", "-o", "y.png", "--grid=0"}, "--grid"},
       {{"build", "a.ply", "-o", ""}, "--output: expected a name"},
       {{"build", "a.ply", "--stats", ""}, "--stats: expected a name"},
       {{"build", "a.ply", "--input-note", ""}, "--input-note: expected a name"},

@@ -50,6 +50,7 @@ TEST_F(CommandLine, AFileThatCannotBeWrittenIsToldByTheNameThatWasGiven) {
        {Arguments{"export", hierarchy(), "--level", "0", "-o", "/proc/x.ply"},
         {"export", hierarchy(), "--level", "0", "-o", "/proc/x.obj"},
         {"preview", hierarchy(), "-o", "/proc/x.png"},
+        {"draw", hierarchy(), "--cut-height", "0", "-o", "/proc/x.dxf"},
         {"build", write_config(), "--force", "--stats", "/proc/x.js"},
         {"build", write_config(), "--force", "--input-note", "/proc/x"},
         {"progressive", hierarchy(), "-o", "/proc/x.prog"}}) {

@@ -1,0 +1,109 @@
+#include "drawing/drawing.h"
+
+#include "base/error.h"
+#include "drawing/draw_lines.h"
+#include "drawing/draw_picture.h"
+#include "drawing/line_formats.h"
+#include "export/manifest_config.h"
+#include "geodesy/map_projection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meshhier::drawing {
+namespace {
+
+const UnitRow* unit_of_metres(double metres) {
+  constexpr double kSame = 1e-9;
+  const auto* const row = std::ranges::find_if(kUnits, [&](const UnitRow& unit) {
+    return std::abs(unit.metres - metres) <= kSame * metres;
+  });
+  return row == kUnits.end() ? nullptr : row;
+}
+
+/// Returns metres of the unit of the map that the model lies on; 0 if it lies on none.
+double metres_on_map(const storage::Manifest& manifest, const exporting::MapFrame& map) {
+  if (map.is_on_globe)
+    return 1;
+  const auto crs = exporting::config_of(manifest).placement.crs;
+  return crs && !map.name.empty() ? geodesy::MapProjection(*crs).unit_metres() : 0;
+}
+
+bool cuts(const DrawingOptions& options) {
+  return options.contours || !options.cut_heights.empty();
+}
+
+void require_sense(const DrawingOptions& options, const LineFormat* lines) {
+  const bool is_plan = std::holds_alternative<PlanFromAbove>(options.view);
+  if (!is_plan && cuts(options)) {
+    throw Error(ErrorCode::usage,
+                "--cut-height and --contours cut a plan: leave out --elevation, --section or "
+                "--plane");
+  }
+  if (options.contours && !options.cut_heights.empty())
+    throw Error(ErrorCode::usage, "--contours and --cut-height exclude each other");
+  const bool has_lines = cuts(options) || std::holds_alternative<SectionLine>(options.view) ||
+                         std::holds_alternative<SectionPlane>(options.view);
+  if (lines != nullptr && !has_lines) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} takes the lines of a cut: give --cut-height, --section, --plane or "
+                            "--contours; a view without one is a picture, .png",
+                            lines->name));
+  }
+  if (options.has_world_file && (!is_plan || lines != nullptr))
+    throw Error(ErrorCode::usage, "--world-file belongs to the picture of a plan");
+}
+
+}  // namespace
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names{std::string(kPictureFormat)};
+  for (const LineFormat& format : kLineFormats)
+    names.emplace_back(format.name);
+  return names;
+}
+
+std::string draw(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                 const DrawingOptions& options, execution::Progress& progress,
+                 const execution::CancelToken& cancel) {
+  const auto* const format = std::ranges::find(kLineFormats, options.format, &LineFormat::name);
+  const bool is_lines = format != kLineFormats.end();
+  require_sense(options, is_lines ? format : nullptr);
+  return is_lines ? draw_lines(files, hierarchy, options, *format, progress, cancel)
+                  : draw_picture(files, hierarchy, options, progress, cancel);
+}
+
+Asked asked_of(const storage::Manifest& manifest, const DrawingOptions& options) {
+  Asked asked{.sheet = sheet_of(manifest, options.view)};
+  double metres = metres_on_map(manifest, asked.sheet.map);
+  if (metres > 0 && options.units && metres_of(*options.units) != metres) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--units {}: the model lies on {}, which has its own unit",
+                            name_of(*options.units), asked.sheet.map.name));
+  }
+  const std::optional<Unit> told = manifest.units ? manifest.units : options.units;
+  if (metres == 0 && manifest.units && options.units && *options.units != *manifest.units) {
+    throw Error(ErrorCode::usage, fmt::format("--units {}: the hierarchy says that its unit is {}",
+                                              name_of(*options.units), name_of(*manifest.units)));
+  }
+  if (metres == 0 && told)
+    metres = metres_of(*told);
+  asked.unit.metres = metres;
+  if (const UnitRow* row = metres > 0 ? unit_of_metres(metres) : nullptr) {
+    asked.unit.name = row->name;
+    asked.named_unit = row->value;
+  }
+  return asked;
+}
+
+CutLevels levels_of(const DrawingOptions& options, const Sheet& sheet, double low, double high) {
+  if (options.contours)
+    return CutLevels::contours(*options.contours, low, high);
+  if (sheet.plane)
+    return CutLevels({*sheet.plane});
+  return CutLevels(options.cut_heights);
+}
+
+}  // namespace meshhier::drawing
