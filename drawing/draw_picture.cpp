@@ -86,10 +86,10 @@ PixelGrid grid_of(const Paper& paper, double dots_per_inch) {
     const double times = most / kMostPictureSide;
     throw Error(ErrorCode::usage,
                 fmt::format("the picture would have {:.0f} x {:.0f} pixels, and a side has at most "
-                            "{}; give --dpi {:.0f} or fewer, --scale 1:{:.4g} or smaller, or a "
+                            "{}; give --dpi {:.0f} or fewer, --scale {} or smaller, or a "
                             "--box",
                             width, height, kMostPictureSide, std::floor(dots_per_inch / times),
-                            1.01 * paper.scale * times));
+                            scale_text(least_round_length(paper.scale * times))));
   }
   return {paper.left - paper.margin / paper.mm_per_unit,
           paper.top + paper.margin / paper.mm_per_unit, 1 / (paper.mm_per_unit * pixels_per_mm),
@@ -225,8 +225,7 @@ exporting::WindowPlan windows_in_memory(const Picture& picture) {
     tile_bytes = std::max(tile_bytes, exporting::drawn_bytes(reader.record(node), channels, true));
   }
   const std::uint64_t budget = picture.options.memory_budget;
-  exporting::WindowPlan plan =
-      exporting::plan_windows(picture.view.grid, tile_bytes, budget / 4 * 3);
+  exporting::WindowPlan plan = exporting::plan_windows(picture.view.grid, tile_bytes, budget);
   const images::WrittenImage image = written_image(picture);
   const auto band = [&](std::uint32_t side) { return PictureBands::band_bytes(image, side); };
   while (band(plan.side) > budget / 4 && plan.side % 2 == 0 && plan.side > 64)

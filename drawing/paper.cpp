@@ -44,11 +44,6 @@ double round_number(double factor, int exponent) {
   return exponent < 0 ? factor / power_of_ten(-exponent) : factor * power_of_ten(exponent);
 }
 
-double least_round(double least) {
-  const double below = round_length(least);
-  return below >= least ? below : round_length(std::max(2.5 * below, below * 2));
-}
-
 /// Returns how many digits behind the point a multiple of the length has at most.
 int digits_of(double step) {
   constexpr int kMostDigits = 12;
@@ -67,7 +62,7 @@ double fitting_scale(double across, double down, double metres, double margins) 
   const double lying =
       std::max(across / (kA4Height - margins), down / (kA4Width - margins - kBarRoom));
   const double least = 1000 * metres * std::min(upright, lying);
-  return least > 0 ? least_round(least) : 1;
+  return least > 0 ? least_round_length(least) : 1;
 }
 
 void require_size(const Paper& paper, double across, double down, double metres) {
@@ -82,7 +77,7 @@ void require_size(const Paper& paper, double across, double down, double metres)
               fmt::format("at --scale {} the drawing would be {:.3g} x {:.3g} mm; give one from "
                           "{} to {}",
                           scale_text(paper.scale), paper.inner_width, paper.inner_height,
-                          scale_text(least_round(natural / kMost)),
+                          scale_text(least_round_length(natural / kMost)),
                           scale_text(round_length(natural / kLeast))));
 }
 
@@ -155,6 +150,11 @@ double round_length(double most) {
       best = round_number(factor, exponent);
   }
   return best;
+}
+
+double least_round_length(double least) {
+  const double below = round_length(least);
+  return below >= least ? below : round_length(std::max(2.5 * below, below * 2));
 }
 
 std::string scale_text(double scale) {

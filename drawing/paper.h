@@ -80,6 +80,8 @@ Paper paper_for(const BoundsD& box, const SheetUnit& unit, const PaperRequest& r
 /// Returns the greatest of 1, 2 and 5 times a power of ten that is at most `most`, which is above
 /// 0.
 double round_length(double most);
+/// Returns the least of these that is at least `least`, which is above 0.
+double least_round_length(double least);
 
 /// Returns "1:50", or "2:1" of 0.5.
 std::string scale_text(double scale);

@@ -83,7 +83,7 @@ TEST(PaperTest, TheGridHasRoundCoordinates) {
 TEST(PaperTest, WhatCannotBeIsRefusedWithWhatCan) {
   EXPECT_THAT(fault_of([] { paper_for(kRoom, {}, {}); }), HasSubstr("--units"));
   EXPECT_THAT(fault_of([] { paper_for(kRoom, kMetres, {.scale = 1e9}); }),
-              HasSubstr("give one from 1:0.01"));
+              HasSubstr("give one from 100:1"));
   EXPECT_THAT(fault_of([] { paper_for(kRoom, kMetres, {.scale = 1e-9}); }),
               HasSubstr("to 1:10000"));
   EXPECT_THAT(
