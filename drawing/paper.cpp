@@ -128,7 +128,8 @@ void add_bar(Paper& paper, const SheetUnit& unit) {
   for (int i = 0; i <= kFields; ++i) {
     const double at = x + i * step;
     marks.bar.push_back({{at, y - kBarWidth / 2}, {at, y + kBarWidth / 2}, kBarEdge});
-    for (double at_y = y - kBarWidth / 2; i % 2 == 0 && at_y < y + kBarWidth / 2; at_y += kBarEdge)
+    for (double at_y = y - kBarWidth / 2; i % 2 == 0 && i < kFields && at_y < y + kBarWidth / 2;
+         at_y += kBarEdge)
       marks.bar.push_back({{at, at_y}, {at + step, at_y}, kBarEdge});
   }
   const double text = y + kBarWidth / 2 + kTextHeight + 0.8;
