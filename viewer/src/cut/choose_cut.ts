@@ -51,6 +51,8 @@ export interface Choice {
   readonly refined: readonly ChosenNode[];
   /// Room, not the threshold, was the end of it.
   readonly limited: { readonly vertices: boolean; readonly bytes: boolean };
+  /// The bytes of all its tiles, and of those above them, with room for the largest of them on its way.
+  readonly bytes: number;
   /// Records are missing: ask again when they have come.
   readonly incomplete: boolean;
 }
@@ -72,7 +74,7 @@ class Chooser {
   incomplete = false;
   private readonly queue = new PriorityQueue<ChosenNode>();
   private vertices = 0;
-  private bytes = 0;
+  private held = 0;
   private largest = 0;
 
   constructor(
@@ -95,7 +97,7 @@ class Chooser {
   private add(chosen: ChosenNode): void {
     if (chosen.inView) this.vertices += chosen.record.own;
     const bytes = this.sources.bytesOf(chosen.record, chosen.node);
-    this.bytes += bytes;
+    this.held += bytes;
     this.largest = Math.max(this.largest, bytes);
     if (chosen.node.level >= this.limits.mostLevel) return;
     const deserved = chosen.pixels * (this.sources.wasRefined(chosen.key) ? HYSTERESIS : 1);
@@ -125,7 +127,7 @@ class Chooser {
 
   private hasRoom(chosen: ChosenNode, children: readonly ChosenNode[]): boolean {
     let vertices = this.vertices - (chosen.inView ? chosen.record.own : 0);
-    let { bytes, largest } = this;
+    let { held: bytes, largest } = this;
     for (const { inView, record, node } of children) {
       const each = this.sources.bytesOf(record, node);
       vertices += inView ? record.own : 0;
@@ -136,6 +138,10 @@ class Chooser {
     if (vertices > this.limits.vertices) this.limited.vertices = true;
     if (bytes > this.limits.bytes) this.limited.bytes = true;
     return vertices <= this.limits.vertices && bytes <= this.limits.bytes;
+  }
+
+  get bytes(): number {
+    return this.held + LOADING * this.largest;
   }
 
   choose(): ChosenNode | null {
@@ -154,5 +160,5 @@ class Chooser {
 export function chooseCut(sources: Sources, view: Viewpoint, limits: Limits): Choice {
   const chooser = new Chooser(sources, view, limits);
   const root = chooser.choose();
-  return { root, refined: chooser.refined, limited: chooser.limited, incomplete: chooser.incomplete };
+  return { root, refined: chooser.refined, limited: chooser.limited, bytes: chooser.bytes, incomplete: chooser.incomplete };
 }

@@ -3,7 +3,7 @@
 import type { Cone } from '../hierarchy/normals.js';
 import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
-import { chooseCut, LOADING, type ChosenNode, type Sources } from './choose_cut.js';
+import { chooseCut, LOADING, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
 import { RestDetail } from './rest_detail.js';
 import type { TileStore, Wanted } from './tile_store.js';
 import { comesFromOutside, looksAway, type Viewpoint } from './viewpoint.js';
@@ -23,8 +23,10 @@ export interface RefinementLimits {
 export interface Refined {
   /// A cut of tiles that are all there: as the view asks for, or coarser.
   readonly drawn: readonly ChosenNode[];
-  /// More would be drawn if more vertices were allowed.
-  readonly limited: boolean;
+  /// More would be drawn if more of these were allowed.
+  readonly limited: Choice['limited'];
+  /// As the choice has them.
+  readonly bytes: number;
   /// Nothing is missing that the view asks for.
   readonly isComplete: boolean;
   /// More is asked for after a while.
@@ -80,7 +82,7 @@ export class Refinement {
     const shown = Math.min(threshold, threshold / (isStepComplete ? divisor : divisor / 2));
     const drawn = this.draw(choice.root, atRest && !isComplete ? shown : 0);
     this.refined = atRest ? this.shown : new Set(choice.refined.map(({ key }) => key));
-    return { drawn, limited: choice.limited.vertices, isComplete, isPausing: isStepComplete && !isComplete };
+    return { drawn, limited: choice.limited, bytes: choice.bytes, isComplete, isPausing: isStepComplete && !isComplete };
   }
 
   /// Finer than `shown`, an error in pixels, is drawn only what was before: all else at once, when its step is complete.

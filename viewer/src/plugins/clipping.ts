@@ -47,6 +47,10 @@ export class Clipping implements Plugin {
     return true;
   }
 
+  get isCapped(): boolean {
+    return this.hasCaps;
+  }
+
   get cuts(): readonly Plane[] {
     const { view } = this;
     return view === null ? [] : this.planes.map((plane) => worldPlane(plane, view.surfaceMatrix));

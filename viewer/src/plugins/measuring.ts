@@ -68,7 +68,7 @@ export class Measuring extends EventDispatcher<{ change: object }> implements Pl
   /// Takes the point at a place of the picture. False: nothing of the model is there, or there are too many.
   choose(right: number, up: number): boolean {
     if (this.stage !== null) this.forgetOthers(this.stage);
-    const pointed = this.picked.length < MOST_POINTS ? (this.pointing?.at(right, up, this.snaps, this.asking.signal) ?? null) : null;
+    const pointed = this.picked.length < MOST_POINTS ? ((this.stage?.points ?? this.pointing)?.at(right, up, this.snaps, this.asking.signal) ?? null) : null;
     if (pointed === null) return false;
     const { shown } = pointed;
     this.set([...this.picked, shown]);

@@ -56,11 +56,12 @@ class Hollows {
   /// Shades what was drawn on the canvas. `distance`: to what the camera looks at. `ratio`: pixels of the canvas for one here.
   shade(renderer: WebGLRenderer, distance: number, ratio: number): void {
     this.fit(renderer, ratio);
+    const target = renderer.getRenderTarget();
     const reach = REACH * distance;
     this.pass.updateGtaoMaterial({ radius: reach, thickness: reach });
     this.drawDepth(renderer);
     this.pass.render(renderer, this.depth, this.depth, 0, false);
-    renderer.setRenderTarget(null);
+    renderer.setRenderTarget(target);
     const { autoClear } = renderer;
     renderer.autoClear = false;
     this.quad.render(renderer);

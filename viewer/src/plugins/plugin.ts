@@ -4,6 +4,7 @@ import type { Plane, Scene, Vector3, WebGLRenderer } from 'three';
 import type { CameraPose } from '../scene/camera_pose.js';
 import type { ViewCamera } from '../scene/projection.js';
 import type { Shading } from '../scene/shading.js';
+import type { PointFinder } from '../tools/point_finder.js';
 import { attempt } from './attempt.js';
 
 /// A frame is drawn by the renderer, of the scene, as the camera sees it.
@@ -36,6 +37,8 @@ export interface StageOf<View> extends Frame {
   suspend(): () => void;
   /// Shows the model so from now on, as links say it. A stage without links lacks it.
   present?(choices: string): void;
+  /// Finds points where more than the view is in the picture; missing: on the view.
+  readonly points?: PointFinder | null;
 }
 
 /// A plug-in may lack everything but the name. Places of the picture are from -1 to 1, to the right and up. It may register and take away others
@@ -60,6 +63,8 @@ export interface PluginOf<View> {
   drawn?(frame: Frame): void;
   /// Planes of the world: what lies behind one of them is not drawn.
   readonly cuts?: readonly Plane[];
+  /// False: where its planes cut a closed model it stays open. Missing: it is closed by caps.
+  readonly isCapped?: boolean;
   /// Tells whether a point of the world is drawn: one that any plug-in leaves out is not picked. Called for each hit of a ray. `values`: of a
   /// corner of its triangle, as the manifest lists them.
   keeps?(point: Vector3, values: readonly number[]): boolean;
@@ -136,6 +141,11 @@ export class Plugins<View> {
   /// Those of all plug-ins.
   get cuts(): readonly Plane[] {
     return this.every.flatMap((plugin) => this.ask(plugin, 'cuts', () => plugin.cuts ?? [], []));
+  }
+
+  /// No plug-in leaves what it cuts open.
+  get isCapped(): boolean {
+    return this.every.every(({ isCapped }) => isCapped !== false);
   }
 
   drawn(frame: Frame): void {

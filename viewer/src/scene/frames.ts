@@ -12,6 +12,7 @@ import { modeOf } from './mode.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import type { ViewCamera } from './projection.js';
 import type { Mode, Stats } from './settings.js';
+import type { Share } from './share.js';
 import type { ViewContext } from './view_context.js';
 
 const LONGEST_FRAME_MS = 5000; // a longer one was no frame: the page slept
@@ -32,9 +33,10 @@ export class Frames {
     this.alarm = new Alarm(() => { context.wake(); });
   }
 
-  /// Returns whether the picture is another one than that of the last frame.
-  update(camera: ViewCamera, viewport: Viewport, now: number): boolean {
+  /// Returns whether the picture is another one than that of the last frame. `share`: null: all that the settings allow.
+  update(camera: ViewCamera, viewport: Viewport, now: number, share: Share | null): boolean {
     const { context, loading, motion } = this;
+    this.take(share);
     if (!loading.store.has(ROOT_KEY)) return false;
     camera.updateWorldMatrix(true, false);
     context.tiles.updateWorldMatrix(true, false);
@@ -50,6 +52,15 @@ export class Frames {
     const isElse = this.refine(this.viewpoint, now);
     this.setAlarm(now);
     return seesElse || isDirty || isElse;
+  }
+
+  /// The cut may be another one with more or fewer bytes; vertices count in the next frame of a movement.
+  private take(share: Share | null): void {
+    const { context, loading: { store } } = this;
+    const before = context.mostBytes;
+    context.share = share;
+    store.budget = context.mostBytes;
+    if (context.mostBytes !== before) context.wake();
   }
 
   /// The tiles of the cut that are in view.
@@ -76,7 +87,9 @@ export class Frames {
       vertices: alone ? alone.own : this.shownVertices,
       finestLevel: Math.max(0, ...levels),
       coarsestLevel: levels.length > 0 ? Math.min(...levels) : 0,
-      vertexBudget: this.rate.budget,
+      vertexBudget: this.mostVertices,
+      limited: cut.state?.limited ?? { vertices: false, bytes: false },
+      wantedBytes: cut.state?.bytes ?? store.usedBytes,
       worstError: alone ? Infinity : shown.reduce((worst, { pixels }) => Math.max(worst, pixels), 0),
       residentTiles: store.residentCount,
       residentBytes: store.usedBytes,
@@ -103,6 +116,11 @@ export class Frames {
     return this.inView.reduce((sum, { record }) => sum + record.own, 0);
   }
 
+  /// While the camera moves.
+  private get mostVertices(): number {
+    return this.context.share?.vertices ?? this.rate.budget;
+  }
+
   private get isSettled(): boolean {
     const { state, isRootAll } = this.loading.cut;
     return !this.motion.isMoving && (state?.isComplete ?? isRootAll);
@@ -123,14 +141,14 @@ export class Frames {
       ++this.context.account.epoch;
       this.rate.restart();
     } else if (interval < LONGEST_FRAME_MS) {
-      this.rate.frame(interval, this.shownVertices, this.loading.cut.state?.limited ?? false);
+      this.rate.frame(interval, this.shownVertices, this.loading.cut.state?.limited.vertices ?? false);
     }
   }
 
   /// Returns whether other tiles are drawn, or otherwise, than before. The root is drawn before anything else is asked for.
   private refine(viewpoint: Viewpoint, now: number): boolean {
     const { context: { settings, showsInside, hidesBacks, mostLevel }, loading: { cut, store }, motion: { isMoving } } = this;
-    const vertices = isMoving ? this.rate.budget : Infinity;
+    const vertices = isMoving ? this.mostVertices : Infinity;
     const refinement = cut.isFirstFrame ? null : cut.refinement;
     if (refinement !== null) Object.assign(refinement, { showsInside, hidesBacks });
     cut.state = refinement?.refine(viewpoint, { ...settings, vertices, mostLevel: mostLevel ?? Infinity, atRest: !isMoving }, now) ?? null;

@@ -15,6 +15,7 @@ import type { Viewport } from './motion.js';
 import type { Omits } from './omission.js';
 import type { ViewCamera } from './projection.js';
 import { changedSettings, type Look, type Settings, type Stats } from './settings.js';
+import type { Share } from './share.js';
 import type { Standing } from './standing.js';
 import type { DrawnTile, TileSource } from './surface.js';
 import type { Terrain } from './terrain.js';
@@ -67,7 +68,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const { context, loading, frames } = this;
     context.settings = changedSettings(change, context.settings);
     frames.rate.target = context.settings.framesPerSecond;
-    loading.store.budget = context.settings.memoryBudget;
+    loading.store.budget = context.mostBytes;
     context.changed();
   }
 
@@ -185,9 +186,10 @@ export class HierarchyView extends Group<ViewEvents> {
   // ---- what is shown
 
   /// Chooses the cut, and asks for what it lacks. Call it before each frame; `now` as given to callbacks of requestAnimationFrame, `viewport` in
-  /// pixels of the picture, whose rays may be parallel. Returns whether the picture is another one than that of the last frame; false until the root is there.
-  update(camera: ViewCamera, viewport: Viewport, now: number): boolean {
-    return this.frames.update(camera, viewport, now);
+  /// pixels of the picture, whose rays may be parallel. Returns whether the picture is another one than that of the last frame; false until the root is
+  /// there. `share`: instead of what the settings allow, for views that share one budget (pair/pair.ts).
+  update(camera: ViewCamera, viewport: Viewport, now: number, share: Share | null = null): boolean {
+    return this.frames.update(camera, viewport, now, share);
   }
 
   /// Draws a frame as plug-ins want it: call it instead of `renderer.render(scene, camera)` where there are some that draw.

@@ -183,7 +183,7 @@ export class Loading implements FileHost {
       },
       failed: ({ level, index }: Node, problem: unknown): void => { this.tell(keyOf(level, index), problem); },
     };
-    return new TileStore(host, () => this.directory!.tree, context.settings.memoryBudget, context.options.requests ?? REQUESTS);
+    return new TileStore(host, () => this.directory!.tree, context.mostBytes, context.options.requests ?? REQUESTS);
   }
 
   /// Resolves when all of the root is there; `drawable` is called when a part of it can be drawn.

@@ -109,6 +109,10 @@ export interface Stats {
   coarsestLevel: number;
   /// The most vertices that the rate asked for allows.
   vertexBudget: number;
+  /// More would be shown if more of these were allowed: vertices while the camera moves, bytes of tiles.
+  limited: { vertices: boolean; bytes: boolean };
+  /// Bytes of all tiles that the view asks for, as far as they are allowed, with room for one on its way.
+  wantedBytes: number;
   /// Largest error of what is shown, in pixels; Infinity while it is not known.
   worstError: number;
   residentTiles: number;

@@ -7,6 +7,7 @@ import { lookOf, standingOf } from '../view/view_look.js';
 import { says, type View } from '../view/view_table.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Settings } from './settings.js';
 import { changedStanding, DEFAULT_STANDING, type Standing } from './standing.js';
+import type { Share } from './share.js';
 import type { TileScene } from './tile_scene.js';
 import type { ViewEvents, ViewOptions } from './view_options.js';
 
@@ -23,6 +24,8 @@ export class ViewContext {
   private isStandingOpen: boolean;
   /// Faces that look away from the camera are not drawn.
   hidesBacks = false;
+  /// Null: all that the settings allow.
+  share: Share | null = null;
   readonly form: ModelForm;
   readonly account = new Account();
   /// Aborts when the view is disposed of.
@@ -41,6 +44,11 @@ export class ViewContext {
     this.isLookOpen = options.look === undefined;
     this.isStandingOpen = options.standing === undefined;
     this.form = new ModelForm(tiles);
+  }
+
+  /// Bytes of all tiles in memory, at the most.
+  get mostBytes(): number {
+    return this.share?.bytes ?? this.settings.memoryBudget;
   }
 
   choose(look: Partial<Look>): void {

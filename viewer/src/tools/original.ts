@@ -8,7 +8,7 @@ import type { Node } from '../hierarchy/tree.js';
 import type { TileSource } from '../scene/surface.js';
 import { recordOf, ROOT } from './partitions.js';
 import { Search, type Hit, type Keeps } from './pick.js';
-import { RayProbe, type Ray } from './ray.js';
+import { RayProbe, type Ray, type TriangleProbe } from './ray.js';
 
 export interface OriginalOptions {
   readonly signal: AbortSignal;
@@ -32,10 +32,10 @@ class Descent {
 
   constructor(
     private readonly source: TileSource,
-    ray: Ray,
+    probe: TriangleProbe,
     private readonly options: OriginalOptions,
   ) {
-    this.search = new Search(new RayProbe(ray), options.keeps);
+    this.search = new Search(probe, options.keeps);
     this.left = options.mostTiles ?? MOST_TILES;
   }
 
@@ -69,5 +69,10 @@ class Descent {
 /// Null: it meets nothing, or more tiles would be needed than are allowed. Rejects where a file cannot be had, and when the signal
 /// aborts.
 export function pickOriginal(source: TileSource, ray: Ray, options: OriginalOptions): Promise<Hit | null> {
-  return new Descent(source, ray, options).run();
+  return findOriginal(source, new RayProbe(ray), options);
+}
+
+/// The same of whatever a probe looks for: as the nearest place to a point.
+export function findOriginal(source: TileSource, probe: TriangleProbe, options: OriginalOptions): Promise<Hit | null> {
+  return new Descent(source, probe, options).run();
 }

@@ -2,11 +2,10 @@
 // The point of the drawn surface that a ray meets first.
 import type { Matrix4 } from 'three';
 import { Vector3 } from 'three';
-import type { Tile } from '../hierarchy/tile.js';
 import type { Node } from '../hierarchy/tree.js';
 import { isParallel, type ViewCamera } from '../scene/projection.js';
 import type { DrawnTile } from '../scene/surface.js';
-import { RayProbe, type Ray } from './ray.js';
+import { RayProbe, type Ray, type TriangleProbe } from './ray.js';
 import { ShownTrees } from './shown_trees.js';
 import { valuesAt, type PickedTile } from './values_at.js';
 import { add, cross, distanceOf, scale, subtract, unit, vertexAt, type Vector } from './vectors.js';
@@ -19,7 +18,7 @@ export interface Hit {
   readonly normal: Vector;
   /// The triangle's corner that is nearest to the point.
   readonly corner: Vector;
-  /// From the ray's beginning, in units of the model.
+  /// From the ray's beginning, or the point that something near is looked for, in units of the model.
   readonly distance: number;
   /// All values of the tile's vertices, as the manifest lists them: between the corners, and of that nearest one.
   readonly between: readonly number[];
@@ -58,7 +57,7 @@ export class Search {
   limit = Infinity;
 
   constructor(
-    readonly probe: RayProbe,
+    readonly probe: TriangleProbe,
     private readonly keeps: Keeps = KEEPS_ALL,
   ) {}
 
@@ -80,14 +79,7 @@ export class Search {
   };
 }
 
-/// Distance at which a sphere is entered, 0 inside; Infinity: it is missed.
-function entersSphere({ ray, direction }: RayProbe, { sphere: { center, radius } }: DrawnTile): number {
-  const to = subtract(center.toArray(), ray.from);
-  const along = to[0] * direction[0] + to[1] * direction[1] + to[2] * direction[2];
-  const aside = distanceOf(to, scale(direction, along));
-  const reach = radius * (1 + 1e-6); // three rounds
-  return aside > reach || along < -reach ? Infinity : Math.max(0, along - reach);
-}
+const ROUNDING = 1 + 1e-6; // of three's spheres
 
 /// Picks on what is drawn.
 export class Picker {
@@ -104,9 +96,15 @@ export class Picker {
 
   /// Null: the ray meets nothing.
   pick(surface: readonly DrawnTile[], ray: Ray, keeps: Keeps = KEEPS_ALL): Hit | null {
+    return this.find(surface, new RayProbe(ray), keeps);
+  }
+
+  /// The nearest place that a probe finds; null: there is none.
+  find(surface: readonly DrawnTile[], probe: TriangleProbe, keeps: Keeps = KEEPS_ALL): Hit | null {
     this.trees.forgetAllBut(surface);
-    const search = new Search(new RayProbe(ray), keeps);
-    const met = surface.map((drawn) => ({ drawn, entry: entersSphere(search.probe, drawn) })).filter(({ entry }) => entry < Infinity);
+    const search = new Search(probe, keeps);
+    const entryOf = ({ sphere: { center, radius } }: DrawnTile): number => probe.entersSphere(center.toArray(), radius * ROUNDING);
+    const met = surface.map((drawn) => ({ drawn, entry: entryOf(drawn) })).filter(({ entry }) => entry < Infinity);
     for (const { drawn, entry } of met.sort((a, b) => a.entry - b.entry)) if (entry < search.limit) this.searchTile(search, drawn);
     return search.hit;
   }

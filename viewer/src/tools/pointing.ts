@@ -5,15 +5,10 @@ import type { Stage } from '../scene/hierarchy_view.js';
 import { pickOriginal } from './original.js';
 import { Picker, rayThrough, type Hit, type Keeps } from './pick.js';
 import { pickedPoint, type PickedPoint } from './picked_point.js';
+import type { Pointed, PointFinder } from './point_finder.js';
 import { recordedBound, shownBound } from './shown_bound.js';
 
-export interface Pointed {
-  readonly shown: PickedPoint;
-  /// Null: it cannot be had; rejects when a later point was asked for.
-  readonly original: Promise<PickedPoint | null>;
-}
-
-export class Pointing {
+export class Pointing implements PointFinder {
   private readonly picker = new Picker();
 
   constructor(private readonly stage: Pick<Stage, 'view' | 'camera'>) {}

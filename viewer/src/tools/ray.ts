@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays against boxes and triangles, in double precision. No ray passes between two triangles that share an edge
 // (Woop, Benthin & Wald 2013, "Watertight ray/triangle intersection").
-import { unit, type Vector } from './vectors.js';
+import { distanceOf, dot, scale, subtract, unit, type Vector } from './vectors.js';
 
 export interface Ray {
   readonly from: Vector;
@@ -13,10 +13,21 @@ export interface Ray {
   readonly meetsFronts?: boolean;
 }
 
+/// Looks for a place on triangles, and tells how near they may be.
+export interface TriangleProbe {
+  /// Each corner of the last triangle hit has this part of the point.
+  readonly weights: Vector;
+  /// Distance at which a box is entered, 0 inside; Infinity: it is missed. Six numbers from `at`: least, then most.
+  enters(box: ArrayLike<number>, at?: number): number;
+  entersSphere(center: Vector, radius: number): number;
+  /// Distance at which a triangle is hit, and `weights`; Infinity: it is missed.
+  hits(positions: ArrayLike<number>, a: number, b: number, c: number): number;
+}
+
 /// Exits are put off by what products round: a box is never missed for that.
 const SLACK = 1e-15;
 
-export class RayProbe {
+export class RayProbe implements TriangleProbe {
   /// Has length 1.
   readonly direction: Vector;
   /// Each corner of the last triangle hit has this part of the point.
@@ -48,6 +59,14 @@ export class RayProbe {
       exit = Math.min(exit, (way > 0 ? most : least) / way);
     }
     return entry <= exit + SLACK * Math.abs(exit) ? entry : Infinity;
+  }
+
+  /// Distance at which a sphere is entered, 0 inside; Infinity: it is missed.
+  entersSphere(center: Vector, radius: number): number {
+    const to = subtract(center, this.ray.from);
+    const along = dot(to, this.direction);
+    const aside = distanceOf(to, scale(this.direction, along));
+    return aside > radius || along < -radius ? Infinity : Math.max(0, along - radius);
   }
 
   /// Distance at which a triangle is hit from a side that the ray meets, and `weights`; Infinity: it is missed.

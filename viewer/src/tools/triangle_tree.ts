@@ -2,7 +2,7 @@
 // Boxes over the triangles of a tile: a ray looks at few of them. Triangles are in the order of a Morton curve, and
 // each box holds two halves of a run of it (Lauterbach et al. 2009, "Fast BVH construction on GPUs").
 import type { Indices } from '../hierarchy/copies.js';
-import type { RayProbe } from './ray.js';
+import type { TriangleProbe } from './ray.js';
 
 const RUN = 8; // triangles of the lowest boxes
 const GRID = 512; // cells of the curve on each axis: 27 bits
@@ -84,7 +84,7 @@ export class TriangleTree {
   }
 
   /// Calls for triangles that may be hit nearer than the limit, near boxes first; what it returns is the new limit.
-  visit(probe: RayProbe, limit: number, look: (triangle: number) => number): void {
+  visit(probe: TriangleProbe, limit: number, look: (triangle: number) => number): void {
     const waiting = [0];
     for (let box = waiting.pop(); box !== undefined; box = waiting.pop()) {
       if (!(probe.enters(this.boxes, FLOATS * box) < limit)) continue;
@@ -104,7 +104,7 @@ export class TriangleTree {
     }
   }
 
-  private farFirst(probe: RayProbe, box: number): [number, number] {
+  private farFirst(probe: TriangleProbe, box: number): [number, number] {
     const [one, other] = [2 * box + 1, 2 * box + 2];
     return probe.enters(this.boxes, FLOATS * one) < probe.enters(this.boxes, FLOATS * other) ? [other, one] : [one, other];
   }
