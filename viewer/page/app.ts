@@ -58,8 +58,7 @@ export class App {
 
   /// `embedded`: what the page shows instead of what its address says; null: nothing.
   constructor(private readonly root: HTMLElement, embedded: Model | null) {
-    const query = readQuery(location.search, document.baseURI);
-    this.query = embedded === null ? query : { ...query, only: embedded, problem: null };
+    this.query = readQuery(location.search, document.baseURI, embedded);
     this.watch = new ListingWatch(
       this.query.listing,
       (listing) => { this.listed(listing); },
@@ -203,7 +202,10 @@ export class App {
       const findStory = (signal: AbortSignal): Promise<string | null> => this.storyOf(model, signal);
       const findPermission = (signal: AbortSignal): Promise<boolean> => this.mayWriteViews(model, signal);
       const asksToken = (): boolean => this.asksToken;
-      this.view = new ModelView({ page: this.page, entry, spot, turn, fetch, createWorker, poster, findStory, findPermission, asksToken, hasGallery: this.query.only === null });
+      const findModels = async (signal: AbortSignal): Promise<readonly Model[]> => (await this.watch.once(signal)).models;
+      this.view = new ModelView({
+        page: this.page, entry, spot, turn, fetch, createWorker, poster, findStory, findPermission, asksToken, findModels, other: this.query.other, hasGallery: this.query.only === null,
+      });
     } finally {
       early.close();
     }

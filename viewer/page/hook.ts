@@ -5,6 +5,7 @@ import { problemOfPose, type Pose } from './address.js';
 import type { App } from './app.js';
 import type { Model } from './listing.js';
 import type { HierarchyView } from '../src/index.js';
+import type { PairStats } from '../src/pair/index.js';
 
 export interface Hook {
   /// Figures of the open model; null in the gallery and before the model's code is there.
@@ -14,6 +15,9 @@ export interface Hook {
   setCamera(pose: Pose): void;
   /// The view stands still, is drawn, and nothing is left to fetch or refine.
   settled(): boolean;
+  /// Figures of both models of a comparison, and the second one; null: there is none, or its code is not there.
+  pair(): PairStats | null;
+  readonly other: HierarchyView | null;
   readonly view: HierarchyView | null;
   /// Models of the listing, as soon as the gallery has been shown.
   readonly models: readonly Model[];
@@ -50,6 +54,8 @@ export function installHook(app: App): void {
       app.view?.setPose(checked);
     },
     settled: () => app.view?.settled() ?? false,
+    pair: () => app.view?.pair?.stats() ?? null,
+    get other() { return app.view?.pair?.view ?? null; },
     get view() { return app.view?.view ?? null; },
     get models() { return app.models; },
     open: (name) => app.open(name),

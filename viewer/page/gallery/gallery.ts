@@ -10,6 +10,8 @@ import { words } from '../words/words.js';
 import { Animation } from './animation.js';
 import { arrangeModels, arrangeSlots, findJobs, tagsOf, type Group } from './arrangement.js';
 import type { Cell } from './cell.js';
+import { Comparison } from './comparison.js';
+import './comparison.css';
 import { DrawingQueue } from './drawing_queue.js';
 import { JobCell } from './job_cell.js';
 import type { Turn } from './layout.js';
@@ -62,6 +64,7 @@ export class Gallery {
   private readonly map: MapPlace;
   private readonly above = new ResizeObserver(() => { if (this.open) this.visible.follow(); }); // cells move with what is above
   private readonly animation = new Animation();
+  private readonly comparison = new Comparison();
   private readonly stills = new DrawingQueue();
   private readonly cells = new Map<string, ModelCell>(); // the last one was used last
   private readonly jobCells = new Map<string, JobCell>();
@@ -82,7 +85,7 @@ export class Gallery {
     this.map = new MapPlace((indices) => this.modelsAt(indices));
     page.addEventListener('theme', () => { this.visible.redraw(); });
     const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, languageSelect(page), themeButton(page));
-    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.map.root, this.visible.root);
+    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.map.root, this.visible.root, this.comparison.root);
     document.addEventListener('keydown', (event) => { if (this.open) this.key(event); }, { capture: true });
     for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
     this.toolbar.root.hidden = true;
@@ -243,7 +246,7 @@ export class Gallery {
   private modelCell({ key, model }: ModelItem): Cell {
     const known = this.cells.get(key);
     if (known !== undefined && known.model !== model && JSON.stringify(known.model) !== JSON.stringify(model)) this.drop(key);
-    const cell = this.cells.get(key) ?? new ModelCell(model, { stills: this.stills, animation: this.animation });
+    const cell = this.cells.get(key) ?? new ModelCell(model, { stills: this.stills, animation: this.animation, comparison: this.comparison });
     this.cells.delete(key);
     this.cells.set(key, cell);
     if (this.cells.size > MOST_KEPT) this.drop(this.cells.keys().next().value!);

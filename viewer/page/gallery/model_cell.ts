@@ -8,6 +8,7 @@ import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
 import type { Animation } from './animation.js';
 import type { Cell } from './cell.js';
+import type { Comparison } from './comparison.js';
 import { drawOutline } from './drawing.js';
 import type { DrawingQueue } from './drawing_queue.js';
 import type { Turn } from './layout.js';
@@ -40,6 +41,7 @@ function exactText({ name, source, modified, tags = [], warnings = [] }: Model, 
 export interface Studio {
   stills: DrawingQueue;
   animation: Animation;
+  comparison: Comparison;
 }
 
 export class ModelCell implements Cell, Turned {
@@ -68,7 +70,7 @@ export class ModelCell implements Cell, Turned {
     this.showSizes(model);
     const { warnings = [] } = model;
     if (warnings.length > 0) this.stage.append(element('span', { class: 'cell-warning' }, words.counts.warnings(warnings.length, formatCount(warnings.length))));
-    this.root = element('li', {}, this.link);
+    this.root = element('li', {}, this.link, studio.comparison.button(model));
     this.solid = new Solid(model.url, this.stage);
     this.turning = new Turning(this.link, this.stage, this);
   }
@@ -102,6 +104,7 @@ export class ModelCell implements Cell, Turned {
     this.studio.animation.stop(this);
     this.solid.end();
     this.source.close();
+    this.studio.comparison.forget(this.model);
     this.root.remove();
   }
 

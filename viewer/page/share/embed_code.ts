@@ -18,6 +18,8 @@ export interface Shared extends SharedSpot {
   url: string;
   /// The address of what is told about it; null: nothing, or it has none.
   story: string | null;
+  /// The address of the hierarchy that it is compared with; null: it is alone.
+  other: string | null;
   /// The page has the hierarchy within it: there is no code for others.
   isWhole: boolean;
 }
@@ -29,17 +31,18 @@ function escaped(text: string): string {
 }
 
 /// Relative to the page where it lies below it: the page may be called by several names.
-function parameterOf(url: string, page: string): string {
+export function parameterOf(url: string, page: string): string {
   const folder = new URL('.', page).href;
   return encodeURIComponent(url.startsWith(folder) ? url.slice(folder.length) : url).replace(/%2F/g, '/').replace(/%3A/g, ':');
 }
 
 /// A page that shows the model alone.
 export function addressAlone(shared: Shared): string {
-  const { page, url, story, pose, choices } = shared;
+  const { page, url, story, other, pose, choices } = shared;
   const hash = pose === null && choices === '' ? '' : formatAddress({ path: '', pose, choices });
   const told = story === null ? '' : `&story=${parameterOf(story, page)}`;
-  return `${page}?model=${parameterOf(url, page)}${told}${hash}`;
+  const beside = other === null ? '' : `&with=${parameterOf(other, page)}`;
+  return `${page}?model=${parameterOf(url, page)}${beside}${told}${hash}`;
 }
 
 export function frameCode(shared: Shared): string {

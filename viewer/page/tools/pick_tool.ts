@@ -14,6 +14,7 @@ import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { FigureList, line, textButton, type Figure } from './figures.js';
 import { INNER_KEYS, isKey } from './keys.js';
+import { pairRows } from './pair_rows.js';
 import type { Mark } from '../../src/plugins/overlay.js';
 import type { Tool } from './tool.js';
 import type { ToolSettings } from './tool_settings.js';
@@ -51,8 +52,12 @@ function globeRows({ globe, places }: PickedPoint, metresPerUnit: number): Figur
 }
 
 /// As the tiles have them: of floats.
+function valueLine(name: string, { value, label }: PickedPoint['values'][number]): Figure {
+  return line(name, label || (value === null ? '–' : formatFloat(value)), label || (value ?? ''));
+}
+
 function valueRows({ values }: PickedPoint): Figure[] {
-  return values.map(({ name, value, label }) => line(name, label || (value === null ? '–' : formatFloat(value)), label || (value ?? '')));
+  return values.map((each) => valueLine(each.name, each));
 }
 
 function originOf(picked: PickedPoint, state: State): string {
@@ -171,11 +176,18 @@ export class PickTool implements Tool {
   private show(picked: PickedPoint | null, state: State): void {
     this.picked = picked;
     this.shop.link('pick').write(writeLink({ pick: picked?.point }));
-    this.list.show(picked ? rowsOf(picked, state, this.shop) : []);
+    this.list.show(picked ? [...rowsOf(picked, state, this.shop), ...this.beside(picked)] : []);
     this.copy.hidden = picked === null;
     this.copy.textContent = words.pick.copy;
     this.note.textContent = picked === null ? words.pick.hint : picked.isExact ? words.pick.exact : state === 'missing' ? words.pick.notThere : '';
     this.shop.bench.redraw();
+  }
+
+  /// What a second model in the picture has there.
+  private beside(picked: PickedPoint): Figure[] {
+    const { bench, scale } = this.shop;
+    const { arrival: { other }, model } = bench.context;
+    return other === null ? [] : pairRows(picked, [model.name, other.name], scale, valueLine);
   }
 
   private async copyPoint(): Promise<void> {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tools share this: the view, its story, notes, settings, and the ways to points and lengths.
 import { Places } from '../../src/tools/places.js';
+import type { PointFinder } from '../../src/tools/point_finder.js';
 import { Pointing } from '../../src/tools/pointing.js';
 import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import { writeDecimal } from '../numbers.js';
@@ -18,7 +19,7 @@ export type ToolLinks = Readonly<Partial<Record<ViewPart, string>>>;
 export type WriteLink = (part: ViewPart, link: string) => void;
 
 export class Workshop {
-  readonly pointing: Pointing;
+  private readonly own: Pointing;
   readonly places: Places;
   readonly settings: ToolSettings;
   readonly notebook: NotebookStore;
@@ -26,10 +27,15 @@ export class Workshop {
 
   /// The view's manifest is there. `told`: what the address has; `write`: puts something else there, or takes it away.
   constructor(readonly bench: PageStage, readonly story: StoryHost, private told: ToolLinks, private readonly write: WriteLink) {
-    this.pointing = new Pointing(bench);
+    this.own = new Pointing(bench);
     this.places = new Places(bench.view);
     this.settings = loadToolSettings(unitOfModel(this.places.manifest));
     this.notebook = new NotebookStore(this.link('notes'));
+  }
+
+  /// Finds points of all that is in the picture.
+  get pointing(): PointFinder {
+    return this.bench.points ?? this.own;
   }
 
   /// Tells lengths in the unit that was chosen.

@@ -9,6 +9,7 @@ import { axesOf } from '../../src/scene/framing.js';
 import { heightAt, SwitchingCamera, type Projection } from '../../src/scene/projection.js';
 import { depthRange, parallelStand, VIEW_ANGLE } from './camera_moves.js';
 import type { HierarchyView } from '../../src/index.js';
+import type { Partner } from './partner.js';
 import { Lighting } from '../../src/scene/lighting.js';
 import { TileObject } from '../../src/scene/tile_object.js';
 import { valuesAt } from '../../src/tools/values_at.js';
@@ -39,6 +40,10 @@ export class Canvas {
   private readonly raycaster = new Raycaster();
   /// Null: as large as the canvas.
   asked: PictureSize | null = null;
+  /// Another model is in the picture, too.
+  partner: Partner | null = null;
+  private aimed: { readonly pose: CameraPose; readonly projection: Projection } | null = null;
+  private isStale = false;
   private nominal = new Vector2();
   private sharpness = 1;
   readonly view: HierarchyView;
@@ -54,12 +59,41 @@ export class Canvas {
   }
 
   get aspect(): number {
-    return this.nominal.x / Math.max(this.nominal.y, 1);
+    return this.nominal.x / this.columns / Math.max(this.nominal.y, 1);
   }
 
-  /// Pixels of a picture of full sharpness.
+  private get columns(): number {
+    return this.partner?.columns ?? 1;
+  }
+
+  /// Of all that is in the picture.
+  get box(): Box3 {
+    return this.partner?.box ?? this.view.box;
+  }
+
+  shape(): Iterable<Vector3> {
+    return this.partner?.shape() ?? this.view.shape();
+  }
+
+  /// Pixels of a column of full sharpness.
   get size(): { width: number; height: number } {
-    return this.asked ?? { width: this.nominal.x, height: this.nominal.y };
+    const { width, height } = this.asked ?? { width: this.nominal.x, height: this.nominal.y };
+    return { width: width / this.columns, height };
+  }
+
+  /// A place of the picture, within the column that it lies in.
+  inColumn(right: number, up: number): readonly [number, number] {
+    return this.partner?.inColumn(right, up) ?? [right, up];
+  }
+
+  /// As HierarchyView.update().
+  update(now: number): boolean {
+    return this.partner?.update(this.size, now) ?? this.view.update(this.camera, this.size, now);
+  }
+
+  /// The next fit() is one of another size, as after another number of columns.
+  fitAgain(): void {
+    this.isStale = true;
   }
 
   /// Takes over the size that the canvas has on the page, with a part of the pixels on each axis. False: nothing has changed.
@@ -68,7 +102,8 @@ export class Canvas {
     if (clientWidth === 0 || clientHeight === 0) return false;
     const ratio = Math.min(devicePixelRatio, MOST_RATIO);
     const nominal = new Vector2(clientWidth, clientHeight).multiplyScalar(ratio).floor();
-    if (this.nominal.equals(nominal) && this.sharpness === sharpness) return false;
+    if (this.nominal.equals(nominal) && this.sharpness === sharpness && !this.isStale) return false;
+    this.isStale = false;
     this.nominal = nominal;
     this.sharpness = sharpness;
     this.renderer.setPixelRatio(ratio * sharpness);
@@ -78,28 +113,47 @@ export class Canvas {
 
   /// `angle`: radians from the lower to the upper edge of the picture.
   aim(pose: CameraPose, box: Box3, { projection = 'perspective', angle = VIEW_ANGLE }: { projection?: Projection; angle?: number } = {}): void {
-    const isParallel = projection === 'parallel';
-    const { position, near, far } = isParallel ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
+    this.aimed = { pose, projection };
     this.camera.fov = (angle * 180) / Math.PI;
-    this.camera.position.copy(position);
+    this.camera.parallelHeight = projection === 'parallel' ? heightAt(pose.distance, VIEW_ANGLE) : null;
+    this.camera.aspect = this.asked ? this.asked.width / this.columns / this.asked.height : this.aspect;
+    this.reach(box);
     face(this.camera, pose);
-    this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;
-    Object.assign(this.camera, { near, far, parallelHeight: isParallel ? heightAt(pose.distance, VIEW_ANGLE) : null });
+    this.camera.updateMatrixWorld();
+  }
+
+  /// The camera sees as far as this box, from where it is aimed.
+  reach(box: Box3): void {
+    if (this.aimed !== null) {
+      const { pose, projection } = this.aimed;
+      const { position, near, far } = projection === 'parallel' ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
+      this.camera.position.copy(position);
+      Object.assign(this.camera, { near, far });
+    }
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }
 
   draw(): void {
-    this.view.draw(this.renderer, this.scene, this.camera);
+    if (this.partner === null) this.view.draw(this.renderer, this.scene, this.camera);
+    else {
+      this.partner.paint();
+      this.view.plugins.drawn(this);
+      this.partner.drawn();
+    }
   }
 
   /// Draws parts of a picture as it is aimed at.
   get drawPart(): DrawPart {
-    return partDrawer(this.renderer, this.camera, () => { this.view.plugins.paint(this); });
+    return partDrawer(this.renderer, this.camera, () => {
+      if (this.partner === null) this.view.plugins.paint(this);
+      else this.partner.paint();
+    });
   }
 
-  /// The point of the drawn triangles at a place of the picture, from -1 to 1.
+  /// The point of the drawn triangles at a place of a column, from -1 to 1.
   pick(right: number, up: number): Vector3 | null {
+    if (this.partner !== null) return this.partner.pick(right, up);
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
     const hits = this.raycaster.intersectObject(this.view, true);
     return hits.find(({ point, object, face }) => this.view.plugins.keeps(point, object instanceof TileObject && face ? valuesAt(object.drawn().tile, face.a) : []))?.point ?? null;

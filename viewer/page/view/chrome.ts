@@ -33,6 +33,7 @@ export class Chrome {
   private readonly settings: Sheet;
   private readonly share: Sheet;
   private readonly info: Sheet;
+  private readonly compare: Sheet;
   private readonly story: HTMLButtonElement;
   private readonly immersions: Readonly<Record<ImmersionMode, HTMLButtonElement>>;
   private readonly badge = element('p', { class: 'badge', 'aria-live': 'polite', 'aria-atomic': 'true' });
@@ -48,13 +49,14 @@ export class Chrome {
     this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [new Panel(parts, () => this.panel.isOpen).root]);
     this.share = new Sheet('share', words.share.title, ICONS.share, [this.sharing.root]);
     this.info = new Sheet('info', words.info.title, ICONS.help, [new InfoSheet(context).root]);
+    this.compare = new Sheet('compare', words.pair.compare, ICONS.compare, [parts.pair.form]);
     this.story = iconButton(words.story.title, ICONS.story, () => { story.toggle(); });
     this.immersions = {
       'immersive-vr': iconButton(words.view.vr, ICONS.vr, () => void extensions.immerse('immersive-vr')),
       'immersive-ar': iconButton(words.view.ar, ICONS.ar, () => void extensions.immerse('immersive-ar')),
     };
     for (const button of [this.story, ...Object.values(this.immersions)]) button.hidden = true;
-    const inBar = [this.share, this.settings, this.panel, this.help];
+    const inBar = [this.compare, this.share, this.settings, this.panel, this.help];
     const all = [this.info, ...inBar];
     this.sheets = new Sheets(all, all.filter((sheet) => sheet !== this.panel), (sheet, open) => { this.sheetChanged(sheet, open); }, signal);
     surface.setAttribute('aria-describedby', this.summary.id);
@@ -136,5 +138,6 @@ export class Chrome {
       parts.context.page.keep({ panel: open });
       parts.frames.reportSoon();
     } else if (sheet === this.share && open) this.sharing.show();
+    else if (sheet === this.compare && open) void parts.pair.offer();
   }
 }

@@ -21,6 +21,7 @@ export class Furniture {
     if (!camera.navigation.atHome) context.startRest(); // it was moved before anything could write that down
     choices.show();
     if (context.page.preferences.panel) chrome.panel.open();
+    void parts.pair.begin();
     frames.reportSoon();
   }
 }

@@ -29,7 +29,7 @@ export class Gestures {
 
   constructor(
     private readonly surface: HTMLElement,
-    private readonly navigation: Navigation,
+    private readonly navigation: Pick<Navigation, 'grab' | 'grabMiddle' | 'move' | 'approach'>,
     /// A place of the picture was tapped, from -1 to 1; true: that is all.
     private readonly takes: (right: number, up: number) => boolean = () => false,
     /// A drag, in radians; true: it is none of the camera.

@@ -38,6 +38,8 @@ export const KEYS: readonly (readonly [string, Act])[] = [
   ['Home', home], ['0', home], ['Escape', back], ['Backspace', back],
   ['1', colours(0)], ['2', colours(1)], ['3', colours(2)], ['4', colours(3)], ['5', colours(4)], ['6', colours(5)],
   ['q', ({ camera }) => { camera.toggleProjection(); }],
+  ['u', ({ pair }) => { pair.shown?.next(); }], ['z', ({ pair }) => { pair.shown?.turn(); }],
+  [',', ({ pair }) => { pair.shown?.moveDivider(-1); }], ['.', ({ pair }) => { pair.shown?.moveDivider(1); }],
   ['l', ({ light }) => { light.hold(); }], ['g', ({ choices }) => { choices.nextLight(); }],
   ['s', sheet('panel')], ['?', sheet('help')], ['h', sheet('help')], ...switches, ...tools,
 ];

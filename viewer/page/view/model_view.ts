@@ -4,6 +4,7 @@ import type { HierarchyView, Stats } from '../../src/index.js';
 import type { Pose, Spot } from '../address.js';
 import { FirstParts } from './first_parts.js';
 import type { Furniture } from './furniture.js';
+import type { PagePair } from '../pair/page_pair.js';
 import { Gestures } from './gestures.js';
 import { Notices } from './notices.js';
 import type { Arrival } from './page_context.js';
@@ -25,16 +26,27 @@ export class ModelView {
   constructor(private readonly arrival: Arrival) {
     const parts = new FirstParts(arrival, () => { this.follow(); });
     [this.parts, this.spot] = [parts, arrival.spot];
-    const { context, camera, frames } = parts;
+    const { context, frames } = parts;
     new Notices(context, frames);
     const { root, surface, view: { plugins } } = context;
-    new Gestures(surface, camera.navigation, (right, up) => plugins.tapped(right, up), (right, up) => this.furniture?.parts.light.drag(right, up) ?? false);
+    new Gestures(surface, this.hands(), (right, up) => plugins.tapped(right, up), (right, up) => this.furniture?.parts.light.drag(right, up) ?? false);
     root.append(surface);
     context.addEventListener('shown', () => { arrival.poster?.fade(); });
     context.addEventListener('refused', () => { arrival.poster?.end(); });
     for (const type of ['shown', 'refused'] as const) context.addEventListener(type, () => void this.furnish());
     const timer = window.setTimeout(() => void this.furnish(), PATIENCE);
     context.signal.addEventListener('abort', () => { window.clearTimeout(timer); });
+  }
+
+  /// The camera for hands, which take places of the whole picture.
+  private hands(): ConstructorParameters<typeof Gestures>[1] {
+    const { context: { canvas }, camera: { navigation } } = this.parts;
+    return {
+      grab: (right, up) => { navigation.grab(...canvas.inColumn(right, up)); },
+      approach: (right, up) => { navigation.approach(...canvas.inColumn(right, up)); },
+      grabMiddle: () => { navigation.grabMiddle(); },
+      move: (moves) => { navigation.move(moves); },
+    };
   }
 
   /// Once it is on the page.
@@ -54,6 +66,11 @@ export class ModelView {
 
   get view(): HierarchyView {
     return this.parts.context.view;
+  }
+
+  /// Two models are compared; null: they are not.
+  get pair(): PagePair | null {
+    return this.furniture?.parts.pair.shown ?? null;
   }
 
   pose(): Pose {
@@ -82,7 +99,7 @@ export class ModelView {
   }
 
   settled(): boolean {
-    return this.furniture !== null && this.parts.frames.isSettled;
+    return this.furniture?.parts.pair.isThere === true && this.parts.frames.isSettled;
   }
 
   /// Once; again if the code did not come.

@@ -30,6 +30,10 @@ export interface Arrival extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   readonly findPermission: (signal: AbortSignal) => Promise<boolean>;
   /// The server asks for a word before it keeps anything; known once the permission is.
   readonly asksToken: () => boolean;
+  /// Another model to compare it with; null: none.
+  readonly other: Model | null;
+  /// Those of the listing.
+  readonly findModels: (signal: AbortSignal) => Promise<readonly Model[]>;
 }
 
 export interface ContextEvents {

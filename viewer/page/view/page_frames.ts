@@ -59,9 +59,9 @@ export class PageFrames {
 
   /// The picture is complete, and stays as it is; while one is taken it is that one.
   get isSettled(): boolean {
-    const { context: { isOpened, isDirty, view }, camera } = this;
+    const { context: { isOpened, isDirty, view, canvas }, camera } = this;
     const isBusy = camera.busy && !camera.isFrozen;
-    return isOpened && !isDirty && this.pauses.size === 0 && !isBusy && !this.sharpness.blurred && view.stats().settled;
+    return isOpened && !isDirty && this.pauses.size === 0 && !isBusy && !this.sharpness.blurred && (canvas.partner?.isSettled ?? view.stats().settled);
   }
 
   private frame(now: number): Pace {
@@ -72,7 +72,7 @@ export class PageFrames {
     const moved = camera.step(now);
     const resized = canvas.fit(this.sharpness.at(now, moved, view.settings.framesPerSecond));
     camera.aim(resized);
-    const news = view.update(canvas.camera, canvas.size, now);
+    const news = canvas.update(now);
     if (moved || news || resized || context.isDirty) this.draw();
     context.isDirty = false;
     return this.pace(now, moved || news || camera.busy || this.sharpness.blurred);
@@ -96,11 +96,11 @@ export class PageFrames {
   }
 
   private pace(now: number, busy: boolean): Pace {
-    const { context: { view, isOpened }, isRefused } = this;
+    const { context: { view, canvas, isOpened }, isRefused } = this;
     const due = now - this.reportedAt >= REPORT;
     if (busy && !due) return 'busy';
     const stats = view.stats();
-    const working = !isRefused && !(stats.settled && isOpened);
+    const working = !isRefused && !((canvas.partner?.isSettled ?? stats.settled) && isOpened);
     if (view.manifest !== null) {
       if (this.renewal.know(view.manifest)) return 'rest';
       this.context.dispatchEvent({ type: 'known', manifest: view.manifest });

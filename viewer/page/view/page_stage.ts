@@ -7,14 +7,15 @@ import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { fileOf } from '../listing.js';
 import type { Telling } from '../problems.js';
 import type { Canvas } from './canvas.js';
+import type { PointFinder } from '../../src/tools/point_finder.js';
 import type { PageFrames } from './page_frames.js';
 import { isStanding, type Sight, type ViewCamera } from './view_camera.js';
 import { fittedLink } from '../../src/view/view_link.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
 
-/// The tools as stories tell of them.
-interface ToldTools {
+/// The tools, or two models in the picture, as stories tell of them.
+interface ToldPart {
   /// As links have what they show; notes, which tell the story, left out.
   readonly toldText: string;
   tell(choices: string): void;
@@ -33,7 +34,8 @@ export class PageStage implements Stage {
   /// The file of the hierarchy: its story lies beside it under that name and ".story.json".
   readonly fileName: string;
   /// They come after the stage, which they stand on.
-  tools: ToldTools | null = null;
+  tools: ToldPart | null = null;
+  pair: ToldPart | null = null;
 
   constructor(readonly context: PageContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: PageFrames) {
     const { view, canvas, root, surface, signal, model } = context;
@@ -77,6 +79,10 @@ export class PageStage implements Stage {
     this.context.redraw();
   }
 
+  get points(): PointFinder | null {
+    return this.context.canvas.partner?.points ?? null;
+  }
+
   suspend(): () => void {
     return this.frames.pause();
   }
@@ -85,11 +91,12 @@ export class PageStage implements Stage {
   present(choices: string): void {
     this.looks.tell(choices);
     this.tools?.tell(choices);
+    this.pair?.tell(choices);
   }
 
   /// All of the view but the camera and notes, as links have it.
   choices(): string {
-    return fittedLink([this.looks.text, this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
+    return fittedLink([this.looks.text, this.pair?.toldText ?? '', this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
   }
 
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.

@@ -31,6 +31,8 @@ export class Presentation {
     private readonly view: HierarchyView,
     private readonly lighting: Lighting,
     public chosen: Appearance,
+    /// Shown instead of what was chosen.
+    public over: Partial<Look> | null = null,
   ) {}
 
   get shown(): ShownAppearance {
@@ -39,7 +41,8 @@ export class Presentation {
 
   /// Also when more is known of the model than before.
   apply(): void {
-    const { look, rig, key } = this.shown;
+    const { look: wished, rig, key } = this.shown;
+    const look = { ...wished, ...this.over };
     if (!isSame(look, this.view.look)) this.view.setLook(look);
     if (!isSame(this.chosen.standing, this.view.standing)) this.view.setStanding(this.chosen.standing);
     if (this.chosen.level !== this.view.mostLevel) this.view.mostLevel = this.chosen.level;

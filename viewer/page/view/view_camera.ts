@@ -112,7 +112,7 @@ export class ViewCamera {
 
   /// The manifest knows the box better than the root.
   aim(isResized: boolean): void {
-    const { isOpened, view, view: { box }, canvas } = this.context;
+    const { isOpened, view, canvas, canvas: { box } } = this.context;
     if (isOpened && (isResized || !this.framed.equals(box) || this.standing !== view.standing)) this.reframe();
     if (this.lens.isUsual || this.frozen !== null || !isOpened) {
       const { pose, projection } = this.frozen ?? this.sight;
@@ -164,10 +164,10 @@ export class ViewCamera {
 
   private reframe(): void {
     const { view, canvas } = this.context;
-    this.framed.copy(view.box);
+    this.framed.copy(canvas.box);
     this.standing = view.standing;
     this.navigation.frame(this.framed, {
-      aspect: canvas.aspect, projection: this.projection, direction: this.approach ?? view.firstDirection, points: view.shape(), first: this.firstPose(),
+      aspect: canvas.aspect, projection: this.projection, direction: this.approach ?? view.firstDirection, points: canvas.shape(), first: this.firstPose(),
     });
   }
 

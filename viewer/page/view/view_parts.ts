@@ -12,6 +12,7 @@ import { LightDrag } from './light_drag.js';
 import type { PageContext } from './page_context.js';
 import type { PageFrames } from './page_frames.js';
 import { PageStage } from './page_stage.js';
+import { PairHost } from './pair_host.js';
 import type { Renewal } from './renewal.js';
 import { StoryHost } from './story_host.js';
 import { ToolHost } from './tool_host.js';
@@ -27,6 +28,7 @@ export class ViewParts {
   readonly extensions: Extensions;
   readonly story: StoryHost;
   readonly tools: ToolHost;
+  readonly pair: PairHost;
   readonly light: LightDrag;
   readonly first: FirstView;
 
@@ -34,6 +36,8 @@ export class ViewParts {
     [this.context, this.choices, this.camera, this.renewal, this.frames, this.first] = [context, choices, camera, renewal, frames, first];
     this.extensions = new Extensions(context, this.choices);
     const stage = new PageStage(context, this.camera, this.choices, this.frames);
+    this.pair = new PairHost(stage, this.choices, () => this.spot());
+    stage.pair = this.pair;
     this.story = new StoryHost(stage);
     this.tools = new ToolHost(stage, this.story);
     stage.tools = this.tools;
@@ -42,8 +46,8 @@ export class ViewParts {
 
   /// Returns what a link to this view tells, and what it has no room for.
   spot(): SharedSpot {
-    const { choices, tools, story, camera, first, extensions } = this;
-    const all = orderedLink([camera.text, choices.text, extensions.text, tools.text, story.text].filter((text) => text !== '').join('&'));
+    const { choices, tools, story, camera, first, extensions, pair } = this;
+    const all = orderedLink([camera.text, choices.text, extensions.text, pair.text, tools.text, story.text].filter((text) => text !== '').join('&'));
     const { link, leftOut } = fittedLink(besideFirst(all, first.view));
     return { pose: camera.navigation.atHome ? null : camera.pose(), choices: link, leftOut };
   }
@@ -64,7 +68,7 @@ export class ViewParts {
   /// What a link says, and of what it says nothing as the model is seen first.
   follow({ choices }: Spot): void {
     const shown = overFirst(choices, this.first.view);
-    for (const part of [this.camera, this.choices, this.tools, this.story, this.extensions]) part.follow(shown);
+    for (const part of [this.camera, this.choices, this.pair, this.tools, this.story, this.extensions]) part.follow(shown);
   }
 
   /// As the model is seen first.
@@ -78,7 +82,7 @@ export class ViewParts {
   shared(): Shared {
     this.context.rest();
     const { name, url, files } = this.context.model;
-    return { page: location.origin + location.pathname, name, url, story: this.story.address, isWhole: files !== undefined, ...this.spot() };
+    return { page: location.origin + location.pathname, name, url, story: this.story.address, other: this.context.arrival.other?.url ?? null, isWhole: files !== undefined, ...this.spot() };
   }
 
   /// Out of the depth first, then to the gallery.

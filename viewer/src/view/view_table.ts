@@ -7,6 +7,7 @@
 //
 // Keys of one part are said together: whoever says one of them says all, and the others are then as without a choice.
 import { areNear } from '../farthest.js';
+import { WAYS } from '../pair/ways.js';
 import { RAMPS } from '../scene/ramp_names.js';
 import type { Projection } from '../scene/projection.js';
 import { DEFAULT_LOOK, type Colours } from '../scene/settings.js';
@@ -35,7 +36,7 @@ const MOST_HIDDEN = 256; // labels
 const MOST_TEXTS = 100; // objects
 const ANGLE_DIGITS = 4;
 
-export const VIEW_PARTS = ['camera', 'projection', 'look', 'standing', 'dollhouse', 'level', 'cut', 'rooms', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
+export const VIEW_PARTS = ['camera', 'projection', 'look', 'standing', 'dollhouse', 'level', 'cut', 'rooms', 'pair', 'measure', 'pick', 'objects', 'notes', 'story'] as const;
 export type ViewPart = (typeof VIEW_PARTS)[number];
 type Box = readonly [number, number, number, number, number, number];
 
@@ -127,6 +128,9 @@ export const VIEW_TABLE = {
   walk: row('rooms', flag(), false),
   /// Heights of the input between which all is drawn.
   storey: row('rooms', numbers<readonly [number, number]>(([from, to, ...more]) => more.length === 0 && from < to, 'two numbers, the lower first')),
+  way: row('pair', word(WAYS), 'swipe', true),
+  /// The part of the picture's width that the first model has.
+  divider: row('pair', number((value) => value >= 0 && value <= 1, 'from 0 to 1'), 0.5, true),
   measure: row('measure', numbers(arePlaces, `three numbers for each of 1 to ${MOST_MEASURED} points`)),
   pick: row('pick', numbers<readonly [number, number, number]>((values) => values.length === 3 && areNear(values), 'three numbers')),
   object: row('objects', text(() => true, 'a text')),

@@ -7,7 +7,7 @@ import { addressAlone, elementCode, frameCode, type Shared } from '../../page/sh
 const POSE = { position: [1.5, -2, 3e9], target: [0, 0.25, 1] } as const;
 
 function shared(change: Partial<Shared> = {}): Shared {
-  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', story: null, pose: null, choices: '', leftOut: [], isWhole: false, ...change };
+  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', story: null, other: null, pose: null, choices: '', leftOut: [], isWhole: false, ...change };
 }
 
 describe('the address of a model alone', () => {
@@ -15,6 +15,12 @@ describe('the address of a model alone', () => {
     const address = new URL(addressAlone(shared({ url, pose: POSE, choices: 'light=flat' })));
     expect(readQuery(address.search, address.href).only!.url).toBe(url);
     expect(parseAddress(address.hash)).toEqual({ path: '', pose: POSE, choices: 'light=flat' });
+  });
+
+  it('has the model that it is compared with', () => {
+    const address = new URL(addressAlone(shared({ other: 'http://host/show/models/b c.hier', choices: 'way=side' })));
+    expect(readQuery(address.search, address.href).other).toMatchObject({ url: 'http://host/show/models/b%20c.hier' });
+    expect(parseAddress(address.hash)!.choices).toBe('way=side');
   });
 
   it.each(['http://host/show/models/a%20b.hier.story.json', 'https://other/x.json?signed=a&b'])('has the story at %s', (story) => {

@@ -2,7 +2,6 @@
 import { beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Moves } from '../../page/view/glide.js';
 import { Gestures } from '../../page/view/gestures.js';
-import type { Navigation } from '../../page/view/navigation.js';
 
 /// 400 x 200 pixels, 10 from the left and 20 from the top.
 class FakeSurface extends EventTarget {
@@ -41,7 +40,7 @@ function pinch(): void {
 
 beforeEach(() => {
   [surface, navigation] = [new FakeSurface(), new FakeNavigation()];
-  new Gestures(surface as unknown as HTMLElement, navigation as unknown as Navigation);
+  new Gestures(surface as unknown as HTMLElement, navigation);
 });
 
 describe('a gesture', () => {

@@ -6,7 +6,7 @@ const BASE = 'http://host/dir/index.html';
 
 describe('the query', () => {
   it('may say nothing', () => {
-    expect(readQuery('', BASE)).toEqual({ listing: 'http://host/dir/models.json', only: null, problem: null });
+    expect(readQuery('', BASE)).toEqual({ other: null, listing: 'http://host/dir/models.json', only: null, problem: null });
   });
 
   it('may name another listing', () => {
@@ -33,6 +33,22 @@ describe('the query', () => {
     const { only, problem } = readQuery(`?model=a.hier${story}`, BASE);
     expect(only).toMatchObject({ url: 'http://host/dir/a.hier', story: null });
     expect(problem!.message).toContain('&story=');
+  });
+
+  it('may name another model to compare with', () => {
+    expect(readQuery('?model=a.hier&with=sub/b.3tz', BASE)).toMatchObject({ only: { url: 'http://host/dir/a.hier' }, other: { name: 'b', url: 'http://host/dir/sub/b.3tz' }, problem: null });
+  });
+
+  it.each(['&with=', '&with=%20', '&with=ftp://x/y', '&with=javascript:1', '&with=b.hier%3Fx', '&with=http://[', `&with=${'x'.repeat(2000)}`])('shows the model alone, and is told off, for %s', (other) => {
+    const query = readQuery(`?model=a.hier${other}`, BASE);
+    expect(query).toMatchObject({ only: { url: 'http://host/dir/a.hier' }, other: null });
+    expect(query.problem!.message).toContain('&with=');
+    expect(query.problem!.message.length).toBeLessThan(400);
+  });
+
+  it('needs a model to compare another one with', () => {
+    expect(readQuery('?with=b.hier', BASE)).toMatchObject({ only: null, other: null, problem: { more: '' } });
+    expect(readQuery('?with=b.hier', BASE, readQuery('?model=a.hier', BASE).only)).toMatchObject({ only: { name: 'a' }, other: { name: 'b' }, problem: null });
   });
 
   it.each(['?models=', '?models=%20', '?model=%20', '?model=', '?model=javascript:1', '?model=a.hier%3Fx', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {

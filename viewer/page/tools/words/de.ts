@@ -26,6 +26,12 @@ export const de: ToolWords = {
     exact: 'Ein Eckpunkt der Eingabe, auf das Bit genau',
     notThere: 'Das Original ließ sich nicht holen; dies ist die Oberfläche, wie sie gezeigt wird.',
   },
+  pair: {
+    on: 'Auf',
+    nearest: (model: string) => `Nächster Punkt von ${model}`,
+    height: (model: string) => `${model}, darüber`,
+    nowhere: 'nichts darüber oder darunter',
+  },
   objects: {
     hint: (count) => `Klicken oder tippen Sie auf eines von ${count} Objekten, ein zweites Mal, um hinzufliegen; oder schreiben Sie seinen Namen.`,
     search: 'Name eines Objekts',

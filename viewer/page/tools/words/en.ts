@@ -25,6 +25,12 @@ export const en = {
     exact: 'A vertex of the input, exact to the bit',
     notThere: 'The original could not be fetched; this is the surface as it is shown.',
   },
+  pair: {
+    on: 'On',
+    nearest: (model: string) => `Nearest of ${model}`,
+    height: (model: string) => `${model}, above this`,
+    nowhere: 'nothing above or below',
+  },
   objects: {
     hint: (count: string) => `Click or tap one of ${count} objects, a second time to fly there; or type its name.`,
     search: 'Name of an object',

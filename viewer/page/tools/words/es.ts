@@ -26,6 +26,12 @@ export const es: ToolWords = {
     exact: 'Un vértice de la entrada, exacto hasta el último bit',
     notThere: 'No se pudo obtener el original; esta es la superficie tal como se muestra.',
   },
+  pair: {
+    on: 'En',
+    nearest: (model: string) => `Lo más cercano de ${model}`,
+    height: (model: string) => `${model}, por encima`,
+    nowhere: 'nada por encima ni por debajo',
+  },
   objects: {
     hint: (count) => `Haga clic o toque uno de ${count} objetos, otra vez para volar hasta él; o escriba su nombre.`,
     search: 'Nombre de un objeto',
