@@ -40,6 +40,7 @@ void add_compare_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
 void add_preview_command(CLI::App& parser, Invocation& invocation);
 void add_draw_command(CLI::App& parser, Invocation& invocation);
+void add_view_command(CLI::App& parser, Invocation& invocation);
 void add_page_command(CLI::App& parser, Invocation& invocation);
 void add_progressive_command(CLI::App& parser, Invocation& invocation);
 void add_reconstruct_command(CLI::App& parser, Invocation& invocation);

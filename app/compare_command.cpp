@@ -77,8 +77,10 @@ class DifferenceHierarchy {
     config_.attributes = {};
   }
 
-  /// Builds it and returns a text for people.
-  std::string build(execution::Progress& progress, Environment& environment) const {
+  /// Builds it and returns a text for people. It is shown as what it is: by the distances.
+  std::string build(const comparing::SurfaceComparison& comparison, execution::Progress& progress,
+                    Environment& environment) {
+    config_.view = comparing::view_of(comparison);
     pipeline::BuildOptions options{.force = replaces_, .restart = true};
     options.leaves_work = false;  // nobody could go on with it
     return pipeline::build_hierarchy(config_, options,
@@ -119,7 +121,7 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
     difference.emplace(from->place(), arguments.output, options, environment);
   const comparing::SurfaceComparison comparison = comparing::compare_surfaces(
       from->place(), to->place(), environment.files, options, *progress, environment.cancel);
-  const std::string made = difference ? difference->build(*progress, environment) : "";
+  const std::string made = difference ? difference->build(comparison, *progress, environment) : "";
   progress->finish(comparison.is_within() ? "" : "farther than the tolerance");
   account_stream(environment, arguments.output)
       << (arguments.json ? pretty_json(comparison_json(comparison)) : comparison_text(comparison));

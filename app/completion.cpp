@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <variant>
 
 namespace meshhier::app {
 
@@ -110,7 +111,10 @@ class Collector {
       return;
     for (const std::string& choice : key->choices)
       add(path + '=' + choice);
-    if (key->kind == config::KeyKind::boolean) {
+    const bool is_flag =
+        key->kind == config::KeyKind::boolean ||
+        (key->view != nullptr && std::holds_alternative<bool ModelView::*>(key->view->field));
+    if (is_flag) {
       add(path + "=true");
       add(path + "=false");
     }

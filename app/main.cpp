@@ -234,6 +234,7 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
   add_export_command(parser, invocation);
   add_preview_command(parser, invocation);
   add_draw_command(parser, invocation);
+  add_view_command(parser, invocation);
   add_page_command(parser, invocation);
   add_progressive_command(parser, invocation);
   add_reconstruct_command(parser, invocation);

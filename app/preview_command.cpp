@@ -210,6 +210,10 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                       options.view = parse_view(text);
                       return options.view.has_value();
                     });
+  command
+      .add_option("--link", options.link,
+                  "Draws what the page shows from this link: all of it, or from # on")
+      ->type_name("LINK");
   add_parsed_option(command, "--up",
                     "Which axis of the input points up; if not given, as the "
                     "hierarchy says",
@@ -277,7 +281,8 @@ void add_hints_at_drawings(CLI::App& command) {
 
 constexpr const char* kPreviewFooter =
     R"(Without --level, --cut or --error the tiles are at most a quarter of a pixel off. They are drawn
-one by one, so memory holds the picture and one tile. The front is where +z is, or -y if z points
+one by one, so memory holds the picture and one tile. A hierarchy that has a view (meshhier view) is
+drawn with it; options take the place of what it says. The front is where +z is, or -y if z points
 up; --view 90,20 looks at the right side from 20 degrees above it.
 
 Plans, elevations and sections at a scale are made by "meshhier draw".
@@ -290,6 +295,7 @@ Examples:
   meshhier preview town.3tz --up z --view top --error 0.5 -o map.png
   meshhier preview scan.hier --attribute quality --ramp turbo --range 0,1 -o quality.png
   meshhier preview town.3tz --colour-by storeys --where "built < '1945-01-01'" -o storeys.png
+  meshhier preview david.hier --link '#david.hier&0,1,3,0,1,0&light=raking' -o letters.png
   meshhier preview town.3tz --polygon parcel.geojson --view top -o parcel.png
   meshhier preview david.hier --level 0 --size 640x480 --format png -o - | display
 )";

@@ -204,11 +204,13 @@ class Service {
       uploads_.emplace(upload_options(arguments, environment), environment.files, tell_);
       if (!uploads_->offer())
         console_.tell(kNoUploads);
+      views_.emplace(environment.files.canonical(arguments.folder), *uploads_, hierarchies_,
+                     environment.files, tell_);
     }
     site_.emplace(server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
                                       server::is_loopback_host(arguments.server.host),
                                       arguments.cors, place_names(arguments, environment.files),
-                                      uploads_ ? &*uploads_ : nullptr},
+                                      uploads_ ? &*uploads_ : nullptr, views_ ? &*views_ : nullptr},
                   hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(),
                   tell_);
     const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
@@ -252,6 +254,7 @@ class Service {
   std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_
   std::optional<server::Watch> watch_;
   std::optional<server::Uploads> uploads_;
+  std::optional<server::ViewRequests> views_;
   std::optional<server::HttpServer> http_;
 };
 
@@ -287,6 +290,7 @@ everybody who knows the token. Nothing in INBOX is replaced.
   GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, preview.webp, tiles/LL/NNNNNN.glb, ...
   PUT /inbox/NAME.ply              with --inbox: a mesh
   POST /inbox/NAME                 with --inbox: a form of files, one of which is a mesh
+  PUT /models/NAME.hier/view       with --inbox: how a hierarchy is shown first, JSON
 
 Examples:
   meshhier serve models

@@ -33,4 +33,19 @@ std::optional<std::string> percent_decoded(std::string_view part) {
   return bytes;
 }
 
+std::string percent_encoded(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF", kPlain = "-_.!~*'()";
+  std::string part;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain =
+        (byte < 0x80 && std::isalnum(byte) != 0) || kPlain.find(c) != std::string_view::npos;
+    if (is_plain)
+      part += c;
+    else
+      part.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
+  }
+  return part;
+}
+
 }  // namespace meshhier

@@ -11,4 +11,8 @@ namespace meshhier {
 /// hexadecimal digits. What they are is for the caller to check.
 std::optional<std::string> percent_decoded(std::string_view part);
 
+/// Returns the text as a part of a query: bytes other than letters, digits and "-_.!~*'()" become
+/// %XX, as those of encodeURIComponent() of JavaScript.
+std::string percent_encoded(std::string_view text);
+
 }  // namespace meshhier

@@ -9,6 +9,7 @@
 #include "execution/progress.h"
 #include "export/cut_by_error.h"
 #include "hierarchy/ids.h"
+#include "hierarchy/model_view.h"
 #include "hierarchy/unit.h"
 #include "storage/io/file.h"
 
@@ -109,6 +110,10 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
                                    storage::FileSystem& files, const CompareOptions& options,
                                    execution::Progress& progress,
                                    const execution::CancelToken& cancel);
+
+/// Returns how a hierarchy with the distances is shown: on both sides of 0 up to what 99 % of the
+/// surface is within, the tolerance as a band.
+ModelView view_of(const SurfaceComparison& comparison);
 
 /// Returns the comparison for people.
 std::string comparison_text(const SurfaceComparison& comparison);

@@ -1,6 +1,7 @@
 // Tells a comparison in words.
 #include "base/plain_text.h"
 #include "compare/compare.h"
+#include "compare/difference_ply.h"
 
 #include <algorithm>
 #include <array>
@@ -157,6 +158,22 @@ Json objects_json(const ObjectComparison& objects) {
 }
 
 }  // namespace
+
+ModelView view_of(const SurfaceComparison& comparison) {
+  constexpr double kShownPart = 0.99;
+  const DistanceTally& distances = comparison.distances;
+  const double most = distances.empty() ? 0 : distances.size_quantile(kShownPart);
+  ModelView view;
+  view.colours = "attribute";
+  view.attribute = kDistance;
+  view.ramp = "coolwarm";
+  if (most > 0)
+    view.range = {-most, most};
+  if (comparison.tolerance > 0)
+    view.tolerance = comparison.tolerance;
+  view.light = "studio";
+  return view;
+}
 
 std::string comparison_text(const SurfaceComparison& comparison) {
   const DistanceTally& distances = comparison.distances;

@@ -37,7 +37,7 @@ void DifferencePly::write(Vec3d origin, const std::string& comment,
   mesh_io::PlyContent content;
   content.vertex_count = positions_.size();
   content.triangle_count = triangles_.size();
-  content.attributes.values = {{"distance", ValueType::f32}};
+  content.attributes.values = {{kDistance, ValueType::f32}};
   content.double_coordinates = origin != Vec3d{};
   content.comments = {comment};
   mesh_io::PlyWriter writer(output_.file(), content);

@@ -14,6 +14,9 @@
 
 namespace meshhier::comparing {
 
+/// The name of the distances.
+inline constexpr const char* kDistance = "distance";
+
 /// Vertices with their distances and triangles, until their counts are known.
 class DifferencePly {
  public:

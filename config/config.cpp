@@ -6,6 +6,7 @@
 #include "config/config_schema.h"
 #include "config/input_frame.h"
 #include "config/suggest.h"
+#include "config/view_config.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/output_name.h"
 #include "storage/io/json_text.h"
@@ -162,6 +163,14 @@ void check_first_view(const Config& config, const Draft& draft) {
     refuse(draft.origin_of("first_view"), "expected both \"azimuth\" and \"elevation\"");
 }
 
+/// Refuses keys that do not go together. Who names an attribute and no colours wants those.
+void check_view(Config& config, const Draft& draft) {
+  if (draft.has("view.attribute") && !draft.has("view.colours"))
+    config.view.colours = "attribute";
+  if (const auto problem = storage::problem_between_keys(config.view))
+    refuse(draft.origin_of("view"), fmt::format("expected {}", problem->expected));
+}
+
 /// Refuses a table that no object could have a row of, and a label that is not read.
 void check_objects(const Config& config, const Draft& draft) {
   using mesh_io::ObjectSource;
@@ -260,8 +269,24 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
   check_placement(config, draft);
   check_crop(config, draft);
   check_first_view(config, draft);
+  check_view(config, draft);
   check_objects(config, draft);
   return config;
+}
+
+ModelView with_settings(const ModelView& view, std::span<const std::string> settings) {
+  constexpr std::string_view kSection = "view";
+  Draft draft(storage::json_text(Json{{kSection, storage::view_json(view)}}), "the view");
+  for (const std::string& setting : settings) {
+    const std::string path = setting.substr(0, setting.find_first_of("=."));
+    if (path != kSection)
+      refuse("--set", fmt::format("expected view.KEY=VALUE, found {}", in_quotes(setting)));
+    draft.apply(setting);
+  }
+  Config config;
+  assign_all(config, draft, draft.document(), "");
+  check_view(config, draft);
+  return config.view;
 }
 
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,

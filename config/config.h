@@ -7,6 +7,7 @@
 #include "base/named_value.h"
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/model_view.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/texture.h"
@@ -205,6 +206,7 @@ struct Config {
   OutlineConfig outline;
   bool preview = true;  ///< the hierarchy has a picture of the whole model
   FirstViewConfig first_view;
+  ModelView view;  ///< how the model is shown first
   StorageConfig storage;
   TextureConfig texture;
   ObjectsConfig objects;

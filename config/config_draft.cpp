@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <set>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -130,7 +131,9 @@ Json override_value(const Override& setting) {
   const bool wants_text =
       key != nullptr &&
       (key->kind == KeyKind::path || key->kind == KeyKind::paths || key->kind == KeyKind::text ||
-       key->kind == KeyKind::choice || key->kind == KeyKind::names);
+       key->kind == KeyKind::choice || key->kind == KeyKind::names ||
+       (key->view != nullptr &&
+        std::holds_alternative<std::string ModelView::*>(key->view->field)));
   ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
   Json value = storage::parse_ordered_json_text(setting.text, watched_by(guard), {.throws = false});
   const bool is_list = value.is_array() && key != nullptr &&

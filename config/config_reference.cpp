@@ -90,6 +90,8 @@ Json value_schema(const ConfigKey& key) {
       return either(integer, list(integer, 1, key.most_levels));
     case KeyKind::size:
       return either(integer, {{"type", "string"}, {"pattern", kSizePattern}});
+    case KeyKind::view:
+      return key.view->schema;
     case KeyKind::names:
       return either({{"enum", key.choices}}, list(path, 0, plain_number(key.maximum)));
     case KeyKind::choice:

@@ -1,5 +1,6 @@
 #include "config/config_schema.h"
 
+#include "config/view_config.h"
 #include "execution/size_text.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/input_folder.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -657,7 +659,13 @@ bool is_usable_path(const Json& value) {
 }  // namespace
 
 const std::vector<ConfigKey>& config_keys() {
-  static const std::vector<ConfigKey> keys = make_config_keys();
+  static const std::vector<ConfigKey> keys = [] {
+    std::vector<ConfigKey> all = make_config_keys();
+    const auto behind = std::ranges::find(all, "first_view.elevation", &ConfigKey::path) + 1;
+    std::vector<ConfigKey> view = view_config_keys();
+    all.insert(behind, std::move_iterator(view.begin()), std::move_iterator(view.end()));
+    return all;
+  }();
   return keys;
 }
 
@@ -670,6 +678,9 @@ const std::vector<ConfigSection>& config_sections() {
       {"simplify", "how the coarser tiles are made"},
       {"outline", "the shape-outline, the lines that are shown first"},
       {"first_view", "from where the model is looked at before anybody turns it"},
+      {"view",
+       "how the model is shown first, in `preview.webp`, viewers and `meshhier preview`, unless "
+       "they are told otherwise; `meshhier view` changes it later"},
       {"storage", "how tiles are stored"},
       {"storage.positions", "how positions are rounded; without it they keep every bit"},
       {"normal_map", "what normal maps of simplified tiles are like"},
@@ -730,6 +741,8 @@ bool accepts(const ConfigKey& key, const Json& value) {
       return is_choice(key, value);
     case KeyKind::names:
       return is_choice(key, value) || is_list_of_names(key, value);
+    case KeyKind::view:
+      return storage::accepts(*key.view, value);
   }
   return false;
 }
@@ -765,6 +778,8 @@ std::string expectation(const ConfigKey& key) {
                          key.most_levels);
     case KeyKind::size:
       return std::string(execution::kSizeSyntax);
+    case KeyKind::view:
+      return storage::expectation(*key.view);
     case KeyKind::choice:
     case KeyKind::names:
       break;

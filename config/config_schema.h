@@ -3,6 +3,7 @@
 #pragma once
 
 #include "config/config.h"
+#include "storage/format/view_keys.h"
 
 #include <cstddef>
 #include <functional>
@@ -26,7 +27,8 @@ enum class KeyKind {
   levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
   choice,   ///< one of `choices`, or `prefix` and the name of an attribute
-  names     ///< one of `choices`, or a list of at most `maximum` names of attributes
+  names,    ///< one of `choices`, or a list of at most `maximum` names of attributes
+  view      ///< a value of a view, as `view` says
 };
 
 struct ConfigKey {
@@ -44,6 +46,7 @@ struct ConfigKey {
   std::size_t most_levels = 0;
   std::vector<std::string> choices{};
   std::string prefix{};  ///< of a choice; empty: none
+  const storage::ViewKey* view = nullptr;
   /// Stores an acceptable value.
   std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
   /// Returns the config's value as it would be written; null if it is not set.

@@ -37,7 +37,7 @@ struct ObjectRequest {
   std::string prefix{};              ///< without names: those whose names begin so
   std::optional<std::vector<std::uint32_t>> numbers{};  ///< instead of names: these, ascending
 
-  bool is_any() const { return !names.empty() || !where.empty(); }
+  bool is_any() const { return !names.empty() || !where.empty() || numbers; }
 };
 
 /// Calls visit(object, row) for each object that is asked for, ascending; all if none is. Throws

@@ -73,6 +73,7 @@ config::Config config_like(storage::FileSystem& files, const fs::path& hierarchy
   config.output = output;
   config.weld = false;
   config.crop.reset();
+  config.view = {};
   config.objects.from = {mesh_io::ObjectSource::none};
   config.objects.table.clear();
   config.memory_budget = memory_budget;

@@ -12,6 +12,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/source_values.h"
+#include "storage/format/view_keys.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
@@ -358,6 +359,16 @@ std::string first_view_text(const storage::Manifest& manifest) {
   return fmt::format("first view   azimuth {}, elevation {} degrees\n", azimuth, elevation);
 }
 
+/// Returns a line on how it is shown first; nothing if nobody said it.
+std::string view_line(const storage::Manifest& manifest) {
+  std::string keys;
+  const Json view = storage::view_json(manifest.view);
+  for (const auto& [key, value] : view.items())
+    keys += fmt::format("{}{} {}", keys.empty() ? "" : ", ", key,
+                        value.is_string() ? value.get<std::string>() : storage::json_text(value));
+  return keys.empty() ? "" : "view         " + shown(keys) + '\n';
+}
+
 std::string tileset_text(const storage::Manifest& manifest) {
   return fmt::format("tileset      {} in {}, {} up{}{}\n", grouped(manifest.tileset_bytes, "bytes"),
                      grouped(manifest.tileset_files, "files"), name_of(manifest.up),
@@ -555,6 +566,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += outline_text(manifest);
   text += preview_text(manifest);
   text += first_view_text(manifest);
+  text += view_line(manifest);
   text += tileset_text(manifest);
   text += totals_text(manifest, levels, bytes_on_disk(place, reader));
   text += "\n" + level_table(levels, std::nullopt);
@@ -585,6 +597,8 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
       {"forced_collapses", storage::to_json(forced_collapses_of(reader))},
       {"tile_bytes", tile_bytes(levels)},
       {"total_bytes", bytes_on_disk(place, reader)}};
+  if (!manifest.view.empty())
+    json["view"] = storage::view_json(manifest.view);
   if (manifest.objects)
     json["objects"] = objects_json(*manifest.objects);
   for (const storage::LevelSummary& s : levels) {

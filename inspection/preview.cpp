@@ -10,12 +10,12 @@
 #include "export/triangle_clipper.h"
 #include "hierarchy/cut.h"
 #include "images/image_codec.h"
+#include "inspection/drawn_view.h"
 #include "inspection/shown_tiles.h"
+#include "inspection/tile_drawing.h"
 #include "render/painting.h"
 #include "render/points.h"
-#include "render/portrait.h"
 #include "render/scene.h"
-#include "render/terrain.h"
 #include "render/tile_facets.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -92,45 +92,6 @@ using storage::HierarchyReader;
 
 constexpr int kQuality = 90;
 
-Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
-  return direction_of(options.up.value_or(reader.manifest().up));
-}
-
-/// Returns facets of the root tile, which has the extent of the whole; its points if it has no
-/// triangles.
-std::vector<render::Facet> root_facets(PublishedTile root, const HierarchyReader& reader,
-                                       const std::optional<AttributePainter>& painter) {
-  if (painter)
-    painter->paint(root);
-  const AttributeLayout& layout = painter ? painter->layout() : reader.tile_format().attributes;
-  if (root.mesh.interior.empty())
-    return render::points_of(root, layout);
-  drop_pictures(root);
-  return render::scene_tile(root, layout).facets;
-}
-
-/// An older hierarchy has none, and one that is stood on another axis may show another side.
-Standpoint first_view(const HierarchyReader& reader, std::span<const render::Facet> root,
-                      const PreviewOptions& options) {
-  const storage::Manifest& manifest = reader.manifest();
-  const bool is_as_built = manifest.first_view && options.up.value_or(manifest.up) == manifest.up;
-  return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
-}
-
-/// Returns the look as far as the manifest tells it, not the root tile.
-render::Look look_of(const HierarchyReader& reader, const PreviewOptions& options) {
-  const auto& textures = reader.manifest().textures;
-  const bool is_shown = textures && !options.attribute && !options.objects;
-  return {is_shown && textures->unlit ? render::Light::none : render::Light::lamps, is_shown,
-          options.up.value_or(reader.manifest().up)};
-}
-
-/// Returns the facets of a tile: triangles, or points as facets without area.
-render::SceneTile scene_of(const ShownTile& shown, const AttributeLayout& layout, bool as_points) {
-  return as_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
-                   : render::scene_tile(shown.tile, layout, shown.border);
-}
-
 /// Loads a tile, of objects that are asked for their triangles.
 ShownTile load_in(const std::optional<exporting::Region>& region, ShownTiles& tiles,
                   std::size_t position) {
@@ -146,7 +107,10 @@ void add_piece(ShownTile shown, const AttributeLayout& layout, const exporting::
   drop_pictures(shown.tile);
   const bool is_points =
       !region.objects && shown.tile.mesh.interior.empty() && shown.border.empty();
-  const render::SceneTile piece = clip_scene(scene_of(shown, layout, is_points), region);
+  const render::SceneTile piece =
+      clip_scene(is_points ? render::SceneTile{render::points_of(shown.tile, layout), {}, {}}
+                           : render::scene_tile(shown.tile, layout, shown.border),
+                 region);
   facets.insert(facets.end(), piece.facets.begin(), piece.facets.end());
 }
 
@@ -177,30 +141,18 @@ std::vector<render::Facet> piece_facets(const HierarchyReader& reader,
   return facets;
 }
 
-struct Seen {
-  render::Camera camera;
-  render::ViewAxes axes;
-};
-
-/// `root`: of the whole; `framed`: of what the picture shows.
-Seen seen_by(const HierarchyReader& reader, std::span<const render::Facet> root,
-             std::span<const render::Facet> framed, const PreviewOptions& options) {
-  const Standpoint from = options.view ? *options.view : first_view(reader, root, options);
-  const render::View view = render::view_from(from, up_of(reader, options));
-  const render::Framing framing{.width = options.width, .height = options.height, .samples = 2};
-  return {render::portrait_camera(framed, view, framing), render::axes_of(view)};
-}
-
 Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
-            const PreviewOptions& options, double pixel) {
-  const PreviewSelection selection = options.selection.value_or(exporting::LargestError{pixel / 4});
-  if (const auto* level = std::get_if<Level>(&selection)) {
+            const PreviewOptions& options, const TileDrawing& drawing) {
+  if (!options.selection)
+    return exporting::coarsest_cut(
+        reader, [&](const TileRecord& record) { return drawing.is_fine(record); });
+  if (const auto* level = std::get_if<Level>(&*options.selection)) {
     require_level(reader.tree(), *level);
     return Cut::of_level(reader.tree(), *level);
   }
-  if (const auto* path = std::get_if<std::filesystem::path>(&selection))
+  if (const auto* path = std::get_if<std::filesystem::path>(&*options.selection))
     return exporting::read_cut(files, reader.tree(), *path);
-  return cut_by_error(reader, std::get<exporting::LargestError>(selection));
+  return cut_by_error(reader, std::get<exporting::LargestError>(*options.selection));
 }
 
 /// The tiles that a picture is of.
@@ -225,14 +177,14 @@ Pictured pictured(const HierarchyReader& reader, Cut cut,
 /// Returns the boxes in which tiles draw. Where levels meet, a tile reaches to the vertices of its
 /// coarser neighbour, and may draw anywhere.
 std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Pictured& shown,
-                             double point_side) {
+                             const TileDrawing& drawing, double point_side) {
   bool is_even = true;
   std::vector<Bounds> boxes;
   Bounds all;
   for (std::size_t i = 0; i < shown.positions.size(); ++i) {
     const TileRecord& record = reader.record(shown.node(i));
     is_even = is_even && record.node.level == reader.record(shown.node(0)).node.level;
-    boxes.push_back(render::box_of_squares(record.bounds, point_side));
+    boxes.push_back(render::box_of_squares(drawing.box_of(record.bounds), point_side));
     all.add(boxes.back());
   }
   if (!is_even)
@@ -309,52 +261,40 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
+  const DrawnView drawn = drawn_view(reader, options, progress);
+  exporting::RegionRequest request_region = options.region;
+  if (auto shown = shown_objects(reader, drawn.view, cancel); shown && !options.region.is_any())
+    request_region.objects.numbers = std::move(shown);
   std::optional<exporting::Region> region;
-  if (options.region.is_any())
-    region = region_of(files, reader, options.region, cancel);
+  if (request_region.is_any())
+    region = region_of(files, reader, request_region, cancel);
   const std::uint64_t cache_bytes = options.memory_budget / 8;
-  std::optional<AttributePainter> painter;
-  if (options.attribute)
-    painter.emplace(reader.manifest().source, *options.attribute);
-  if (options.objects) {
-    const auto table = reader.open_objects();
-    painter.emplace(reader.tile_format().attributes,
-                    ObjectColours(*table, *options.objects, cancel));
-  }
-  AttributeLayout layout = painter ? painter->layout() : reader.tile_format().attributes;
-  render::Look look = look_of(reader, options);
-  const auto [camera, axes] = [&] {
-    PublishedTile tile = reader.read_tile({});
-    look.terrain = render::terrain_of(tile, look.up);
-    const std::vector<render::Facet> root = root_facets(std::move(tile), reader, painter);
-    if (!painter)
-      layout = render::drawn_layout(root, layout);
-    if (!region)
-      return seen_by(reader, root, root, options);
+  TileDrawing drawing(reader, options, drawn, cancel);
+  if (options.region.is_any()) {
     const auto piece = piece_facets(reader, *region, cache_bytes, cancel);
     if (piece.empty())
       fail_empty(reader, options.region);
-    return seen_by(reader, root, piece, options);
-  }();
-  Pictured shown =
-      pictured(reader, cut_for(files, reader, options, camera.pixel()), region, cache_bytes);
-  const double point_side = point_side_of(reader, shown, camera);
+    drawing.aim(piece);
+  } else {
+    drawing.aim(drawing.root());
+  }
+  Pictured shown = pictured(reader, cut_for(files, reader, options, drawing), region, cache_bytes);
+  const double point_side = point_side_of(reader, shown, drawing.camera());
   std::atomic<bool> is_any = false;
-  const auto load = [&, &axes = axes](std::size_t i) {
-    ShownTile tile = load_in(region, shown.tiles, shown.positions[i]);
-    if (painter)
-      painter->paint(tile.tile);
-    render::SceneTile drawn = scene_of(tile, layout, point_side > 0);
-    render::apply_look(look, layout, drawn);
+  const auto load = [&](std::size_t i) {
+    render::SceneTile tile =
+        drawing.facets_of(load_in(region, shown.tiles, shown.positions[i]), point_side > 0);
     if (region)
-      drawn = clip_scene(std::move(drawn), *region);
+      tile = clip_scene(std::move(tile), *region);
+    drawing.place(tile);
     if (point_side > 0)
-      drawn.facets = render::squares_of(drawn.facets, axes, point_side);
-    if (!drawn.facets.empty())
+      tile.facets = render::squares_of(tile.facets, drawing.axes(), point_side);
+    if (!tile.facets.empty())
       is_any = true;
-    return drawn;
+    return tile;
   };
-  const render::Scene scene{boxes_of(reader, shown, point_side), load, look};
+  const render::Camera& camera = drawing.camera();
+  const render::Scene scene{boxes_of(reader, shown, drawing, point_side), load, drawing.look()};
   const render::PaintingOptions painting{
       .band_bytes = (options.memory_budget - picture_bytes(options)) / 2, .step = [&] {
         cancel.check();
@@ -362,12 +302,12 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
       }};
   progress.stage("preview", render::painting_steps(scene, camera, painting), "tiles");
   images::Image picture = render::paint(scene, camera, painting);
-  if (region && region->objects && !is_any)
+  if (options.region.is_any() && region->objects && !is_any)
     fail_empty(reader, options.region);
   if (options.background)
     lay_on(*options.background, picture);
   output.publish(images::encode_image(picture, options.format, kQuality));
-  const std::string legend = painter ? painter->legend() : "";
+  const std::string& legend = drawing.legend();
   return fmt::format("{}: {} x {} pixels, {}{}{}", options.output.string(), options.width,
                      options.height, text_of(reader, shown, region && region->objects),
                      legend.empty() ? "" : "\n", legend);

@@ -9,7 +9,8 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
-#include "inspection/attribute_painter.h"
+#include "inspection/object_colours.h"
+#include "render/attribute_painter.h"
 #include "storage/io/file.h"
 
 #include <array>
@@ -20,6 +21,8 @@
 #include <variant>
 
 namespace meshhier::inspection {
+
+using render::AttributeColours;
 
 /// The part that is drawn: a level, the cut in a text file, or tiles by their error.
 using PreviewSelection = std::variant<Level, std::filesystem::path, exporting::LargestError>;
@@ -33,7 +36,9 @@ struct PreviewOptions {
   std::uint32_t width = 1600, height = 1000;  ///< 1 to kMostPreviewPixels
   /// None: a cut whose errors are a quarter of a pixel at most.
   std::optional<PreviewSelection> selection;
-  std::optional<Standpoint> view;                         ///< none: the first view
+  std::optional<Standpoint> view;  ///< none: the first view
+  /// A link of the page, whose view is drawn; empty: the hierarchy's own.
+  std::string link{};
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
   std::optional<AttributeColours> attribute{};  ///< none: colours and pictures of the input

@@ -141,7 +141,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   // Drawing a tile takes as much memory as packing it.
   const std::array root{tree.root()};
   const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
-  const PreviewInput published{directory, format, records};
+  const PreviewInput published{directory, format, records, source, journal.source()->origin};
   PublishedTile root_tile = read_root(published, context);
   Outline lines = outline.outline;
   lines.first_view = root_tile.first_view;
@@ -156,6 +156,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
 
   storage::Manifest manifest = begin_manifest(source, journal.source()->origin, format, context);
   manifest.first_view = lines.first_view;
+  manifest.view = context.config.view;
   manifest.quantization = quantization;
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);

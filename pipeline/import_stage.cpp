@@ -134,6 +134,8 @@ void require_attributes(const config::Config& config, const importing::MeshInput
     require("attributes", config.attributes.names);
   if (config.attributes.labels && config.attributes.which != Which::none)
     require("labels", *config.attributes.labels);
+  if (!config.view.attribute.empty())
+    require("view.attribute", {config.view.attribute});
 }
 
 BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materials,

@@ -6,6 +6,7 @@
 #include "render/painting.h"
 #include "render/points.h"
 #include "render/portrait.h"
+#include "render/shown_view.h"
 #include "render/terrain.h"
 #include "render/tile_facets.h"
 #include "storage/format/index.h"
@@ -13,6 +14,7 @@
 #include "storage/io/hash.h"
 #include "storage/io/sealed_file.h"
 
+#include <optional>
 #include <utility>
 
 namespace meshhier::pipeline {
@@ -102,6 +104,9 @@ struct Portrait {
   AttributeLayout layout;  ///< as it is drawn
   double point_side = 0;   ///< 0: triangles are drawn
   render::Look look{};
+  ModelView view{};                                   ///< the config's
+  std::optional<render::AttributePainter> painter{};  ///< as the view has it
+  std::optional<render::Placement> placement{};       ///< none: nobody said it
 };
 
 render::Look look_of(const PublishedTile& root, const storage::TileFormat& format) {
@@ -110,30 +115,81 @@ render::Look look_of(const PublishedTile& root, const storage::TileFormat& forma
           format.frame.up, render::terrain_of(root, format.frame.up)};
 }
 
-Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const Cut& cut) {
+constexpr render::Framing kFraming{
+    .width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2};
+
+/// Returns the portrait of a model that nobody said anything of.
+Portrait plain_portrait(const PublishedTile& root, const PreviewInput& input) {
   const std::vector<render::Facet> whole = root_facets(root, input.format.attributes);
   const render::View view =
       render::view_from(*root.first_view, direction_of(input.format.frame.up));
-  Portrait portrait{
-      render::portrait_camera(
-          whole, view,
-          {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2}),
-      render::axes_of(view), render::drawn_layout(whole, input.format.attributes)};
-  portrait.look = look_of(root, input.format);
+  return {.camera = render::portrait_camera(whole, view, kFraming),
+          .axes = render::axes_of(view),
+          .layout = render::drawn_layout(whole, input.format.attributes),
+          .look = look_of(root, input.format)};
+}
+
+/// Returns the portrait that a view wants.
+Portrait viewed_portrait(PublishedTile root, const PreviewInput& input, const ModelView& asked) {
+  const ModelView view = render::known_view(asked, input.source);
+  const UpAxis up = input.format.frame.up;
+  render::Placement placement(view, up, input.origin);
+  render::Look look = look_of(root, input.format);
+  render::add_to_look(view, root, placement.standing(), look);
+  std::optional<render::AttributePainter> painter;
+  if (const auto attribute = render::attribute_of(view, input.source))
+    painter.emplace(input.source, *attribute);
+  AttributeLayout layout = render::painted_layout(view, painter, input.format.attributes);
+  render::paint(view, painter, root);
+  const std::vector<render::Facet> whole = placement.upright(root_facets(root, layout));
+  if (!painter)
+    layout = render::drawn_layout(whole, layout);
+  constexpr Vec3d kUp{0, 1, 0};
+  const bool is_as_built = placement.standing().upwards() == direction_of(up);
+  const render::View from =
+      render::view_from(is_as_built ? *root.first_view : render::portrait_from(whole, kUp), kUp);
+  render::Camera camera = render::portrait_camera(whole, from, kFraming);
+  render::ViewAxes axes = render::axes_of(from);
+  if (const auto pose = render::pose_of(view)) {
+    placement.look_from(*pose, kFraming);
+    camera = placement.perspective()->camera();
+    axes = placement.perspective()->axes();
+  }
+  return {.camera = camera,
+          .axes = axes,
+          .layout = layout,
+          .look = look,
+          .view = view,
+          .painter = std::move(painter),
+          .placement = std::move(placement)};
+}
+
+Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const Cut& cut,
+                     const ModelView& view) {
+  Portrait portrait =
+      view.empty() ? plain_portrait(root, input) : viewed_portrait(root, input, view);
   if (is_of_points(input.records))
     portrait.point_side = render::point_side(portrait.camera, vertices_of(cut, input.records));
   return portrait;
 }
 
-render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait) {
-  if (portrait.point_side == 0) {
-    render::SceneTile drawn = render::scene_tile(tile, portrait.layout);
-    render::apply_look(portrait.look, portrait.layout, drawn);
-    return drawn;
-  }
+render::SceneTile drawn_tile(PublishedTile tile, const Portrait& portrait) {
+  const bool is_viewed = portrait.placement.has_value();
+  if (is_viewed)
+    render::paint(portrait.view, portrait.painter, tile);
   render::SceneTile drawn;
-  drawn.facets = render::squares_of(render::points_of(tile, portrait.layout), portrait.axes,
-                                    portrait.point_side);
+  if (portrait.point_side == 0) {
+    drawn = render::scene_tile(tile, portrait.layout);
+    if (is_viewed)
+      render::paint(portrait.view, portrait.painter, tile.node, drawn);
+    render::apply_look(portrait.look, portrait.layout, drawn);
+  } else {
+    drawn.facets = render::points_of(tile, portrait.layout);
+  }
+  if (is_viewed)
+    portrait.placement->place(drawn);
+  if (portrait.point_side > 0)
+    drawn.facets = render::squares_of(drawn.facets, portrait.axes, portrait.point_side);
   return drawn;
 }
 
@@ -187,9 +243,11 @@ render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait
                        const DrawnTiles& tiles) {
   render::Scene scene;
   scene.look = portrait.look;
-  for (const NodeId node : cut.nodes())
-    scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
-                                                 portrait.point_side));
+  for (const NodeId node : cut.nodes()) {
+    const Bounds& box = storage::record_of(input.records, node).bounds;
+    scene.boxes.push_back(render::box_of_squares(
+        portrait.placement ? portrait.placement->box_of(box) : box, portrait.point_side));
+  }
   scene.load = [&tiles](std::size_t i) { return tiles.load(i); };
   scene.held = tiles.held();
   return scene;
@@ -228,7 +286,7 @@ PublishedTile read_root(const PreviewInput& input, const StageContext& context) 
 MadePreview make_preview(const PreviewInput& input, PublishedTile root,
                          const StageContext& context) {
   const Cut cut = shown_cut(context.tree(), input.records);
-  const Portrait portrait = portrait_of(root, input, cut);
+  const Portrait portrait = portrait_of(root, input, cut, context.config.view);
   images::Image painted = [&] {
     const DrawnTiles tiles(input, cut, root, portrait, context);
     root = {};

@@ -31,6 +31,8 @@ struct PreviewInput {
   const std::filesystem::path& directory;  ///< has the tiles
   const storage::TileFormat& format;
   std::span<const TileRecord> records;  ///< all tiles', ascending by node
+  const SourceSummary& source;
+  Vec3d origin;
 };
 
 struct MadePreview {
@@ -41,9 +43,10 @@ struct MadePreview {
 /// Reads the root's tile. Throws as make_preview().
 PublishedTile read_root(const PreviewInput& input, const StageContext& context);
 
-/// Draws the finest level that is quick to draw, or the root, from its first view; the vertices if
-/// the model has no triangles. Deterministic. Throws Error(corrupt | io) if a tile is not as it was
-/// published. `root`: from read_root(). Requires that the root has a first view.
+/// Draws the finest level that is quick to draw, or the root, from its first view, and as the
+/// config's view says; the vertices if the model has no triangles. Deterministic. Throws
+/// Error(corrupt | io) if a tile is not as it was published. `root`: from read_root(). Requires
+/// that the root has a first view.
 MadePreview make_preview(const PreviewInput& input, PublishedTile root,
                          const StageContext& context);
 

@@ -46,18 +46,26 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout) {
 }
 
 void apply_look(const Look& look, const AttributeLayout& layout, SceneTile& tile) {
-  if (!look.terrain)
-    return;
-  shade_steeper(*look.terrain, tile.facets);
-  if (!look.has_pictures && !layout.has_colours())
-    colour_by_height(*look.terrain, tile.facets);
+  const auto& terrain = look.terrain;
+  if (terrain && (look.shown_rig() == RigName::sun || !terrain->is_upright))
+    shade_steeper(*terrain, terrain->relief(terrain->is_upright ? look.stretch : 1), tile.facets);
+  if (look.heights)
+    colour_by_height(*look.heights, tile.facets);
+  else if (terrain && look.takes_heights && !look.has_pictures && !layout.has_colours())
+    colour_by_height({terrain->along, terrain->low, terrain->high}, tile.facets);
+  if (look.is_flat) {
+    for (Facet& facet : tile.facets) {
+      for (FacetCorner& corner : facet)
+        corner.normal = {};
+    }
+  }
 }
 
 Lighting lighting_of(const Look& look, const Camera& camera) {
-  const bool is_sunlit = look.terrain && look.terrain->is_upright;
   return {.kind = look.light,
-          .rig = is_sunlit ? sunlight(camera, look.up) : studio(upward_in(camera, look.up)),
-          .roughness = look.has_pictures ? kPictureRoughness : kRoughness};
+          .rig = rig_of(look.shown_rig(), look.key, camera, look.up),
+          .roughness = look.has_pictures ? kPictureRoughness : kRoughness,
+          .has_cavities = look.has_cavities};
 }
 
 BoundsD Scene::box() const {

@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/published.h"
 #include "render/facet.h"
+#include "render/light_rig.h"
 #include "render/mip_texture.h"
 #include "render/raster.h"
 #include "render/shade.h"
@@ -46,10 +47,21 @@ struct Look {
   bool has_pictures = false;
   UpAxis up = UpAxis::y;
   std::optional<Terrain> terrain{};  ///< it is one: the sun is on it, and slopes are lit steeper
+  std::optional<RigName> rig{};      ///< none: the sun over terrains, a studio around all else
+  std::optional<LightAngles> key{};  ///< where its key light comes from
+  bool takes_heights = true;         ///< a terrain without colours has those of heights
+  std::optional<HeightRange> heights{};  ///< the colours of heights are shown
+  double stretch = 1;                    ///< heights are shown so many times as high
+  bool is_flat = false;                  ///< each facet has its own normal
+  bool has_cavities = true;              ///< as that of Lighting
+
+  RigName shown_rig() const {
+    return rig.value_or(terrain && terrain->is_upright ? RigName::sun : RigName::studio);
+  }
 };
 
-/// Terrains get steeper slopes, and those without colours the colours of heights. `layout`: of the
-/// tile, as it is drawn.
+/// Terrains under the sun, or seen from their front, get steeper slopes, and those without colours
+/// the colours of heights. `layout`: of the tile, as it is drawn.
 void apply_look(const Look& look, const AttributeLayout& layout, SceneTile& tile);
 
 Lighting lighting_of(const Look& look, const Camera& camera);

@@ -104,7 +104,8 @@ Vec3d lit(const Sample& sample, const Turn& turn, const Lighting& lighting) {
   if (lighting.kind == Light::none)
     return to_double(sample.colour);
   const Vec3d normal = to_double(sample.normal);
-  const Vec3d colour = to_double(sample.colour) * crease(turn, normal.z);
+  const Vec3d colour =
+      to_double(sample.colour) * (lighting.has_cavities ? crease(turn, normal.z) : 1);
   return reflected({normal, colour, rougher(turn, lighting.roughness)}, lighting.rig);
 }
 

@@ -15,6 +15,7 @@ struct Lighting {
   Light kind = Light::lamps;
   LightRig rig = studio({0, 1, 0});  ///< of lamps
   double roughness = kRoughness;
+  bool has_cavities = true;  ///< hollows are darker, edges lighter
 };
 
 /// The light of lamps is what the viewer's page shows of it: hollows are darker and edges lighter

@@ -23,21 +23,6 @@ constexpr double kOutliers = 0.01;
 /// Slopes that show well: those of hills are shaded so steep.
 constexpr double kShownSlope = 0.5, kMostRelief = 1000;
 
-struct HeightRange {
-  double low = 0, high = 0;
-};
-
-HeightRange heights_of(const TileMesh& mesh, Vec3d along) {
-  std::vector<double> heights;
-  for (std::uint32_t v = 0; v < mesh.own_count; ++v)
-    heights.push_back(dot(to_double(mesh.vertices.positions[v]), along));
-  if (heights.empty())
-    return {};
-  std::ranges::sort(heights);
-  const auto outside = static_cast<std::size_t>(kOutliers * static_cast<double>(heights.size()));
-  return {heights[outside], heights[heights.size() - 1 - outside]};
-}
-
 double extent_across(const TileMesh& mesh, Vec3d along) {
   Bounds box;
   for (const Vec3f position : mesh.vertices.positions)
@@ -71,7 +56,7 @@ Areas areas_of(const TileMesh& mesh, Vec3d along) {
 
 std::optional<Terrain> terrain_along(const TileMesh& mesh, Vec3d along, double most,
                                      bool is_upright) {
-  const auto [low, high] = heights_of(mesh, along);
+  const auto [axis, low, high] = heights_of(mesh, along);
   if (!(high > low && high - low < most * extent_across(mesh, along)))
     return std::nullopt;
   const auto [above, below, ground] = areas_of(mesh, along);
@@ -92,19 +77,33 @@ Vec3f height_colour(double part) {
 
 }  // namespace
 
-double Terrain::relief() const {
-  return std::clamp(kShownSlope / std::max(slope, 1e-9), 1.0, kMostRelief);
+HeightRange heights_of(const TileMesh& mesh, Vec3d along) {
+  std::vector<double> heights;
+  for (std::uint32_t v = 0; v < mesh.own_count; ++v)
+    heights.push_back(dot(to_double(mesh.vertices.positions[v]), along));
+  if (heights.empty())
+    return {along};
+  std::ranges::sort(heights);
+  const auto outside = static_cast<std::size_t>(kOutliers * static_cast<double>(heights.size()));
+  return {along, heights[outside], heights[heights.size() - 1 - outside]};
+}
+
+double Terrain::relief(double stretch) const {
+  return std::clamp(kShownSlope / std::max(slope * stretch, 1e-9), 1.0, kMostRelief);
 }
 
 std::optional<Terrain> terrain_of(const PublishedTile& root, UpAxis up) {
-  auto upright = terrain_along(root.mesh, direction_of(up), kMostHeight, true);
-  if (upright || up == UpAxis::z)
+  return terrain_of(root, direction_of(up));
+}
+
+std::optional<Terrain> terrain_of(const PublishedTile& root, Vec3d up) {
+  auto upright = terrain_along(root.mesh, up, kMostHeight, true);
+  if (upright || up.z != 0)
     return upright;
   return terrain_along(root.mesh, {0, 0, 1}, kMostThickness, false);
 }
 
-void shade_steeper(const Terrain& terrain, std::span<Facet> facets) {
-  const double relief = terrain.relief();
+void shade_steeper(const Terrain& terrain, double relief, std::span<Facet> facets) {
   for (Facet& facet : facets) {
     for (FacetCorner& corner : facet) {
       const Vec3d normal = to_double(unit_or_zero(corner.normal));
@@ -114,12 +113,12 @@ void shade_steeper(const Terrain& terrain, std::span<Facet> facets) {
   }
 }
 
-void colour_by_height(const Terrain& terrain, std::span<Facet> facets) {
-  const double range = std::max(terrain.high - terrain.low, 1e-30);
+void colour_by_height(const HeightRange& heights, std::span<Facet> facets) {
+  const double range = std::max(heights.high - heights.low, 1e-30);
   for (Facet& facet : facets) {
     for (FacetCorner& corner : facet)
       corner.colour =
-          height_colour((dot(to_double(corner.position), terrain.along) - terrain.low) / range);
+          height_colour((dot(to_double(corner.position), heights.along) - heights.low) / range);
   }
 }
 

@@ -17,17 +17,26 @@ struct Terrain {
   double low = 0, high = 0;  ///< what few vertices lie below and above of
   double slope = 0;          ///< the mean: rise over run
 
-  /// So many times steeper slopes are shaded.
-  double relief() const;
+  /// So many times steeper slopes are shaded. `stretch`: heights are shown so many times as high.
+  double relief(double stretch = 1) const;
 };
 
 /// `root`: the root's tile. Nothing of a mesh of which parts hide others from above. O(n log n).
 std::optional<Terrain> terrain_of(const PublishedTile& root, UpAxis up);
+/// `up`: along an axis, of length 1.
+std::optional<Terrain> terrain_of(const PublishedTile& root, Vec3d up);
 
 /// Where a corner has a normal, as if its slope were so many times as steep; a facet's own stays.
-void shade_steeper(const Terrain& terrain, std::span<Facet> facets);
+void shade_steeper(const Terrain& terrain, double relief, std::span<Facet> facets);
+
+/// What few vertices lie below and above of, along a direction of length 1.
+struct HeightRange {
+  Vec3d along;
+  double low = 0, high = 0;
+};
+HeightRange heights_of(const TileMesh& mesh, Vec3d along);
 
 /// Lowland green, straw, ochre, rock, snow.
-void colour_by_height(const Terrain& terrain, std::span<Facet> facets);
+void colour_by_height(const HeightRange& heights, std::span<Facet> facets);
 
 }  // namespace meshhier::render

@@ -157,9 +157,11 @@ void add_surroundings(const Surroundings& around, Json& document) {
     document["folder"] = around.places.folder;
   if (!around.places.inbox.empty())
     document["inbox"] = around.places.inbox;
-  if (around.offer)
-    document["upload"] = {{"limit", around.offer->limit_bytes},
-                          {"token", around.offer->needs_token}};
+  if (!around.offer)
+    return;
+  document["upload"] = {{"limit", around.offer->limit_bytes}, {"token", around.offer->needs_token}};
+  if (around.offer->takes_views)
+    document["upload"]["views"] = true;
 }
 
 }  // namespace

@@ -24,10 +24,11 @@ struct PlaceNames {
   std::string inbox{};
 };
 
-/// The uploads that a page may send to the inbox.
+/// What a page may send: meshes to the inbox, and more.
 struct UploadOffer {
   std::uint64_t limit_bytes = 0;
   bool needs_token = false;
+  bool takes_views = false;  ///< first views of models, too
 };
 
 /// A file of a site, at a path relative to its listing.

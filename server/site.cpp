@@ -136,6 +136,8 @@ Reply Site::route(const Request& request) {
   }
   if (is_upload(request))
     return options_.uploads->take(request, request.target.substr(kInbox.size() - 1));
+  if (options_.views != nullptr && ViewRequests::is_for_view(request))
+    return take_view(request);
   if (request.method != "GET" && request.method != "HEAD") {
     Reply reply = text_reply(405, "Files are read here, nothing else.");
     reply.headers.emplace_back("Allow", methods());
@@ -162,11 +164,20 @@ bool Site::is_upload(const Request& request) const {
          request.target.starts_with(kInbox);
 }
 
+Reply Site::take_view(const Request& request) {
+  Reply reply = options_.views->take(request);
+  if (reply.status == 200)
+    gallery_.refresh();
+  return reply;
+}
+
 Reply Site::models_json(const Request& request) {
-  const Surroundings around{
+  Surroundings around{
       .jobs = jobs_ ? std::optional(jobs_()) : std::nullopt,
       .places = options_.places,
       .offer = options_.uploads == nullptr ? std::nullopt : options_.uploads->offer()};
+  if (around.offer)
+    around.offer->takes_views = options_.views != nullptr;
   const std::optional<ListingWish> wish = read_wish(request.target);
   const auto catalogue = gallery_.catalogue(wish ? wish->state : std::string());
   const std::string text = gallery_json(*catalogue, wish, around);

@@ -5,6 +5,7 @@
 #include "server/hierarchies.h"
 #include "server/http.h"
 #include "server/uploads.h"
+#include "server/view_requests.h"
 #include "storage/io/folder.h"
 
 #include <atomic>
@@ -23,7 +24,8 @@ struct SiteOptions {
   bool is_loopback = true;  ///< requests must name this machine by its loopback
   std::string cors{};       ///< an origin whose pages may read, or "*"; empty: none but ours
   PlaceNames places{};
-  Uploads* uploads = nullptr;  ///< null: none are taken; must outlive the site
+  Uploads* uploads = nullptr;     ///< null: none are taken; must outlive the site
+  ViewRequests* views = nullptr;  ///< likewise
 };
 
 /// Makes the reply to each request. Thread-safe.
@@ -50,6 +52,7 @@ class Site {
   Reply route(const Request& request);
   const char* methods() const;
   bool is_upload(const Request& request) const;
+  Reply take_view(const Request& request);
   Reply models_json(const Request& request);
   Reply model_file(const Request& request, std::string_view path);
   Reply viewer_file(const Request& request, const std::string& path);

@@ -43,6 +43,8 @@ class Uploads {
 
   /// Returns the offer that pages are told; nothing if nobody may send.
   std::optional<UploadOffer> offer() const;
+  /// Returns why who sends a request may not change anything here; nothing if it may.
+  std::optional<Reply> refuse_sender(const Request& request) const;
   /// Takes an upload. `place`: the target below /inbox, "/scan.ply". Returns 201, or why not, in
   /// one line. Reads the body in this thread, as long as the client sends it. Throws nothing but
   /// storage::Busy.
@@ -51,7 +53,6 @@ class Uploads {
  private:
   class Slot;
 
-  std::optional<Reply> refuse_sender(const Request& request) const;
   std::optional<Reply> refuse_size(const Request& request) const;
   std::optional<Reply> refuse_name(const std::string& name) const;
   Reply take_whole(const Request& request, const std::string& name);

@@ -2,11 +2,13 @@
 
 #include "base/error.h"
 #include "base/named_value.h"
+#include "base/plain_text.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "storage/format/layout.h"
 #include "storage/format/object_facts.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/source_values.h"
+#include "storage/format/view_keys.h"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +16,7 @@
 #include <cstdio>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -121,7 +124,7 @@ Json tileset_json(const Manifest& manifest) {
   return tileset;
 }
 
-Json view_json(const Standpoint& view) {
+Json standpoint_json(const Standpoint& view) {
   return {{"azimuth", view.azimuth}, {"elevation", view.elevation}};
 }
 
@@ -134,7 +137,9 @@ Json manifest_json(const Manifest& manifest) {
   if (manifest.units)
     document["units"] = name_of(*manifest.units);
   if (manifest.first_view)
-    document["first_view"] = view_json(*manifest.first_view);
+    document["first_view"] = standpoint_json(*manifest.first_view);
+  if (!manifest.view.empty())
+    document["view"] = storage::view_json(manifest.view);
   document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
   document["licence"] = manifest.licence;
   document["partitions"] = manifest.partition_count;
@@ -310,6 +315,19 @@ std::optional<Standpoint> read_view(const JsonObject& object) {
   return found;
 }
 
+ModelView read_model_view(const JsonObject& object) {
+  if (!object.has("view"))
+    return {};
+  const auto read = parse_view(object.at("view"));
+  if (const auto* problem = std::get_if<ViewProblem>(&read)) {
+    if (problem->key.empty())
+      object.wrong("view", problem->expected);
+    object.object("view").wrong(plain_text(problem->key, kMostNameBytes).c_str(),
+                                problem->expected);
+  }
+  return std::get<ModelView>(read);
+}
+
 void read_tileset(const JsonObject& object, std::uint64_t version, Manifest& manifest) {
   manifest.tileset_files = object.count("files");
   manifest.tileset_bytes = object.count("bytes");
@@ -449,6 +467,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.up = object.up("up");
   manifest.units = read_units(object);
   manifest.first_view = read_view(object);
+  manifest.view = read_model_view(object);
   const std::uint64_t version = object.count("format_version");
   manifest.screen_colours = version <= kScreenColoursFormatVersion;
   manifest.transform = object.transform_or_null("transform");

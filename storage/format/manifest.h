@@ -3,6 +3,7 @@
 
 #include "base/vec.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/model_view.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/standpoint.h"
@@ -78,6 +79,7 @@ struct Manifest {
   /// The view that the model is shown with first. None only in format version 6, with
   /// screen_colours.
   std::optional<Standpoint> first_view;
+  ModelView view{};  ///< how it is shown first; empty: as the viewer does
   /// The transform of the tileset's root, for instance to the globe; from z-up coordinates, as 3D
   /// Tiles has them.
   std::optional<Transform> transform;

@@ -4,6 +4,7 @@
 #include "config/config_reference.h"
 #include "config/config_schema.h"
 #include "config/suggest.h"
+#include "config/view_config.h"
 #include "execution/size_text.h"
 
 #include <algorithm>
@@ -821,6 +822,10 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
       EXPECT_EQ(schema.at("oneOf").at(1).at("items").at("type"), "string");
       EXPECT_EQ(schema.at("oneOf").at(1).at("maxItems"), key.maximum);
       break;
+    case KeyKind::view:
+      for (const auto& [name, rule] : key.view->schema.items())
+        EXPECT_EQ(schema.at(name), rule);
+      break;
   }
 }
 
@@ -1046,6 +1051,46 @@ TEST(Config, WhatIsNoTextCannotBeWrittenDown) {
   Config config = parse(with(""));
   config.input = std::filesystem::path("/data/\xff.ply");
   EXPECT_THROW(complete_text(config, "/"), Error);
+}
+
+TEST(ConfigView, IsASectionWithTheKeysOfViews) {
+  const auto parse = [](const std::string& view, std::vector<std::string> settings = {}) {
+    return parse_config(R"({"input": "a.ply", "output": "a.hier", "view": )" + view + "}",
+                        {"c.json", {}}, settings);
+  };
+  const Config config =
+      parse(R"({"attribute": "distance", "range": [-1, 1]})", {"view.ramp=turbo"});
+  EXPECT_EQ(config.view.colours, "attribute");
+  EXPECT_EQ(config.view.ramp, "turbo");
+  EXPECT_EQ(resolved_json(config).at("view").dump(),
+            R"({"colours":"attribute","attribute":"distance","ramp":"turbo","range":[-1.0,1.0]})");
+  EXPECT_FALSE(resolved_json(parse("{}")).contains("view"));
+  EXPECT_EQ(parse_config(complete_text(config, "/"), {"c.json", {}}, {}).view, config.view);
+  const auto message = [&](const std::string& view, std::vector<std::string> settings = {}) {
+    try {
+      parse(view, std::move(settings));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(message(R"({"rnage": [0, 1]})"),
+            "c.json: unknown key \"view.rnage\"; did you mean \"view.range\"?");
+  EXPECT_EQ(message(R"({"range": [0]})"), "c.json: view.range: expected two numbers, found a list");
+  EXPECT_THAT(message("{}", {"view.ramp=trubo"}), testing::HasSubstr("did you mean \"turbo\"?"));
+  EXPECT_THAT(message(R"({"cut": [1, 0, 0, 0], "box": [0, 0, 0, 1, 1, 1]})"),
+              testing::HasSubstr("\"cut\" or \"box\", not both"));
+}
+
+TEST(ConfigView, TakesSettingsOnTopOfAView) {
+  ModelView view;
+  view.light = "raking";
+  const std::vector<std::string> settings{"view.up=z", "view.wires=true"};
+  const ModelView changed = with_settings(view, settings);
+  EXPECT_EQ(changed.light, "raking");
+  EXPECT_EQ(changed.up, "z");
+  EXPECT_TRUE(changed.wires);
+  EXPECT_THROW(with_settings(view, std::vector<std::string>{"partition.vertices=100"}), Error);
 }
 
 }  // namespace

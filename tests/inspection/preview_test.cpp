@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "images/image_codec.h"
+#include "inspection/kept_view.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
@@ -257,6 +258,62 @@ TEST_F(PictureTest, CanBeEndedAtAnyTile) {
   execution::NoProgress progress;
   EXPECT_THROW(make_picture(*files_, hierarchy(), options(), progress, cancel), Error);
   EXPECT_FALSE(fs::exists(options().output));
+}
+
+TEST_F(PictureTest, HasThePerspectiveOfALink) {
+  build(sheet());
+  PreviewOptions asked = options();
+  asked.link = "https://example.org/#mesh.hier&2,0.5,5,2,0.5,0";
+  const Covered whole = covered(picture(asked));
+  // 90 pixels are 2 * 5 * tan(22.5 degrees) high where the sheet is.
+  EXPECT_NEAR(static_cast<double>(whole.columns), 4 * 90 / 4.1421, 1);
+  EXPECT_NEAR(static_cast<double>(whole.rows), 90 / 4.1421, 1);
+  asked.link += "&cut=-1,0,0,2&caps=off";
+  EXPECT_NEAR(static_cast<double>(covered(picture(asked)).columns), 2 * 90 / 4.1421, 1);
+  asked.link = "#&2,0.5,5,2,0.5,0&box=1,0.25,-1,2,0.75,1&level=0";
+  EXPECT_NEAR(static_cast<double>(covered(picture(asked)).columns), 90 / 4.1421, 1);
+  asked.link = "#&up=x";  // all of it, upright
+  const Covered upright = covered(picture(asked));
+  EXPECT_GT(upright.rows, 80U);
+  EXPECT_LT(upright.columns, 40U);
+  asked.link = "nothing";
+  std::string message;
+  EXPECT_EQ(failure(asked, message), ErrorCode::usage);
+  EXPECT_THAT(message, HasSubstr("--link: expected an address"));
+}
+
+TEST_F(PictureTest, HasTheViewThatTheHierarchyKeeps) {
+  build(sheet());
+  const images::Image before = picture(options());
+  const std::string text = [&] {
+    const auto bytes = storage::read_file(*files_, hierarchy() / "hierarchy.json", 1 << 20);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }();
+  ModelView view;
+  view.up = "x";
+  keep_view(*files_, hierarchy(), view);
+  EXPECT_EQ(kept_view(*files_, hierarchy()), view);
+  const Covered upright = covered(picture(options()));
+  EXPECT_GT(upright.rows, 80U);
+  EXPECT_LT(upright.columns, 40U);
+  PreviewOptions asked = options();
+  asked.up = UpAxis::y;
+  asked.view = Standpoint{0, 0};
+  EXPECT_GT(covered(picture(asked)).columns, 100U);
+  keep_view(*files_, hierarchy(), {});
+  EXPECT_EQ(picture(options()).texels, before.texels);
+  const auto bytes = storage::read_file(*files_, hierarchy() / "hierarchy.json", 1 << 20);
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), text);
+}
+
+TEST_F(PictureTest, AViewMustFitItsHierarchyAndIsNotPutIntoArchives) {
+  build(sheet());
+  build(sheet(), ".3tz");
+  ModelView view;
+  view.attribute = "quality";
+  EXPECT_THROW(keep_view(*files_, hierarchy(), view), Error);
+  EXPECT_THROW(keep_view(*files_, hierarchy(".3tz"), {}), Error);
+  EXPECT_TRUE(kept_view(*files_, hierarchy(".3tz")).empty());
 }
 
 }  // namespace

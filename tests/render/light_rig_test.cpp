@@ -27,7 +27,7 @@ TEST(LightRigTest, TheSunIsInTheNorthwestOfAMapWhicheverAxisIsUp) {
   // From above, north up in the picture: z is up, y is north; or y is up, -z is north.
   for (const auto& [camera, up] : {std::pair{looking({0, 0, -1}, {0, 1, 0}), UpAxis::z},
                                    std::pair{looking({0, -1, 0}, {0, 0, -1}), UpAxis::y}}) {
-    const LightRig rig = sunlight(camera, up);
+    const LightRig rig = rig_of(RigName::sun, {}, camera, up);
     const Vec3d sun = rig.lamps[0].towards;
     EXPECT_LT(sun.x, -0.3);
     EXPECT_GT(sun.y, 0.3);

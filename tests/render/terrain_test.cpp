@@ -66,8 +66,8 @@ TEST(TerrainTest, ColoursFollowHeightsAndSlopesAreSteeper) {
   const Terrain terrain{.along = {0, 0, 1}, .low = 0, .high = 4, .slope = 0.05};
   std::vector<Facet> facets{flat_facet({0, 0, -1}, {0, 0, 1}, {0, 0, 9})};
   facets[0][0].normal = {0.1F, 0, 1};
-  colour_by_height(terrain, facets);
-  shade_steeper(terrain, facets);
+  colour_by_height({terrain.along, terrain.low, terrain.high}, facets);
+  shade_steeper(terrain, terrain.relief(), facets);
   EXPECT_EQ(screen_value(facets[0][0].colour.x), 0x4f);
   EXPECT_EQ(screen_value(facets[0][1].colour.y), 0xc2);
   EXPECT_EQ(screen_value(facets[0][2].colour.z), 0xee);

@@ -2,6 +2,7 @@
 
 #include "config/config_schema.h"
 #include "images/ktx2_coder.h"
+#include "storage/format/view_keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,12 +107,26 @@ class ConfigDrawer {
         return draw_(1) == 0 ? Json::array() : Json(key.choices[draw_(key.choices.size() - 1)]);
       case KeyKind::size:
         return integer(key);
+      case KeyKind::view:
+        return view_value(key);
       case KeyKind::text:
       case KeyKind::path:
       case KeyKind::paths:
         break;
     }
     return "a text, with \"quotes\" and ümlauts";
+  }
+
+  /// Returns one of few values for keys that need no attribute; texts of any other.
+  Json view_value(const ConfigKey& key) {
+    if (!key.choices.empty())
+      return key.choices[draw_(key.choices.size() - 1)];
+    for (const Json& value : {Json(true), Json(2), Json({-1, 3}), Json({1, 2, 3}),
+                              Json({1, 0, 0.5, 2}), Json({0, 0, 0, 1, 2.5, 3}), Json({"a", "b"})}) {
+      if (storage::accepts(*key.view, value))
+        return value;
+    }
+    return "a text";
   }
 
   Json choice(const ConfigKey& key) {

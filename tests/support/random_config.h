@@ -23,10 +23,10 @@ struct DrawnFor {
 
 /// Keys that are not drawn: paths, what tests draw by themselves (threads, budget), and what needs
 /// the files or the data of a map, or rasters.
-inline constexpr std::array<std::string_view, 11> kNotDrawn{
+inline constexpr std::array<std::string_view, 12> kNotDrawn{
     "$schema",       "input",         "output",           "memory_budget",
     "threads",       "placement.crs", "placement.offset", "placement.metadata",
-    "texture.drape", "objects.from",  "objects.table"};
+    "texture.drape", "objects.from",  "objects.table",    "view.attribute"};
 
 /// A config of small tiles, without input and output. A pure function of what is drawn: of zeros
 /// alone the defaults.

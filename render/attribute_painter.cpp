@@ -1,4 +1,4 @@
-#include "inspection/attribute_painter.h"
+#include "render/attribute_painter.h"
 
 #include "base/error.h"
 #include "base/plain_text.h"
@@ -6,16 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace meshhier::inspection {
+namespace meshhier::render {
 namespace {
 
 constexpr Vec3f kNoValueColour{0.2F, 0.2F, 0.2F};
+constexpr float kHidden = std::numeric_limits<float>::quiet_NaN();
 
 [[noreturn]] void refuse_name(const SourceSummary& source, const std::string& name) {
   std::vector<std::string> names;
@@ -28,8 +30,8 @@ constexpr Vec3f kNoValueColour{0.2F, 0.2F, 0.2F};
                                 : fmt::format("the hierarchy has {}", fmt::join(names, ", "))));
 }
 
-std::array<double, 2> whole_range(const ValueStatistics& values, render::ColourRamp ramp) {
-  if (ramp != render::ColourRamp::coolwarm || values.min >= 0 || values.max <= 0)
+std::array<double, 2> whole_range(const ValueStatistics& values, ColourRamp ramp) {
+  if (ramp != ColourRamp::coolwarm || values.min >= 0 || values.max <= 0)
     return {values.min, values.max};
   const double most = std::max(-values.min, values.max);
   return {-most, most};
@@ -47,16 +49,17 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
   const ValueStatistics& values = source.values[number];
   channel_ = placed_values(given_)[number].channel;
   const bool is_signed = values.min < 0 && values.max > 0;
-  ramp_ =
-      colours.ramp.value_or(is_signed ? render::ColourRamp::coolwarm : render::ColourRamp::viridis);
+  ramp_ = colours.ramp.value_or(is_signed ? ColourRamp::coolwarm : ColourRamp::viridis);
   range_ = colours.range.value_or(whole_range(values, ramp_));
+  tolerance_ = colours.tolerance.value_or(-1);
+  hidden_ = colours.hidden;
   for (const auto& label : values.labels)
     labels_.emplace(label.label, labels_.size());
   begin_painted();
 }
 
-AttributePainter::AttributePainter(const AttributeLayout& given, ObjectColours colours)
-    : given_(given), objects_(std::move(colours)) {
+AttributePainter::AttributePainter(const AttributeLayout& given, ObjectColour colour)
+    : given_(given), object_colour_(std::move(colour)) {
   const auto found = std::ranges::find_if(given_.values, &ScalarAttribute::is_object);
   attribute_ = *found;
   channel_ = placed_object(given_)->channel;
@@ -92,18 +95,41 @@ void AttributePainter::paint(VertexArray& vertices) const {
 }
 
 Vec3f AttributePainter::colour(double value) const {
-  if (objects_)
-    return objects_->colour(value).value_or(kNoValueColour);
+  if (object_colour_)
+    return object_colour_(value).value_or(kNoValueColour);
   if (!std::isfinite(value))
     return kNoValueColour;
   if (attribute_.is_label) {
+    if (std::ranges::find(hidden_, value) != hidden_.end())
+      return {kHidden, kHidden, kHidden};
     const auto known = labels_.find(value);
-    return render::label_colour(known != labels_.end()
-                                    ? known->second
-                                    : static_cast<std::uint64_t>(std::min(std::abs(value), 1e15)));
+    return label_colour(known != labels_.end()
+                            ? known->second
+                            : static_cast<std::uint64_t>(std::min(std::abs(value), 1e15)));
   }
-  const double width = range_[1] - range_[0];
-  return render::ramp_colour(ramp_, width == 0 ? 0 : (value - range_[0]) / width);
+  if (std::abs(value) <= tolerance_)
+    return kPlainColour;
+  // What is within the tolerance is cut out of the axis.
+  const auto beyond = [&](double one) {
+    return tolerance_ > 0 ? one - std::clamp(one, -tolerance_, tolerance_) : one;
+  };
+  const double from = beyond(range_[0]), width = beyond(range_[1]) - from;
+  return ramp_colour(ramp_, width == 0 ? 0 : (beyond(value) - from) / width);
 }
 
-}  // namespace meshhier::inspection
+void drop_hidden(SceneTile& tile) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < tile.facets.size(); ++i) {
+    if (std::isnan(tile.facets[i][2].colour.x))
+      continue;
+    tile.facets[kept] = tile.facets[i];
+    if (!tile.skins.empty())
+      tile.skins[kept] = tile.skins[i];
+    ++kept;
+  }
+  tile.facets.resize(kept);
+  if (!tile.skins.empty())
+    tile.skins.resize(kept);
+}
+
+}  // namespace meshhier::render
