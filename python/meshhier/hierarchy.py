@@ -133,6 +133,11 @@ class Hierarchy:
         return self.manifest.get("units")
 
     @property
+    def view(self) -> dict[str, Any]:
+        """How it is shown first (docs/file_format.md, section 2.2); empty if nobody said it."""
+        return dict(self.manifest.get("view", {}))
+
+    @property
     def scalars(self) -> list[Scalar]:
         """The further numbers of vertices: quality, label, ..."""
         return list(self._manifest.scalars)

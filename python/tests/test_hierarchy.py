@@ -25,6 +25,13 @@ def test_it_tells_what_it_is(torus: str, built: Any) -> None:
         assert "20736 triangles" in repr(hierarchy)
 
 
+def test_it_tells_how_it_is_shown(torus: str, built: Any) -> None:
+    with meshhier.open(built(torus, "plain.hier")) as hierarchy:
+        assert hierarchy.view == {}
+    with meshhier.open(built(torus, "viewed.hier", view__light="raking", view__stretch=2)) as hierarchy:
+        assert hierarchy.view == {"light": "raking", "stretch": 2}
+
+
 def test_tiles_come_one_by_one(torus: str, built: Any) -> None:
     hierarchy = meshhier.open(built(torus, "early.hier", partition__count=11))
     for level in range(hierarchy.levels):
