@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -162,7 +163,12 @@ Json objects_json(const ObjectComparison& objects) {
 ModelView view_of(const SurfaceComparison& comparison) {
   constexpr double kShownPart = 0.99;
   const DistanceTally& distances = comparison.distances;
-  const double most = distances.empty() ? 0 : distances.size_quantile(kShownPart);
+  // Four digits: people read it.
+  const double most =
+      distances.empty()
+          ? 0
+          : std::strtod(fmt::format("{:.3e}", distances.size_quantile(kShownPart)).c_str(),
+                        nullptr);
   ModelView view;
   view.colours = "attribute";
   view.attribute = kDistance;
