@@ -10,9 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace meshhier::render {
 namespace {
 
@@ -20,14 +17,12 @@ constexpr Vec3f kNoValueColour{0.2F, 0.2F, 0.2F};
 constexpr float kHidden = std::numeric_limits<float>::quiet_NaN();
 
 [[noreturn]] void refuse_name(const SourceSummary& source, const std::string& name) {
-  std::vector<std::string> names;
+  std::string names;
   for (const ScalarAttribute& value : source.attributes.values)
-    names.push_back(value.name);
-  throw Error(
-      ErrorCode::usage,
-      fmt::format("--attribute {}: {}", plain_text(name, kMostNameBytes),
-                  names.empty() ? "the hierarchy has no attributes besides colours"
-                                : fmt::format("the hierarchy has {}", fmt::join(names, ", "))));
+    names += (names.empty() ? "the hierarchy has " : ", ") + value.name;
+  if (names.empty())
+    names = "the hierarchy has no attributes besides colours";
+  throw Error(ErrorCode::usage, "--attribute " + plain_text(name, kMostNameBytes) + ": " + names);
 }
 
 std::array<double, 2> whole_range(const ValueStatistics& values, ColourRamp ramp) {

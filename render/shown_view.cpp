@@ -13,9 +13,6 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace meshhier::render {
 namespace {
 
@@ -199,12 +196,12 @@ std::string not_drawn(const ModelView& view) {
                        std::pair{!view.measure.empty(), "measured points"},
                        std::pair{!view.pick.empty(), "the picked point"},
                        std::pair{!view.object.empty(), "the mark of the picked object"}};
-  std::vector<std::string_view> names;
+  std::string names;
   for (const auto& [is_there, name] : all) {
     if (is_there)
-      names.emplace_back(name);
+      names.append(names.empty() ? "" : ", ").append(name);
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
 }  // namespace meshhier::render
