@@ -123,8 +123,11 @@ function checkBuild(project, viewer) {
   line('worker', scripts.some((file) => file.startsWith('tile_worker')), scripts.join(' '));
 }
 
+/// Of those that a build has made: what is loaded later, by `import()`, left out.
 function scriptsIn(folder) {
-  return readdirSync(folder, { recursive: true }).filter((file) => file.endsWith('.js')).map((file) => readFileSync(path.join(folder, file), 'utf8'));
+  const scripts = new Map(readdirSync(folder, { recursive: true }).filter((file) => file.endsWith('.js')).map((file) => [path.basename(file), readFileSync(path.join(folder, file), 'utf8')]));
+  const later = new Set([...scripts.values()].flatMap((script) => [...script.matchAll(/import\(["'`]\.\/([^"'`]+)["'`]\)/g)].map(([, file]) => file)));
+  return [...scripts].filter(([file]) => !later.has(file)).map(([, script]) => script);
 }
 
 function checkSize(project, viewer, subpath, most) {
