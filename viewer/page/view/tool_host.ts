@@ -123,6 +123,7 @@ export class ToolHost {
 
   private setLink(part: ViewPart, link: string): void {
     this.linked = { ...this.linked, [part]: link };
-    this.stage.context.startRest();
+    if (part === 'cut') this.stage.context.startRest(); // a slider tells very often
+    else this.stage.context.rest();
   }
 }
