@@ -12,7 +12,7 @@ import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 /// Kilobytes in gzip that each subpath may have: as viewer/README.md tells, and a fifth more.
-const MOST_KILOBYTES = { '.': 60, './element': 66, './progressive': 7, './tile_worker': 21, './plugins/measuring': 17, './plugins/occlusion': 2 };
+const MOST_KILOBYTES = { '.': 60, './element': 66, './progressive': 7, './pair': 23, './tile_worker': 21, './plugins/measuring': 17, './plugins/occlusion': 2 };
 
 const TYPES = `
 import { PerspectiveCamera } from 'three';
@@ -99,7 +99,7 @@ function checkTypes(project, viewer, resolution) {
 }
 
 function checkImports(project) {
-  const subpaths = ['meshhier-viewer', 'meshhier-viewer/element', 'meshhier-viewer/progressive', ...PLUGINS.map((name) => `meshhier-viewer/plugins/${name}`)];
+  const subpaths = ['meshhier-viewer', 'meshhier-viewer/element', 'meshhier-viewer/progressive', 'meshhier-viewer/pair', ...PLUGINS.map((name) => `meshhier-viewer/plugins/${name}`)];
   const code = `for (const one of ${JSON.stringify(subpaths)}) if (Object.keys(await import(one)).length === 0) throw new Error(one + ' exports nothing')`;
   run('imports in Node', project, process.execPath, '--input-type=module', '-e', code);
 }
@@ -136,7 +136,7 @@ function checkSize(project, viewer, subpath, most) {
   const out = path.join(project, `sized-${subpath.replace(/\W/g, '')}`);
   build(project, viewer, `build of ${name}`, `{ build: { target: "es2022", minify: "esbuild", outDir: ${JSON.stringify(out)}, emptyOutDir: true, rollupOptions: { input: "size.js", preserveEntrySignatures: "strict", external: (id) => id.split("/")[0] === "three" } } }`);
   const kilobytes = packedBytes(out) / 1000;
-  if (!subpath.startsWith('./plugins')) {
+  if (!subpath.startsWith('./plugins') && subpath !== './pair') { // a pair cuts both models open
     const loaded = OF_PLUGINS_ALONE.filter((word) => scriptsIn(out).some((script) => script.includes(word)));
     line(`plug-ins in ${name}`, loaded.length === 0, loaded.join(', ') || 'only those that are registered');
   }
