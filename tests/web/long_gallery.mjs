@@ -103,7 +103,8 @@ async function checkWide(browser, report, { url, pictures, total, complaints }) 
 }
 
 async function checkKeys(page, report) {
-  await page.locator('body').press('/');
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.keyboard.press('/');
   report.line('slash', (await page.getByRole('searchbox').inputValue()) === '', 'it is no text of the search');
   const focus = () => page.evaluate(() => document.activeElement?.className + document.activeElement?.textContent);
   const isSearch = (await focus()).includes('search');
