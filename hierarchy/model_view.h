@@ -14,6 +14,7 @@ struct ModelView {
   /// Place and target in the page's world, three numbers each: the input's coordinates less the
   /// hierarchy's origin, turned until y is up, heights stretched. Empty: all of the model.
   std::vector<double> camera{};
+  std::string projection = "perspective";
   std::string colours = "vertex";
   std::string shading = "smooth";
   std::string attribute{};  ///< whose values colours show; empty: the first one
@@ -27,10 +28,12 @@ struct ModelView {
   bool occlusion = false;
   std::string up = "file";
   std::optional<double> stretch{};  ///< heights are shown so many times as high
+  std::string dollhouse = "auto";   ///< whether faces that look away are left out
   std::optional<double> level{};    ///< the finest one that is shown
   std::vector<double> cut{};        ///< kept is where x n1 + y n2 + z n3 + d >= 0
   std::vector<double> box{};        ///< two corners: what lies between them is kept
   bool caps = true;                 ///< cuts of closed models are closed
+  std::vector<double> storey{};     ///< heights between which all is shown
   std::vector<double> measure{};    ///< points, three numbers each
   std::vector<double> pick{};       ///< a point
   std::string object{};             ///< the one that is picked

@@ -184,7 +184,10 @@ Bounds Placement::box_of(const Bounds& box) const {
 std::string not_drawn(const ModelView& view) {
   const std::string_view light = name_of_light(view);
   const bool is_cut = !view.cut.empty() || !view.box.empty();
-  const std::array all{std::pair{view.wires, "wires"},
+  const std::array all{std::pair{view.projection == "parallel", "parallel rays"},
+                       std::pair{view.dollhouse == "on", "the look in from outside"},
+                       std::pair{!view.storey.empty(), "the storey"},
+                       std::pair{view.wires, "wires"},
                        std::pair{view.points, "points"},
                        std::pair{view.outline, "the outline"},
                        std::pair{view.isolines && view.colours == "attribute", "isolines"},

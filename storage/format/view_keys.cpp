@@ -71,6 +71,11 @@ bool is_box(const Json& value) {
   return p.size() == 6 && p[0] < p[3] && p[1] < p[4] && p[2] < p[5];
 }
 
+bool is_storey(const Json& value) {
+  const std::vector<double> heights = doubles_of(value);
+  return heights.size() == 2 && heights[0] < heights[1];
+}
+
 bool are_points(const Json& value) {
   return !value.empty() && value.size() % 3 == 0 && value.size() <= 3 * kMostPoints;
 }
@@ -191,6 +196,8 @@ std::vector<ViewKey> make_keys() {
        .unset = "all of the model",
        .schema = numbers_schema(6, 6),
        .is_sound = is_apart},
+      word("projection", &ModelView::projection, {"perspective", "parallel"}, "perspective",
+           "`parallel`: all depths have one scale, as in drawings", ViewPart::projection),
       word("colours", &ModelView::colours,
            {"plain", "vertex", "partition", "error", "height", "attribute"},
            "vertex; attribute if view.attribute is given",
@@ -262,6 +269,9 @@ std::vector<ViewKey> make_keys() {
        .unset = "1",
        .schema = {{"type", "number"}, {"minimum", 1}, {"maximum", kMostStretch}},
        .is_sound = is_stretch},
+      word("dollhouse", &ModelView::dollhouse, {"auto", "on", "off"},
+           "auto: where most of the hull looks away",
+           "whether faces that look away are left out, to look into rooms", ViewPart::dollhouse),
       {.name = "level",
        .part = ViewPart::level,
        .field = &ModelView::level,
@@ -288,6 +298,14 @@ std::vector<ViewKey> make_keys() {
        .schema = numbers_schema(6, 6),
        .is_sound = is_box},
       flag("caps", &ModelView::caps, "cuts of closed models are closed", ViewPart::cut),
+      {.name = "storey",
+       .part = ViewPart::rooms,
+       .field = &ModelView::storey,
+       .meaning = "heights of the input: what lies between them is shown",
+       .expected = "two numbers, the lower one first",
+       .unset = "all",
+       .schema = numbers_schema(2, 2),
+       .is_sound = is_storey},
       {.name = "measure",
        .part = ViewPart::measure,
        .field = &ModelView::measure,

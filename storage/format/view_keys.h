@@ -30,7 +30,19 @@ using ViewField =
 
 /// A link that says anything of a part says all of it: the rest has its default. Of what it does
 /// not say it is as the model is seen first.
-enum class ViewPart : std::uint8_t { camera, look, standing, level, cut, measure, pick, objects };
+enum class ViewPart : std::uint8_t {
+  camera,
+  projection,
+  look,
+  standing,
+  dollhouse,
+  level,
+  cut,
+  rooms,
+  measure,
+  pick,
+  objects
+};
 
 /// A key of a view.
 struct ViewKey {

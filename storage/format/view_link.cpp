@@ -69,14 +69,18 @@ Json typed(const ViewField& field, const Values& values) {
   }
 }
 
-void take_values(const ViewKey& key, const Values& values, ModelView& view) {
+/// Returns whether the values say anything: nothing at all says that there is nothing of the part.
+bool take_values(const ViewKey& key, const Values& values, ModelView& view) {
   const Json value = typed(key.field, values);
-  if (accepts(key, value))
-    return assign(key, value, view);
   // "studio,9,9": the word can be read, what is behind it cannot.
   const Json word = values.front().substr(0, values.front().find(','));
-  if (!key.words.empty() && accepts(key, word))
+  if (accepts(key, value))
+    assign(key, value, view);
+  else if (!key.words.empty() && accepts(key, word))
     assign(key, word, view);
+  else
+    return values.front().empty();
+  return true;
 }
 
 // ---- writing
@@ -172,8 +176,8 @@ std::optional<ViewLink> parse_view_link(std::string_view link) {
     const auto found = given.find(key.name);
     if (found == given.end())
       continue;
-    read.said.insert(key.part);
-    take_values(key, found->second, read.view);
+    if (take_values(key, found->second, read.view))
+      read.said.insert(key.part);
   }
   if (problem_between_keys(read.view))
     read.view.box.clear();

@@ -44,14 +44,12 @@ export class Extensions {
 
   /// As links have it; empty: nothing was chosen.
   get text(): string {
-    const mode = this.dollhouse?.mode ?? this.wished;
-    return mode === 'auto' ? '' : writeLink({ dollhouse: mode === 'on' });
+    return writeLink({ dollhouse: this.dollhouse?.mode ?? this.wished });
   }
 
   /// As a link says.
   follow(choices: string): void {
-    const { dollhouse } = readLink(choices);
-    this.wished = dollhouse === undefined ? 'auto' : dollhouse ? 'on' : 'off';
+    this.wished = readLink(choices).dollhouse ?? 'auto';
     if (this.dollhouse !== null) this.dollhouse.mode = this.wished;
   }
 

@@ -119,13 +119,13 @@ export const VIEW_TABLE = {
   occlusion: row('look', flag(), false),
   up: row('standing', word(UPS), DEFAULT_STANDING.up),
   stretch: row('standing', number((value) => value >= 1 && value <= MOST_STRETCH, `from 1 to ${MOST_STRETCH}`), DEFAULT_STANDING.stretch),
-  /// Faces that look away are not drawn; unsaid: as the model is.
-  dollhouse: row('dollhouse', flag()),
+  /// Whether faces that look away are left out; `auto`: as the model is.
+  dollhouse: row('dollhouse', word(['auto', 'on', 'off'] as const), 'auto'),
   level: row('level', number((value) => Number.isInteger(value) && value >= 0 && value <= MOST_LEVEL, `a whole number from 0 to ${MOST_LEVEL}`)),
   cut: row('cut', numbers<readonly [number, number, number, number]>(isPlane, 'four numbers: a normal that is not 0, and a distance')),
   box: row('cut', numbers<Box>(isBox, 'six numbers: the least corner, then the greatest')),
   caps: row('cut', flag(), true),
-  walk: row('rooms', flag(), false),
+  walk: row('rooms', flag(), false, true),
   /// Heights of the input between which all is drawn.
   storey: row('rooms', numbers<readonly [number, number]>(([from, to, ...more]) => more.length === 0 && from < to, 'two numbers, the lower first')),
   way: row('pair', word(WAYS), 'swipe', true),
