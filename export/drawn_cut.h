@@ -51,8 +51,8 @@ std::vector<BoundsD> boxes_of(const DrawnCut& shown, Benches& benches,
                               execution::Progress& progress);
 
 /// Returns the box in `frame` of all that may be drawn. On axes of its own a box around small boxes
-/// is closer than one around all. `region`: of `request`. Tiles that lie out of `kept` do not count,
-/// if there is one. O(tiles).
+/// is closer than one around all. `region`: of `request`. Tiles that lie out of `kept` do not
+/// count, if there is one. O(tiles).
 BoundsD drawn_box(const storage::HierarchyReader& reader, const MapFrame& frame,
                   const RegionRequest& request, const std::optional<Region>& region,
                   const ConvexRegion* kept = nullptr);

@@ -76,7 +76,7 @@ TEST_F(CommandLine, VersionIsPrinted) {
 TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
   const std::vector<std::pair<Arguments, std::string>> mistakes{
       {{}, ", clean, completion, manual\nRun with --help"},
-      {{"view", "x.hier"}, "unknown command \"view\"; expected one of build, inspect, "},
+      {{"show", "x.hier"}, "unknown command \"show\"; expected one of build, inspect, "},
       {{MESHHIER_BINARY}, "a command is missing; did you mean \"meshhier build "},
       {{"biuld", "a.json"}, "unknown command \"biuld\"; did you mean \"build\"?"},
       {{"build"}, "A mesh or a config is required"},

@@ -121,8 +121,9 @@ class ConfigDrawer {
   Json view_value(const ConfigKey& key) {
     if (!key.choices.empty())
       return key.choices[draw_(key.choices.size() - 1)];
-    for (const Json& value : {Json(true), Json(2), Json({-1, 3}), Json({1, 2, 3}),
-                              Json({1, 0, 0.5, 2}), Json({0, 0, 0, 1, 2.5, 3}), Json({"a", "b"})}) {
+    for (const Json& value :
+         {Json(key.view->unset != "true"), Json(2), Json({-1, 3}), Json({1, 2, 3}),
+          Json({1, 0, 0.5, 2}), Json({0, 0, 0, 1, 2.5, 3}), Json({"a", "b"})}) {
       if (storage::accepts(*key.view, value))
         return value;
     }
