@@ -213,7 +213,8 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
   command
       .add_option("--link", options.link,
                   "Draws what the page shows from this link: all of it, or from # on")
-      ->type_name("LINK");
+      ->type_name("LINK")
+      ->check(name_fault);
   add_parsed_option(command, "--up",
                     "Which axis of the input points up; if not given, as the "
                     "hierarchy says",

@@ -79,7 +79,8 @@ void add_view_command(CLI::App& parser, Invocation& invocation) {
   command
       ->add_option("--link", arguments->link,
                    "Takes what this link of the page says, from # on or all of it")
-      ->type_name("LINK");
+      ->type_name("LINK")
+      ->check(name_fault);
   command
       ->add_option("--set", arguments->settings,
                    "Changes a key: view.KEY=VALUE, or view={...} for all of it")

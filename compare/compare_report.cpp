@@ -163,12 +163,13 @@ Json objects_json(const ObjectComparison& objects) {
 ModelView view_of(const SurfaceComparison& comparison) {
   constexpr double kShownPart = 0.99;
   const DistanceTally& distances = comparison.distances;
+  // Where less than the other part moved, all that did is shown.
+  const double part = distances.empty() ? 0 : distances.size_quantile(kShownPart);
+  const double shown = part > 0 || distances.empty()
+                           ? part
+                           : std::max(std::abs(distances.least()), std::abs(distances.largest()));
   // Four digits: people read it.
-  const double most =
-      distances.empty()
-          ? 0
-          : std::strtod(fmt::format("{:.3e}", distances.size_quantile(kShownPart)).c_str(),
-                        nullptr);
+  const double most = std::strtod(fmt::format("{:.3e}", shown).c_str(), nullptr);
   ModelView view;
   view.colours = "attribute";
   view.attribute = kDistance;

@@ -70,6 +70,7 @@ class TileCutter {
               static_cast<std::size_t>(shown.reader.tile_format().attributes.channels()), false));
     }
     constexpr std::uint64_t kUsualSegments = 1 << 16;
+    most_bytes_ = most;
     in_flight_ = execution::useful_blocks(memory_, most + kUsualSegments * kSegmentBytes);
     most_segments_ = (memory_ / in_flight_ - std::min(most, memory_ / in_flight_)) / kSegmentBytes;
   }
@@ -91,17 +92,19 @@ class TileCutter {
     if (segments <= most_segments_)
       return;
     constexpr std::uint64_t kParts = 4;  // of the budget that are for tiles: one
-    throw Error(ErrorCode::budget,
-                fmt::format("{} segments of lines pass through tile {}: give --memory-budget {} or "
-                            "more, or a larger interval",
-                            segments, to_text(shown_.cut[tile]),
-                            execution::rounded_size_text(kParts * in_flight_ *
-                                                         (2 * segments * kSegmentBytes))));
+    throw Error(
+        ErrorCode::budget,
+        fmt::format("{} segments of lines pass through tile {}: give --memory-budget {} or "
+                    "more, or a larger interval",
+                    segments, to_text(shown_.cut[tile]),
+                    execution::rounded_size_text(kParts * in_flight_ *
+                                                 (most_bytes_ + 2 * segments * kSegmentBytes))));
   }
 
   const DrawnCut& shown_;
   const LineDrawing& drawing_;
   std::uint64_t memory_;
+  std::uint64_t most_bytes_ = 0;  ///< of a tile
   std::size_t in_flight_ = 1;
   std::uint64_t most_segments_ = 0;
 };

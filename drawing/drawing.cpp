@@ -8,7 +8,9 @@
 #include "geodesy/map_projection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,6 +58,23 @@ void require_sense(const DrawingOptions& options, const LineFormat* lines) {
     throw Error(ErrorCode::usage, "--world-file belongs to the picture of a plan");
 }
 
+/// Warns of options that the format has no use for.
+void warn_of_unused(const DrawingOptions& options, const LineFormat* lines,
+                    execution::Progress& progress) {
+  const std::string_view format = lines == nullptr ? kPictureFormat : lines->name;
+  const bool is_paper = lines == nullptr || lines->needs_paper;
+  const std::array unused{
+      std::pair{lines != nullptr && options.dots_per_inch != DrawingOptions{}.dots_per_inch,
+                "--dpi"},
+      std::pair{lines != nullptr && options.is_transparent, "--transparent"},
+      std::pair{!is_paper && options.paper.has_grid, "--grid"},
+      std::pair{options.is_flat && format != "dxf", "--flat"}};
+  for (const auto& [is_unused, name] : unused) {
+    if (is_unused)
+      progress.warn(fmt::format("{} has no meaning for {}", name, format));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> format_names() {
@@ -71,6 +90,7 @@ std::string draw(storage::FileSystem& files, const std::filesystem::path& hierar
   const auto* const format = std::ranges::find(kLineFormats, options.format, &LineFormat::name);
   const bool is_lines = format != kLineFormats.end();
   require_sense(options, is_lines ? format : nullptr);
+  warn_of_unused(options, is_lines ? format : nullptr, progress);
   return is_lines ? draw_lines(files, hierarchy, options, *format, progress, cancel)
                   : draw_picture(files, hierarchy, options, progress, cancel);
 }

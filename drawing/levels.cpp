@@ -13,7 +13,7 @@ CutLevels::CutLevels(std::vector<double> heights) {
   std::ranges::sort(heights);
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   for (const double height : heights)
-    levels_.push_back({height});
+    levels_.push_back({height + 0.0});  // -0 is 0
 }
 
 CutLevels CutLevels::contours(double interval, double low, double high) {

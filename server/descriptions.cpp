@@ -105,7 +105,7 @@ DescriptionTable parse_descriptions(std::string_view text, const std::string& na
   Json document;
   try {
     document = storage::parse_ordered_json_text(text);
-  } catch (const nlohmann::json::parse_error& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorCode::usage, name + ": " + json_fault(error.what()));
   }
   const auto models = document.is_object() ? document.find("models") : document.end();

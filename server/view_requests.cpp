@@ -26,8 +26,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kModelsBegin = "/models/", kViewEnd = "/view";
-/// A view with all that it may have; a manifest has 1 MiB.
-constexpr std::size_t kMostViewBytes = 64 * 1024;
 constexpr std::size_t kShownKeyBytes = 60;
 
 std::string_view without_query(std::string_view target) {
@@ -37,8 +35,8 @@ std::string_view without_query(std::string_view target) {
 std::variant<std::string, Reply> view_text_of(const Request& request) {
   if (request.body == nullptr)
     return text_reply(411, "The request must say how long its body is (Content-Length).");
-  if (request.body->bytes() > kMostViewBytes)
-    return text_reply(413, fmt::format("A view has at most {} bytes.", kMostViewBytes));
+  if (request.body->bytes() > storage::kMostViewBytes)
+    return text_reply(413, fmt::format("A view has at most {} bytes.", storage::kMostViewBytes));
   std::string text(request.body->bytes(), '\0');
   std::size_t read = 0;
   while (read < text.size()) {

@@ -135,7 +135,10 @@ class Hierarchy:
     @property
     def view(self) -> dict[str, Any]:
         """How it is shown first (docs/file_format.md, section 2.2); empty if nobody said it."""
-        return dict(self.manifest.get("view", {}))
+        view = self.manifest.get("view", {})
+        if not isinstance(view, dict):
+            raise CorruptError('hierarchy.json: "view" is wrong, expected an object')
+        return dict(view)
 
     @property
     def scalars(self) -> list[Scalar]:

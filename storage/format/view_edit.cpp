@@ -59,7 +59,14 @@ std::string with_view(const std::string& manifest_text, const ModelView& view,
                       const std::string& name) {
   require_attribute(parse_manifest(manifest_text, name), view, name);
   const Json document = parse_ordered_json_text(manifest_text);
-  return sealed_text({}, with_view_key(document, view));  // it tells its own format and version
+  // It tells its own format and version.
+  std::string changed = sealed_text({}, with_view_key(document, view));
+  if (changed.size() > kMostSealedBytes)
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: with this view it would have {} bytes, and at most {} are read: "
+                            "name fewer objects in it",
+                            name, changed.size(), kMostSealedBytes));
+  return changed;
 }
 
 std::string replace_view(FileSystem& files, const std::filesystem::path& hierarchy,

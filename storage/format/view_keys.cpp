@@ -457,6 +457,9 @@ Json value_json(const ViewKey& key, const ModelView& view) {
 std::optional<ViewProblem> problem_between_keys(const ModelView& view) {
   if (!view.cut.empty() && !view.box.empty())
     return ViewProblem{"box", "\"cut\" or \"box\", not both"};
+  if (const std::size_t bytes = view_json(view).dump().size(); bytes > kMostViewBytes)
+    return ViewProblem{"", fmt::format("at most {} bytes in all, found {}: name fewer objects",
+                                       kMostViewBytes, bytes)};
   return std::nullopt;
 }
 
@@ -467,7 +470,7 @@ std::variant<ModelView, ViewProblem> parse_view(const Json& json) {
   for (const auto& [name, value] : json.items()) {
     const ViewKey* key = find_view_key(name);
     if (key == nullptr)
-      return ViewProblem{name, "no such key"};
+      return ViewProblem{name, "a key of views, which this is not"};
     if (!accepts(*key, value))
       return ViewProblem{name, expectation(*key)};
     assign(*key, value, view);

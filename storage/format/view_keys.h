@@ -11,6 +11,7 @@
 
 #include "hierarchy/model_view.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +23,9 @@
 #include <nlohmann/json.hpp>
 
 namespace meshhier::storage {
+
+/// Of a view's JSON: a manifest of at most 1 MiB has it twice.
+inline constexpr std::size_t kMostViewBytes = std::size_t{64} * 1024;
 
 /// The member that holds a key's value.
 using ViewField =

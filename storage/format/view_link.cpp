@@ -179,7 +179,7 @@ std::optional<ViewLink> parse_view_link(std::string_view link) {
     if (take_values(key, found->second, read.view))
       read.said.insert(key.part);
   }
-  if (problem_between_keys(read.view))
+  if (const auto problem = problem_between_keys(read.view); problem && problem->key == "box")
     read.view.box.clear();
   for (const auto& [name, values] : given) {
     if (find_view_key(name) == nullptr)
