@@ -1,5 +1,5 @@
 // Checks the library of viewer/ as `npm pack` packs it, in a project that uses it: its types resolve, its subpaths can be imported, and Vite
-// builds what uses it. Tells how large each part is, packed by gzip and without three.
+// builds what uses it. Tells how large what each part loads at once is, packed by gzip and without three.
 //
 //   node consumer.mjs VIEWER
 //
@@ -12,7 +12,7 @@ import path from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 /// Kilobytes in gzip that each subpath may have: as viewer/README.md tells, and a fifth more.
-const MOST_KILOBYTES = { '.': 60, './element': 66, './progressive': 7, './pair': 23, './tile_worker': 21, './plugins/measuring': 17, './plugins/occlusion': 2 };
+const MOST_KILOBYTES = { '.': 60, './element': 64, './progressive': 7, './pair': 15, './tile_worker': 21, './plugins/measuring': 10, './plugins/occlusion': 2 };
 
 const TYPES = `
 import { PerspectiveCamera } from 'three';
@@ -109,10 +109,10 @@ function build(project, viewer, what, config) {
   return run(what, project, process.execPath, path.join(viewer, 'node_modules/vite/bin/vite.js'), 'build', '--logLevel', 'error');
 }
 
-/// Bytes in gzip of all scripts that a build has made, but for the transcoder, which pages of KTX2 alone load.
+/// Bytes in gzip of what a build loads at once.
 function packedBytes(folder) {
   if (!existsSync(folder)) return 0;
-  return readdirSync(folder, { recursive: true }).filter((file) => file.endsWith('.js') && !file.includes('transcoder')).reduce((sum, file) => sum + gzipSync(readFileSync(path.join(folder, file)), { level: 9 }).length, 0);
+  return scriptsIn(folder).reduce((sum, script) => sum + gzipSync(script, { level: 9 }).length, 0);
 }
 
 function checkBuild(project, viewer) {
@@ -123,11 +123,13 @@ function checkBuild(project, viewer) {
   line('worker', scripts.some((file) => file.startsWith('tile_worker')), scripts.join(' '));
 }
 
-/// Of those that a build has made: what is loaded later, by `import()`, left out.
+/// The script that a build begins with, and all that it imports; what comes later, by `import()`, is left out.
 function scriptsIn(folder) {
   const scripts = new Map(readdirSync(folder, { recursive: true }).filter((file) => file.endsWith('.js')).map((file) => [path.basename(file), readFileSync(path.join(folder, file), 'utf8')]));
-  const later = new Set([...scripts.values()].flatMap((script) => [...script.matchAll(/import\(["'`]\.\/([^"'`]+)["'`]\)/g)].map(([, file]) => file)));
-  return [...scripts].filter(([file]) => !later.has(file)).map(([, script]) => script);
+  const loaded = new Set([...scripts.keys()].filter((file) => /^size\b/.test(file)));
+  for (const file of loaded)
+    for (const [, imported] of scripts.get(file).matchAll(/(?:from|import) *["'`]\.\/([^"'`]+)["'`]/g)) if (scripts.has(imported)) loaded.add(imported);
+  return [...loaded].map((file) => scripts.get(file));
 }
 
 function checkSize(project, viewer, subpath, most) {
