@@ -51,6 +51,7 @@ class RoomsTool implements Tool {
     this.root = element('div', {}, this.walk, this.hint, this.look.root, this.house, eyes.root, this.note);
     for (const plugin of [this.walking, this.storeys]) plugin.addEventListener('change', () => { this.tell(); });
     this.dollhouse.addEventListener('change', () => { this.show(); });
+    shop.bench.onProjection((projection) => { if (projection === 'parallel') this.walking.stop(); });
     shop.link('rooms').onFollow(() => { this.follow(); });
     this.follow();
   }
