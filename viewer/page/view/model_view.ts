@@ -77,7 +77,7 @@ export class ModelView {
     return this.parts.camera.pose();
   }
 
-  /// Null: all of the model.
+  /// Null: as the model is seen first.
   setPose(pose: Pose | null): void {
     this.parts.camera.setPose(pose);
   }

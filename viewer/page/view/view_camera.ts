@@ -56,9 +56,9 @@ export class ViewCamera {
     return roundedPose(this.navigation.pose.toPose());
   }
 
-  /// Null: all of the model.
+  /// Null: as the model is seen first.
   setPose(pose: Pose | null): void {
-    if (pose === null) this.navigation.goHome();
+    if (pose === null) this.navigation.goFirst();
     else this.navigation.jump(CameraPose.from(pose));
   }
 
@@ -177,6 +177,6 @@ export class ViewCamera {
     this.reframe();
     if (!atHome) return; // it has been moved meanwhile
     this.navigation.jump(pose);
-    this.navigation.goHome();
+    this.navigation.goFirst();
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { Vector3 } from 'three';
+import { Box3, Vector3 } from 'three';
 import { beforeAll, describe, expect, it, vi } from 'vitest';
 import { CameraPose } from '../../src/scene/camera_pose.js';
 import type { Navigation } from '../../page/view/navigation.js';
@@ -34,5 +34,17 @@ describe('the camera', () => {
       fly(navigation);
       expect(navigation.pose.target.length()).toBeLessThan(1);
     }
+  });
+
+  it('goes from the first view to all of the model and back, but to the first view where that is asked for', () => {
+    const navigation = make();
+    const first = new CameraPose(new Vector3(3, 2, 1), new Vector3());
+    navigation.frame(new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1)), { aspect: 1, direction: null, first });
+    const shown = [() => { navigation.goHome(); }, () => { navigation.goFirst(); }, () => { navigation.goFirst(); }, () => { navigation.goHome(); }, () => { navigation.goHome(); }].map((go) => {
+      go();
+      fly(navigation);
+      return navigation.pose.equals(first);
+    });
+    expect(shown).toEqual([false, true, true, false, true]);
   });
 });
