@@ -11,6 +11,8 @@ import { Clipping } from './clipping.js';
 
 /// Parts of a storey's height that the cut is below its ceiling, and at most below its floor.
 const [BELOW_CEILING, BELOW_FLOOR] = [0.06, 0.05];
+/// Part of a range that both cuts are lower than its ends.
+const HAIR = 1e-3;
 
 /// Heights along up, in the input's coordinates: all between them is drawn.
 export type StoreyRange = readonly [from: number, to: number];
@@ -115,6 +117,8 @@ export class Storeys extends EventDispatcher<{ change: object }> implements Plug
   }
 }
 
+/// A floor at `from` is drawn whole, a ceiling at `to` not at all, however their heights are rounded.
 function planesOf(up: Vector, [from, to]: StoreyRange, shift: number): CutPlane[] {
-  return [{ normal: up, constant: shift - from }, { normal: scale(up, -1), constant: to - shift }];
+  const hair = HAIR * (to - from);
+  return [{ normal: up, constant: shift - from + hair }, { normal: scale(up, -1), constant: to - hair - shift }];
 }
