@@ -239,7 +239,7 @@ async function main([meshhier, pictures, sources, hierarchy, mesh, ...checks]) {
   const first = readHierarchy(hierarchy);
   const other = path.join(work, 'coarse.hier');
   execFileSync(meshhier, ['build', mesh, '-o', other, '--set', 'partition.vertices=5000', '--progress', 'none']);
-  await inChromium(pictures, async (browser, report) => {
+  const code = await inChromium(pictures, async (browser, report) => {
     await withSite(sources, [first, readHierarchy(other)], async (origin) => {
       const visit = new Comparison(browser, report, { origin, pictures, first: first.name, second: 'coarse' });
       const alone = [];
@@ -252,9 +252,10 @@ async function main([meshhier, pictures, sources, hierarchy, mesh, ...checks]) {
     });
   });
   rmSync(work, { recursive: true });
+  return code;
 }
 
-if (process.argv.length >= 7) await main(process.argv.slice(2));
+if (process.argv.length >= 7) process.exitCode = await main(process.argv.slice(2));
 else {
   console.error('usage: node pair.mjs MESHHIER PICTURES PAGE HIERARCHY.hier MESH');
   process.exitCode = 2;
