@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The gallery's part for a map. Its code comes when the map is first wanted.
-import type { Model, ModelSpot } from '../listing.js';
+import type { ModelSpot } from '../listing.js';
 import { element } from '../parts/element.js';
-import type { PlacesMap } from './places_map.js';
-
-export type ModelsAt = (indices: readonly number[]) => Promise<readonly Model[]>;
+import type { ModelsAt, PlacesMap } from './places_map.js';
 
 export class MapPlace {
   readonly root = element('div', { hidden: true });

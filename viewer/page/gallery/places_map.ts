@@ -10,7 +10,8 @@ import { ICONS } from '../parts/icons.js';
 import { visit } from '../visits.js';
 import { words } from '../words/words.js';
 import { clustersOf, frameOf, lineStep, linesWithin, moved, MOST_SCALE, toMap, zoomed, type Cluster, type MapFrame } from './map_frame.js';
-import type { ModelsAt } from './map_place.js';
+
+export type ModelsAt = (indices: readonly number[]) => Promise<readonly Model[]>;
 
 const ZOOM = 2;
 const STEP = 80; // pixels of an arrow key
