@@ -10,6 +10,11 @@ function isPaired(picked: PickedPoint): picked is PairedPoint {
   return 'side' in picked;
 }
 
+/// A distance below the last place of the point's coordinates is the rounding of floats.
+function toldDistance(distance: number, { places }: PickedPoint): number {
+  return Math.abs(distance) < 0.5 * 10 ** Math.max(...places) ? 0 : distance;
+}
+
 /// `names`: of both models; `tell`: a value of the other model.
 export function pairRows(picked: PickedPoint, names: readonly [string, string], scale: LengthScale, tell: (name: string, value: PickedPoint['values'][number]) => Figure): Figure[] {
   if (!isPaired(picked)) return [];
@@ -19,6 +24,6 @@ export function pairRows(picked: PickedPoint, names: readonly [string, string], 
   if (across === null) return [on];
   const { by, distance, bound, values } = across;
   const name = words.pair[by](other);
-  const far = distance === null ? line(name, words.pair.nowhere) : line(name, scale.formatWithin(distance, bound), distance);
+  const far = distance === null ? line(name, words.pair.nowhere) : line(name, scale.formatWithin(toldDistance(distance, picked), bound), distance);
   return [on, far, ...values.map((value) => tell(`${value.name} (${other})`, value))];
 }
