@@ -4,6 +4,8 @@ import { Dollhouse } from '../../src/plugins/dollhouse.js';
 import { Storeys } from '../../src/plugins/storeys.js';
 import { Walking } from '../../src/plugins/walking.js';
 import type { Mark } from '../../src/plugins/overlay.js';
+import { magnitude } from '../../src/tools/number_text.js';
+import type { Storey } from '../../src/tools/storeys.js';
 import { checkbox, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { textButton } from './figures.js';
@@ -16,6 +18,12 @@ import './rooms.css';
 
 /// Eyes are from a tenth to four times as high as usual.
 const EYES = { least: 0.1, most: 4, step: 0.05 };
+
+/// A floor is known to a hundredth or so of its storey's height.
+function toldFloor({ floor, ceiling }: Storey): number {
+  const step = 10 ** (magnitude(ceiling - floor) - 2);
+  return Number((Math.round(floor / step) * step).toPrecision(12));
+}
 
 class RoomsTool implements Tool {
   readonly root: HTMLElement;
@@ -135,7 +143,7 @@ class RoomsTool implements Tool {
     this.house.hidden = storeys.length === 0;
     this.range.max = String(storeys.length);
     this.range.value = String(shown === null ? 0 : shown.number + 1);
-    const text = shown === null ? rooms.allStoreys : rooms.storeyAt(String(shown.number + 1), this.shop.scale.format(Number(storeys[shown.number].floor.toPrecision(3))));
+    const text = shown === null ? rooms.allStoreys : rooms.storeyAt(String(shown.number + 1), this.shop.scale.format(toldFloor(storeys[shown.number])));
     this.storey.textContent = text;
     this.range.setAttribute('aria-valuetext', text);
     this.only.show(this.isOnly);
