@@ -4,6 +4,7 @@
 #include "app/options.h"
 #include "base/error.h"
 #include "drawing/drawing.h"
+#include "storage/format/view_keys.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -33,23 +34,8 @@ struct DrawArguments {
   DrawingOptions options;
 };
 
-/// Returns the finite numbers of a text, "X,Y"; nothing if it is anything else.
-std::optional<std::vector<double>> numbers_in(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const auto number = parse_number<double>(text.substr(0, comma));
-    if (!number || !std::isfinite(*number))
-      return std::nullopt;
-    numbers.push_back(*number);
-    if (comma == text.size())
-      return numbers;
-    text.remove_prefix(comma + 1);
-  }
-}
-
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t count) {
-  auto numbers = numbers_in(text);
+  auto numbers = storage::parse_numbers(text);
   return numbers && numbers->size() == count ? numbers : std::nullopt;
 }
 
@@ -99,28 +85,6 @@ int run_draw(const DrawArguments& arguments, execution::ProgressMode mode,
   progress->finish(arguments.output);
   account << line << '\n' << place.account();
   return 0;
-}
-
-/// An option whose text `store` takes, or refuses by returning false.
-struct TextOption {
-  const char* name;
-  const char* help;
-  const char* type;
-  const char* expected;
-};
-template <class Store>
-CLI::Option* add_text_option(CLI::App& command, const TextOption& option, const Store& store) {
-  return command
-      .add_option_function<std::string>(
-          option.name,
-          [option, store](const std::string& text) {
-            if (!store(text)) {
-              throw CLI::ValidationError(
-                  option.name, fmt::format("expected {}, found \"{}\"", option.expected, text));
-            }
-          },
-          option.help)
-      ->type_name(option.type);
 }
 
 /// Stores what `read` finds in the text; returns whether that is anything.
@@ -187,7 +151,7 @@ void add_cuts(CLI::App& command, DrawingOptions& options) {
                    "drawn. Several heights give as many lines",
                    "Z,...", "heights, Z or Z,Z,..."},
                   [&options](const std::string& text) {
-                    return store_found(options.cut_heights, numbers_in(text));
+                    return store_found(options.cut_heights, storage::parse_numbers(text));
                   });
   add_text_option(
       *cut,
@@ -293,8 +257,8 @@ void add_draw_command(CLI::App& parser, Invocation& invocation) {
   const std::vector<std::string> names = drawing::format_names();
   command
       ->add_option("--format", arguments->format, "What to write, whatever the name: -o - needs it")
-      ->type_name(fmt::format("{}", fmt::join(names, "|")))
-      ->check(CLI::IsMember(names));
+      ->check(CLI::IsMember(names))
+      ->type_name(fmt::format("{}", fmt::join(names, "|")));
   add_file_output_options(*command, fmt::format("The drawing: .{}", fmt::join(names, ", .")),
                           arguments->output, arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);

@@ -213,6 +213,21 @@ CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
       ->type_name("N");
 }
 
+CLI::Option* add_text_option(CLI::App& command, const TextOption& option,
+                             const std::function<bool(const std::string&)>& store) {
+  return command
+      .add_option_function<std::string>(
+          option.name,
+          [option, store](const std::string& text) {
+            if (!store(text)) {
+              throw CLI::ValidationError(
+                  option.name, fmt::format("expected {}, found \"{}\"", option.expected, text));
+            }
+          },
+          option.help)
+      ->type_name(option.type);
+}
+
 CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node) {
   const auto store = [&node](const std::string& text) {
     node = parse_node(text);

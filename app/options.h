@@ -64,6 +64,16 @@ struct IntegerOption {
 CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
                                 const std::function<void(std::uint64_t)>& store);
 
+/// An option whose text `store` takes, or refuses by returning false.
+struct TextOption {
+  const char* name;
+  const char* help;
+  std::string type;      ///< "X,Y"
+  std::string expected;  ///< "two numbers, X,Y"
+};
+CLI::Option* add_text_option(CLI::App& command, const TextOption& option,
+                             const std::function<bool(const std::string&)>& store);
+
 /// Adds --node L/I.
 CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node);
 

@@ -164,34 +164,17 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
   return 0;
 }
 
-/// Adds an option whose text `store` takes, or refuses by returning false.
-template <class Store>
-CLI::Option* add_parsed_option(CLI::App& command, const char* name, const char* help,
-                               const std::string& type, const std::string& expected,
-                               const Store& store) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [=](const std::string& text) {
-            if (!store(text))
-              throw CLI::ValidationError(name,
-                                         fmt::format("expected {}, found \"{}\"", expected, text));
-          },
-          help)
-      ->type_name(type);
-}
-
 void add_what(CLI::App& command, PreviewArguments& arguments) {
   CLI::App* what = add_group(command, "What", "At most one of these");
   PreviewOptions& options = arguments.options;
   add_integer_option(
       *what, {"--level", "All tiles of this level; the root is 0", 0, kDeepestLevel},
       [&arguments](std::uint64_t level) { arguments.level = static_cast<Level>(level); });
-  add_parsed_option(*what, "--cut", "The cut that this file lists, as for export", "FILE", "a file",
-                    [&options](const std::string& text) {
-                      options.selection = std::filesystem::path(text);
-                      return !text.empty();
-                    });
+  add_text_option(*what, {"--cut", "The cut that this file lists, as for export", "FILE", "a file"},
+                  [&options](const std::string& text) {
+                    options.selection = std::filesystem::path(text);
+                    return !text.empty();
+                  });
   add_error_option(
       *what, [&options](double error) { options.selection = exporting::LargestError{error}; });
   what->require_option(0, 1);
@@ -199,41 +182,48 @@ void add_what(CLI::App& command, PreviewArguments& arguments) {
 
 void add_look(CLI::App& command, PreviewArguments& arguments) {
   PreviewOptions& options = arguments.options;
-  add_parsed_option(command, "--size", "Pixels of the picture [1600x1000]", "WIDTHxHEIGHT",
-                    "WIDTHxHEIGHT, 1 to 8192 each",
-                    [&options](const std::string& text) { return parse_size(text, options); });
-  add_parsed_option(command, "--view",
-                    "front, back, left, right, top, bottom, iso, or degrees from the front to the "
-                    "right and above the equator; if not given, the hierarchy's first view",
-                    "NAME|AZ,EL", "front, back, left, right, top, bottom, iso, or AZ,EL in degrees",
-                    [&options](const std::string& text) {
-                      options.view = parse_view(text);
-                      return options.view.has_value();
-                    });
+  add_text_option(command,
+                  {"--size", "Pixels of the picture [1600x1000]", "WIDTHxHEIGHT",
+                   "WIDTHxHEIGHT, 1 to 8192 each"},
+                  [&options](const std::string& text) { return parse_size(text, options); });
+  add_text_option(command,
+                  {"--view",
+                   "front, back, left, right, top, bottom, iso, or degrees from the front to the "
+                   "right and above the equator; if not given, the hierarchy's first view",
+                   "NAME|AZ,EL", "front, back, left, right, top, bottom, iso, or AZ,EL in degrees"},
+                  [&options](const std::string& text) {
+                    options.view = parse_view(text);
+                    return options.view.has_value();
+                  });
   command
       .add_option("--link", options.link,
                   "Draws what the page shows from this link: all of it, or from # on")
       ->type_name("LINK")
       ->check(name_fault);
-  add_parsed_option(command, "--up",
-                    "Which axis of the input points up; if not given, as the "
-                    "hierarchy says",
-                    "y|z", "y or z", [&options](const std::string& text) {
-                      options.up = text == "z" ? UpAxis::z : UpAxis::y;
-                      return text == "y" || text == "z";
-                    });
-  add_parsed_option(command, "--background",
-                    "white, black, or #rrggbb; if not given, the ground is transparent", "COLOUR",
-                    "white, black, or #rrggbb", [&options](const std::string& text) {
-                      options.background = parse_colour(text);
-                      return options.background.has_value();
-                    });
-  add_parsed_option(command, "--format", "What to write, whatever the name: -o - needs it",
-                    all_formats("", "|"), all_formats("", " or "),
-                    [&arguments](const std::string& text) {
-                      arguments.format = format_named(text);
-                      return arguments.format.has_value();
-                    });
+  add_text_option(command,
+                  {"--up",
+                   "Which axis of the input points up; if not given, as the "
+                   "hierarchy says",
+                   "y|z", "y or z"},
+                  [&options](const std::string& text) {
+                    options.up = text == "z" ? UpAxis::z : UpAxis::y;
+                    return text == "y" || text == "z";
+                  });
+  add_text_option(
+      command,
+      {"--background", "white, black, or #rrggbb; if not given, the ground is transparent",
+       "COLOUR", "white, black, or #rrggbb"},
+      [&options](const std::string& text) {
+        options.background = parse_colour(text);
+        return options.background.has_value();
+      });
+  add_text_option(command,
+                  {"--format", "What to write, whatever the name: -o - needs it",
+                   all_formats("", "|"), all_formats("", " or ")},
+                  [&arguments](const std::string& text) {
+                    arguments.format = format_named(text);
+                    return arguments.format.has_value();
+                  });
 }
 
 void add_colours(CLI::App& command, PreviewArguments& arguments) {
@@ -248,18 +238,20 @@ void add_colours(CLI::App& command, PreviewArguments& arguments) {
       ->type_name("PROPERTY")
       ->check(name_fault)
       ->excludes(attribute);
-  add_parsed_option(command, "--ramp",
-                    "Its colours; if not given, coolwarm for signed values, else viridis",
-                    "viridis|cividis|turbo|coolwarm", "viridis, cividis, turbo or coolwarm",
-                    [&colours](const std::string& text) {
-                      colours.ramp = render::ramp_named(text);
-                      return colours.ramp.has_value();
-                    });
-  add_parsed_option(command, "--range", "Values at the ends of the ramp; if not given, all",
-                    "FROM,TO", "two numbers, FROM,TO", [&colours](const std::string& text) {
-                      colours.range = parse_range(text);
-                      return colours.range.has_value();
-                    });
+  add_text_option(command,
+                  {"--ramp", "Its colours; if not given, coolwarm for signed values, else viridis",
+                   "viridis|cividis|turbo|coolwarm", "viridis, cividis, turbo or coolwarm"},
+                  [&colours](const std::string& text) {
+                    colours.ramp = render::ramp_named(text);
+                    return colours.ramp.has_value();
+                  });
+  add_text_option(command,
+                  {"--range", "Values at the ends of the ramp; if not given, all", "FROM,TO",
+                   "two numbers, FROM,TO"},
+                  [&colours](const std::string& text) {
+                    colours.range = parse_range(text);
+                    return colours.range.has_value();
+                  });
 }
 
 /// Options of drawings at a scale, which another command makes: they are answered with it.

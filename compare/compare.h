@@ -112,7 +112,7 @@ SurfaceComparison compare_surfaces(const ComparedPlace& from, const ComparedPlac
                                    const execution::CancelToken& cancel);
 
 /// Returns how a hierarchy with the distances is shown: on both sides of 0 up to what 99 % of the
-/// surface is within, the tolerance as a band.
+/// surface is within, or twice the tolerance where that is more; the tolerance as a band.
 ModelView view_of(const SurfaceComparison& comparison);
 
 /// Returns the comparison for people.

@@ -163,11 +163,13 @@ Json objects_json(const ObjectComparison& objects) {
 ModelView view_of(const SurfaceComparison& comparison) {
   constexpr double kShownPart = 0.99;
   const DistanceTally& distances = comparison.distances;
-  // Where less than the other part moved, all that did is shown.
+  // Where less than the other part moved, all that did is shown. Beyond the band the ramp has as
+  // much room as half of that has, however few are there.
   const double part = distances.empty() ? 0 : distances.size_quantile(kShownPart);
-  const double shown = part > 0 || distances.empty()
-                           ? part
-                           : std::max(std::abs(distances.least()), std::abs(distances.largest()));
+  const double all =
+      distances.empty() ? 0 : std::max(std::abs(distances.least()), std::abs(distances.largest()));
+  const double shown =
+      std::max(part > 0 ? part : all, 2 * std::max(comparison.tolerance.value_or(0), 0.0));
   // Four digits: people read it.
   const double most = std::strtod(fmt::format("{:.3e}", shown).c_str(), nullptr);
   ModelView view;

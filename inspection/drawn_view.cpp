@@ -18,9 +18,12 @@ namespace meshhier::inspection {
 namespace {
 
 /// What options say holds instead.
-void take_options(const PreviewOptions& options, ModelView& view) {
+void take_options(const PreviewOptions& options, UpAxis of_file, ModelView& view) {
+  const Vec3d upwards = render::standing_of(view, of_file).upwards();
   if (options.up)
     view.up = *options.up == UpAxis::z ? "z" : "y";
+  if (render::standing_of(view, of_file).upwards() != upwards)
+    view.camera.clear();  // it is kept in a world that is turned otherwise
   if (options.view || (options.region.is_any() && options.link.empty()))
     view.camera.clear();
   if (options.selection)
@@ -78,7 +81,7 @@ DrawnView drawn_view(const storage::HierarchyReader& reader, const PreviewOption
   drawn.is_plain = options.link.empty() && drawn.view.empty();
   if (drawn.is_plain)
     return drawn;
-  take_options(options, drawn.view);
+  take_options(options, reader.manifest().up, drawn.view);
   drawn.has_perspective = !options.view && (!options.link.empty() || !drawn.view.camera.empty());
   warn_of_attribute(reader, drawn.view, progress);
   drawn.view = render::known_view(drawn.view, reader.manifest().source);

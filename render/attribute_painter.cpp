@@ -109,7 +109,7 @@ Vec3f AttributePainter::colour(double value) const {
     return tolerance_ > 0 ? one - std::clamp(one, -tolerance_, tolerance_) : one;
   };
   const double from = beyond(range_[0]), width = beyond(range_[1]) - from;
-  return ramp_colour(ramp_, width == 0 ? 0 : (beyond(value) - from) / width);
+  return ramp_colour(ramp_, (beyond(value) - from) / (width == 0 ? 1 : width));  // as the page
 }
 
 void drop_hidden(SceneTile& tile) {

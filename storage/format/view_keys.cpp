@@ -49,10 +49,13 @@ bool are_alike(double a, double b) {
   return a == b || fmt::format("{:.11e}", a) == fmt::format("{:.11e}", b);
 }
 
+bool are_near(std::span<const double> numbers) {
+  return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kFarthest; });
+}
+
 bool is_apart(const Json& value) {
   const std::vector<double> p = doubles_of(value);
-  const auto is_near = [](double number) { return std::abs(number) <= kFarthest; };
-  return p.size() == 6 && std::ranges::all_of(p, is_near) &&
+  return p.size() == 6 && are_near(p) &&
          !(are_alike(p[0], p[3]) && are_alike(p[1], p[4]) && are_alike(p[2], p[5]));
 }
 
@@ -63,12 +66,12 @@ bool has_numbers(const Json& value) {
 
 bool is_plane(const Json& value) {
   const std::vector<double> p = doubles_of(value);
-  return p.size() == 4 && (p[0] != 0 || p[1] != 0 || p[2] != 0);
+  return p.size() == 4 && are_near(p) && (p[0] != 0 || p[1] != 0 || p[2] != 0);
 }
 
 bool is_box(const Json& value) {
   const std::vector<double> p = doubles_of(value);
-  return p.size() == 6 && p[0] < p[3] && p[1] < p[4] && p[2] < p[5];
+  return p.size() == 6 && are_near(p) && p[0] < p[3] && p[1] < p[4] && p[2] < p[5];
 }
 
 bool is_storey(const Json& value) {
@@ -77,7 +80,12 @@ bool is_storey(const Json& value) {
 }
 
 bool are_points(const Json& value) {
-  return !value.empty() && value.size() % 3 == 0 && value.size() <= 3 * kMostPoints;
+  return !value.empty() && value.size() % 3 == 0 && value.size() <= 3 * kMostPoints &&
+         are_near(doubles_of(value));
+}
+
+bool is_point(const Json& value) {
+  return value.size() == 3 && are_points(value);
 }
 
 bool are_few(const Json& value) {
@@ -321,7 +329,7 @@ std::vector<ViewKey> make_keys() {
        .expected = "three numbers",
        .unset = "none",
        .schema = numbers_schema(3, 3),
-       .is_sound = has_numbers<3>},
+       .is_sound = is_point},
       {.name = "object",
        .part = ViewPart::objects,
        .field = &ModelView::object,

@@ -194,6 +194,10 @@ ModelView over_first(const ViewLink& link, const ModelView& first) {
     if (!link.said.contains(key.part))
       std::visit([&](auto field) { view.*field = first.*field; }, key.field);
   }
+  // A camera is kept in the world of its own standing.
+  const bool stands_so = view.up == first.up && view.stretch == first.stretch;
+  if (!link.said.contains(ViewPart::camera) && !stands_so)
+    view.camera.clear();
   return view;
 }
 

@@ -3,9 +3,10 @@
 import { Raycaster, Vector2, type Box3, type Vector3 } from 'three';
 import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
 import { attributeIndex, HierarchyView, wholeRange, type Look, type Stage } from '../../src/index.js';
-import { Pair, PairPoints, type PairStats, type Side } from '../../src/pair/index.js';
+import { Pair, PairPoints, WAYS, type PairStats, type Side } from '../../src/pair/index.js';
 import { worldBox } from '../../src/pair/placing.js';
 import type { Occlusion } from '../../src/plugins/occlusion.js';
+import { drawnHit } from '../../src/scene/drawn_hits.js';
 import type { Viewport } from '../../src/scene/motion.js';
 import type { Appearance } from '../appearance.js';
 import { formatCount } from '../numbers.js';
@@ -121,11 +122,8 @@ export class PagePair implements Partner {
   pick(right: number, up: number): Vector3 | null {
     const sides: readonly Side[] = this.columns === 2 ? [0, 1] : this.pair.seenAt(right, up).sides;
     this.raycaster.setFromCamera(new Vector2(right, up), this.context.canvas.camera);
-    const hits = sides.flatMap((side) => {
-      const view = this.pair.views[side];
-      return this.raycaster.intersectObject(view, true).filter(({ point }) => view.plugins.keeps(point));
-    });
-    return hits.reduce<(typeof hits)[number] | null>((best, hit) => (best === null || hit.distance < best.distance ? hit : best), null)?.point ?? null;
+    const hits = sides.flatMap((side) => drawnHit(this.raycaster, this.pair.views[side]) ?? []);
+    return hits.sort((a, b) => a.distance - b.distance).at(0)?.point ?? null;
   }
 
   show(look: PairLook): void {
@@ -146,8 +144,7 @@ export class PagePair implements Partner {
 
   /// The next way of looking.
   next(): void {
-    const ways = ['swipe', 'side', 'blink', 'overlay'] as const;
-    this.choose({ way: ways[(ways.indexOf(this.pair.way) + 1) % ways.length] });
+    this.choose({ way: WAYS[(WAYS.indexOf(this.pair.way) + 1) % WAYS.length] });
   }
 
   /// Shows the other model, in a blink.
@@ -224,6 +221,7 @@ export class PagePair implements Partner {
   private follow(): void {
     const { view, context } = this;
     if (JSON.stringify(view.settings) !== JSON.stringify(context.view.settings)) view.setSettings(context.view.settings);
+    if (view.mostLevel !== context.view.mostLevel) view.mostLevel = context.view.mostLevel;
     const { look } = shownOf(this.chosen(1), view);
     const shown = this.pair.way === 'overlay' ? { ...look, ...OVERLAID } : look;
     if (JSON.stringify(shown) !== JSON.stringify(view.look)) view.setLook(shown);

@@ -11,8 +11,7 @@ import { depthRange, parallelStand, VIEW_ANGLE } from './camera_moves.js';
 import type { HierarchyView } from '../../src/index.js';
 import type { Partner } from './partner.js';
 import { Lighting } from '../../src/scene/lighting.js';
-import { TileObject } from '../../src/scene/tile_object.js';
-import { valuesAt } from '../../src/tools/values_at.js';
+import { drawnHit } from '../../src/scene/drawn_hits.js';
 
 const MOST_RATIO = 2;
 
@@ -155,8 +154,7 @@ export class Canvas {
   pick(right: number, up: number): Vector3 | null {
     if (this.partner !== null) return this.partner.pick(right, up);
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
-    const hits = this.raycaster.intersectObject(this.view, true);
-    return hits.find(({ point, object, face }) => this.view.plugins.keeps(point, object instanceof TileObject && face ? valuesAt(object.drawn().tile, face.a) : []))?.point ?? null;
+    return drawnHit(this.raycaster, this.view)?.point ?? null;
   }
 
   dispose(): void {

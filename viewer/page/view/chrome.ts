@@ -107,7 +107,7 @@ export class Chrome {
     const { parts } = this;
     const leave = parts.context.arrival.hasGallery ? iconButton(words.view.back, ICONS.back, () => { parts.back(); }) : null;
     const title = element('h1', {}, this.titleButton());
-    const whole = iconButton(words.view.whole, ICONS.home, () => { parts.camera.navigation.goHome(); });
+    const whole = iconButton(words.view.whole, ICONS.home, () => { parts.camera.navigation.goHomeOrOut(); });
     const tools = iconButton(words.view.tools, ICONS.tools, () => void parts.tools.use(null));
     const bar = element('div', { class: 'bar' }, whole, tools, this.story, ...Object.values(this.immersions), ...sheets.map(({ button }) => button));
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge);

@@ -18,7 +18,7 @@ function arrow(right: number, up: number): Act {
 }
 
 const zoom = (by: number): Act => ({ camera }) => { camera.moveByKey({ zoom: by }); };
-const home: Act = ({ camera }) => { camera.navigation.goHome(); };
+const home: Act = ({ camera }) => { camera.navigation.goHomeOrOut(); };
 const colours = (number: number): Act => ({ choices }) => { choices.choose({ look: { colours: COLOURS[number] } }); };
 const sheet = (name: 'panel' | 'help'): Act => (_, chrome) => { chrome[name].toggle(); };
 

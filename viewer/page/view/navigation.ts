@@ -95,8 +95,13 @@ export class Navigation {
     return still.matches ? 0 : flight.milliseconds;
   }
 
-  /// To the first view of the model; from there to all of it.
+  /// To the first view of the model.
   goHome(): void {
+    this.fly(this.home);
+  }
+
+  /// The same; from there to all of it.
+  goHomeOrOut(): void {
     this.fly(this.atHome ? this.whole : this.home);
   }
 

@@ -83,20 +83,25 @@ export class PageStage implements Stage {
     return this.context.canvas.partner?.points ?? null;
   }
 
+  inColumn(right: number, up: number): readonly [number, number] {
+    return this.context.canvas.inColumn(right, up);
+  }
+
   suspend(): () => void {
     return this.frames.pause();
   }
 
-  /// All of the view but the camera and notes.
+  /// All of the view but the camera, the look in from outside, and notes.
   present(choices: string): void {
+    this.moves.tell(choices);
     this.looks.tell(choices);
     this.tools?.tell(choices);
     this.pair?.tell(choices);
   }
 
-  /// All of the view but the camera and notes, as links have it.
+  /// The same, as links have it.
   choices(): string {
-    return fittedLink([this.looks.text, this.pair?.toldText ?? '', this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
+    return fittedLink([this.moves.text, this.looks.text, this.pair?.toldText ?? '', this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
   }
 
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.

@@ -37,6 +37,8 @@ export class ViewCamera {
   private readonly framed = new Box3();
   private standing: Readonly<Standing> | null = null;
   private readonly lens = new Lens();
+  /// From before a story was told; null: none is.
+  private untold: Projection | null = null;
   /// From where the whole is seen until it is there and the camera flies to its first view.
   private approach: ReturnType<typeof towardsViewer> | null = null;
 
@@ -49,6 +51,11 @@ export class ViewCamera {
       this.reframe();
     });
     context.addEventListener('manifest', () => { this.reframe(); });
+    context.addEventListener('story', ({ isTold }) => {
+      if (isTold || this.untold === null) return;
+      this.projection = this.untold;
+      this.untold = null;
+    });
   }
 
   /// As links have it.
@@ -88,6 +95,12 @@ export class ViewCamera {
   /// As a link says.
   follow(choices: string): void {
     this.projection = readLink(choices).projection ?? 'perspective';
+  }
+
+  /// As a note of a story wants it.
+  tell(choices: string): void {
+    this.untold ??= this.projection;
+    this.follow(choices);
   }
 
   /// It will stand elsewhere in the next frame.

@@ -146,8 +146,7 @@ export class Pair {
       this.prepare(i as Side);
       return view.update(camera, viewport, now, shares[i]);
     });
-    const { showsInside } = this.first;
-    if (this.second.showsInside !== showsInside) this.second.showsInside = showsInside;
+    for (const each of ['showsInside', 'hidesBacks'] as const) if (this.second[each] !== this.first[each]) this.second[each] = this.first[each];
     return news.some((each) => each) || hasMoved || budget.isUneasy(this.allStats(), this.allBytes);
   }
 

@@ -75,7 +75,7 @@ export class PairPoints implements PointFinder {
   private distanceAt(side: Side, right: number, up: number): number {
     const view = this.pair.views[side];
     const keeps: Keeps = (point, values) => view.plugins.keeps(new Vector3(...point).applyMatrix4(view.surfaceMatrix), values);
-    const ray = rayThrough(this.camera, right, up, view.surfaceMatrix);
+    const ray = { ...rayThrough(this.camera, right, up, view.surfaceMatrix), meetsFronts: view.hidesBacks };
     const hit = this.pickers[side].pick(view.surface, ray, keeps);
     if (hit === null) return Infinity;
     const [from, to] = [ray.from, hit.point].map((point) => new Vector3(...point).applyMatrix4(view.surfaceMatrix));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Cuts one view open where another one is.
-import { Sphere, type Plane, type Vector3 } from 'three';
+import type { Plane, Vector3 } from 'three';
 import type { HierarchyView, Plugin } from '../scene/hierarchy_view.js';
 import type { Frame } from '../plugins/plugin.js';
-import { ClippedPainter } from '../tools/caps.js';
+import { cutPainter } from '../plugins/cut_painter.js';
+import type { ClippedPainter } from '../tools/caps.js';
 
 export class SameCuts implements Plugin {
   readonly name = 'pair cuts';
@@ -15,10 +16,7 @@ export class SameCuts implements Plugin {
 
   init(view: HierarchyView): void {
     this.view = view;
-    this.painter = new ClippedPainter(view, () => {
-      const { center, radius } = view.box.clone().applyMatrix4(view.matrixWorld).getBoundingSphere(new Sphere());
-      return { middle: center, reach: 1.1 * radius };
-    }, undefined, (material) => { view.leaveOut(material); });
+    this.painter = cutPainter(view);
   }
 
   get cuts(): readonly Plane[] {

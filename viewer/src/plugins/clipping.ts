@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Draws a model cut open by planes, a closed one with caps; by those of other plug-ins, too. The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
-import { Sphere, type Plane, type Vector3 } from 'three';
+import type { Plane, Vector3 } from 'three';
 import type { HierarchyView, Plugin } from '../scene/hierarchy_view.js';
-import { ClippedPainter } from '../tools/caps.js';
+import { cutPainter } from './cut_painter.js';
+import type { ClippedPainter } from '../tools/caps.js';
 import { worldPlane, type CutPlane } from '../tools/planes.js';
 import type { Frame } from './plugin.js';
 import { Whereabouts } from './whereabouts.js';
@@ -19,10 +20,7 @@ export class Clipping implements Plugin {
   init(view: HierarchyView): void {
     this.view = view;
     this.places = new Whereabouts();
-    this.painter = new ClippedPainter(view, () => {
-      const { center, radius } = view.box.clone().applyMatrix4(view.matrixWorld).getBoundingSphere(new Sphere());
-      return { middle: center, reach: 1.1 * radius };
-    }, undefined, (material) => { view.leaveOut(material); });
+    this.painter = cutPainter(view);
     if (this.planes.length > 0) this.cut(this.planes, this.hasCaps);
   }
 
@@ -41,14 +39,14 @@ export class Clipping implements Plugin {
     if (view === null || painter === null) return false;
     if (this.places.haveChanged(view.manifest) && this.planes.length > 0) this.cut([]);
     if (this.planes.length === 0) return false;
-    painter.isCapped = this.hasCaps && view.closed;
+    painter.isCapped = view.closed && view.plugins.isCapped;
     painter.planes = view.plugins.cuts; // others' too: one paints for all
     painter.paint(renderer, scene, camera);
     return true;
   }
 
   get isCapped(): boolean {
-    return this.hasCaps;
+    return this.hasCaps || this.planes.length === 0;
   }
 
   get cuts(): readonly Plane[] {

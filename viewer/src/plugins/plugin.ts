@@ -37,6 +37,8 @@ export interface StageOf<View> extends Frame {
   suspend(): () => void;
   /// Shows the model so from now on, as links say it. A stage without links lacks it.
   present?(choices: string): void;
+  /// The place of a column of the picture that a place of the picture lies in; missing: there is one column.
+  inColumn?(right: number, up: number): readonly [number, number];
   /// Finds points where more than the view is in the picture; missing: on the view.
   readonly points?: PointFinder | null;
 }

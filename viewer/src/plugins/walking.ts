@@ -272,8 +272,9 @@ export class Walking extends EventDispatcher<{ change: object }> implements Plug
   }
 
   private pick(right: number, up: number): Hit | null {
-    const { view, camera } = this.stage!;
-    const ray = { ...rayThrough(camera, right, up, view.surfaceMatrix), meetsFronts: view.hidesBacks };
+    const { stage } = this;
+    const { view, camera } = stage!;
+    const ray = { ...rayThrough(camera, ...(stage!.inColumn?.(right, up) ?? [right, up] as const), view.surfaceMatrix), meetsFronts: view.hidesBacks };
     return this.picker.pick(view.surface, ray, (point, values) => view.plugins.keeps(this.toWorld(point), values));
   }
 

@@ -20,7 +20,7 @@ const ROUND = `#include <clipping_planes_fragment>
 if (distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;`;
 /// Edges and points of faces that are not drawn are not, either.
 const FACING = `#include <project_vertex>
-facing = hidesBacks ? -dot(normalMatrix * normal, mvPosition.xyz) : 1.0;`;
+facing = hidesBacks ? -dot(normalMatrix * normal, isPerspectiveMatrix(projectionMatrix) ? mvPosition.xyz : vec3(0.0, 0.0, -1.0)) : 1.0;`;
 const FACING_ONLY = `#include <clipping_planes_fragment>
 if (facing < 0.0) discard;`;
 /// How far the surface stands back behind its own wires and points: more than programs differ by rounding.

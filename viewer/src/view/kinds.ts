@@ -12,8 +12,6 @@ export interface Kind<Value> {
   toJson(value: Value): unknown;
 }
 
-export type ValueOf<Of> = Of extends Kind<infer Value> ? Value : never;
-
 const DIGITS = 12;
 
 /// A number as links keep it.
