@@ -105,11 +105,6 @@ export class Navigation {
     this.fly(this.atHome ? this.whole : this.home);
   }
 
-  /// To the first view of the model, which may be the one that is shown.
-  goFirst(): void {
-    this.fly(this.home);
-  }
-
   /// Flies to the surface at a place of the picture, if there is any.
   approach(right: number, up: number): void {
     const point = this.pick(right, up);

@@ -65,7 +65,7 @@ export class ViewCamera {
 
   /// Null: as the model is seen first.
   setPose(pose: Pose | null): void {
-    if (pose === null) this.navigation.goFirst();
+    if (pose === null) this.navigation.goHome();
     else this.navigation.jump(CameraPose.from(pose));
   }
 
@@ -190,6 +190,6 @@ export class ViewCamera {
     this.reframe();
     if (!atHome) return; // it has been moved meanwhile
     this.navigation.jump(pose);
-    this.navigation.goFirst();
+    this.navigation.goHome();
   }
 }

@@ -73,7 +73,7 @@ export class ViewParts {
 
   /// As the model is seen first.
   reset(): void {
-    this.camera.navigation.goFirst();
+    this.camera.navigation.goHome();
     this.follow(NOWHERE);
     this.context.startRest();
   }
@@ -88,7 +88,7 @@ export class ViewParts {
   /// Out of the depth first, then to the gallery.
   back(): void {
     const { context } = this;
-    if (context.isOpened && context.view.stats().mode !== 'CWV' && !this.camera.navigation.atHome) this.camera.navigation.goFirst();
+    if (context.isOpened && context.view.stats().mode !== 'CWV' && !this.camera.navigation.atHome) this.camera.navigation.goHome();
     else {
       context.rest();
       context.page.dispatchEvent(new Event('leave'));

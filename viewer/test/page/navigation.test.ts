@@ -40,7 +40,7 @@ describe('the camera', () => {
     const navigation = make();
     const first = new CameraPose(new Vector3(3, 2, 1), new Vector3());
     navigation.frame(new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1)), { aspect: 1, direction: null, first });
-    const shown = [() => { navigation.goHome(); }, () => { navigation.goFirst(); }, () => { navigation.goFirst(); }, () => { navigation.goHome(); }, () => { navigation.goHome(); }].map((go) => {
+    const shown = [() => { navigation.goHomeOrOut(); }, () => { navigation.goHome(); }, () => { navigation.goHome(); }, () => { navigation.goHomeOrOut(); }, () => { navigation.goHomeOrOut(); }].map((go) => {
       go();
       fly(navigation);
       return navigation.pose.equals(first);
