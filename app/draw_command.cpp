@@ -4,7 +4,6 @@
 #include "app/options.h"
 #include "base/error.h"
 #include "drawing/drawing.h"
-#include "storage/format/view_keys.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -34,8 +33,23 @@ struct DrawArguments {
   DrawingOptions options;
 };
 
+/// Returns the finite numbers of a text, "X,Y"; nothing if it is anything else.
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  while (true) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const auto number = parse_number<double>(text.substr(0, comma));
+    if (!number || !std::isfinite(*number))
+      return std::nullopt;
+    numbers.push_back(*number);
+    if (comma == text.size())
+      return numbers;
+    text.remove_prefix(comma + 1);
+  }
+}
+
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t count) {
-  auto numbers = storage::parse_numbers(text);
+  auto numbers = numbers_in(text);
   return numbers && numbers->size() == count ? numbers : std::nullopt;
 }
 
@@ -151,7 +165,7 @@ void add_cuts(CLI::App& command, DrawingOptions& options) {
                    "drawn. Several heights give as many lines",
                    "Z,...", "heights, Z or Z,Z,..."},
                   [&options](const std::string& text) {
-                    return store_found(options.cut_heights, storage::parse_numbers(text));
+                    return store_found(options.cut_heights, numbers_in(text));
                   });
   add_text_option(
       *cut,
@@ -255,10 +269,14 @@ void add_draw_command(CLI::App& parser, Invocation& invocation) {
   add_detail(*command, arguments->options);
   add_region_options(*command, arguments->options.region);
   const std::vector<std::string> names = drawing::format_names();
-  command
-      ->add_option("--format", arguments->format, "What to write, whatever the name: -o - needs it")
-      ->check(CLI::IsMember(names))
-      ->type_name(fmt::format("{}", fmt::join(names, "|")));
+  add_text_option(
+      *command,
+      {"--format", "What to write, whatever the name: -o - needs it",
+       fmt::format("{}", fmt::join(names, "|")), fmt::format("one of {}", fmt::join(names, ", "))},
+      [arguments, names](const std::string& text) {
+        arguments->format = text;
+        return std::ranges::find(names, text) != names.end();
+      });
   add_file_output_options(*command, fmt::format("The drawing: .{}", fmt::join(names, ", .")),
                           arguments->output, arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);
