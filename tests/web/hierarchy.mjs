@@ -187,13 +187,21 @@ function turnsOf(values) {
 
 const HOUR_STEPS = 900;
 
-/// Bytes a vertex of the input: less than half of what all tiles take.
-const MEMORY_PART = 64;
+/// So many times the root, which may have a normal map: room for two levels below it, and for a tile on its way.
+const MEMORY_OF_ROOTS = 6;
+
+/// Bytes of the root's tile, which is all that a view from far away shows.
+async function rootBytes(page) {
+  await call(page, 'reopen', AS_ASKED);
+  await call(page, 'pose', { direction: [1, 0.3, 0], distance: 400 });
+  const { residentTiles, residentBytes } = await call(page, 'settle');
+  return residentBytes / residentTiles;
+}
 
 /// An hour, a look each four seconds, with a budget that holds a part of the model.
-async function checkMemory(page, { name, vertices }, report) {
-  const memoryBudget = Math.round(MEMORY_PART * vertices);
-  await call(page, 'reopen', { settings: { ...AS_ASKED.settings, memoryBudget }, size: 96 });
+async function checkMemory(page, { name }, report) {
+  const memoryBudget = Math.round(MEMORY_OF_ROOTS * (await rootBytes(page)));
+  await call(page, 'reopen', { settings: { ...AS_ASKED.settings, memoryBudget }, size: 256 });
   await call(page, 'wander', { steps: HOUR_STEPS / 6, milliseconds: 4000, seed: 1 });
   const heapEarly = await call(page, 'heap');
   const late = await call(page, 'wander', { steps: HOUR_STEPS, milliseconds: 4000, seed: 2 });
