@@ -46,8 +46,7 @@ Examples:
 
 void add_clean_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<CleanArguments>();
-  CLI::App* command =
-      parser.add_subcommand("clean", "List or remove what builds that were stopped left");
+  CLI::App* command = parser.add_subcommand("clean", "List or remove what stopped builds left");
   command->add_option("PATH", arguments->path,
                       "A directory, or a hierarchy, finished or not; default: this directory");
   command->add_flag("--remove", arguments->remove, "Remove it");

@@ -154,7 +154,7 @@ Examples:
 void add_compare_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command =
-      parser.add_subcommand("compare", "Tell how far one surface is from another one");
+      parser.add_subcommand("compare", "Measure how far one mesh or hierarchy is from another");
   command
       ->add_option("FROM", arguments->from,
                    "A hierarchy: a directory, an archive, an address; or a mesh")

@@ -64,7 +64,7 @@ constexpr const char* kInspectFooter = R"(Examples:
 
 void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<InspectArguments>();
-  CLI::App* command = parser.add_subcommand("inspect", "Tell what a hierarchy holds");
+  CLI::App* command = parser.add_subcommand("inspect", "Print what a hierarchy holds");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   command->add_flag("--json", arguments->json,
                     "One JSON object, for programs; of objects one a line");

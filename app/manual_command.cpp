@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/parser_walk.h"
 
+#include <memory>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -78,14 +79,27 @@ void print_manual(std::ostream& out, const CLI::App& parser) {
     print_command(out, *command);
 }
 
+/// Prints a table of the commands in Markdown, each with a link to a heading of its name.
+void print_table(std::ostream& out, const CLI::App& parser) {
+  out << "| command | in one line |\n|---|---|\n";
+  for (const CLI::App* command : commands_of(parser)) {
+    const std::string& name = command->get_name();
+    out << "| [" << name << "](#" << name << ") | " << command->get_description() << " |\n";
+  }
+}
+
 }  // namespace
 
 void add_manual_command(CLI::App& parser, Invocation& invocation) {
   CLI::App* command = parser.add_subcommand("manual", "Print the manual page, for man");
   command->footer("Example:\n  meshhier manual | man -l -\n");
-  command->callback([&parser, &invocation] {
-    invocation.run = [&parser](Environment& environment) {
-      print_manual(environment.out, parser);
+  const auto is_table = std::make_shared<bool>(false);
+  command->add_flag(
+      "--commands", *is_table,
+      "Print a table of the commands instead, in Markdown, as docs/command_line.md has it");
+  command->callback([&parser, &invocation, is_table] {
+    invocation.run = [&parser, is_table](Environment& environment) {
+      (*is_table ? print_table : print_manual)(environment.out, parser);
       return 0;
     };
   });

@@ -45,8 +45,8 @@ Examples:
 
 void add_progressive_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ProgressiveArguments>();
-  CLI::App* command =
-      parser.add_subcommand("progressive", "Make a base and its details for weak clients");
+  CLI::App* command = parser.add_subcommand(
+      "progressive", "Make a progressive stream for weak clients: a base and details");
   command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
       ->required();
   add_node_option(*command, "One sector on its own: its level and index", arguments->options.node);

@@ -63,7 +63,7 @@ constexpr const char* kReconstructFooter = R"(Examples:
 void add_reconstruct_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ReconstructArguments>();
   CLI::App* command =
-      parser.add_subcommand("reconstruct", "Rebuild a mesh from a base and its details");
+      parser.add_subcommand("reconstruct", "Rebuild a mesh from a progressive stream");
   command->add_option("STREAM", arguments->directory, "What \"meshhier progressive\" made")
       ->required();
   add_integer_option(*command,

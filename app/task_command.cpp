@@ -133,7 +133,7 @@ void add_worker_options(CLI::App& command, TaskArguments& arguments) {
 
 void add_task_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<TaskArguments>();
-  CLI::App* command = parser.add_subcommand("task", "Do tasks of a planned build, or tell of them");
+  CLI::App* command = parser.add_subcommand("task", "Do tasks of a planned build, or list them");
   command->add_option("DIR", arguments->work, "What `meshhier plan` was given as --work")
       ->required()
       ->check(name_fault);

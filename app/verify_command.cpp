@@ -178,7 +178,8 @@ void add_error_options(CLI::App& command, VerifyArguments& arguments,
 void add_verify_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
   verifying::VerifyOptions& options = arguments->options;
-  CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
+  CLI::App* command =
+      parser.add_subcommand("verify", "Prove that a hierarchy is sound, or measure its errors");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
   CLI::Option* input_option = command->add_option(
       "--input", arguments->input, "The mesh it was made from; several in the order of the config");

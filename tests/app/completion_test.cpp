@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -129,6 +130,20 @@ TEST(ManualTest, TellsOfEveryCommandAndMeansNothingToRoff) {
                   Contains(line.substr(0, 3)));
     }
   }
+}
+
+TEST(ManualTest, TheDocumentHasTheTableOfCommandsAndAHeadingForEach) {
+  std::ifstream file(MESHHIER_SOURCE_DIR "/docs/command_line.md");
+  const std::string document{std::istreambuf_iterator<char>(file), {}};
+  const std::string table = output_of(MESHHIER_BINARY " manual --commands");
+  EXPECT_THAT(document,
+              HasSubstr("<!-- commands: begin -->\n\n" + table + "\n<!-- commands: end -->"))
+      << "scripts/references writes it anew";
+  for (const std::string& command : answer_to("''"))
+    if (command != "words" && !command.starts_with('-')) {
+      EXPECT_THAT(table, HasSubstr("| [" + command + "](#" + command + ") |"));
+      EXPECT_THAT(document, HasSubstr("\n## " + command + "\n"));
+    }
 }
 
 /// A shell on a terminal of its own.
