@@ -116,19 +116,26 @@ export class Canvas {
     this.camera.fov = (angle * 180) / Math.PI;
     this.camera.parallelHeight = projection === 'parallel' ? heightAt(pose.distance, VIEW_ANGLE) : null;
     this.camera.aspect = this.asked ? this.asked.width / this.columns / this.asked.height : this.aspect;
-    this.reach(box);
+    this.stand(box);
     face(this.camera, pose);
-    this.camera.updateMatrixWorld();
+    this.updateCamera();
   }
 
   /// The camera sees as far as this box, from where it is aimed.
   reach(box: Box3): void {
-    if (this.aimed !== null) {
-      const { pose, projection } = this.aimed;
-      const { position, near, far } = projection === 'parallel' ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
-      this.camera.position.copy(position);
-      Object.assign(this.camera, { near, far });
-    }
+    this.stand(box);
+    this.updateCamera();
+  }
+
+  private stand(box: Box3): void {
+    if (this.aimed === null) return;
+    const { pose, projection } = this.aimed;
+    const { position, near, far } = projection === 'parallel' ? parallelStand(pose, box) : { position: pose.position, ...depthRange(pose, box) };
+    this.camera.position.copy(position);
+    Object.assign(this.camera, { near, far });
+  }
+
+  private updateCamera(): void {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }

@@ -28,9 +28,10 @@ export class FirstParts {
     this.first = new FirstView(context, come);
   }
 
-  /// What a link says, and of what it says nothing as the model is seen first.
-  follow({ choices }: Spot): void {
+  /// Shows what a link says, and of what it says nothing as the model is seen first. Returns all of that as a link.
+  follow({ choices }: Spot): string {
     const shown = overFirst(choices, this.first.view);
     for (const part of [this.camera, this.choices]) part.follow(shown);
+    return shown;
   }
 }

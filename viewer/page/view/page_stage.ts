@@ -14,9 +14,14 @@ import { fittedLink } from '../../src/view/view_link.js';
 import type { ViewChoices } from './view_choices.js';
 import type { PageContext } from './page_context.js';
 
-/// The tools, or two models in the picture, as stories tell of them.
-interface ToldPart {
-  /// As links have what they show; notes, which tell the story, left out.
+/// Two models in the picture, as stories tell of them; `text`: as links have it.
+interface ToldPair {
+  readonly text: string;
+  tell(choices: string): void;
+}
+
+/// The tools; `toldText`: as links have what they show, but for notes, which tell the story.
+interface ToldTools {
   readonly toldText: string;
   tell(choices: string): void;
 }
@@ -34,8 +39,8 @@ export class PageStage implements Stage {
   /// The file of the hierarchy: its story lies beside it under that name and ".story.json".
   readonly fileName: string;
   /// They come after the stage, which they stand on.
-  tools: ToldPart | null = null;
-  pair: ToldPart | null = null;
+  tools: ToldTools | null = null;
+  pair: ToldPair | null = null;
 
   constructor(readonly context: PageContext, private readonly moves: ViewCamera, private readonly looks: ViewChoices, private readonly frames: PageFrames) {
     const { view, canvas, root, surface, signal, model } = context;
@@ -101,7 +106,7 @@ export class PageStage implements Stage {
 
   /// The same, as links have it.
   choices(): string {
-    return fittedLink([this.moves.text, this.looks.text, this.pair?.toldText ?? '', this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
+    return fittedLink([this.moves.text, this.looks.text, this.pair?.text ?? '', this.tools?.toldText ?? ''].filter((text) => text !== '').join('&')).link;
   }
 
   /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.

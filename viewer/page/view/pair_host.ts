@@ -42,11 +42,6 @@ export class PairHost {
     return this.isWanted ? formatPairLook(this.look) : '';
   }
 
-  /// The same as a note of a story keeps it.
-  get toldText(): string {
-    return this.text;
-  }
-
   /// As a link says.
   follow(choices: string): void {
     this.look = readPairLook(choices);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The parts of a model's view that bars, sheets and keys act upon. Comes once the first picture is drawn.
 import { cameraOf } from '../../src/view/pose.js';
-import { besideFirst, fittedLink, orderedLink, overFirst, readLink, writeLink } from '../../src/view/view_link.js';
+import { besideFirst, fittedLink, orderedLink, readLink, writeLink } from '../../src/view/view_link.js';
 import type { View } from '../../src/view/view_table.js';
 import { NOWHERE, type Spot } from '../address.js';
 import type { Shared, SharedSpot } from '../share/embed_code.js';
@@ -32,7 +32,8 @@ export class ViewParts {
   readonly light: LightDrag;
   readonly first: FirstView;
 
-  constructor({ context, choices, camera, renewal, frames, first }: FirstParts) {
+  constructor(private readonly begun: FirstParts) {
+    const { context, choices, camera, renewal, frames, first } = begun;
     [this.context, this.choices, this.camera, this.renewal, this.frames, this.first] = [context, choices, camera, renewal, frames, first];
     this.extensions = new Extensions(context, this.choices);
     const stage = new PageStage(context, this.camera, this.choices, this.frames);
@@ -65,10 +66,10 @@ export class ViewParts {
     return { pose: pose ?? first, choices: writeLink({ ...readLink(choices), notes: undefined, story: undefined }) };
   }
 
-  /// What a link says, and of what it says nothing as the model is seen first.
-  follow({ choices }: Spot): void {
-    const shown = overFirst(choices, this.first.view);
-    for (const part of [this.camera, this.choices, this.pair, this.tools, this.story, this.extensions]) part.follow(shown);
+  /// As FirstParts.follow(), with all parts.
+  follow(spot: Spot): void {
+    const shown = this.begun.follow(spot);
+    for (const part of [this.pair, this.tools, this.story, this.extensions]) part.follow(shown);
   }
 
   /// As the model is seen first.

@@ -36,11 +36,6 @@ export function roundInterval(rise: number, wanted = 20): number {
   return Number((([1, 2, 5].find((step) => step * power >= rough * (1 - 1e-9)) ?? 10) * power).toPrecision(1));
 }
 
-/// Counts the contours between two heights.
-export function countContours(low: number, high: number, interval: number): number {
-  return interval > 0 && high >= low ? Math.max(0, Math.floor(high / interval) - Math.ceil(low / interval) + 1) : 0;
-}
-
 export class ContourTracer {
   private readonly tracers = new Map<number, SectionTracer>();
 

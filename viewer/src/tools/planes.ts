@@ -16,10 +16,6 @@ export function sideOf({ normal, constant }: CutPlane, point: Vector): number {
   return dot(normal, point) + constant;
 }
 
-export function isKept(planes: readonly CutPlane[], point: Vector): boolean {
-  return planes.every((plane) => sideOf(plane, point) >= 0);
-}
-
 export function planeThrough(point: Vector, normal: Vector): CutPlane {
   return { normal, constant: -dot(normal, point) };
 }
