@@ -32,7 +32,8 @@ function filledIn(address, host) {
     .replace(/https:\/\/(?:HOST|example\.org)\/(?=david|NAME)/g, `${host}/bucket/`)
     .replace(/https:\/\/HOST/g, host)
     .replace(/NAME/g, 'david')
-    .replace(/(models?|story)=URL/g, (_, key) => `${key}=${host}/${{ model: 'bucket/david.3tz', models: 'models.json', story: 'models/david.hier.story.json' }[key]}`)
+    .replace(/(models?|with|story)=URL/g, (_, key) => `${key}=${host}/${{ model: 'bucket/david.3tz', with: 'bucket/david.hier', models: 'models.json', story: 'models/david.hier.story.json' }[key]}`)
+    .replace(/=a\.hier&with=b\.hier/, '=models/david.hier&with=models/david.3tz')
     .replace(/#PATH/, '#models/david.hier')
     .replace(/px,py,pz,tx,ty,tz/, '9,9,9,0,0,0')
     .replace(/…$/, '');
@@ -42,7 +43,7 @@ function filledIn(address, host) {
 function addressesIn(text, host) {
   const found = new Set();
   for (const [, behind] of text.matchAll(/(?:^|[\s`"'(/.a-z])((?:\?(?:models?|lang)=[^\s`"'|)<>]*|#PATH[^\s`"'|)<>]*))/gm)) found.add(filledIn(behind, host));
-  return [...found].map((behind) => {
+  return [...found].filter((behind) => !behind.endsWith('model=')).map((behind) => { // of one without a value the texts tell that it has none
     const address = behind.replace(/^\?model=david/, '?model=models/david'); // beside the page, that is
     return `${host}/index.html${address}`;
   });

@@ -5,7 +5,7 @@ import type { Pose } from '../src/scene/camera_pose.js';
 import { cameraOf, poseOf, problemOfPose, roundedPose } from '../src/view/pose.js';
 import { writeLink } from '../src/view/view_link.js';
 import { VIEW_TABLE } from '../src/view/view_table.js';
-import { readable } from './listing.js';
+import { readable } from './path_name.js';
 
 export { problemOfPose, roundedPose, type Pose };
 

@@ -10,7 +10,9 @@
 import { Poster } from './poster.js';
 import { resolveHierarchy } from './hierarchy_url.js';
 import { sendFirstRequest } from './first_request.js';
+import { nameOfPath } from './path_name.js';
 import { isArchiveUrl } from '../src/hierarchy/archive_format.js';
+import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 import { DEFAULT_LOOK } from '../src/scene/settings.js';
 
 /// The files of the view's code, relative to the page.
@@ -57,9 +59,9 @@ function showTheme(theme = 'auto'): void {
   document.documentElement.dataset.theme = theme !== 'auto' ? theme : matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
 }
 
+/// `url`: of a directory, which may end in a slash.
 function posterOf(url: string): Poster {
-  const name = decodeURIComponent(url.replace(/^.*\//, '')).replace(/(.)\.[^.]*$/, '$1');
-  return new Poster(`${url}/preview.webp`, name);
+  return new Poster(`${withoutLastSlashes(url)}/preview.webp`, nameOfPath(url));
 }
 
 function boot(): void {

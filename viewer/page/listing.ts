@@ -2,9 +2,9 @@
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
 import type { RemoteFiles } from '../src/hierarchy/files.js';
-import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 import type { Json } from '../src/json_value.js';
 import { resolveHierarchy, resolveUrl } from './hierarchy_url.js';
+import { lastPart, nameOfPath } from './path_name.js';
 import { words } from './words/words.js';
 
 export { resolveUrl };
@@ -120,24 +120,6 @@ function textsOf(value: unknown): string[] {
 
 function countOf(value: unknown): number | null {
   return typeof value === 'number' && Number.isFinite(value) && value >= 0 ? value : null;
-}
-
-/// A part of an address as people read it: `a b` of `a%20b`.
-export function readable(text: string): string {
-  try {
-    return decodeURIComponent(text);
-  } catch {
-    return text;
-  }
-}
-
-function lastPart(path: string): string {
-  return readable(withoutLastSlashes(path).replace(/^.*\//, ''));
-}
-
-/// `models/sub/david%202.hier` to `david 2`.
-export function nameOfPath(path: string): string {
-  return lastPart(path).replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
 /// Returns the file name of its hierarchy: `dragon.hier`.

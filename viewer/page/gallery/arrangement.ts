@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Chooses what of the listing is shown, in which order and in which groups.
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
-import { readable, type Job, type ListingPart, type Model, type TagCount } from '../listing.js';
+import type { Job, ListingPart, Model, TagCount } from '../listing.js';
+import { readable } from '../path_name.js';
 import { locale } from '../words/words.js';
 import type { Order } from '../preferences.js';
 import type { Wish } from './wish.js';

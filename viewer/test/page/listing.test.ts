@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { describe, expect, it } from 'vitest';
-import { ListingError, modelOfPath, nameOfPath, parseListing, resolveUrl, withoutWarnings, type Listing } from '../../page/listing.js';
+import { ListingError, modelOfPath, parseListing, resolveUrl, withoutWarnings, type Listing } from '../../page/listing.js';
+import { nameOfPath } from '../../page/path_name.js';
 import { maySend } from '../../page/upload/permission.js';
 
 const URL_ = 'http://host/dir/models.json';
