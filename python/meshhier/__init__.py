@@ -19,6 +19,7 @@ from .errors import (
     BuildWarning,
     CorruptError,
     Error,
+    ExistsError,
     InputError,
     NotAHierarchyError,
     ProgramError,
@@ -29,11 +30,11 @@ from .errors import (
 )
 from .hierarchy import Hierarchy
 from .manifest import Scalar
-from .mesh import Mesh
+from .mesh import Conventions, Mesh
 from .objects import ObjectRow, ObjectTable
 from .program import Progress, build, find_program, verify
 from .tile import Tile
-from .tree import Node, Tree
+from .tree import Node, NodeLike, Tree
 from .version import __version__
 
 
@@ -47,6 +48,6 @@ def open(path: str | os.PathLike[str]) -> Hierarchy:
 
 
 __all__ = [
-    "BudgetError", "BuildWarning", "CorruptError", "Error", "Hierarchy", "InputError", "Mesh", "Node", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError",
+    "BudgetError", "BuildWarning", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "InputError", "Mesh", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError",
     "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
 ]  # fmt: skip

@@ -10,18 +10,28 @@ from numpy.typing import NDArray
 
 from .errors import UsageError
 
+Box = Sequence[Sequence[float]]
 Corner = NDArray[np.float64]
 
+_ROUNDING = 2.0**-50  # of coordinates: a corner or an edge on a side is enough, as for `meshhier export`
 
-def checked_box(box: Sequence[Sequence[float]]) -> tuple[Corner, Corner]:
-    """The lower and the upper corner. They may be infinite. Raises UsageError for what is no box."""
+
+def checked_box(box: Box) -> tuple[Corner, Corner]:
+    """The lower and the upper corner. Sides may be infinitely far. Raises UsageError for what is no box."""
+    refusal = "a box is ((x, y, z), (x, y, z)), the smaller coordinates first"
     try:
+        kinds = {type(number) for corner in box for number in corner}
         low, high = (np.asarray(corner, np.float64) for corner in box)
-        is_box = low.shape == high.shape == (3,) and bool((low <= high).all())
+        is_box = low.shape == high.shape == (3,) and not kinds & {bool, np.bool_, str}
     except (TypeError, ValueError):
         is_box = False
-    if not is_box:
-        raise UsageError(f"a box is ((x, y, z), (x, y, z)), the smaller coordinates first, not {box}")
+    if not is_box or np.isnan([low, high]).any():
+        raise UsageError(f"{refusal}, not {box!r}")
+    for axis, least, most in zip("xyz", low.tolist(), high.tolist()):
+        if least > most:
+            raise UsageError(f"{refusal}; here {axis} goes from {least} back to {most}")
+        if least == np.inf or most == -np.inf:
+            raise UsageError(f"{refusal}; nothing lies where {axis} is {least}")
     return low, high
 
 
@@ -34,6 +44,7 @@ def touches_box(corners: NDArray[np.float64], low: Corner, high: Corner) -> NDAr
     # What is beyond the triangles that are near decides nothing, and may be infinite.
     low, high = np.maximum(low, corners[near].min(axis=(0, 1)) - 1), np.minimum(high, corners[near].max(axis=(0, 1)) + 1)
     middle, half = (low + high) / 2, (high - low) / 2
+    half += _ROUNDING * np.abs([low, high]).max()
     moved = corners[near] - middle
     edges = np.roll(moved, -1, axis=1) - moved
     normals = np.cross(edges[:, 0], edges[:, 1])

@@ -22,6 +22,10 @@ class UsageError(Error):
     """The call makes no sense for this hierarchy: a level that it does not have, a key that no config has."""
 
 
+class ExistsError(UsageError, FileExistsError):
+    """There is a file of that name already, and nobody said `force=True`. It is a FileExistsError, too."""
+
+
 class ProgramError(Error):
     """The program ended with a failure.
 
@@ -31,9 +35,12 @@ class ProgramError(Error):
     """
 
     def __init__(self, message: str, exit_code: int) -> None:
-        super().__init__(message)
+        super().__init__(message, exit_code)  # both, so that it can be pickled
         self.message = message
         self.exit_code = exit_code
+
+    def __str__(self) -> str:
+        return self.message
 
 
 class InputError(ProgramError):

@@ -4,38 +4,35 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from typing import Any, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import checked_box, touches_box
+from .asked import length, whole
+from .boxes import Box
 from .checksum import checksum
-from .cut import CutAssembly
+from .cut import CutPieces
 from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
+from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
 from .mesh import Mesh
 from .objects import ObjectTable
+from .polygons import Polygon
+from .region import Region
 from .storage import open_files
 from .tile import Tile, read_tile
-from .tree import Node, Tree
-
-_RECORD = np.dtype(
-    {
-        "names": ["level", "index", "own", "ghosts", "copies", "interior", "border", "error", "bound", "low", "high", "splits", "width", "height", "bytes", "checksum"],
-        "formats": ["<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<u4", "<f4", "<f4", ("<f4", 3), ("<f4", 3), "<u4", "<u4", "<u4", "<u8", "<u8"],
-        "offsets": [0, 4, 8, 16, 20, 24, 28, 48, 52, 60, 72, 84, 88, 92, 104, 112],
-        "itemsize": 120,
-    }
-)
-
-Box = tuple[Sequence[float], Sequence[float]]
+from .tree import Node, NodeLike, Tree
 
 
 class Hierarchy:
     """What `meshhier build` made: many resolutions of one mesh. Open it with `meshhier.open()`.
 
-    Reads nothing but the manifest and the index until tiles are asked for. It may be used as a context manager.
+    Reads nothing but the manifest and the index until tiles are asked for. It may be used as a context manager, and pickled: it is
+    opened again elsewhere, where ReplacedError tells that another build has taken its place.
+
+    Where a node is asked for, a Node, (level, index) and "LEVEL/INDEX" are one.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -44,8 +41,8 @@ class Hierarchy:
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
         facts = self._manifest.json.get("objects")
         self._objects = self._open_objects(facts, "objects.bin", self._open_objects(facts.get("words"), "object_words.bin")) if facts else None
-        self._index = self._read_index()
-        self._keys = self._index["level"].astype(np.uint64) << np.uint64(32) | self._index["index"]
+        index = self._read_sealed("tiles.bin", self._manifest.index_bytes, self._manifest.index_checksum)
+        self._index = TileIndex(index, self.tree, self.path)
 
     def __enter__(self) -> Hierarchy:
         return self
@@ -56,8 +53,12 @@ class Hierarchy:
     def __repr__(self) -> str:
         return f"Hierarchy({self.path!r}: {self.vertices} vertices, {self.triangles} triangles, {self.levels} levels, {len(self._index)} tiles)"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        self._files.require_open()
+        return _reopened, (type(self), os.path.abspath(self.path), self._manifest.build)
+
     def close(self) -> None:
-        """Closes an archive. Nothing can be read any more."""
+        """Closes it. Nothing can be read any more: UsageError."""
         self._files.close()
 
     def _read_sealed(self, name: str, size: int, expected: int) -> bytes:
@@ -73,7 +74,7 @@ class Hierarchy:
             raise
 
     def _open_objects(self, facts: Any, file: str, words: Optional[ObjectTable] = None) -> Optional[ObjectTable]:
-        return ObjectTable(facts, lambda begin, end: self._files.part(file, begin, end), self.path, file, words) if facts else None
+        return ObjectTable(facts, partial(self._files.part, file), self.path, file, words) if facts else None
 
     def _is_replaced(self) -> bool:
         try:
@@ -81,14 +82,6 @@ class Hierarchy:
         except (CorruptError, NotAHierarchyError, OSError):
             return False  # then what failed says why
         return now.build != self._manifest.build
-
-    def _read_index(self) -> NDArray[Any]:
-        data = self._read_sealed("tiles.bin", self._manifest.index_bytes, self._manifest.index_checksum)
-        header = 32
-        count = 2 * self.tree.partitions - 1
-        if data[:8] != b"MHTILES\n" or len(data) != header + count * _RECORD.itemsize:
-            raise CorruptError(f"{self.path}: tiles.bin is not the index of {count} tiles")
-        return np.frombuffer(data, _RECORD, count, header)
 
     # What it is.
 
@@ -153,117 +146,143 @@ class Hierarchy:
     @property
     def errors(self) -> NDArray[np.float64]:
         """(levels,): the largest estimated distance of each level to the original surface, input units."""
-        return np.array([self._index["error"][self._index["level"] == level].max() for level in range(self.levels)], np.float64)
+        records = self._index.records
+        return np.array([records["error"][records["level"] == level].max() for level in range(self.levels)], np.float64)
 
     # Tiles.
 
-    def _record(self, node: Node) -> Any:
-        key = np.uint64(node.level << 32 | node.index)
-        at = int(np.searchsorted(self._keys, key))
-        if at == len(self._keys) or self._keys[at] != key:
-            raise UsageError(f"{self.path}: there is no tile {node}")
-        return self._index[at]
-
-    def error(self, node: Node) -> float:
+    def error(self, node: NodeLike) -> float:
         """Estimated distance of a tile to the original surface, input units; 0 of partitions."""
-        return float(self._record(node)["error"])
+        return float(self._index.records["error"][self._index.row(node)])
 
-    def bound(self, node: Node) -> float:
+    def bound(self, node: NodeLike) -> float:
         """Certain upper bound of the Hausdorff distance to the original surface, input units."""
-        return float(self._record(node)["bound"])
+        return float(self._index.records["bound"][self._index.row(node)])
 
-    def tile_bounds(self, node: Node) -> NDArray[np.float64]:
+    def tile_bounds(self, node: NodeLike) -> NDArray[np.float64]:
         """(2, 3): the box of all vertices of a tile, input coordinates."""
-        record = self._record(node)
-        return np.stack([record["low"], record["high"]]).astype(np.float64) + self.origin
+        return np.concatenate(self._index.boxes(np.array([self._index.row(node)]))) + self.origin
 
-    def read_tile(self, node: Node) -> Tile:
+    def read_tile(self, node: NodeLike) -> Tile:
         """One tile, with its seams. Raises UsageError if there is none, CorruptError, ReplacedError."""
-        record = self._record(node)
-        data = self._read_sealed(self._manifest.tile_name(node), int(record["bytes"]), int(record["checksum"]))
-        return read_tile(data, node, self._manifest)
+        row = self._index.row(node)
+        tile, record = self._index.node(row), self._index.records[row]
+        data = self._read_sealed(self._manifest.tile_name(tile), int(record["bytes"]), int(record["checksum"]))
+        return read_tile(data, tile, self._manifest)
 
-    def iter_tiles(self, level: Optional[int] = None) -> Iterator[Tile]:
-        """The tiles of a level (the finest if none is given), one after another: memory for one at a time.
+    def iter_tiles(self, level: Optional[int] = None, *, error: Optional[float] = None) -> Iterator[Tile]:
+        """The tiles of a level, or of the cut by an error (the finest if neither is given), one after another: memory for one at a time.
 
-        Each vertex of the level is an own one of one tile. Triangles are not: those at seams, `tile.border`, are in every tile
-        that they touch; what is summed over triangles is summed over those of `cut()`.
+        Each vertex of the cut is an own one of one tile. Triangles are not: those at seams, `tile.border`, are in every tile
+        that they touch. What is summed over triangles is summed over `iter_parts()`.
         """
-        for node in self.tree.level(self._level(level)):
-            yield self.read_tile(node)
-
-    def _level(self, level: Optional[int]) -> int:
-        wanted = self.tree.depth if level is None else level
-        if not 0 <= wanted < self.levels:
-            raise UsageError(f"{self.path}: there is no level {wanted}; it has 0 to {self.levels - 1}")
-        return wanted
+        return map(self.read_tile, self.cut_nodes(error=error, level=level))
 
     # Cuts.
 
-    def cut_nodes(self, *, error: Optional[float] = None, level: Optional[int] = None, box: Optional[Box] = None) -> list[Node]:
-        """The tiles that `cut()` takes: those of a level, or the coarsest whose error is no larger than `error`; the finest if
-        neither is given. With a `box` those outside of it are as coarse as they may."""
-        if error is not None and level is not None:
-            raise UsageError("a cut is by error or by level, not both")
-        if error is not None and not error >= 0:
-            raise UsageError(f"an error is 0 or more, in input units, not {error}")
-        wanted = self._level(level) if error is None else self.tree.depth
-        low, high = (None, None) if box is None else checked_box(box)
-        nodes: list[Node] = []
-        pending = [self.tree.tile(Node(0, 0))]
-        while pending:
-            node = pending.pop()
-            is_fine = node.level >= wanted or (error is not None and self.error(node) <= error)
-            bounds = self.tile_bounds(node)
-            is_outside = low is not None and bool((bounds[0] > high).any() or (bounds[1] < low).any())
-            children = self.tree.children(node)
-            if is_fine or is_outside or not children:
-                nodes.append(node)
-            else:
-                pending += reversed(children)
-        return nodes
+    def cut_nodes(
+        self, *, error: Optional[float] = None, level: Optional[int] = None, box: Optional[Box] = None, polygon: Optional[Polygon] = None
+    ) -> list[Node]:
+        """A cut, from left to right: the tiles of a level, or the coarsest whose error is no larger than `error`; the finest if
+        neither is given. With a `box` or `polygon` tiles elsewhere are as coarse as they may."""
+        rows = self._cut(error, level)
+        region = self._region(box, polygon)
+        if region is not None:
+            needed = rows[region.may_meet(*self._index.boxes(rows))]
+            rows = self._index.cut(error=error, level=self._level(level), needed=needed)
+        return [self._index.node(row) for row in rows]
+
+    def iter_parts(
+        self,
+        *,
+        error: Optional[float] = None,
+        level: Optional[int] = None,
+        nodes: Optional[Sequence[NodeLike]] = None,
+        box: Optional[Box] = None,
+        polygon: Optional[Polygon] = None,
+        ids: bool = False,
+    ) -> Iterator[Mesh]:
+        """The mesh of `cut()`, which has the other parameters, in pieces: each triangle is in exactly one of them, those at seams too.
+
+        A piece is what one tile draws, and has `tiles`, `images` and so on of that one; its own vertices come first. A dozen tiles
+        are in memory, however large the cut is.
+
+        With `ids`, `piece.ids` are numbers of vertices: of one vertex in several pieces they are the same, and they ascend as the
+        vertices of `cut()` do, though some numbers may be missing. `Mesh.join(pieces)` is the mesh of `cut()`.
+        """
+        pieces, region = self._pieces(nodes, error, level, box, polygon, bool(ids))
+        return pieces.each(region) if ids else map(_without_ids, pieces.each(region))
 
     def cut(
         self,
         *,
         error: Optional[float] = None,
         level: Optional[int] = None,
+        nodes: Optional[Sequence[NodeLike]] = None,
         box: Optional[Box] = None,
-        nodes: Optional[Sequence[tuple[int, int]]] = None,
+        polygon: Optional[Polygon] = None,
     ) -> Mesh:
         """One mesh without cracks, in input coordinates.
 
         Args:
             error: the coarsest tiles that are no farther than this from the original surface, input units.
             level: all tiles of one level; 0 is the coarsest. Neither: the original triangles, bit for bit.
-            box: ((x, y, z), (x, y, z)), input coordinates: only triangles that touch it. Little is read besides.
             nodes: instead of these the tiles of a cut: each partition is one of them, or below exactly one.
+            box: ((x, y, z), (x, y, z)), input coordinates, perhaps infinite: only triangles that touch it. Little is read besides.
+            polygon: only triangles of which a part is in it, seen from above, whatever their height: a GeoJSON file, an object as
+                GeoJSON has them (shapely's, too), or a list of corners. Coordinates are the input's: x and y where z points up
+                (`manifest["up"]`), else x and -z. With a box, what meets both.
 
-        All of the result is in memory; for a mesh that is larger, use `iter_tiles()` or boxes.
+        All of the result is in memory; of a mesh that is larger, `iter_parts()` has the pieces.
         """
-        if nodes is not None:
-            if error is not None or level is not None:
-                raise UsageError("nodes say which tiles: there can be no error and no level besides")
-            chosen = self._checked([Node(*node) for node in nodes])
-        else:
-            chosen = self.cut_nodes(error=error, level=level, box=box)
-        corners = None if box is None else checked_box(box)
-        mesh = CutAssembly(self._manifest, self.read_tile).mesh(chosen)
-        labels = [mesh.attributes[scalar.name] for scalar in self._manifest.scalars if scalar.kind == "object"]
-        if labels:
-            mesh.triangle_objects = labels[0][mesh.triangles[:, 0]].astype(np.int64)
-        return mesh if corners is None else mesh.take(touches_box(mesh.positions[mesh.triangles], *corners))
+        pieces, region = self._pieces(nodes, error, level, box, polygon, True)
+        return Mesh.join(list(pieces.each(region)) or [pieces.nothing()])
 
-    def _checked(self, nodes: list[Node]) -> list[Node]:
-        for node in nodes:
-            self._record(node)
-        ordered = sorted(nodes, key=self.tree.range)
-        covered = 0
-        for node in ordered:
-            first, end = self.tree.range(node)
-            if first != covered:
-                raise UsageError(f"{self.path}: no cut: partition {min(first, covered)} is in {'two nodes' if first < covered else 'none'}")
-            covered = end
-        if covered != self.tree.partitions:
-            raise UsageError(f"{self.path}: no cut: partition {covered} is in none")
-        return ordered
+    def _level(self, level: Optional[int]) -> int:
+        refusal = f"{self.path}: a level is a whole number from 0, the coarsest, to {self.levels - 1}, the original"
+        wanted = self.tree.depth if level is None else whole(level, refusal)
+        if not 0 <= wanted < self.levels:
+            raise UsageError(f"{refusal}, not {level}")
+        return wanted
+
+    def _cut(self, error: Optional[float], level: Optional[int]) -> Rows:
+        if error is not None and level is not None:
+            raise UsageError("a cut is by error or by level, not both")
+        most = None if error is None else length(error, "an error is a length in input units, 0 or more (of the coarsest tile, level=0)")
+        return self._index.cut(error=most, level=self._level(level))
+
+    def _region(self, box: Optional[Box], polygon: Optional[Polygon]) -> Optional[Region]:
+        is_z_up = self._manifest.conventions.up == "z"
+        return None if box is None and polygon is None else Region(box, polygon, is_z_up, self.origin)
+
+    def _pieces(
+        self,
+        nodes: Optional[Sequence[NodeLike]],
+        error: Optional[float],
+        level: Optional[int],
+        box: Optional[Box],
+        polygon: Optional[Polygon],
+        with_ids: bool,
+    ) -> tuple[CutPieces, Optional[Region]]:
+        if nodes is None:
+            rows = self._cut(error, level)
+        elif error is not None or level is not None:
+            raise UsageError("nodes say which tiles: there can be no error and no level besides")
+        elif isinstance(nodes, str) or not hasattr(nodes, "__iter__"):
+            raise UsageError(f"nodes are a list, as [(1, 0), (1, 1)], not {nodes!r}")
+        else:
+            rows = self._index.check_cut(np.array([self._index.row(node) for node in nodes], np.int64))
+        return CutPieces(self._manifest, self._index, self.read_tile, rows, with_ids), self._region(box, polygon)
+
+
+def _without_ids(piece: Mesh) -> Mesh:
+    piece.ids = None
+    return piece
+
+
+def _reopened(kind: type[Hierarchy], path: str, build: str) -> Hierarchy:
+    hierarchy = kind(path)
+    if hierarchy._manifest.build != build:
+        hierarchy.close()
+        raise ReplacedError(f"{path}: another hierarchy has taken its place since it was opened: open it again")
+    return hierarchy

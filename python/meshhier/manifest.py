@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import CorruptError, NotAHierarchyError
+from .mesh import Conventions
 from .tree import Node, Tree
 
 _VERSIONS = range(7, 15)
@@ -54,6 +55,7 @@ class Manifest:
     scalars: its further numbers, in the order of tiles.
     lattice: of quantized positions, or None.
     is_textured: tiles have pictures.
+    conventions: how colours, pictures and axes are meant.
     index_bytes, index_checksum: of tiles.bin.
     build: the name of the build: the manifest's own checksum, which covers all others.
     """
@@ -65,6 +67,7 @@ class Manifest:
     scalars: list[Scalar]
     lattice: Optional[Lattice]
     is_textured: bool
+    conventions: Conventions
     index_bytes: int
     index_checksum: int
     build: str
@@ -80,6 +83,11 @@ def _scalar(value: dict[str, Any]) -> Scalar:
     labels = [int(label) for label in value.get("labels", [])]
     names = value.get("label_names", [""] * len(labels))
     return Scalar(value["name"], value["type"], value["kind"], value["min"], value["max"], dict(zip(labels, names)))
+
+
+def _conventions(text: dict[str, Any]) -> Conventions:
+    attributes, texture = text["source"]["attributes"], text["storage"].get("texture", {})
+    return Conventions(text["up"], attributes.get("linear_colours", False), attributes.get("tints", False), texture.get("unlit", False))
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:
@@ -105,6 +113,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             scalars=[_scalar(value) for value in source.get("values", [])],
             lattice=Lattice(np.asarray(lattice["corner"], np.float64), lattice["step"]) if lattice else None,
             is_textured="textures" in source,
+            conventions=_conventions(text),
             index_bytes=int(text["index"]["bytes"]),
             index_checksum=int(text["index"]["checksum"], 16),
             build=str(text["checksum"]),

@@ -3,18 +3,38 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Iterable, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .asked import new_file
+from .content import ByContent
 from .errors import UsageError
 from .tree import Node
 
 
-@dataclass
-class Mesh:
+@dataclass(frozen=True)
+class Conventions:
+    """How a mesh's numbers are meant.
+
+    Attributes:
+        up: the axis that points up, "y" or "z".
+        linear_colours: colours are light, as glTF has them; else those of a screen (sRGB).
+        tints: pictures are multiplied by the colours.
+        unlit: pictures have their light already.
+    """
+
+    up: str = "y"
+    linear_colours: bool = False
+    tints: bool = False
+    unlit: bool = False
+
+
+@dataclass(eq=False)
+class Mesh(ByContent):
     """A triangle mesh in the coordinates of the input.
 
     Attributes:
@@ -28,6 +48,10 @@ class Mesh:
         triangle_tiles: (m,) int64, for each triangle the number of its tile in `tiles`.
         triangle_objects: (m,) int64, for each triangle the number of its object in `Hierarchy.objects`; None if there are none.
         images: of a textured mesh the file of the picture of each tile (JPEG, PNG, WebP or KTX2); else empty.
+        ids: (n,) int64 or None: of pieces the number of each vertex among those of all pieces, see `Hierarchy.iter_parts()`.
+        conventions: how colours, pictures and axes are meant.
+
+    Two are equal if all of this is.
     """
 
     positions: NDArray[np.float64]
@@ -40,6 +64,8 @@ class Mesh:
     triangle_tiles: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     images: list[bytes] = field(default_factory=list, repr=False)
     triangle_objects: Optional[NDArray[np.int64]] = None
+    ids: Optional[NDArray[np.int64]] = None
+    conventions: Conventions = Conventions()
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.positions)} vertices, {len(self.triangles)} triangles, {len(self.tiles)} tiles)"
@@ -58,6 +84,9 @@ class Mesh:
         def part(values: Optional[NDArray[Any]]) -> Optional[NDArray[Any]]:
             return None if values is None else values[used]
 
+        def part_of_triangles(values: Optional[NDArray[Any]]) -> Optional[NDArray[Any]]:
+            return None if values is None else values[chosen]
+
         return Mesh(
             positions=self.positions[used],
             triangles=numbers.reshape(-1, 3).astype(np.int64),
@@ -68,7 +97,42 @@ class Mesh:
             tiles=self.tiles,
             triangle_tiles=self.triangle_tiles[chosen],
             images=self.images,
-            triangle_objects=None if self.triangle_objects is None else self.triangle_objects[chosen],
+            triangle_objects=part_of_triangles(self.triangle_objects),
+            ids=part(self.ids),
+            conventions=self.conventions,
+        )
+
+    @staticmethod
+    def join(pieces: Iterable[Mesh]) -> Mesh:
+        """One mesh of pieces with `ids`, one or more: vertices of one number become one, and come in the order of their numbers."""
+        each = list(pieces)
+        if not each or any(piece.ids is None for piece in each):
+            raise UsageError("pieces that can be joined have ids: iter_parts(..., ids=True)" if each else "there is no piece to be joined")
+        ids = np.concatenate([piece.ids for piece in each if piece.ids is not None])
+        _, chosen, numbers = np.unique(ids, return_index=True, return_inverse=True)
+        starts = np.cumsum([0] + [len(piece.positions) for piece in each])
+        first_tiles = np.cumsum([0] + [len(piece.tiles) for piece in each])
+
+        def all_of(values: list[Optional[NDArray[Any]]]) -> Optional[NDArray[Any]]:
+            there = [one for one in values if one is not None]
+            return np.concatenate(there) if len(there) == len(each) else None
+
+        def vertices(values: list[Optional[NDArray[Any]]]) -> Optional[NDArray[Any]]:
+            together = all_of(values)
+            return None if together is None else together[chosen]
+
+        return Mesh(
+            positions=np.concatenate([piece.positions for piece in each])[chosen],
+            triangles=numbers[np.concatenate([piece.triangles + start for piece, start in zip(each, starts)])].astype(np.int64),
+            normals=vertices([piece.normals for piece in each]),
+            colours=vertices([piece.colours for piece in each]),
+            texcoords=vertices([piece.texcoords for piece in each]),
+            attributes={name: np.concatenate([piece.attributes[name] for piece in each])[chosen] for name in each[0].attributes},
+            tiles=[tile for piece in each for tile in piece.tiles],
+            triangle_tiles=np.concatenate([piece.triangle_tiles + first for piece, first in zip(each, first_tiles)]),
+            images=[image for piece in each for image in piece.images],
+            triangle_objects=all_of([piece.triangle_objects for piece in each]),
+            conventions=each[0].conventions,
         )
 
     def colours_as_bytes(self) -> Optional[NDArray[np.uint8]]:
@@ -121,8 +185,9 @@ class Mesh:
             mesh.vertex_colors = open3d.utility.Vector3dVector(colours[:, :3] / 255.0)
         return mesh
 
-    def write_ply(self, path: str) -> None:
-        """A binary PLY with everything but pictures."""
+    def write_ply(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """A binary PLY with everything but pictures. Raises ExistsError, which is a FileExistsError, too, if there is a file of that
+        name, unless `force` replaces it; the file is there when all of it is."""
         columns: list[tuple[str, NDArray[Any]]] = [(axis, self.positions[:, k]) for k, axis in enumerate("xyz")]
         if self.normals is not None:
             columns += [(f"n{axis}", self.normals[:, k]) for k, axis in enumerate("xyz")]
@@ -134,6 +199,9 @@ class Mesh:
         names = {"i1": "char", "u1": "uchar", "i2": "short", "u2": "ushort", "i4": "int", "u4": "uint", "f4": "float", "f8": "double"}
         if len({name for name, _ in columns}) != len(columns):
             raise UsageError("an attribute has the name of a coordinate, normal or colour")
+        unknown = [name for name, values in columns if values.dtype.str[1:] not in names]
+        if unknown or len(self.positions) > 2**31:
+            raise UsageError(f"PLY has no such type as that of {unknown[0]}" if unknown else "PLY has at most 2^31 vertices")
         rows = np.zeros(len(self.positions), [(name, values.dtype.newbyteorder("<")) for name, values in columns])
         for name, values in columns:
             rows[name] = values
@@ -142,7 +210,7 @@ class Mesh:
         header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(rows)}"]
         header += [f"property {names[values.dtype.str[1:]]} {name}" for name, values in columns]
         header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
-        with open(path, "wb") as file:
+        with new_file(path, force) as file:
             file.write("\n".join(header).encode("ascii"))
             file.write(rows.tobytes())
             file.write(faces.tobytes())

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checksum import checksum
+from .content import ByContent
 from .errors import CorruptError
 from .letter_table import LETTER_TABLE
 from .words import AskedWord, Letters, fits, objects_of_row
@@ -27,8 +28,8 @@ _KEPT_BLOCKS = 64
 Value = Union[float, bool, str, None]
 
 
-@dataclass(frozen=True)
-class ObjectRow:
+@dataclass(frozen=True, eq=False)
+class ObjectRow(ByContent):
     """All that is known of one object.
 
     Attributes:

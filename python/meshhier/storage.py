@@ -7,7 +7,7 @@ import os
 import zipfile
 from typing import Protocol
 
-from .errors import CorruptError, NotAHierarchyError
+from .errors import CorruptError, NotAHierarchyError, UsageError
 
 
 class Files(Protocol):
@@ -21,7 +21,15 @@ class Files(Protocol):
         """Bytes [begin, end) of a file; fewer where it ends before. Raises CorruptError if it is not there."""
         ...
 
+    def require_open(self) -> None:
+        """Raises UsageError if it is closed."""
+        ...
+
     def close(self) -> None: ...
+
+
+def _closed(path: str) -> UsageError:
+    return UsageError(f"{path}: it is closed: open it again with meshhier.open()")
 
 
 class Folder:
@@ -29,51 +37,78 @@ class Folder:
 
     def __init__(self, path: str) -> None:
         self._path = path
+        self._place = os.path.abspath(path)
+        self._is_closed = False
 
     def read(self, name: str) -> bytes:
         return self.part(name, 0, -1)
 
     def part(self, name: str, begin: int, end: int) -> bytes:
+        self.require_open()
         try:
-            with open(os.path.join(self._path, *name.split("/")), "rb") as file:
+            with open(os.path.join(self._place, *name.split("/")), "rb") as file:
                 file.seek(begin)
                 return file.read(end - begin if end >= 0 else -1)
         except FileNotFoundError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
 
+    def require_open(self) -> None:
+        if self._is_closed:
+            raise _closed(self._path)
+
     def close(self) -> None:
-        pass
+        self._is_closed = True
 
 
 class Archive:
-    """A hierarchy as one file, a zip archive without compression (docs/file_format.md, section 8)."""
+    """A hierarchy as one file, a zip archive without compression (docs/file_format.md, section 8). Each process opens it by itself,
+    as processes that share an open file move each other's place in it."""
 
     def __init__(self, path: str) -> None:
         self._path = path
+        self._place = os.path.abspath(path)
+        self._is_closed = False
+        self._open()
+        if "hierarchy.json" not in self._zip.NameToInfo:
+            self.close()
+            raise NotAHierarchyError(f"{path}: there is no hierarchy.json in this archive")
+
+    def _open(self) -> None:
         try:
-            self._zip = zipfile.ZipFile(path)
+            self._zip = zipfile.ZipFile(self._place)
         except zipfile.BadZipFile as error:
-            raise NotAHierarchyError(f"{path}: not an archive: {error}") from error
+            raise NotAHierarchyError(f"{self._path}: not an archive: {error}") from error
+        self._process = os.getpid()
+
+    def __reduce__(self) -> tuple[type[Archive], tuple[str]]:
+        self.require_open()
+        return Archive, (self._place,)
 
     def read(self, name: str) -> bytes:
-        try:
-            return self._zip.read(name)
-        except KeyError as error:
-            raise CorruptError(f"{self._path}: {name} is missing") from error
-        except zipfile.BadZipFile as error:
-            raise CorruptError(f"{self._path}: {name}: {error}") from error
+        return self.part(name, 0, -1)
 
     def part(self, name: str, begin: int, end: int) -> bytes:
+        self.require_open()
+        if self._process != os.getpid():
+            self._open()
         try:
-            with self._zip.open(name) as file:
+            facts = self._zip.getinfo(name)
+            if facts.compress_type != zipfile.ZIP_STORED or facts.flag_bits & 1:
+                raise CorruptError(f"{self._path}: {name} is packed or encrypted; in a 3tz nothing is")
+            with self._zip.open(facts) as file:
                 file.seek(begin)
-                return file.read(end - begin)
+                return file.read(end - begin if end >= 0 else -1)
         except KeyError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
-        except zipfile.BadZipFile as error:
+        except (zipfile.BadZipFile, EOFError) as error:
             raise CorruptError(f"{self._path}: {name}: {error}") from error
 
+    def require_open(self) -> None:
+        if self._is_closed:
+            raise _closed(self._path)
+
     def close(self) -> None:
+        self._is_closed = True
         self._zip.close()
 
 

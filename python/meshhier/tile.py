@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import meshopt
+from .content import ByContent
 from .errors import CorruptError, Error
 from .tree import Node
 
@@ -27,8 +28,8 @@ _MOST_BYTES = 1 << 30  # of a tile
 _WIDE = ("i32", "u32", "f64")
 
 
-@dataclass
-class Tile:
+@dataclass(eq=False)
+class Tile(ByContent):
     """One tile. Vertices 0 ... own - 1 are its own; behind them come its ghosts (own vertices of neighbours), then copies
     (further vertices at places of these, with other attributes), then splits (the same with other computed normals or texture
     coordinates). n counts all of them.
@@ -288,7 +289,9 @@ class _Reader:
         return found
 
     def read(self) -> Tile:
-        neighbours = self.indices("neighbours", self.tile["neighbourCount"], 1 << 32, False)
+        tree = self.manifest.tree
+        nodes = tree.partitions if self.node.level == tree.depth else 2**self.node.level
+        neighbours = self.indices("neighbours", self.tile["neighbourCount"], nodes, False)
         starts = self.indices("ghostStarts", len(neighbours) + 1, self.ghosts + 1, False) if len(neighbours) else np.zeros(1, np.int64)
         image = self.tile.get("image", -1)
         return Tile(

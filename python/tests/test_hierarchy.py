@@ -46,7 +46,7 @@ def test_tiles_come_one_by_one(torus: str, built: Any) -> None:
 
 def test_the_tree_is_that_of_the_index(torus: str, built: Any) -> None:
     hierarchy = meshhier.open(built(torus, "early.hier", partition__count=11))
-    assert list(hierarchy.tree.tiles()) == [meshhier.Node(int(r["level"]), int(r["index"])) for r in hierarchy._index]
+    assert list(hierarchy.tree.tiles()) == [meshhier.Node(int(r["level"]), int(r["index"])) for r in hierarchy._index.records]
     for node in hierarchy.tree.tiles():
         for child in hierarchy.tree.children(node):
             assert hierarchy.tree.ancestor(child, node.level) == node
