@@ -55,12 +55,17 @@ class CutPieces:
             if region is None or len(piece.triangles) > 0:
                 yield piece
 
-    def nothing(self) -> Mesh:
-        """A piece without vertices."""
-        piece = self._piece(0, None)
-        nothing = piece.take(np.zeros(len(piece.triangles), bool))
-        nothing.tiles, nothing.images = [], []
-        return nothing
+    def at_least_one(self, region: Optional[Region]) -> Iterator[Mesh]:
+        """The same, and if there is none a piece without vertices."""
+        is_empty = True
+        for piece in self.each(region):
+            is_empty = False
+            yield piece
+        if is_empty:
+            piece = self._piece(0, None)
+            nothing = piece.take(np.zeros(len(piece.triangles), bool))
+            nothing.tiles, nothing.images, nothing.alpha_modes = [], [], []
+            yield nothing
 
     def _reaching(self, region: Region) -> _Numbers:
         """The places in the cut of tiles that may have triangles in the region: whose box meets it, or that are beside a coarser
@@ -179,6 +184,7 @@ class CutPieces:
             tiles=[tile.node],
             triangle_tiles=np.zeros(len(triangles), np.int64),
             images=[tile.image_bytes or b""] if self._is_textured else [],
+            alpha_modes=[tile.alpha_mode] if self._is_textured else [],
             triangle_objects=labels[0][triangles[:, 0]].astype(np.int64) if labels else None,
             ids=ids,
             conventions=manifest.conventions,

@@ -236,7 +236,7 @@ class Hierarchy:
         All of the result is in memory; of a mesh that is larger, `iter_parts()` has the pieces.
         """
         pieces, region = self._pieces(nodes, error, level, box, polygon, True)
-        return Mesh.join(list(pieces.each(region)) or [pieces.nothing()])
+        return Mesh.join(pieces.at_least_one(region))
 
     def _level(self, level: Optional[int]) -> int:
         refusal = f"{self.path}: a level is a whole number from 0, the coarsest, to {self.levels - 1}, the original"

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, Iterable, Optional
+from operator import attrgetter
+from typing import Any, Callable, Iterable, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +51,7 @@ class Mesh(ByContent):
         triangle_objects: (m,) int64, for each triangle the number of its object in `Hierarchy.objects`; None if there are none.
         images: of a textured mesh the file of the picture of each tile (JPEG, PNG, WebP or KTX2); else empty.
         ids: (n,) int64 or None: of pieces the number of each vertex among those of all pieces, see `Hierarchy.iter_parts()`.
+        alpha_modes: of each picture whether it is "OPAQUE", has holes ("MASK") or lets light through ("BLEND").
         conventions: how colours, pictures and axes are meant.
 
     Two are equal if all of this is.
@@ -65,6 +68,7 @@ class Mesh(ByContent):
     images: list[bytes] = field(default_factory=list, repr=False)
     triangle_objects: Optional[NDArray[np.int64]] = None
     ids: Optional[NDArray[np.int64]] = None
+    alpha_modes: list[str] = field(default_factory=list)
     conventions: Conventions = Conventions()
 
     def __repr__(self) -> str:
@@ -99,41 +103,40 @@ class Mesh(ByContent):
             images=self.images,
             triangle_objects=part_of_triangles(self.triangle_objects),
             ids=part(self.ids),
+            alpha_modes=self.alpha_modes,
             conventions=self.conventions,
         )
 
     @staticmethod
     def join(pieces: Iterable[Mesh]) -> Mesh:
         """One mesh of pieces with `ids`, one or more: vertices of one number become one, and come in the order of their numbers."""
-        each = list(pieces)
+        each = deque(pieces)
         if not each or any(piece.ids is None for piece in each):
             raise UsageError("pieces that can be joined have ids: iter_parts(..., ids=True)" if each else "there is no piece to be joined")
-        ids = np.concatenate([piece.ids for piece in each if piece.ids is not None])
-        _, chosen, numbers = np.unique(ids, return_index=True, return_inverse=True)
-        starts = np.cumsum([0] + [len(piece.positions) for piece in each])
-        first_tiles = np.cumsum([0] + [len(piece.tiles) for piece in each])
+        ids = np.unique(np.concatenate([_ids_of(piece) for piece in each]))
+        joined = _room_for(each, len(ids), sum(len(piece.triangles) for piece in each))
+        at = 0
+        while each:  # a piece goes when it has been copied
+            at = joined._add(each.popleft(), ids, at)
+        return joined
 
-        def all_of(values: list[Optional[NDArray[Any]]]) -> Optional[NDArray[Any]]:
-            there = [one for one in values if one is not None]
-            return np.concatenate(there) if len(there) == len(each) else None
-
-        def vertices(values: list[Optional[NDArray[Any]]]) -> Optional[NDArray[Any]]:
-            together = all_of(values)
-            return None if together is None else together[chosen]
-
-        return Mesh(
-            positions=np.concatenate([piece.positions for piece in each])[chosen],
-            triangles=numbers[np.concatenate([piece.triangles + start for piece, start in zip(each, starts)])].astype(np.int64),
-            normals=vertices([piece.normals for piece in each]),
-            colours=vertices([piece.colours for piece in each]),
-            texcoords=vertices([piece.texcoords for piece in each]),
-            attributes={name: np.concatenate([piece.attributes[name] for piece in each])[chosen] for name in each[0].attributes},
-            tiles=[tile for piece in each for tile in piece.tiles],
-            triangle_tiles=np.concatenate([piece.triangle_tiles + first for piece, first in zip(each, first_tiles)]),
-            images=[image for piece in each for image in piece.images],
-            triangle_objects=all_of([piece.triangle_objects for piece in each]),
-            conventions=each[0].conventions,
-        )
+    def _add(self, piece: Mesh, ids: NDArray[np.int64], at: int) -> int:
+        """Copies a piece, its triangles to place `at`, and returns where they end."""
+        numbers = np.searchsorted(ids, _ids_of(piece))
+        end = at + len(piece.triangles)
+        for name in _OF_VERTICES:
+            if getattr(self, name) is not None:
+                getattr(self, name)[numbers] = getattr(piece, name)
+        for name, values in self.attributes.items():
+            values[numbers] = piece.attributes[name]
+        self.triangles[at:end] = numbers[piece.triangles]
+        self.triangle_tiles[at:end] = piece.triangle_tiles + len(self.tiles)
+        if self.triangle_objects is not None:
+            self.triangle_objects[at:end] = piece.triangle_objects
+        self.tiles += piece.tiles
+        self.images += piece.images
+        self.alpha_modes += piece.alpha_modes
+        return end
 
     def colours_as_bytes(self) -> Optional[NDArray[np.uint8]]:
         """(n, 3 or 4) uint8, whatever the input's type; None if there are none."""
@@ -142,11 +145,15 @@ class Mesh(ByContent):
         most = 1.0 if self.colours.dtype == np.float32 else 65535.0
         return np.rint(np.clip(self.colours / most, 0, 1) * 255).astype(np.uint8)
 
-    def to_trimesh(self) -> Any:
-        """A `trimesh.Trimesh`, with colours and attributes of vertices; needs trimesh."""
+    def to_trimesh(self, *, picture: bool = True) -> Any:
+        """A `trimesh.Trimesh`, with colours and attributes of vertices; needs trimesh.
+
+        A mesh of one tile, as a piece is, has its `picture`, too, by Pillow. All of a cut come with the scene that trimesh makes of a GLB:
+        `trimesh.load(io.BytesIO(mesh.to_gltf()), file_type="glb")`.
+        """
         import trimesh
 
-        return trimesh.Trimesh(
+        mesh = trimesh.Trimesh(
             vertices=self.positions,
             faces=self.triangles,
             vertex_normals=self.normals,
@@ -154,6 +161,12 @@ class Mesh(ByContent):
             vertex_attributes=dict(self.attributes),
             process=False,
         )
+        if picture and len(self.images) == 1 and self.images[0] and self.texcoords is not None:
+            from PIL import Image
+
+            from_below = self.texcoords * [1, -1] + [0, 1]
+            mesh.visual = trimesh.visual.TextureVisuals(uv=from_below, image=Image.fromarray(self.images_as_arrays()[0]))
+        return mesh
 
     def to_pyvista(self) -> Any:
         """A `pyvista.PolyData`, with point data "normals", "colours", "texcoords" and the attributes; needs PyVista."""
@@ -185,6 +198,17 @@ class Mesh(ByContent):
             mesh.vertex_colors = open3d.utility.Vector3dVector(colours[:, :3] / 255.0)
         return mesh
 
+    def to_gltf(self) -> bytes:
+        """A glTF binary (GLB): positions, normals, colours, texture coordinates with pictures, and attributes as `_NAME`.
+
+        It stands upright, in float positions about a place that its node has, where floats do not have the coordinates themselves.
+        Colours are light there, as glTF has them. Attributes of 32 bits and double ones are the nearest floats,
+        -3.4028234663852886e38 where there is none. A picture is a primitive with a material. Raises UsageError from 4 GiB on.
+        """
+        from .gltf import glb_of
+
+        return glb_of(self)
+
     def write_ply(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """A binary PLY with everything but pictures. Raises ExistsError, which is a FileExistsError, too, if there is a file of that
         name, unless `force` replaces it; the file is there when all of it is."""
@@ -214,3 +238,30 @@ class Mesh(ByContent):
             file.write("\n".join(header).encode("ascii"))
             file.write(rows.tobytes())
             file.write(faces.tobytes())
+
+
+_OF_VERTICES = ("positions", "normals", "colours", "texcoords")
+
+
+def _ids_of(piece: Mesh) -> NDArray[np.int64]:
+    assert piece.ids is not None
+    return piece.ids
+
+
+def _room_for(pieces: Iterable[Mesh], vertices: int, triangles: int) -> Mesh:
+    """A mesh with all that each of the pieces has, still without numbers."""
+    each = list(pieces)
+
+    def room(values: Callable[[Mesh], Optional[NDArray[Any]]], count: int) -> Any:
+        there = [values(piece) for piece in each]
+        first = there[0]
+        return None if first is None or any(one is None for one in there) else np.empty((count, *first.shape[1:]), first.dtype)
+
+    return Mesh(
+        **{name: room(attrgetter(name), vertices) for name in _OF_VERTICES},
+        triangles=room(attrgetter("triangles"), triangles),
+        attributes={name: room(lambda piece: piece.attributes[name], vertices) for name in each[0].attributes},
+        triangle_tiles=np.empty(triangles, np.int64),
+        triangle_objects=room(attrgetter("triangle_objects"), triangles),
+        conventions=each[0].conventions,
+    )

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import bisect
+import operator
 import zlib
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, Optional, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,10 +148,16 @@ class ObjectTable(Sequence[ObjectRow]):
     def __repr__(self) -> str:
         return f"ObjectTable({self._count} objects, properties: {', '.join(self.properties) or 'none'})"
 
-    def __getitem__(self, key: Any) -> Any:
+    @overload
+    def __getitem__(self, key: int) -> ObjectRow: ...
+
+    @overload
+    def __getitem__(self, key: slice) -> list[ObjectRow]: ...
+
+    def __getitem__(self, key: int | slice) -> ObjectRow | list[ObjectRow]:
         if isinstance(key, slice):
             return [self[i] for i in range(*key.indices(self._count))]
-        number = int(key) + (self._count if key < 0 else 0)
+        number = operator.index(key) + (self._count if key < 0 else 0)
         if not 0 <= number < self._count:
             raise IndexError(f"there is no object {key}; there are {self._count}")
         places = self._places
@@ -165,7 +172,7 @@ class ObjectTable(Sequence[ObjectRow]):
         """The object of that name; None if there is none."""
         wanted = name.encode("utf-8")
         number = self._first_not(lambda other: other < wanted)
-        row: Optional[ObjectRow] = self[number] if number < self._count else None
+        row = self[number] if number < self._count else None
         return row if row is not None and row.name == name else None
 
     def range(self, prefix: str) -> range:

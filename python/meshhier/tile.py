@@ -51,6 +51,7 @@ class Tile(ByContent):
         ghost_starts: (m + 1,) int64: ghosts [ghost_starts[i], ghost_starts[i + 1]) are of neighbours[i].
         chains: one array for each neighbour, (ghosts of it, levels) int64: the vertex in that tile, in its parent, and so on.
         image_bytes: the picture's file (JPEG, PNG, WebP or KTX2), or None.
+        alpha_mode: of the picture: "OPAQUE", "MASK" (it has holes) or "BLEND".
     """
 
     node: Node
@@ -72,6 +73,7 @@ class Tile(ByContent):
     ghost_starts: NDArray[np.int64]
     chains: list[NDArray[np.int64]] = field(repr=False)
     image_bytes: Optional[bytes] = field(repr=False)
+    alpha_mode: str = "OPAQUE"
 
     @property
     def triangles(self) -> NDArray[np.int64]:
@@ -314,6 +316,7 @@ class _Reader:
             ghost_starts=starts,
             chains=self.chains(neighbours, starts),
             image_bytes=self.glb.view(image)[0] if image >= 0 else None,
+            alpha_mode=str(self.glb.json["materials"][0].get("alphaMode", "OPAQUE")),
         )
 
 

@@ -7,6 +7,7 @@ import importlib.util
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock
@@ -30,15 +31,24 @@ def test_its_examples_run_and_are_right(meshgen: str, tmp_path: Path, monkeypatc
     make = [meshgen, "surface", "--shape", "torus", "--triangles", "160000", "--normals", "--colours", "-o", "david.ply"]
     subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
     meshhier.build("david.ply", "scan.3tz").close()
+    subprocess.run([meshgen, "city", "--buildings", "300", "-o", "city.obj"], check=True, stdout=subprocess.DEVNULL)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", meshhier.BuildWarning)
+        meshhier.build("city.obj", "city.hier", settings={"objects.table": "city.csv", "partition.vertices": 400}).close()
     for module in ("trimesh", "pyvista", "open3d"):
         if importlib.util.find_spec(module) is None:
             monkeypatch.setitem(sys.modules, module, MagicMock())
     names: dict[str, Any] = {}
     for code in re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL):
         exec(compile(code, str(README), "exec"), names)
-    assert "vertices" in capsys.readouterr().out
+    assert len(names) > 10 and "vertices" in capsys.readouterr().out
     rows, triangles = read_ply("david.ply")
     positions = np.stack([rows[axis] for axis in "xyz"], 1)
     assert names["area"] == pytest.approx(area_of(positions, triangles), rel=1e-9)
     assert names["mean_height"] == pytest.approx(positions[:, 2].mean(dtype=float), rel=1e-5, abs=1e-6)
     assert len(names["whole"].triangles) < len(triangles)
+    assert names["coarse"] == names["david"].cut(error=0.5)
+    assert meshhier.open("scan.3tz").read_tile("0/0").own > 0 and names["glb"][:4] == b"glTF"
+    assert 0 < len(names["towers"].triangles) < len(names["mesh"].triangles)
+    with pytest.raises(FileExistsError, match="force=True"):
+        names["coarse"].write_ply(Path("coarse.ply"))
