@@ -17,14 +17,17 @@ import os
 from .errors import (
     BudgetError,
     BuildWarning,
+    BusyError,
     CorruptError,
     Error,
     ExistsError,
     InputError,
+    NetworkError,
     NotAHierarchyError,
     ProgramError,
     ProgramNotFoundError,
     ReplacedError,
+    StoppedBuildError,
     UsageError,
     VerifyError,
 )
@@ -32,7 +35,9 @@ from .hierarchy import Hierarchy
 from .manifest import Scalar
 from .mesh import Conventions, Mesh
 from .objects import ObjectRow, ObjectTable
-from .program import Progress, build, find_program, verify
+from .process import Progress, find_program
+from .program import build, clean, compare, draw, export, inspect, inspect_objects, page, plan, preview, progressive, reconstruct, task, task_status, verify, view
+from .results import BuildPlan, Comparison, Leftover, TaskStatus, Verification
 from .tile import Tile
 from .tree import Node, NodeLike, Tree
 from .version import __version__
@@ -48,6 +53,8 @@ def open(path: str | os.PathLike[str]) -> Hierarchy:
 
 
 __all__ = [
-    "BudgetError", "BuildWarning", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "InputError", "Mesh", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError",
-    "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar", "Tile", "Tree", "UsageError", "VerifyError", "__version__", "build", "find_program", "open", "verify",
+    "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "InputError", "Leftover", "Mesh",
+    "NetworkError", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
+    "StoppedBuildError", "TaskStatus", "Tile", "Tree", "UsageError", "Verification", "VerifyError", "__version__", "build", "clean", "compare", "draw", "export",
+    "find_program", "inspect", "inspect_objects", "open", "page", "plan", "preview", "progressive", "reconstruct", "task", "task_status", "verify", "view",
 ]  # fmt: skip

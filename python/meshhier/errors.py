@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: MIT
 """What can go wrong, as types."""
 
+from __future__ import annotations
+
+import re
+from typing import Any, Optional
+
 
 class Error(Exception):
     """The base of all errors of this package."""
@@ -22,10 +27,6 @@ class UsageError(Error):
     """The call makes no sense for this hierarchy: a level that it does not have, a key that no config has."""
 
 
-class ExistsError(UsageError, FileExistsError):
-    """There is a file of that name already, and nobody said `force=True`. It is a FileExistsError, too."""
-
-
 class ProgramError(Error):
     """The program ended with a failure.
 
@@ -35,12 +36,12 @@ class ProgramError(Error):
     """
 
     def __init__(self, message: str, exit_code: int) -> None:
-        super().__init__(message, exit_code)  # both, so that it can be pickled
+        super().__init__(message)
         self.message = message
         self.exit_code = exit_code
 
-    def __str__(self) -> str:
-        return self.message
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.message, self.exit_code)
 
 
 class InputError(ProgramError):
@@ -51,8 +52,49 @@ class BudgetError(ProgramError):
     """Memory or disk do not suffice."""
 
 
+class ExistsError(ProgramError, FileExistsError):
+    """The output is there already, of the program or of this package, and nobody said `force=True`. It is a FileExistsError, too."""
+
+    def __init__(self, message: str, exit_code: int = 5) -> None:
+        super().__init__(message, exit_code)
+
+
+class BusyError(ProgramError):
+    """Another build, or another command, is at work on this output."""
+
+
+class StoppedBuildError(ProgramError):
+    """A build of another config was stopped and left its work beside the output. `restart=True` throws that away."""
+
+
 class VerifyError(ProgramError):
-    """The hierarchy is not what it should be; the message tells all problems."""
+    """The hierarchy is not what it should be; the message tells all problems.
+
+    Attributes:
+        problems: one text each; empty if it is so damaged that it could not be opened.
+    """
+
+    def __init__(self, message: str, exit_code: int = 7, problems: tuple[str, ...] = ()) -> None:
+        super().__init__(message, exit_code)
+        self.problems = problems
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.message, self.exit_code, self.problems)
+
+
+class NetworkError(Error):
+    """An address could not be read: the message says why, and what may help. It has no secret.
+
+    Attributes:
+        status: what the host answered, as 403; None if it did not.
+    """
+
+    def __init__(self, message: str, status: Optional[int] = None) -> None:
+        super().__init__(message)
+        self.status = status
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.args[0], self.status)
 
 
 class ProgramNotFoundError(Error):
@@ -61,3 +103,19 @@ class ProgramNotFoundError(Error):
 
 class BuildWarning(UserWarning):
     """What the program repaired, left out or could not use, and what else is to be known of a result."""
+
+
+_BY_EXIT_CODE: dict[int, type[ProgramError]] = {3: InputError, 5: ExistsError, 6: BudgetError, 7: VerifyError, 8: BusyError, 9: StoppedBuildError}
+# Programs up to 1.0 end with 5 for three things.
+_MEANT_BY_5 = [(r"another (build|command) .*(at work|writing)", BusyError), (r" holds (the work of a build that was stopped|what a stopped build)", StoppedBuildError)]
+
+
+def program_error(message: str, exit_code: int) -> Error:
+    """The error of a program that has ended so."""
+    if exit_code == 2:
+        return UsageError(message)
+    if exit_code == 5:
+        for pattern, kind in _MEANT_BY_5:
+            if re.search(pattern, message):
+                return kind(message, exit_code)
+    return _BY_EXIT_CODE.get(exit_code, ProgramError)(message, exit_code)

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: MIT
+"""The options of the program's commands as keywords: the one table of both, and what it says of them in messages."""
+
+from __future__ import annotations
+
+import json
+import operator
+import os
+import re
+import shlex
+import tempfile
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Callable, Mapping, Optional, Sequence
+
+from .errors import UsageError
+
+
+class Files:
+    """Files for values that the program takes from a file: lists of nodes, matrices, headers. They are there within `with`, and only
+    this user may read them."""
+
+    def __init__(self) -> None:
+        self._folder: Optional[tempfile.TemporaryDirectory[str]] = None
+
+    def __enter__(self) -> Files:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]) -> None:
+        if self._folder is not None:
+            self._folder.cleanup()
+
+    def hold(self, name: str, text: str) -> str:
+        """Writes a file; returns its path."""
+        self._folder = self._folder or tempfile.TemporaryDirectory(prefix="meshhier-")
+        path = os.path.join(self._folder.name, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+
+# Values as words of a command line. A writer returns the words behind the option's name, or [] for a flag; it raises ValueError with
+# what it expects.
+
+
+def path_word(path: Any) -> str:
+    """A path as a word of a command: no option and no "-", whatever its first letter."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise ValueError("a path")
+    name = os.fspath(path)
+    if not isinstance(name, str):
+        raise ValueError("a path of text")
+    return f"./{name}" if name.startswith("-") else name
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, bool):
+        raise ValueError("a number")
+    try:
+        return str(operator.index(value))
+    except TypeError:
+        pass
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError):
+        raise ValueError("a number") from None
+
+
+def _text(value: Any, _: Files) -> list[str]:
+    return [value if isinstance(value, str) else os.fspath(value) if isinstance(value, os.PathLike) else _number(value)]
+
+
+def _path(value: Any, _: Files) -> list[str]:
+    return [path_word(value)]
+
+
+def _flag(value: Any, _: Files) -> list[str]:
+    if value is not True:
+        raise ValueError("True or False")
+    return []
+
+
+def _numbers(separator: str, count: Optional[int] = None) -> Callable[[Any, Files], list[str]]:
+    """Several numbers in one word, (1, 2) as "1,2"; a text and a single number stay what they are."""
+
+    def write(value: Any, files: Files) -> list[str]:
+        if isinstance(value, str) or not hasattr(value, "__len__"):
+            return _text(value, files)
+        if count is not None and len(value) != count:
+            raise ValueError(f"{count} numbers")
+        return [separator.join(_number(one) for one in value)]
+
+    return write
+
+
+def _places(size: int) -> Callable[[Any, Files], list[str]]:
+    """Two places of so many coordinates, a word each."""
+
+    def write(value: Any, _: Files) -> list[str]:
+        if isinstance(value, str) or not hasattr(value, "__len__") or [getattr(one, "__len__", int)() for one in value] != [size, size]:
+            raise ValueError(f"two places of {size} numbers")
+        return [",".join(_number(one) for one in place) for place in value]
+
+    return write
+
+
+def _node(value: Any, _: Files) -> list[str]:
+    if isinstance(value, str):
+        return [value]
+    if not hasattr(value, "__len__") or len(value) != 2:
+        raise ValueError("a node (level, index)")
+    return [f"{_number(value[0])}/{_number(value[1])}"]
+
+
+def _scale(value: Any, _: Files) -> list[str]:
+    return [value if isinstance(value, str) else f"1:{_number(value)}"]
+
+
+def _cut(value: Any, files: Files) -> list[str]:
+    if isinstance(value, (str, os.PathLike)):
+        return [path_word(value)]
+    try:
+        return [files.hold("cut.json", json.dumps([_node(node, files)[0] for node in value]))]
+    except TypeError:
+        raise ValueError("a file, or the nodes of a cut") from None
+
+
+def _polygon(value: Any, files: Files) -> list[str]:
+    return [files.hold("polygon.geojson", json.dumps(value)) if isinstance(value, Mapping) else path_word(value)]
+
+
+def _matrix(value: Any, files: Files) -> list[str]:
+    if isinstance(value, (str, os.PathLike)):
+        return [path_word(value)]
+    if not hasattr(value, "__len__") or [getattr(row, "__len__", int)() for row in value] != [4] * 4:
+        raise ValueError("a file, or 4 rows of 4 numbers")
+    return [files.hold("matrix.txt", "".join(" ".join(_number(one) for one in row) + "\n" for row in value))]
+
+
+def _is_true_or(write: Callable[[Any, Files], list[str]]) -> Callable[[Any, Files], list[str]]:
+    """An option that may have a value."""
+    return lambda value, files: [] if value is True else write(value, files)
+
+
+def header_lines(headers: Any) -> list[str]:
+    """The lines of requests that a mapping or a list of lines stands for. Raises ValueError if one is none; it has no secret."""
+    lines = [f"{name}: {value}" for name, value in headers.items()] if isinstance(headers, Mapping) else [headers] if isinstance(headers, str) else list(headers)
+    if not all(isinstance(line, str) and re.fullmatch(r"[A-Za-z0-9_-]+:[\t -~\x80-\xff]*", line) for line in lines):
+        raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
+    return lines
+
+
+def _headers(value: Any, files: Files) -> list[str]:
+    return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in header_lines(value)))]  # everybody can read a command line
+
+
+def _setting(value: Any, _: Files) -> list[str]:
+    if not isinstance(value, tuple) or len(value) != 2 or not isinstance(value[0], str):
+        raise ValueError('keys and values, {"partition.vertices": 4096}')
+    return [f"{value[0]}={value[1] if isinstance(value[1], str) else json.dumps(value[1])}"]
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option of a command.
+
+    Attributes:
+        write: makes a value the words behind the option's name.
+        name: as the command line has it; empty: the keyword with dashes.
+        is_list: the value is one or several, or a mapping; the option stands before each.
+        is_flag: it has no value.
+    """
+
+    write: Callable[[Any, Files], list[str]]
+    name: str = ""
+    is_list: bool = False
+
+    @property
+    def is_flag(self) -> bool:
+        return self.write is _flag
+
+
+FLAG, TEXT, PATH = Option(_flag), Option(_text), Option(_path)
+
+_WEB = {"headers": Option(_headers, "--header"), "limit_rate": TEXT}
+_SETTINGS = {"settings": Option(_setting, "--set", is_list=True)}
+_FORCE = {"force": FLAG}
+_MEMORY = {"memory_budget": TEXT}
+_PIECE = {"box": Option(_places(3)), "polygon": Option(_polygon), "crs": TEXT, "object": Option(_text, is_list=True), "where": TEXT}
+_TILES = {"level": TEXT, "cut": Option(_cut), "error": TEXT}
+_FORMAT = {"format": TEXT}
+
+#: Of each command of the program, its options by their keywords.
+COMMANDS: Mapping[str, Mapping[str, Option]] = {
+    "build": {
+        **_SETTINGS, **_FORCE, "drape": PATH, "objects": TEXT, "object_table": PATH, "restart": FLAG, "update": FLAG, "verbose": FLAG, "no_links": FLAG,
+        "within": PATH, "dry_run": FLAG, "stats": PATH, "input_note": PATH,
+    },
+    "inspect": {**_WEB, "level": TEXT, "node": Option(_node), "prefix": Option(_is_true_or(_text), "--objects"), "find": TEXT, "where": TEXT},
+    "verify": {
+        **_WEB, **_MEMORY, **_PIECE, "input": Option(_path, is_list=True), "cuts": TEXT, "seed": TEXT, "error": FLAG, "samples": TEXT, "level": TEXT,
+        "cut": Option(_cut),
+    },
+    "compare": {
+        **_WEB, **_MEMORY, **_FORCE, "level": TEXT, "error": TEXT, "tolerance": TEXT, "unsigned": FLAG, "bound": FLAG, "transform": Option(_matrix), "objects": TEXT,
+    },
+    "export": {
+        **_WEB, **_MEMORY, **_FORCE, **_TILES, **_PIECE, "node": Option(_node), "outline": FLAG, "clip": FLAG, "gsd": TEXT, "align": Option(_numbers(",", 2)),
+        "dsm": PATH,
+    },
+    "preview": {
+        **_WEB, **_MEMORY, **_FORCE, **_TILES, **_PIECE, **_FORMAT, "size": Option(_numbers("x", 2)), "view": Option(_numbers(",", 2)), "link": TEXT, "up": TEXT,
+        "background": TEXT, "attribute": TEXT, "colour_by": TEXT, "ramp": TEXT, "range": Option(_numbers(",", 2)),
+    },
+    "draw": {
+        **_WEB, **_MEMORY, **_FORCE, **_PIECE, **_FORMAT, "level": TEXT, "error": TEXT, "plan": FLAG, "elevation": TEXT, "section": Option(_places(2)),
+        "plane": Option(_numbers(",", 4)), "cut_height": Option(_numbers(",")), "contours": TEXT, "scale": Option(_scale), "units": TEXT, "dpi": TEXT,
+        "grid": Option(_is_true_or(_text)), "no_scale_bar": FLAG, "transparent": FLAG, "world_file": FLAG, "flat": FLAG,
+    },
+    "view": {**_WEB, **_SETTINGS, "link": TEXT, "clear": FLAG},
+    "page": {**_WEB, **_FORCE, "size": TEXT, "link": TEXT, "fetch_pictures": FLAG, "viewer": PATH},
+    "progressive": {**_MEMORY, **_FORCE, "node": Option(_node), "steps": TEXT},
+    "reconstruct": {**_MEMORY, **_FORCE, "details": TEXT, "stats": FLAG},
+    "plan": {**_SETTINGS, **_FORCE, "work": PATH, "tasks": TEXT},
+    "task": {**_MEMORY, "index": TEXT, "of": TEXT, "scratch": PATH, "threads": TEXT, "status": FLAG},
+    "clean": {"remove": FLAG},
+}  # fmt: skip
+
+#: Options that no keyword stands for: how the program tells what it does, which the functions settle.
+SETTLED = {"--help", "--json", "--progress", "--output"}
+#: The same of single commands, and what takes their place.
+LEFT_OUT: Mapping[str, Mapping[str, str]] = {
+    "build": {"--help-config": "the manual", "--help-formats": "the manual", "--each": "a loop of Python", "--jobs": "a loop of Python"},
+    "task": {"--stages": "task_status()", "--next": "task_status()"},
+}
+
+
+def option_name(keyword: str, option: Option) -> str:
+    return option.name or "--" + keyword.replace("_", "-")
+
+
+def option_words(command: str, given: Mapping[str, Any], files: Files) -> list[str]:
+    """The keywords of a call as options. Those that are None or False are not given. Raises UsageError for a value of another kind."""
+    words = []
+    for keyword, option in COMMANDS[command].items():
+        value = given.get(keyword)
+        if value is None or value is False:
+            continue
+        for one in _values(value, option):
+            try:
+                words += _one_option(option_name(keyword, option), option.write(one, files))
+            except ValueError as error:
+                raise UsageError(f"{keyword}: expected {error}, found {'what is none' if keyword == 'headers' else repr(value)}") from None
+    return words
+
+
+def _values(value: Any, option: Option) -> Sequence[Any]:
+    is_one = not option.is_list or isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__")
+    return [value] if is_one else list(value.items() if isinstance(value, Mapping) else value)
+
+
+def _one_option(name: str, values: list[str]) -> list[str]:
+    return [f"{name}={values[0]}"] if len(values) == 1 else [name, *values]
+
+
+# What the program says of options and commands, for who calls functions.
+
+
+def _spoken(command: str) -> dict[str, str]:
+    of_all = {option_name(keyword, option): (keyword, option) for options in COMMANDS.values() for keyword, option in options.items()}
+    own = {option_name(keyword, option): (keyword, option) for keyword, option in COMMANDS.get(command, {}).items()}
+    return {name: f"{keyword}=True" if option.is_flag else f"{keyword}=" for name, (keyword, option) in {**of_all, **own}.items()}
+
+
+def _call(words: Sequence[str]) -> Optional[str]:
+    """A command line as a call, `clean("a.hier", remove=True)`; None if it is none."""
+    command, arguments = words[0], list(words[1:])
+    options = {option_name(keyword, option): (keyword, option) for keyword, option in COMMANDS[command].items()}
+    said: list[str] = []
+    while arguments:
+        word = arguments.pop(0)
+        if not word.startswith("-"):
+            said.append(json.dumps(word, ensure_ascii=False))
+        elif word not in options or (not options[word][1].is_flag and not arguments):
+            return None
+        else:
+            said.append(f"{options[word][0]}={'True' if options[word][1].is_flag else arguments.pop(0)}")
+    said.sort(key=lambda one: not one.startswith('"'))
+    return f"meshhier.{command}({', '.join(said)})"
+
+
+def _call_in_text(found: re.Match[str]) -> str:
+    try:
+        return found[1] + (_call(shlex.split(found[2])) or found[0][1:-1]) + found[3]
+    except ValueError:
+        return found[0]
+
+
+_QUOTED_COMMAND = re.compile(rf"([(`\"])meshhier ((?:{'|'.join(COMMANDS)}) [^()`\"]+)([)`\"])")
+
+
+def spoken(message: str, command: str) -> str:
+    """A message of the program in the words of a caller: `restart=True` for --restart."""
+    names = _spoken(command)
+    told = _QUOTED_COMMAND.sub(_call_in_text, message)
+    return re.sub(r"(?<![\w-])--[a-z][a-z-]*", lambda found: names.get(found[0], found[0]), told)

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""Runs the program `meshhier`, and hands on what it tells while it works."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import warnings
+from dataclasses import dataclass, field
+from typing import Any, Callable, Mapping, Optional, Sequence
+
+from .errors import BuildWarning, ProgramNotFoundError, program_error
+from .options import spoken
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far the work is.
+
+    Attributes:
+        stage: "ingest", "simplify", ...
+        done, total: of this stage, in `unit`s, as "vertices"; total is 0 if it is not known.
+        job_done: the part of the whole job that is done, 0 to 1, or None.
+        seconds_left: of the whole job, or None.
+        json: the whole line, as docs/command_line.md tells it.
+    """
+
+    stage: str
+    done: int
+    total: int
+    unit: str
+    job_done: Optional[float]
+    seconds_left: Optional[float]
+    json: Mapping[str, Any]
+
+
+_WARNING = "warning: "  # of commands without --progress
+
+ProgressCallback = Callable[[Progress], None]
+TextCallback = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Listeners:
+    """Callbacks of a call; what one raises stops the program. `account` gets what the program tells of its result, for people."""
+
+    progress: Optional[ProgressCallback] = None
+    warning: Optional[TextCallback] = None
+    account: Optional[TextCallback] = None
+
+
+@dataclass
+class Result:
+    """What a run of the program has left.
+
+    Attributes:
+        code: its exit code.
+        output: its standard output.
+        said: lines of its standard error that are for people.
+        failure: why it failed, by --progress json.
+        summary: the result, by the same.
+    """
+
+    code: int = 0
+    output: bytes = b""
+    said: list[str] = field(default_factory=list)
+    failure: str = ""
+    summary: str = ""
+
+    @property
+    def text(self) -> str:
+        return self.output.decode("utf-8", "replace")
+
+    def json(self) -> Any:
+        return json.loads(self.output)
+
+
+def find_program() -> str:
+    """The program's path: what MESHHIER names, the one that came in this package, or that of the PATH.
+
+    Raises ProgramNotFoundError.
+    """
+    packed = os.path.join(os.path.dirname(__file__), "program", "bin", "meshhier")
+    named = os.environ.get("MESHHIER")
+    found = named or (packed if os.path.exists(packed) else shutil.which("meshhier"))
+    if found is None:
+        raise ProgramNotFoundError(
+            "the program meshhier is not on the PATH: install it, or name it by the environment variable MESHHIER"
+        )
+    return found
+
+
+class Warnings:
+    """Tells each warning once, as a BuildWarning where the package was called, and to a callback."""
+
+    def __init__(self, command: str, callback: Optional[TextCallback]) -> None:
+        self._command = command
+        self._callback = callback
+        self._told: set[str] = set()
+
+    def tell(self, message: str) -> None:
+        text = spoken(message, self._command)
+        if text in self._told:
+            return
+        self._told.add(text)
+        if self._callback is not None:
+            self._callback(text)
+        warnings.warn(text, BuildWarning, stacklevel=_caller_level())
+
+
+def _caller_level() -> int:
+    """How many frames above its own caller the first one is that is not of this package."""
+    own = os.path.dirname(__file__) + os.sep
+    frame, level = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(own):
+        frame, level = frame.f_back, level + 1
+    return level
+
+
+def run_program(
+    words: Sequence[str],
+    listeners: Listeners = Listeners(),
+    *,
+    tells_progress: bool = True,
+    prints_data: bool = False,
+    expected: Sequence[int] = (0,),
+) -> Result:
+    """Runs a command to its end; a callback that raises, and Ctrl-C, stop it first.
+
+    `tells_progress`: the command has --progress. `prints_data`: what it prints is for programs, not for `listeners.account`.
+    Raises what its exit code means if that is none of `expected`; ProgramNotFoundError.
+    """
+    command = [find_program(), *words, *(["--progress=json"] if tells_progress else [])]
+    try:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in a word
+        raise ProgramNotFoundError(f"cannot start {command[0]}: {error}") from error
+    result = _listen(process, listeners, Warnings(words[0], listeners.warning))
+    if result.code not in expected:
+        raise program_error(spoken(_why(result), words[0]), result.code if result.code > 0 else 128 - result.code)
+    account = ("" if prints_data else result.text) + "".join(result.said)
+    if listeners.account is not None and account:
+        listeners.account(account)
+    return result
+
+
+def _listen(process: subprocess.Popen[bytes], listeners: Listeners, told: Warnings) -> Result:
+    assert process.stdout is not None and process.stderr is not None
+    output: list[bytes] = []
+    reader = threading.Thread(target=lambda stream: output.append(stream.read()), args=(process.stdout,), daemon=True)
+    reader.start()
+    result = Result()
+    try:
+        for line in process.stderr:
+            _hear(line.decode("utf-8", "replace"), result, listeners, told)
+        result.code = process.wait()
+    except BaseException:
+        _stop(process)
+        raise
+    finally:
+        reader.join()
+        process.stdout.close()
+        process.stderr.close()
+    result.output = output[0]
+    return result
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """Lets the program end as at Ctrl-C, and waits for that; at a second Ctrl-C kills it.
+
+    Ctrl-C in a terminal reaches the program, too. A second SIGINT or SIGTERM would end it before it has cleaned up; SIGHUP says the
+    same as often as one likes, but programs that are to outlive their terminal do not hear it.
+    """
+    is_deaf = signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+    try:
+        process.send_signal(signal.SIGTERM if is_deaf else signal.SIGHUP)
+        assert process.stderr is not None
+        while process.stderr.read(1 << 16):
+            pass
+        process.wait()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+
+
+def _hear(line: str, result: Result, listeners: Listeners, told: Warnings) -> None:
+    """Takes one line of what the program tells while it runs."""
+    event = _event(line)
+    kind = "" if event is None else event["event"]
+    if line.startswith(_WARNING):
+        told.tell(line[len(_WARNING) :].rstrip("\n"))
+    elif event is None:
+        result.said.append(line)
+    elif kind == "error":
+        result.failure = str(event["message"])
+    elif kind == "warning":
+        told.tell(str(event["message"]))
+    elif kind == "finish":
+        result.summary = str(event.get("summary", ""))
+    elif listeners.progress is not None and "stage" in event:
+        listeners.progress(_progress(event))
+
+
+def _why(result: Result) -> str:
+    if result.failure:
+        return result.failure
+    said = "".join(line for line in result.said if not line.startswith("Run with --help")).strip()
+    name = "meshhier: "
+    return said[len(name) :] if said.startswith(name) else said or result.text.strip() or f"ended with exit code {result.code}"
+
+
+def _event(line: str) -> Optional[dict[str, Any]]:
+    """A line of --progress json; None if it is none."""
+    try:
+        told = json.loads(line) if line.startswith("{") else None
+    except ValueError:
+        return None
+    return told if isinstance(told, dict) and "event" in told else None
+
+
+def _progress(event: Mapping[str, Any]) -> Progress:
+    return Progress(
+        stage=event["stage"],
+        done=event["done"],
+        total=event["total"] or 0,
+        unit=event["unit"],
+        job_done=event["job_done"],
+        seconds_left=event["job_eta_seconds"],
+        json=event,
+    )
