@@ -13,6 +13,7 @@ Arrays are numpy's; coordinates and lengths are the input's.
 from __future__ import annotations
 
 import os
+from typing import Optional
 
 from .errors import (
     BudgetError,
@@ -32,24 +33,34 @@ from .errors import (
     VerifyError,
 )
 from .hierarchy import Hierarchy
+from .http_client import Headers
 from .manifest import Scalar
 from .mesh import Conventions, Mesh
 from .objects import ObjectRow, ObjectTable
 from .process import Progress, find_program
 from .program import build, clean, compare, draw, export, inspect, inspect_objects, page, plan, preview, progressive, reconstruct, task, task_status, verify, view
+from .remote import CACHE_BYTES
 from .results import BuildPlan, Comparison, Leftover, TaskStatus, Verification
 from .tile import Tile
 from .tree import Node, NodeLike, Tree
 from .version import __version__
 
 
-def open(path: str | os.PathLike[str]) -> Hierarchy:
-    """Opens a hierarchy: a folder (`david.hier`) or an archive (`david.3tz`).
+def open(path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> Hierarchy:
+    """Opens a hierarchy: a folder (`david.hier`), an archive (`david.3tz`), or the address of one ("https://example.org/david.3tz").
 
-    Raises NotAHierarchyError if there is none, or one of another version; CorruptError if a file is damaged.
+    Args:
+        headers: of requests, for an address: {"Authorization": "Bearer ..."}. They, user and password in the address and those of
+            ~/.netrc go to its own host alone, and are in no message; a pickle has them.
+        cache_bytes: parts of an address that stay in memory.
+
+    On the web little more is fetched than is asked for; a host that sends parts of files (HTTP ranges) is needed for files of more
+    than 64 MiB.
+
+    Raises NotAHierarchyError if there is none, or one of another version; CorruptError if a file is damaged; NetworkError.
     Where a build replaces a hierarchy that is open, reading raises ReplacedError: two builds are never mixed.
     """
-    return Hierarchy(path)
+    return Hierarchy(path, headers=headers, cache_bytes=cache_bytes)
 
 
 __all__ = [

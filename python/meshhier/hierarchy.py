@@ -15,13 +15,14 @@ from .boxes import Box
 from .checksum import checksum
 from .cut import CutPieces
 from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
+from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
 from .mesh import Mesh
 from .objects import ObjectTable
 from .polygons import Polygon
 from .region import Region
-from .storage import open_files
+from .remote import CACHE_BYTES, open_place
 from .tile import Tile, read_tile
 from .tree import Node, NodeLike, Tree
 
@@ -35,9 +36,9 @@ class Hierarchy:
     Where a node is asked for, a Node, (level, index) and "LEVEL/INDEX" are one.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.fspath(path)
-        self._files = open_files(path)
+    def __init__(self, path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> None:
+        self._asked = os.fspath(path), headers, cache_bytes
+        self.path, self._files = open_place(*self._asked)
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
         facts = self._manifest.json.get("objects")
         self._objects = self._open_objects(facts, "objects.bin", self._open_objects(facts.get("words"), "object_words.bin")) if facts else None
@@ -55,7 +56,8 @@ class Hierarchy:
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._files.require_open()
-        return _reopened, (type(self), os.path.abspath(self.path), self._manifest.build)
+        place, *how = self._asked
+        return _reopened, (type(self), self._manifest.build, place if is_web_address(place) else os.path.abspath(place), *how)
 
     def close(self) -> None:
         """Closes it. Nothing can be read any more: UsageError."""
@@ -280,9 +282,9 @@ def _without_ids(piece: Mesh) -> Mesh:
     return piece
 
 
-def _reopened(kind: type[Hierarchy], path: str, build: str) -> Hierarchy:
-    hierarchy = kind(path)
+def _reopened(kind: type[Hierarchy], build: str, path: str, headers: Optional[Headers], cache_bytes: int) -> Hierarchy:
+    hierarchy = kind(path, headers=headers, cache_bytes=cache_bytes)
     if hierarchy._manifest.build != build:
         hierarchy.close()
-        raise ReplacedError(f"{path}: another hierarchy has taken its place since it was opened: open it again")
+        raise ReplacedError(f"{hierarchy.path}: another hierarchy has taken its place since it was opened: open it again")
     return hierarchy

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from .errors import UsageError, VerifyError
 from .hierarchy import Hierarchy
+from .http_client import Headers
 from .objects import ObjectRow
 from .options import Files, option_words, path_word
 from .process import Listeners, Progress, ProgressCallback, Result, TextCallback, find_program, run_program
@@ -36,7 +37,6 @@ from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Ver
 
 Path = Union[str, "os.PathLike[str]"]
 Place = Union[Path, Hierarchy]
-Headers = Union[Mapping[str, str], Sequence[str]]
 Number = Union[float, str]
 Size = Union[int, str]
 NodeName = Union[str, Sequence[int]]
@@ -71,7 +71,7 @@ def _maker(function: Callable[Concatenate[Place, Optional[Path], Options], MadeF
 
 def _place(place: Place) -> str:
     try:
-        return path_word(place.path if isinstance(place, Hierarchy) else place)
+        return path_word(place._asked[0] if isinstance(place, Hierarchy) else place)
     except ValueError as error:
         raise UsageError(f"expected {error}, found {place!r}") from None
 
@@ -82,6 +82,8 @@ def _listeners(given: Mapping[str, Any]) -> Listeners:
 
 def _run(command: str, places: Sequence[Place], given: Mapping[str, Any], *further: str, **how: Any) -> Result:
     """Runs a command with the keywords of a call."""
+    known = next((place._asked[1] for place in places if isinstance(place, Hierarchy)), None)
+    given = {**given, "headers": given.get("headers") or known}
     with Files() as files:
         words = [command, *(_place(place) for place in places), *further, *option_words(command, given, files)]
         return run_program(words, _listeners(given), **how)

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import os
+import struct
 import zipfile
-from typing import Protocol
+from typing import Any, Protocol
 
 from .errors import CorruptError, NotAHierarchyError, UsageError
 
@@ -28,7 +29,8 @@ class Files(Protocol):
     def close(self) -> None: ...
 
 
-def _closed(path: str) -> UsageError:
+def closed(path: str) -> UsageError:
+    """What is raised where a hierarchy that is closed is read."""
     return UsageError(f"{path}: it is closed: open it again with meshhier.open()")
 
 
@@ -54,7 +56,7 @@ class Folder:
 
     def require_open(self) -> None:
         if self._is_closed:
-            raise _closed(self._path)
+            raise closed(self._path)
 
     def close(self) -> None:
         self._is_closed = True
@@ -75,12 +77,15 @@ class Archive:
 
     def _open(self) -> None:
         try:
-            self._zip = zipfile.ZipFile(self._place)
-        except zipfile.BadZipFile as error:
+            self._zip = self._read_directory()
+        except (zipfile.BadZipFile, NotImplementedError, ValueError, EOFError, struct.error) as error:
             raise NotAHierarchyError(f"{self._path}: not an archive: {error}") from error
         self._process = os.getpid()
 
-    def __reduce__(self) -> tuple[type[Archive], tuple[str]]:
+    def _read_directory(self) -> zipfile.ZipFile:
+        return zipfile.ZipFile(self._place)
+
+    def __reduce__(self) -> tuple[Any, ...]:
         self.require_open()
         return Archive, (self._place,)
 
@@ -105,7 +110,7 @@ class Archive:
 
     def require_open(self) -> None:
         if self._is_closed:
-            raise _closed(self._path)
+            raise closed(self._path)
 
     def close(self) -> None:
         self._is_closed = True

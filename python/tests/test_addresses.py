@@ -1,0 +1,527 @@
+# SPDX-License-Identifier: MIT
+"""Hierarchies on the web: hosts with ranges and without, slow, busy, lying ones, and such that replace them in between."""
+
+from __future__ import annotations
+
+import base64
+import os
+import pickle
+import shutil
+import subprocess
+import threading
+from pathlib import Path
+from typing import Any, Iterator
+
+import numpy as np
+import pytest
+from host import Host, half, redirect, slow, status, times, with_headers
+
+import meshhier
+from meshhier import http_client, remote
+
+
+@pytest.fixture(autouse=True)
+def own_surroundings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """No netrc and no proxy of this machine; short waits."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for name in ("http_proxy", "https_proxy", "no_proxy", "HTTP_PROXY", "HTTPS_PROXY", "all_proxy", "CURL_CA_BUNDLE", "SSL_CERT_FILE"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(http_client, "FIRST_WAIT", 0.01)
+
+
+@pytest.fixture(scope="module")
+def root(torus: str, built: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("host")
+    shutil.copytree(built(torus, "web.hier"), folder / "a.hier")
+    shutil.copy(built(torus, "web.3tz"), folder / "a.3tz")
+    shutil.copytree(built(torus, "web_gzip.hier", storage__compression="meshopt_zlib"), folder / "gzip.hier")
+    shutil.copy(built(torus, "web_other.3tz", partition__vertices=900), folder / "other.3tz")
+    shutil.copytree(built(torus, "web_other.hier", partition__vertices=900), folder / "other.hier")
+    return folder
+
+
+@pytest.fixture
+def host(root: Path) -> Iterator[Host]:
+    with Host(root) as one:
+        yield one
+
+
+@pytest.fixture
+def own(root: Path, tmp_path: Path) -> Iterator[Host]:
+    """A host whose files may be replaced."""
+    shutil.copytree(root, tmp_path / "own")
+    with Host(tmp_path / "own") as one:
+        yield one
+
+
+def same(one: meshhier.Mesh, other: meshhier.Mesh) -> bool:
+    return np.array_equal(one.positions, other.positions) and np.array_equal(one.triangles, other.triangles)
+
+
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz", "gzip.hier"])
+def test_they_are_what_lies_on_the_disk(name: str, host: Host, root: Path) -> None:
+    with meshhier.open(f"{host.address}/{name}") as web, meshhier.open(root / name) as disk:
+        assert web.path == f"{host.address}/{name}" and web.manifest == disk.manifest
+        assert same(web.cut(level=1), disk.cut(level=1)) and same(web.cut(), disk.cut())
+        assert [tile.own for tile in web.iter_tiles(2)] == [tile.own for tile in disk.iter_tiles(2)]
+    with pytest.raises(meshhier.UsageError, match="closed"):
+        web.cut(level=0)
+
+
+def test_little_is_fetched_on_few_connections(host: Host, root: Path) -> None:
+    with meshhier.open(f"{host.address}/a.3tz") as web:
+        web.read_tile((0, 0))
+        assert host.bytes_asked() < (root / "a.3tz").stat().st_size / 3
+        for _ in range(3):
+            web.cut()
+        assert host.bytes_asked() < (root / "a.3tz").stat().st_size + 2 * remote.BLOCK, "each byte once"
+    assert host.connections == 1, "the connection stays open"
+
+
+@pytest.mark.parametrize("most", [0, 3 * remote.BLOCK])
+def test_the_cache_keeps_its_budget(most: int, host: Host, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: list[remote.Blocks] = []
+    make = remote.Blocks.__init__
+
+    def watched(self: remote.Blocks, most_bytes: int) -> None:
+        make(self, most_bytes)
+        kept.append(self)
+
+    monkeypatch.setattr(remote.Blocks, "__init__", watched)
+    with meshhier.open(f"{host.address}/a.3tz", cache_bytes=most) as web, meshhier.open(root / "a.3tz") as disk:
+        assert same(web.cut(), disk.cut())
+        assert sum(map(len, kept[0]._blocks.values())) == kept[0]._bytes <= most
+
+
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_a_host_without_ranges_sends_files_whole(name: str, host: Host, root: Path) -> None:
+    host.has_ranges = False
+    with meshhier.open(f"{host.address}/{name}") as web, meshhier.open(root / name) as disk:
+        assert same(web.cut(level=2), disk.cut(level=2))
+
+
+def test_files_that_are_too_large_without_ranges(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    host.has_ranges = False
+    monkeypatch.setattr(http_client, "MOST_WHOLE", 100_000)
+    with pytest.raises(meshhier.NetworkError, match="HTTP ranges"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+    def endless(handler: Any) -> bool:
+        handler.send_response(200)
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        handler.close_connection = True
+        try:
+            while True:
+                handler.wfile.write(bytes(65536))
+        except OSError:
+            return True
+
+    host.reply = endless
+    with pytest.raises(meshhier.NetworkError, match="HTTP ranges"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_tiles_in_gzip_come_as_they_are(host: Host, root: Path) -> None:
+    def say_gzip(handler: Any) -> bool:
+        if handler.path.endswith(".glb") and "/tiles/" in handler.path:
+            handler.send_file(Content_Encoding="gzip")
+            return True
+        return False
+
+    host.reply = say_gzip
+    with meshhier.open(f"{host.address}/gzip.hier") as web, meshhier.open(root / "gzip.hier") as disk:
+        assert same(web.cut(), disk.cut())
+
+
+def test_what_the_host_packs_on_the_way_is_unpacked_or_told(host: Host, root: Path) -> None:
+    def pack(handler: Any) -> bool:
+        if handler.path.endswith((".json", ".bin")):
+            handler.send_gzip()
+            return True
+        return False
+
+    host.reply = pack
+    with meshhier.open(f"{host.address}/a.hier") as web, meshhier.open(root / "a.hier") as disk:
+        assert same(web.cut(level=1), disk.cut(level=1))
+    host.reply = with_headers(Content_Encoding="gzip")
+    with pytest.raises(meshhier.NetworkError, match="Content-Encoding"):
+        meshhier.open(f"{host.address}/a.3tz")
+    host.has_ranges, host.reply = False, with_headers(Content_Encoding="br")
+    with pytest.raises(meshhier.NetworkError, match="as br"):
+        meshhier.open(f"{host.address}/a.hier")
+    host.reply = with_headers(Content_Encoding="gzip")
+    with pytest.raises(meshhier.NetworkError, match="cannot be unpacked"):
+        meshhier.open(f"{host.address}/a.hier")
+
+
+# Failures that pass, and such that do not.
+
+
+@pytest.mark.parametrize("code", [408, 429, 500, 503])
+def test_busy_hosts_are_asked_again(code: int, host: Host) -> None:
+    host.reply = times(2, status(code))
+    meshhier.open(f"{host.address}/a.3tz").cut(level=0)
+    host.requests.clear()
+    host.reply = status(code)
+    with pytest.raises(meshhier.NetworkError, match=f"answered {code}, 5 times") as failed:
+        meshhier.open(f"{host.address}/a.3tz")
+    assert failed.value.status == code and len(host.requests) == 5
+
+
+def test_waits_grow_and_the_host_may_ask_for_more(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    waits: list[float] = []
+    monkeypatch.setattr("meshhier.http_client.time.sleep", waits.append)
+    monkeypatch.setattr(http_client, "FIRST_WAIT", 0.5)
+    host.reply = status(503)
+    with pytest.raises(meshhier.NetworkError):
+        meshhier.open(f"{host.address}/a.3tz")
+    assert waits == [0.5, 1, 2, 4]
+    waits.clear()
+    host.reply = times(3, lambda handler: status(503, Retry_After=["7", "Fri, 01 Jan 2100 00:00:00 GMT", "-1"][len(waits)])(handler))
+    meshhier.open(f"{host.address}/a.3tz")
+    assert waits == [7, 60, 2]
+
+
+@pytest.mark.parametrize(
+    "code, match", [(401, "headers="), (403, "headers="), (400, "answered 400"), (501, "answered 501"), (406, "answered 406")]
+)
+def test_refusals_are_told_at_once(code: int, match: str, host: Host) -> None:
+    host.reply = status(code)
+    for name in ("a.hier", "a.3tz"):
+        host.requests.clear()
+        with pytest.raises(meshhier.NetworkError, match=match) as failed:
+            meshhier.open(f"{host.address}/{name}")
+        assert failed.value.status == code and len(host.requests) == 1
+        assert pickle.loads(pickle.dumps(failed.value)).status == code
+
+
+@pytest.mark.parametrize("name", ["none.hier", "none.3tz", "", "a.hier/tiles"])
+def test_where_there_is_none(name: str, host: Host) -> None:
+    with pytest.raises(meshhier.NotAHierarchyError, match=f"{host.address}/{name}.*on the host"):
+        meshhier.open(f"{host.address}/{name}")
+
+
+def test_pages_for_everything_are_no_hierarchies(host: Host) -> None:
+    host.reply = status(200)
+    with pytest.raises(meshhier.NotAHierarchyError, match="something else"):
+        meshhier.open(f"{host.address}/a.hier")
+    with pytest.raises(meshhier.NotAHierarchyError, match="not an archive"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_a_tile_that_is_missing(own: Host) -> None:
+    web = meshhier.open(f"{own.address}/a.hier")
+    shutil.rmtree(own.root / "a.hier" / "tiles" / "01")
+    with pytest.raises(meshhier.CorruptError, match="tiles/01/000000.glb is missing on the host"):
+        web.cut(level=1)
+
+
+def test_what_breaks_off_goes_on(host: Host, root: Path) -> None:
+    host.reply = times(3, half)
+    with meshhier.open(f"{host.address}/a.3tz") as web, meshhier.open(root / "a.3tz") as disk:
+        web.cut(level=0)
+        host.requests.clear()
+        host.reply = times(2, half)
+        assert same(web.cut(), disk.cut())
+        firsts = [int(headers["Range"][6:].partition("-")[0]) for _, headers in host.requests[:3]]
+        assert firsts[0] < firsts[1] < firsts[2], "bytes that have come are not asked for again"
+    host.reply = half
+    with pytest.raises(meshhier.NetworkError, match="broke off, 5 times"):
+        meshhier.open(f"{host.address}/a.hier/").read_tile((0, 0))
+
+
+def test_silent_hosts(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(http_client, "SILENCE", 0.2)
+    host.reply = times(2, slow(0.6))
+    meshhier.open(f"{host.address}/a.3tz").cut(level=0)
+    monkeypatch.setattr(http_client, "TRIES", 2)
+    host.reply = slow(0.6)
+    with pytest.raises(meshhier.NetworkError, match="silent for 0.2 s"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_nobody_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(meshhier.NetworkError, match="refused"):
+        meshhier.open("http://127.0.0.1:1/a.3tz")
+    with pytest.raises(meshhier.NetworkError, match="no-such-host"):
+        meshhier.open("http://no-such-host.invalid/a.3tz")
+
+
+@pytest.mark.parametrize(
+    "headers, match",
+    [
+        ({"Content_Range": None}, "which part"), ({"Content_Range": "bytes 7-9/100"}, "another part"), ({"Content_Range": "bytes 0-65535/*"}, "how long"),
+        ({"Content_Range": "bytes 0-65535/99999999999999999999999"}, "which part"), ({"X": "x" * 70000}, "header"), ({"Content_Length": "10"}, "broke off"),
+    ],
+)  # fmt: skip
+def test_wrong_lengths_and_places(headers: dict[str, Any], match: str, host: Host) -> None:
+    host.reply = with_headers(**headers)
+    with pytest.raises((meshhier.NetworkError, meshhier.NotAHierarchyError), match=match):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+@pytest.mark.parametrize("total, match", [(70_000, "not an archive"), (900_000_000_000_000, "sent less than")])
+def test_a_length_that_is_a_lie(total: int, match: str, host: Host) -> None:
+    def lie(handler: Any) -> bool:
+        first, last = handler.headers["Range"][6:].split("-")
+        handler.send_file(Content_Range=f"bytes {first}-{last}/{total}")
+        return True
+
+    host.reply = lie
+    with pytest.raises((meshhier.NetworkError, meshhier.NotAHierarchyError), match=match):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_more_than_was_asked_for(host: Host, root: Path) -> None:
+    def all_of_it(handler: Any) -> bool:
+        data = (root / "a.3tz").read_bytes()
+        handler.send(206, data, Content_Range=f"bytes 0-{len(data) - 1}/{len(data)}")
+        return True
+
+    host.reply = all_of_it
+    with pytest.raises(meshhier.NetworkError, match="more than the part"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_garbage_is_no_answer(host: Host) -> None:
+    def garbage(handler: Any) -> bool:
+        handler.wfile.write(b"\0\1\2 no HTTP\r\n\r\n")
+        handler.close_connection = True
+        return True
+
+    host.reply = garbage
+    with pytest.raises(meshhier.NetworkError, match="5 times"):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_connections_that_the_host_has_closed(host: Host) -> None:
+    """A kept connection that is no more is no failure."""
+
+    def close(handler: Any) -> bool:
+        handler.close_connection = True
+        return False
+
+    host.reply = close
+    with meshhier.open(f"{host.address}/a.3tz") as web:
+        web.cut(level=1)
+        web.cut()
+    assert host.connections > 2
+
+
+# Builds that replace each other.
+
+
+@pytest.mark.parametrize("tags", [True, False])
+def test_two_archives_are_never_one(tags: bool, own: Host) -> None:
+    own.reply = None if tags else with_headers(ETag=None)
+    web = meshhier.open(f"{own.address}/a.3tz")
+    web.read_tile((0, 0))
+    os.replace(own.root / "other.3tz", own.root / "a.3tz")
+    with pytest.raises(meshhier.ReplacedError, match="open it again"):
+        web.cut()
+    if tags:
+        assert own.requests[-1][1]["If-Range"].startswith('"')
+    assert meshhier.open(f"{own.address}/a.3tz").cut().triangles.shape == (20736, 3)
+
+
+def test_two_directories_are_never_one(own: Host) -> None:
+    web = meshhier.open(f"{own.address}/a.hier")
+    web.read_tile((0, 0))
+    shutil.rmtree(own.root / "a.hier")
+    os.replace(own.root / "other.hier", own.root / "a.hier")
+    with pytest.raises(meshhier.ReplacedError, match="open it again"):
+        web.cut(level=1)
+
+
+def test_a_file_that_changes_between_two_tries(own: Host) -> None:
+    web = meshhier.open(f"{own.address}/a.3tz")
+
+    def break_and_replace(handler: Any) -> bool:
+        handler.send_half()
+        os.replace(own.root / "other.3tz", own.root / "a.3tz")
+        return True
+
+    own.reply = times(1, break_and_replace)
+    with pytest.raises(meshhier.ReplacedError):
+        web.cut()
+
+
+def test_a_host_that_forgets_ranges(own: Host) -> None:
+    web = meshhier.open(f"{own.address}/a.3tz")
+    web.read_tile((0, 0))
+    own.has_ranges = False
+    with pytest.raises(meshhier.NetworkError, match="HTTP ranges"):
+        web.cut()
+
+
+def test_damage_is_something_else(own: Host) -> None:
+    web = meshhier.open(f"{own.address}/a.hier")
+    tile = own.root / "a.hier" / "tiles" / "01" / "000000.glb"
+    data = bytearray(tile.read_bytes())
+    data[-5] ^= 1
+    tile.write_bytes(data)
+    with pytest.raises(meshhier.CorruptError, match="damaged"):
+        web.cut(level=1)
+
+
+# Secrets.
+
+
+def test_headers_users_and_queries(host: Host, root: Path, tmp_path: Path) -> None:
+    with meshhier.open(f"{host.address}/a.hier?sig=s3cret&x=1", headers={"Authorization": "Bearer t0ken", "X-Key": "k"}) as web:
+        web.cut(level=0)
+        assert web.path == f"{host.address}/a.hier" and "s3cret" not in repr(web)
+    assert all(path.endswith("?sig=s3cret&x=1") and headers["Authorization"] == "Bearer t0ken" and headers["X-Key"] == "k" for path, headers in host.requests)
+    host.requests.clear()
+    with_user = host.address.replace("//", "//me:p%20w@")
+    meshhier.open(f"{with_user}/a.3tz").cut(level=0)
+    basic = "Basic " + base64.b64encode(b"me:p w").decode()
+    assert host.requests and all(headers["Authorization"] == basic for _, headers in host.requests)
+    host.requests.clear()
+    (tmp_path / ".netrc").write_text("machine 127.0.0.1 login me password word\n")
+    (tmp_path / ".netrc").chmod(0o600)
+    meshhier.open(f"{host.address}/a.3tz")
+    assert host.requests[0][1]["Authorization"] == "Basic " + base64.b64encode(b"me:word").decode()
+
+
+def test_secrets_are_in_no_message(host: Host) -> None:
+    address = host.address.replace("//", "//me:passw0rd@")
+    for reply in (status(403), status(500), status(404), None):
+        host.reply = reply
+        with pytest.raises(meshhier.Error) as failed:
+            meshhier.open(f"{address}/none.3tz?sig=s3cret#frag", headers={"X-Token": "t0ken"})
+        assert not any(secret in str(failed.value) for secret in ("passw0rd", "s3cret", "t0ken", "me:", "frag"))
+
+
+def test_redirects_take_no_secret_to_another_host(host: Host, root: Path, tmp_path: Path) -> None:
+    (tmp_path / ".netrc").write_text("machine 127.0.0.1 login me password word\n")
+    (tmp_path / ".netrc").chmod(0o600)
+    with Host(root) as other:
+        host.reply = redirect(other.address)
+        with meshhier.open(f"{host.address}/a.3tz", headers={"Authorization": "Bearer t0ken", "X-Key": "k"}) as web, meshhier.open(root / "a.3tz") as disk:
+            assert same(web.cut(level=1), disk.cut(level=1))
+        assert all(headers["X-Key"] == "k" for _, headers in host.requests)
+        assert other.requests and not any({"Authorization", "X-Key"} & set(headers) for _, headers in other.requests)
+    host.reply = lambda handler: not handler.path.startswith("/b/") and redirect("/b", 307)(handler)
+    (root / "b").mkdir(exist_ok=True)
+    shutil.copy(root / "a.3tz", root / "b" / "a.3tz")
+    host.requests.clear()
+    meshhier.open(f"{host.address}/a.3tz", headers={"X-Key": "k"})
+    assert [path for path, _ in host.requests][:2] == ["/a.3tz", "/b/a.3tz"] and all(headers["X-Key"] == "k" for _, headers in host.requests)
+
+
+@pytest.mark.parametrize("target, match", [("/a.3tz", "on and on"), ("file:///etc/passwd", "not on the web"), ("ftp://127.0.0.1/a.3tz", "not on the web")])
+def test_redirects_that_lead_nowhere(target: str, match: str, host: Host) -> None:
+    host.reply = status(302, Location=target)
+    with pytest.raises(meshhier.NetworkError, match=match):
+        meshhier.open(f"{host.address}/a.3tz")
+
+
+@pytest.mark.parametrize("address", ["http://", "https:///a.3tz", "http://host:99999/a.3tz", "http://ho st/a.3tz", "http://[::1/a", "http://host/a\r\nX: y"])
+def test_addresses_that_are_none(address: str) -> None:
+    with pytest.raises(meshhier.UsageError, match="address"):
+        meshhier.open(address)
+
+
+def test_headers_that_are_none(host: Host, root: Path) -> None:
+    for headers in ({"A": "b\r\nC: d"}, {"A b": "c"}, ["none"], {"": "x"}, {"A": "\u20ac"}):
+        with pytest.raises(meshhier.UsageError, match="headers"):
+            meshhier.open(f"{host.address}/a.3tz", headers=headers)  # type: ignore[arg-type]
+    with pytest.raises(meshhier.UsageError, match="addresses"):
+        meshhier.open(root / "a.3tz", headers={"A": "b"})
+
+
+def test_certificates(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if shutil.which("openssl") is None:
+        pytest.skip("openssl is not there")
+    made = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=x", "-addext", "subjectAltName=IP:127.0.0.1"]
+    subprocess.run([*made, "-keyout", tmp_path / "key.pem", "-out", tmp_path / "cert.pem"], check=True, capture_output=True)
+    both = tmp_path / "both.pem"
+    both.write_bytes((tmp_path / "key.pem").read_bytes() + (tmp_path / "cert.pem").read_bytes())
+    with Host(root, both) as host:
+        with pytest.raises(meshhier.NetworkError, match="certificate is not valid"):
+            meshhier.open(f"{host.address}/a.3tz")
+        monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "cert.pem"))
+        with meshhier.open(f"{host.address}/a.3tz") as web:
+            assert len(web.cut().triangles) == 20736
+        monkeypatch.setenv("CURL_CA_BUNDLE", str(tmp_path / "none.pem"))
+        with pytest.raises(meshhier.NetworkError, match="CURL_CA_BUNDLE"):
+            meshhier.open(f"{host.address}/a.3tz")
+
+
+def test_proxies(host: Host, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A request by a proxy names the whole address; the host of the tests takes both."""
+    monkeypatch.setenv("http_proxy", host.address.replace("//", "//proxy:word@"))
+
+    def as_proxy(handler: Any) -> bool:
+        assert handler.path.startswith("http://models.invalid:80/")
+        handler.path = handler.path[len("http://models.invalid:80") :]
+        return False
+
+    host.reply = as_proxy
+    with meshhier.open("http://models.invalid/a.hier") as web, meshhier.open(root / "a.hier") as disk:
+        assert same(web.cut(level=1), disk.cut(level=1))
+    assert host.requests[0][1]["Host"].startswith("models.invalid") and host.requests[0][1]["Proxy-Authorization"].startswith("Basic ")
+
+
+# Uses.
+
+
+def test_they_can_be_pickled(host: Host, own: Host) -> None:
+    with meshhier.open(f"{host.address}/a.3tz", headers={"X-Key": "k"}) as web:
+        again = pickle.loads(pickle.dumps(web))
+        assert same(again.cut(level=1), web.cut(level=1)) and host.requests[-1][1]["X-Key"] == "k"
+    web = meshhier.open(f"{own.address}/a.hier")
+    data = pickle.dumps(web)
+    shutil.rmtree(own.root / "a.hier")
+    os.replace(own.root / "other.hier", own.root / "a.hier")
+    with pytest.raises(meshhier.ReplacedError):
+        pickle.loads(data)
+
+
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_many_threads_read_one(name: str, host: Host, root: Path) -> None:
+    host.reply = None
+    with meshhier.open(f"{host.address}/{name}") as web, meshhier.open(root / name) as disk:
+        nodes = disk.cut_nodes()
+        found: dict[Any, int] = {}
+        threads = [threading.Thread(target=lambda part: found.update({node: web.read_tile(node).own for node in part}), args=(nodes[i::4],)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert found == {node: disk.read_tile(node).own for node in nodes}
+
+
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_forked_processes_have_their_own_connections(name: str, host: Host) -> None:
+    import multiprocessing
+
+    with meshhier.open(f"{host.address}/{name}") as web:
+        web.cut(level=0)
+        with multiprocessing.get_context("fork").Pool(3) as pool:
+            counts = pool.map(_own_of, [(web, node) for node in web.cut_nodes(level=2)])
+        assert counts == [web.read_tile(node).own for node in web.cut_nodes(level=2)]
+
+
+def _own_of(asked: tuple[meshhier.Hierarchy, meshhier.Node]) -> int:
+    return asked[0].read_tile(asked[1]).own
+
+
+def test_the_program_reads_them_with_the_same_secrets(host: Host, tmp_path: Path) -> None:
+    with meshhier.open(f"{host.address}/a.3tz?sig=s", headers={"X-Key": "k"}) as web:
+        host.requests.clear()
+        assert meshhier.export(web, level=0) and meshhier.inspect(web)["source"]["triangles"] == 20736
+        assert len(host.requests) > 1 and all(path.endswith("?sig=s") and headers["X-Key"] == "k" for path, headers in host.requests)
+
+
+def test_objects_are_read_by_the_block(tmp_path: Path) -> None:
+    lines = [f"v {i} 0 0\nv {i}.5 0 0\nv {i} 1 0\ng house {i:04}\nf {3 * i + 1} {3 * i + 2} {3 * i + 3}\n" for i in range(600)]
+    (tmp_path / "a.obj").write_text("".join(lines))
+    for name in ("a.hier", "a.3tz"):
+        meshhier.build(tmp_path / "a.obj", tmp_path / name, objects="group").close()
+        with Host(tmp_path) as host, meshhier.open(f"{host.address}/{name}") as web:
+            assert web.objects is not None and len(web.objects) == 600
+            row = web.objects.find("house 0321")
+            assert row is not None and row.box is not None and row.box[0].tolist() == [321, 0, 0]
