@@ -14,5 +14,5 @@ export default defineConfig({
     modulePreload: false,
     rollupOptions: { input: 'page/element.ts', output: { entryFileNames: 'meshhier-viewer.js', inlineDynamicImports: true } },
   },
-  worker: { format: 'es', plugins: () => [withoutTranscoder()], rollupOptions: { output: { inlineDynamicImports: true } } },
+  worker: { format: 'iife', plugins: () => [withoutTranscoder()], rollupOptions: { output: { inlineDynamicImports: true } } }, // in a sandboxed frame Chromium starts no modules as workers
 });

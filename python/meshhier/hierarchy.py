@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import Any, Iterator, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from .asked import length, whole
 from .boxes import Box
 from .checksum import checksum
 from .cut import CutPieces
-from .errors import CorruptError, NotAHierarchyError, ReplacedError, UsageError
+from .errors import CorruptError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
 from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
@@ -25,6 +25,9 @@ from .region import Region
 from .remote import CACHE_BYTES, open_place
 from .tile import Tile, read_tile
 from .tree import Node, NodeLike, Tree
+
+if TYPE_CHECKING:
+    from .cell import Cell
 
 
 class Hierarchy:
@@ -84,6 +87,33 @@ class Hierarchy:
         except (CorruptError, NotAHierarchyError, OSError):
             return False  # then what failed says why
         return now.build != self._manifest.build
+
+    # In a notebook.
+
+    def show(self, *, height: int = 500, view: str = "", link: Optional[str] = None, size: int = 3_000_000) -> Cell:
+        """What a cell of a notebook shows as its last expression, or by `display()`: the model, to be turned and approached.
+
+        It holds the viewer and the coarse tiles that fit, and shows them without a network and without the kernel, too. Below it says how
+        much of the model that is. Finer tiles come from the kernel if the browser runs on its machine.
+
+        Args:
+            height: of the cell, in pixels.
+            view: a link of the page, or what it says after the model: "light=raking&colours=height".
+            link: where the browser finds all of the hierarchy, instead of from the kernel: an address, or a path on the notebook's own host, as
+                "/files/david.hier"; "": nowhere.
+            size: bytes of the cell's output, at the most.
+
+        Raises UsageError if not even the root fits, ProgramNotFoundError if there is no viewer.
+        """
+        from .cell import make_cell
+
+        return make_cell(self, height=height, view=view, link=link, size=size)
+
+    def _repr_html_(self) -> Optional[str]:
+        try:
+            return self.show().html
+        except (ProgramNotFoundError, UsageError):
+            return None  # then it is shown as text
 
     # What it is.
 

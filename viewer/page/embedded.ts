@@ -8,7 +8,7 @@ import type { RemoteFiles, FilePlace } from '../src/hierarchy/files.js';
 import { remoteFiles } from '../src/hierarchy/remote_files.js';
 import type { Model } from './listing.js';
 
-const ID = 'meshhier-hierarchy';
+export const ID = 'meshhier-hierarchy';
 /// A link that failed is tried again after this time, or when the browser says that it is online.
 const OFFLINE_MS = 30_000;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // <meshhier-viewer src="URL of a hierarchy">: a model in any page.
+import type { RemoteFiles } from '../hierarchy/files.js';
 import type { Pose } from '../scene/camera_pose.js';
 import type { Plugin } from '../scene/hierarchy_view.js';
 import type { ViewOptions } from '../scene/view_options.js';
@@ -50,6 +51,8 @@ export class MeshhierViewerElement extends Base {
   static readonly observedAttributes = ['src', 'camera', 'view', 'label'];
   /// Makes a worker of the module `tile_worker`, which decodes tiles beside the page; for all elements made later.
   static createWorker: (() => Worker) | undefined = undefined;
+  /// Gives the files that are read instead of those at a URL, if any; for all elements made later. Throws Error, which is told.
+  static filesOf: ((url: string) => RemoteFiles | undefined) | undefined = undefined;
 
   /// On the button beside a problem; for all elements made later.
   static retryText = 'Retry';
@@ -203,7 +206,8 @@ export class MeshhierViewerElement extends Base {
     for (const [attribute, key] of Object.entries(NUMBERS)) {
       if (this.hasAttribute(attribute)) settings[key] = Number(this.getAttribute(attribute));
     }
-    return { settings, createWorker: MeshhierViewerElement.createWorker };
+    const { createWorker, filesOf } = MeshhierViewerElement;
+    return { settings, createWorker, files: filesOf?.(this.src) };
   }
 
   private name(canvas: HTMLCanvasElement): void {

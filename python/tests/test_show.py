@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""What a cell of a notebook shows: how much of a model is in it, and what the kernel gives of the rest. That it is seen: tests/web/notebook.mjs."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import html
+import json
+import re
+import shutil
+import urllib.error
+import urllib.request
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import meshhier
+from meshhier.kernel_files import kernel_address
+from meshhier.viewer_files import viewer_file
+
+from conftest import Build
+
+
+@pytest.fixture(autouse=True)
+def viewer() -> str:
+    try:
+        return viewer_file("meshhier-viewer.js.gz")
+    except meshhier.ProgramNotFoundError:
+        pytest.skip("the viewer is not built: npm ci && npm run build in viewer/")
+
+
+@pytest.fixture
+def model(built: Build, torus: str) -> str:
+    return built(torus, "shown.hier")
+
+
+def page_of(cell: Any) -> str:
+    """What the frame holds, as a browser reads it."""
+    return html.unescape(re.search("srcdoc='([^']*)'", cell.html)[1])  # type: ignore[index]
+
+
+def embedded(cell: Any) -> dict[str, bytes]:
+    text = re.search(r'id="meshhier-hierarchy"[^>]*>(.*?)</script>', page_of(cell), re.S)
+    files = json.loads(text[1])["files"]  # type: ignore[index]
+    decoded = {name: base64.b64decode(content) for name, content in files.items()}
+    return {name: gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data for name, data in decoded.items()}
+
+
+def stored(data: bytes) -> bytes:
+    return gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data
+
+
+def fetch(address: str, **headers: str) -> tuple[int, bytes]:
+    with urllib.request.urlopen(urllib.request.Request(address, headers=headers)) as answer:
+        return answer.status, answer.read()
+
+
+def test_a_small_model_is_there_as_a_whole(model: str) -> None:
+    with meshhier.open(model) as hierarchy:
+        cell = hierarchy.show()
+        assert "all of it, " in repr(cell) and f"{hierarchy.triangles:,} triangles" in page_of(cell)
+        files = embedded(cell)
+        assert len(files) == len(list(hierarchy.tree.tiles())) + 2
+    for name, data in files.items():
+        assert data == stored((Path(model) / name).read_bytes()), name
+    assert 'data-link=""' in page_of(cell)  # there is nothing to fetch
+
+
+def test_a_cell_holds_the_coarse_tiles_that_fit(model: str, viewer: str) -> None:
+    with meshhier.open(model) as hierarchy:
+        size = len(viewer) + sum(file.stat().st_size for file in Path(model).glob("tiles/**/*.glb")) // 2
+        cell = hierarchy.show(size=size)
+        files = embedded(cell)
+        tiles = {name for name in files if name.startswith("tiles/")}
+        assert len(cell.html) <= size
+        assert 1 < len(tiles) < len(list(hierarchy.tree.tiles()))
+        assert "tiles/00/000000.glb" in tiles
+        assert f"{len(tiles)} of {len(list(hierarchy.tree.tiles()))} tiles, within " in repr(cell)
+        names = [hierarchy._manifest.tile_name(node) for node in hierarchy.tree.tiles()]
+        assert len(files["tiles.bin"]) >= 32 + 120 * (1 + max(names.index(name) for name in tiles))
+        for node in hierarchy.tree.tiles():  # both children or none: what is there is a cut
+            there = [hierarchy._manifest.tile_name(child) in tiles for child in hierarchy.tree.children(node)]
+            assert len(set(there)) <= 1
+        with pytest.raises(meshhier.UsageError, match="no room for the viewer and the root"):
+            hierarchy.show(size=len(viewer))
+
+
+def test_the_kernel_gives_what_is_asked_by_its_address_alone(model: str) -> None:
+    address = kernel_address(model)
+    assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{22}", address) and address == kernel_address(model)
+    data = (Path(model) / "tiles.bin").read_bytes()
+    assert fetch(address + "/tiles.bin?build=1") == (200, data)
+    assert fetch(address + "/tiles.bin", Range="bytes=8-40") == (206, data[8:41])
+    for path in ("/no.bin", "/../x.bin", "/..%2f..%2fetc/passwd", "/tiles/../hierarchy.json", "", "/"):
+        with pytest.raises(urllib.error.HTTPError, match="404"):
+            fetch(address + path)
+    with pytest.raises(urllib.error.HTTPError, match="404"):
+        fetch(address[:-1] + ("a" if address[-1] != "a" else "b") + "/tiles.bin")
+    with pytest.raises(urllib.error.HTTPError, match="416"):
+        fetch(address + "/tiles.bin", Range="bytes=99999999-100000000")
+
+
+def test_the_kernel_gives_files_of_an_archive_that_was_closed(built: Build, torus: str) -> None:
+    archive = built(torus, "shown.3tz")
+    with meshhier.open(archive) as hierarchy:
+        assert "all of it" in repr(hierarchy.show())
+        expected = hierarchy._files.read("hierarchy.json")
+    assert fetch(kernel_address(archive) + "/hierarchy.json") == (200, expected)
+
+
+def test_no_name_ends_the_frame(model: str, tmp_path: Path) -> None:
+    path = tmp_path / "a'\"&<b>{{files}}<!--.hier"
+    shutil.copytree(model, path)
+    with meshhier.open(path) as hierarchy:
+        cell = hierarchy.show(view="'><script>", link="")
+    assert cell.html.count("'") == 2 and cell.html.endswith("'></iframe>")
+    page = page_of(cell)
+    assert "<b>" not in page and "<script>" not in page and len(embedded(cell)) > 3
+
+
+@pytest.mark.parametrize("view", ["light=raking", "#shown.hier&light=raking", "http://localhost:8080/?x=1#a/b.hier&light=raking"])
+def test_a_view_is_a_link_or_its_end(model: str, view: str) -> None:
+    with meshhier.open(model) as hierarchy:
+        assert 'view="light=raking"' in page_of(hierarchy.show(view=view))
+
+
+def test_a_link_is_all_that_is_asked(model: str, viewer: str) -> None:
+    with meshhier.open(model) as hierarchy:
+        size = len(viewer) + 150_000
+        page = page_of(hierarchy.show(link="https://example.org/a.3tz", size=size))
+        assert "connect-src data: blob: https://example.org\"" in page and 'data-asked="https://example.org/a.3tz"' in page
+        assert "allow-same-origin" not in hierarchy.show(size=size).html
+        assert "allow-same-origin" in hierarchy.show(link="/files/a.hier", size=size).html
+        for address in ("https://a b", "x'y", "http://a;script-src *"):
+            with pytest.raises(meshhier.UsageError, match="no address"):
+                hierarchy.show(link=address)
+
+
+def test_without_a_viewer_it_is_text(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("meshhier.viewer_files._folders", lambda: iter([]))
+    with meshhier.open(model) as hierarchy:
+        assert hierarchy._repr_html_() is None
+        with pytest.raises(meshhier.ProgramNotFoundError, match="meshhier-viewer.js.gz"):
+            hierarchy.show()
