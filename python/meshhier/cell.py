@@ -67,10 +67,11 @@ class _Filling:
         """All of these tiles, or none."""
         last, entries = self._last_record, []
         for node in nodes:
-            record = self.hierarchy._record(node)
+            row = self.hierarchy._index.row(node)
+            record = self.hierarchy._index.records[row]
             name = self.hierarchy._manifest.tile_name(node)
             entries.append(_entry(name, self.hierarchy._read_sealed(name, int(record["bytes"]), int(record["checksum"]))))
-            last = max(last, int(self.hierarchy._keys.searchsorted(self.hierarchy._keys.dtype.type(node.level << 32 | node.index))))
+            last = max(last, row)
         taken = sum(len(entry) + 1 for entry in entries)
         if taken + self._index_bytes(last) * 4 // 3 + 100 > self.room:
             return False
