@@ -62,10 +62,11 @@ Exit codes:
   2    the command line or the config is wrong
   3    the input mesh is broken or not supported
   4    a file could not be read or written
-  5    the output is already there (see --force), another build is at work on it, or what a stopped
-       one left belongs to another config (see build --restart)
+  5    the output is already there (see --force)
   6    the memory budget or the free disk space is too small
   7    the hierarchy is damaged: verify found a problem
+  8    another process is at work on the output; try again later
+  9    what a stopped build left belongs to another config or input (see build --restart)
   70   a defect in meshhier
   130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was (serve: 0)
 )";

@@ -11,9 +11,11 @@ enum class ErrorCode : int {
   usage = 2,         ///< command line or config wrong
   input = 3,         ///< the input mesh is broken or unsupported
   io = 4,            ///< a file could not be read, written, synced or renamed; disk full
-  exists = 5,        ///< the output is already there and --force was not given
+  exists = 5,        ///< the output is already there, and is not to be replaced
   budget = 6,        ///< the memory budget or the free disk space is too small for the job
   corrupt = 7,       ///< a hierarchy on disk is damaged or fails verification
+  locked = 8,        ///< another process is at work on the output: try again later
+  other_work = 9,    ///< a stopped build of another config or input left its work
   internal = 70,     ///< a defect in meshhier
   interrupted = 130  ///< Ctrl-C or SIGTERM
 };

@@ -83,7 +83,8 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   } catch (const Error& error) {
     if (error.code() == ErrorCode::input || !options.leaves_work)
       work.keep(false);  // nothing to go on with
-    if (!work.is_kept() || error.code() == ErrorCode::exists)
+    if (!work.is_kept() || error.code() == ErrorCode::exists ||
+        error.code() == ErrorCode::other_work)
       throw;
     throw with_resume_hint(error, work, config.output);
   }

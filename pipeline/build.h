@@ -28,7 +28,8 @@ struct BuildOptions {
 /// As soon as the triangles are distributed, the work that is done is noted on disk, beside the
 /// output. If a build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays
 /// there, and the next build of the same input with a config of the same result goes on with it;
-/// with another result it is refused with Error(exists). Else nothing is left behind.
+/// with another result it is refused with Error(other_work), and with Error(locked) while another
+/// process builds the output. Else nothing is left behind.
 BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
                             BuildEnvironment environment);
 

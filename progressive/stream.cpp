@@ -289,7 +289,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   storage::WorkDirectory work(files, output, options.replace);
   if (files.exists(storage::journal_path(work.path()))) {
     work.keep(true);
-    throw Error(ErrorCode::exists,
+    throw Error(ErrorCode::other_work,
                 fmt::format("{} holds what a stopped build has done; go on with it, or remove it "
                             "(meshhier clean --remove {})",
                             work.path().string(), output.path.string()));

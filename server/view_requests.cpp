@@ -65,6 +65,7 @@ std::variant<ModelView, Reply> view_in(const std::string& text) {
 Reply refused(const Error& error) {
   switch (error.code()) {
     case ErrorCode::exists:
+    case ErrorCode::locked:
       return text_reply(409,
                         "Another build of this hierarchy is there by now, or somebody else "
                         "changes it: load it again.");

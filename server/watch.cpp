@@ -25,6 +25,8 @@ constexpr std::chrono::milliseconds kHearFor{50};
 constexpr std::size_t kLongestLine = 64 * 1024;
 
 constexpr int kExists = static_cast<int>(ErrorCode::exists);
+constexpr int kLocked = static_cast<int>(ErrorCode::locked);
+constexpr int kOtherWork = static_cast<int>(ErrorCode::other_work);
 
 /// Returns a text without the path of a directory: nobody on the network needs to know where things
 /// lie on this machine.
@@ -356,7 +358,7 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   Outcome outcome = run_build(name, target, false);
   // A build that was begun with another config, or from another version of the file, is of no use
   // any more.
-  if (outcome.code == kExists && !is_stopping())
+  if (outcome.code == kOtherWork && !is_stopping())
     outcome = run_build(name, target, true);
   settle(name, target, version, outcome);
 }
@@ -425,7 +427,7 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
   tell_(fmt::format("{}: {}", name, outcome.message));
   if (version_of(name) != version)
     set_state(name, State::growing, kGrowing);
-  else if (outcome.code == kExists)
+  else if (outcome.code == kExists || outcome.code == kLocked)
     put_off(name, outcome.message);
   else
     set_state(name, State::failed, outcome.message);

@@ -179,7 +179,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       files, storage::journal_path(work), use,
       [&](const Entry& entry) { return is_understood([&] { return read(entry); }); });
   if (!is_same && has_other_work) {
-    throw Error(ErrorCode::exists,
+    throw Error(ErrorCode::other_work,
                 fmt::format("{} holds the work of a build that was stopped, but {}; --restart "
                             "throws it away and begins anew",
                             work.string(), differences(*build, identity.decides_result)));

@@ -106,8 +106,8 @@ class BuildJournal {
  public:
   /// Opens the journal in the directory `work`, or begins one, and puts back into `pieces` all that
   /// is done; published tiles only if their files are whole. Reads all of that, to check it. Bytes
-  /// that the journal moves count in `use`. Throws Error(exists) if something is done towards
-  /// another result, telling what differs; Error(io | interrupted).
+  /// that the journal moves count in `use`. Throws Error(other_work) if something is done
+  /// towards another result, telling what differs; Error(io | interrupted).
   BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
                const BuildIdentity& identity, storage::ScratchUse& use, Workpieces pieces,
                const execution::CancelToken& cancel);

@@ -58,7 +58,7 @@ struct OpenWorkshop {
 
 /// Opens the work of an earlier build of the same result in `work`, if it can be gone on with; else
 /// empties it. Reads all that was done, to check it, and all of `input` if it was touched since.
-/// Throws Error(exists) as BuildJournal does, Error(io | interrupted).
+/// Throws Error(other_work) as BuildJournal does, Error(io | interrupted).
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context);
 

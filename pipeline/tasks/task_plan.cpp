@@ -179,7 +179,7 @@ TaskPlan load_plan(const fs::path& work, const std::string& program, storage::Fi
   const auto bytes = storage::read_file(files, path, kLargestPlanBytes);
   TaskPlan plan = parse_plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
   if (plan.program != program) {
-    throw Error(ErrorCode::exists,
+    throw Error(ErrorCode::other_work,
                 fmt::format("{} was planned by another program ({}) than this one ({}): every "
                             "machine must run the same; to begin anew remove it",
                             work.string(), plain_text(plan.program, kLongestProgram), program));
@@ -187,14 +187,14 @@ TaskPlan load_plan(const fs::path& work, const std::string& program, storage::Fi
   return plan;
 }
 
-/// Whether the plan is there already. Throws Error(exists) if another one is.
+/// Whether the plan is there already. Throws Error(other_work) if another one is.
 bool is_there(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
   if (!files.exists(storage::task_plan_path(work)))
     return false;
   if (load_plan(work, plan.program, files).fingerprint == plan.fingerprint)
     return true;
   throw Error(
-      ErrorCode::exists,
+      ErrorCode::other_work,
       fmt::format("{} holds another plan: remove it, or plan in another directory", work.string()));
 }
 

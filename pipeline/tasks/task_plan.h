@@ -71,13 +71,14 @@ struct TaskPlanRequest {
 };
 
 /// Refuses what a build would refuse, as far as it is known from the input's header, and writes the
-/// plan; nothing happens if it is there already. Throws Error(exists) if `work` has another plan or
-/// other files, Error(usage) if it lies in the output, or that in it, or on another file system.
+/// plan; nothing happens if it is there already. Throws Error(other_work) if `work` has another
+/// plan, Error(exists) if it has other files, Error(usage) if it lies in the output, or that in it,
+/// or on another file system.
 TaskPlan make_task_plan(const config::Config& config, const TaskPlanRequest& request,
                         const BuildEnvironment& environment);
 
-/// Reads the plan. Throws Error(usage) if there is none, Error(exists) if another program made it,
-/// Error(corrupt) if it is damaged, Error(io).
+/// Reads the plan. Throws Error(usage) if there is none, Error(other_work) if another program made
+/// it, Error(corrupt) if it is damaged, Error(io).
 TaskPlan read_task_plan(storage::FileSystem& files, const std::filesystem::path& work,
                         const std::string& program);
 

@@ -21,8 +21,8 @@ std::string with_view(const std::string& manifest_text, const ModelView& view,
                       const std::string& name);
 
 /// Gives a hierarchy's directory that view. Returns the name of the build that it has now. `build`:
-/// the one that it must have; none: any. Throws Error(usage) for an archive; Error(exists) if
-/// another process is changing it, or it is another build; as with_view(); Error(io).
+/// the one that it must have; none: any. Throws Error(usage) for an archive; Error(locked) if
+/// another process is changing it; Error(exists) if it is another build; as with_view(); Error(io).
 std::string replace_view(FileSystem& files, const std::filesystem::path& hierarchy,
                          const ModelView& view,
                          const std::optional<std::string>& build = std::nullopt);

@@ -165,7 +165,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
   }
   lock_ = take_patiently(files_, output_, replace_);
   if (!lock_) {
-    throw Error(ErrorCode::exists,
+    throw Error(ErrorCode::locked,
                 fmt::format("another build of {} is at work", output_.path.string()));
   }
   restore_journal();
@@ -179,9 +179,9 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace, fs:
       replace_(replace),
       is_shared_(true) {
   if (!lock_) {
-    throw Error(ErrorCode::io, fmt::format("another process is finishing the build in {}: try "
-                                           "again when it has ended",
-                                           path_.string()));
+    throw Error(ErrorCode::locked, fmt::format("another process is finishing the build in {}: try "
+                                               "again when it has ended",
+                                               path_.string()));
   }
 }
 

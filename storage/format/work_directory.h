@@ -55,11 +55,11 @@ bool check_output(FileSystem& files, const Output& output, bool replace,
 class WorkDirectory {
  public:
   /// Takes the directory as an earlier build left it, or makes it; waits up to 3 s for a process
-  /// that is just ending. Throws as check_output(); Error(exists) if another build is at work here;
+  /// that is just ending. Throws as check_output(); Error(locked) if another build is at work here;
   /// Error(io) if its parent cannot be written, or the directory is a link.
   WorkDirectory(FileSystem& files, Output output, bool replace);
   /// Takes the directory `shared`, on the output's file system, in which several processes have
-  /// built: it stays when it is published, but for the hierarchy. Throws Error(io) if another
+  /// built: it stays when it is published, but for the hierarchy. Throws Error(locked) if another
   /// process has it.
   WorkDirectory(FileSystem& files, Output output, bool replace, std::filesystem::path shared);
   WorkDirectory(const WorkDirectory&) = delete;

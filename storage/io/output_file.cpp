@@ -171,7 +171,7 @@ void OutputFile::open_regular(const OutputRequest& request) {
     require_apart(files_, own, request.inputs);
   lock_ = files_.try_lock(output_lock_path(target));
   if (!lock_) {
-    throw Error(ErrorCode::exists,
+    throw Error(ErrorCode::locked,
                 fmt::format("another command is writing {}", request.path.string()));
   }
   target_ = target;

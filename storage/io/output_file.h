@@ -42,9 +42,10 @@ std::filesystem::path output_lock_path(const std::filesystem::path& file);
 class OutputFile {
  public:
   /// Refuses now what can be refused before the work: throws Error(usage) if the path is no file's,
-  /// and as require_apart(); Error(exists) if there is a file that is not to be replaced, or if
-  /// another process is writing it; Error(io) if it cannot be written. `check` is called every 50
-  /// ms while a stream's reader is waited for, in writes too, and in publish(); it may throw.
+  /// and as require_apart(); Error(exists) if there is a file that is not to be replaced;
+  /// Error(locked) if another process is writing it; Error(io) if it cannot be written. `check` is
+  /// called every 50 ms while a stream's reader is waited for, in writes too, and in publish(); it
+  /// may throw.
   OutputFile(
       FileSystem& files, const OutputRequest& request, const std::function<void()>& check = [] {});
   OutputFile(const OutputFile&) = delete;

@@ -21,6 +21,8 @@ inline constexpr int kIo = 4;
 inline constexpr int kExists = 5;
 inline constexpr int kBudget = 6;
 inline constexpr int kCorrupt = 7;
+inline constexpr int kLocked = 8;
+inline constexpr int kOtherWork = 9;
 inline constexpr int kInterrupted = 130;
 
 class CommandLine : public ::testing::Test {

@@ -162,7 +162,7 @@ TEST_F(Interrupted, SLOW_AnotherBuildOfTheOutputIsRefusedMeanwhile) {
   while (!std::filesystem::exists(work() / ".a.hier.meshhier-work" / "lock"))
     usleep(1000);
   const Outcome second = run({"build", (work() / "a.json").string()});
-  EXPECT_EQ(second.code, kExists);
+  EXPECT_EQ(second.code, kLocked);
   EXPECT_THAT(second.messages, HasSubstr("at work"));
   const Outcome cleaned = run({"clean", work().string(), "--remove"});
   EXPECT_THAT(cleaned.out, HasSubstr("stays"));
@@ -241,11 +241,11 @@ TEST_F(Killed, SLOW_WorkTowardsAnotherResultIsKeptUnlessItIsToRestart) {
   leave_work();
   const std::string config = (work() / "a.json").string();
   const Outcome other = run({"build", config, "--set", "partition.vertices=400"});
-  EXPECT_EQ(other.code, kExists);
+  EXPECT_EQ(other.code, kOtherWork);
   EXPECT_THAT(other.messages, AllOf(HasSubstr("config.partition.vertices was 500 and is 400"),
                                     HasSubstr("--restart")));
   const Outcome by_level = run({"build", config, "--set", "simplify.vertices=[300, 400]"});
-  EXPECT_EQ(by_level.code, kExists);
+  EXPECT_EQ(by_level.code, kOtherWork);
   EXPECT_THAT(by_level.messages,
               HasSubstr("but config.simplify.vertices was 500 and is [300,400]; --restart"));
   EXPECT_TRUE(has_work());

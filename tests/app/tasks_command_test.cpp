@@ -79,7 +79,7 @@ TEST_F(Tasks, SayWhatIsWrong) {
   EXPECT_EQ(run({"task", shared(), "read"}).code, 2);
   ASSERT_EQ(plan().code, 0);
   EXPECT_EQ(plan().code, 0) << "the same plan";
-  EXPECT_EQ(plan("4").code, 5);
+  EXPECT_EQ(plan("4").code, kOtherWork);
   const Outcome unknown = run({"task", shared(), "leave"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.messages, HasSubstr("its stages are: read, distribute, faces, join, leaves"));

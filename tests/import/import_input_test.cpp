@@ -720,7 +720,7 @@ TEST_F(ImportResumeTest, OtherWorkIsNotThrownAway) {
     build(with_);
     ADD_FAILURE() << "was not refused";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_EQ(error.code(), ErrorCode::other_work);
     EXPECT_THAT(error.what(), HasSubstr("config.weld was false and is true"));
   }
   with_.weld = false;

@@ -468,7 +468,7 @@ TEST_F(StreamTest, WhatAStoppedBuildHasDoneStays) {
   there.output = "/models/other";
   const std::optional<Error> error = write_error(there);
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->code(), ErrorCode::exists);
+  EXPECT_EQ(error->code(), ErrorCode::other_work);
   EXPECT_THAT(error->what(), HasSubstr("stopped build"));
   EXPECT_EQ(files_.content(journal), "done");
 }

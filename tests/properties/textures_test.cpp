@@ -555,7 +555,7 @@ TEST_F(TexturesTest, APictureOfAnotherSizeIsRefusedAsAnotherMeshIs) {
     build(job);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_EQ(error.code(), ErrorCode::other_work);
     EXPECT_THAT(error.what(), HasSubstr("input_bytes was "));
   }
 }

@@ -33,9 +33,11 @@ enum class Failure {
   usage = 2,         ///< the call, a setting or a config is wrong
   input = 3,         ///< the mesh is broken or not supported
   io = 4,            ///< a file could not be read or written
-  exists = 5,        ///< the output is there already, or another build is at work on it
+  exists = 5,        ///< the output is there already
   budget = 6,        ///< memory or disk do not suffice
   corrupt = 7,       ///< the hierarchy is damaged
+  locked = 8,        ///< another build is at work on the output: try again later
+  other_work = 9,    ///< a stopped build of other settings, or of another mesh, left its work
   internal = 70,     ///< a defect of the library: please report it
   interrupted = 130  ///< asked to stop; the same build goes on where it was
 };

@@ -574,7 +574,7 @@ TEST_F(TasksTest, OnlyTheProgramThatPlannedGoesOn) {
     run_tasks({work(), "read", {}, {}, 0, 0, "another program"}, {files_, progress, cancel_});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_EQ(error.code(), ErrorCode::other_work);
     EXPECT_THAT(error.what(), HasSubstr("another program"));
   }
 }

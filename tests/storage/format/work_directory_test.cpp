@@ -354,7 +354,7 @@ TEST_F(WorkDirectoryTest, AJournalThatWasSetAsideIsFoundAgain) {
 TEST_F(WorkDirectoryTest, OneAtATime) {
   WorkDirectory work(*files_, output_, false);
   write(work.path() / "scratch", "scratch");
-  expect_error(ErrorCode::exists, "at work", [&] { WorkDirectory(*files_, output_, false); });
+  expect_error(ErrorCode::locked, "at work", [&] { WorkDirectory(*files_, output_, false); });
   EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
   put_hierarchy(work.built(), "new");
   work.publish();

@@ -259,7 +259,7 @@ TEST_F(OutputFileTest, NamesThatItTakesMeanwhileAreNoInputs) {
 
 TEST_F(OutputFileTest, OneWriterAtATime) {
   OutputFile first(files_, {path_});
-  EXPECT_EQ(refusal({path_}), ErrorCode::exists);
+  EXPECT_EQ(refusal({path_}), ErrorCode::locked);
   EXPECT_THAT(message_, HasSubstr("another command"));
   first.publish(bytes_of("of the first"));
   EXPECT_EQ(text(), "of the first");
