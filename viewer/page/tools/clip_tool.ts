@@ -5,18 +5,16 @@ import { Coordinates } from '../../src/tools/coordinates.js';
 import { boxPlanes, cutPlane, flipped, localNormal, planesInTiles, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
-import { recordedBound, shownBound } from '../../src/tools/shown_bound.js';
 import { shownSurface } from '../../src/tools/shown_triangles.js';
-import { originalVolume } from '../../src/tools/original_volume.js';
-import { volumeOf, type Volume } from '../../src/tools/volume.js';
 import { UNITS, type LengthScale } from '../../src/tools/units.js';
 import { dot, type Vector } from '../../src/tools/vectors.js';
 import { readLink, writeLink } from '../../src/view/view_link.js';
 import type { View } from '../../src/view/view_table.js';
 import { checkbox, choice, slider, type ChoiceControl, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
+import { CutVolume, type Kept } from './cut_volume.js';
 import { download } from './download.js';
-import { FigureList, line, textButton } from './figures.js';
+import { textButton } from './figures.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -52,14 +50,7 @@ export class ClipTool implements Tool {
   private readonly extent: BoxCorners;
   private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
-  private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
-  private readonly list = new FigureList();
-  /// The volume was measured of this.
-  private measured = '';
-  private readonly original = textButton(words.clip.original, () => void this.measureOriginal());
-  /// The original's volume, with the planes and objects that it was measured for.
-  private exact: { of: string; volume: Volume } | null = null;
-  private measuring = new AbortController();
+  private readonly volume: CutVolume;
   private readonly caps: Control<boolean>;
   private readonly modes: Control<CutMode>;
   private position = element('div', {});
@@ -78,6 +69,7 @@ export class ClipTool implements Tool {
     const { view } = shop.bench;
     const { source: { min, max } } = view.manifest!;
     this.coordinates = new Coordinates(view.manifest!);
+    this.volume = new CutVolume(shop, () => this.kept());
     view.registerPlugin(this.clipping);
     this.extent = { min, max };
     this.sides = { min: [...min], max: [...max] };
@@ -91,7 +83,7 @@ export class ClipTool implements Tool {
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
     const open = view.closed ? null : element('p', { class: 'tool-note tool-extra' }, clip.noCaps);
-    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, this.list.root, this.original, open, this.note);
+    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, ...this.volume.parts, open, this.volume.note);
     shop.link('cut').onFollow(() => { this.follow(); });
     if (shop.link('cut').text !== '') this.follow();
     else this.begin();
@@ -216,14 +208,9 @@ export class ClipTool implements Tool {
   private apply(): void {
     const { bench } = this.shop;
     this.clipping.cut(this.localPlanes(), this.isCapped);
-    this.stopMeasuring();
+    this.volume.stop();
     if (!this.isFollowing) this.shop.link('cut').write(this.link);
     bench.redraw();
-  }
-
-  private stopMeasuring(): void {
-    this.measuring.abort();
-    this.note.textContent = '';
   }
 
   private export(): void {
@@ -232,7 +219,7 @@ export class ClipTool implements Tool {
     const lines = sectionOf(shownSurface(view), this.localPlanes()[0])
       .map(({ points, isClosed }) => ({ points: points.map((point) => this.coordinates.toInput(point)), isClosed }));
     if (lines.length === 0) {
-      this.note.textContent = words.clip.nothing;
+      this.volume.note.textContent = words.clip.nothing;
       return;
     }
     const length = lines.reduce((sum, each) => sum + lengthOf(each), 0);
@@ -241,69 +228,21 @@ export class ClipTool implements Tool {
     const from = words.clip.levels(String(Math.min(...levels)), String(Math.max(...levels)), String(view.source!.tree.lastLevel));
     const axes = drawingAxes(this.normal, view.upwards);
     download(new Blob([sectionSvg(lines, { axes, unit: settings.modelUnit, title: `${toldIn(this.shop.scale.plain)}; ${from}` })], { type: 'image/svg+xml' }), `${bench.name}-section.svg`);
-    this.note.textContent = toldIn(this.shop.scale);
+    this.volume.note.textContent = toldIn(this.shop.scale);
   }
 
-  /// Once the view rests: as finer tiles come, the volume is told anew.
   drawn(): void {
+    this.volume.drawn();
+  }
+
+  private kept(): Kept {
     const { view } = this.shop.bench;
-    if (!this.list.root.isConnected || !view.stats().settled) return;
-    const tiles = view.surface.map(({ node: { level, index }, triangles }) => `${level}/${index}:${triangles}`);
-    const { shownKey } = this;
-    const key = [shownKey, this.shop.scale.sign, this.exact?.of, ...tiles].join();
-    if (key === this.measured) return;
-    this.measured = key;
-    if (this.exact?.of !== shownKey && this.note.textContent === words.clip.isOriginal) this.note.textContent = '';
-    const volume = this.exact?.of === shownKey ? this.exact.volume : this.shownVolume();
-    this.original.hidden = volume === null || volume.bound === 0 || volume === this.exact?.volume;
-    const name = view.closed ? words.clip.volume : words.clip.between;
-    const { scale } = this.shop;
-    this.list.show(volume === null ? [] : [line(name, scale.formatVolumeWithin(Math.abs(volume.volume), volume.bound), Math.abs(volume.volume) * scale.factor ** 3)]);
-  }
-
-  /// Volumes are of these planes and objects.
-  private get shownKey(): string {
-    return JSON.stringify([this.planes(), this.shop.bench.view.omissionKey]);
-  }
-
-  /// Volumes are measured above or within these.
-  private volumePlanes(): readonly CutPlane[] {
     const below = this.coordinates.toInput([0, 0, 0])[2] - this.extent.min[2];
     const planes = this.localPlanes();
-    return planes.length === 0 ? [{ normal: UNIT_AXES[2], constant: below }] : planes;
-  }
-
-  private async measureOriginal(): Promise<void> {
-    const { source, omits } = this.shop.bench.view;
-    const of = this.shownKey;
-    if (source === null) return;
-    this.measuring.abort();
-    this.measuring = new AbortController();
-    const { signal } = this.measuring;
-    const progress = (done: number, all: number): void => {
-      if (of === this.shownKey) this.note.textContent = words.clip.measuring(String(done), String(all));
-      else this.stopMeasuring(); // a sum over two choices of objects is none
+    return {
+      planes: planes.length === 0 ? [{ normal: UNIT_AXES[2], constant: below }] : planes,
+      isLevel: this.mode === 'plane' && view.terrain !== null && Math.abs(dot(this.normal, view.upwards)) > LEVEL,
     };
-    try {
-      const volume = await originalVolume(source, this.volumePlanes(), { signal, omits, progress });
-      signal.throwIfAborted();
-      this.exact = { of, volume };
-      this.note.textContent = words.clip.isOriginal;
-      this.shop.bench.redraw();
-    } catch (problem) {
-      if (!signal.aborted) this.note.textContent = words.clip.noOriginal(problem instanceof Error ? problem.message : String(problem));
-    }
-  }
-
-  /// Measures what is kept of a closed model, or what lies between a terrain and a level plane.
-  private shownVolume(): Volume | null {
-    const { view } = this.shop.bench;
-    const { source } = view;
-    const surface = shownSurface(view);
-    const isLevel = this.mode === 'plane' && view.terrain !== null && Math.abs(dot(this.normal, view.upwards)) > LEVEL;
-    if (source === null || !(view.closed || isLevel)) return null;
-    const bounds = new Map(surface.map(({ node }) => [node, shownBound(node, surface, (other) => recordedBound(source, other))]));
-    return volumeOf(surface, this.volumePlanes(), (node) => bounds.get(node) ?? Infinity);
   }
 
   lasting(): string | null {
@@ -315,7 +254,7 @@ export class ClipTool implements Tool {
   }
 
   close(): void {
-    this.measuring.abort();
+    this.volume.stop();
     this.shop.bench.view.unregisterPlugin(this.clipping);
   }
 }
