@@ -12,10 +12,12 @@ import { collectComplaints, inChromium } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 
 const PATIENCE = 240_000; // milliseconds
+/// High: only cells near the window are elements of the page, and they are counted.
+const WINDOW = { width: 1000, height: 2000 };
 const SETTLE = 2; // seconds: a file that was as it is for so long is whole
 
 async function openPage(browser, url, complaints) {
-  const page = await browser.newPage({ reducedMotion: 'reduce', viewport: { width: 1000, height: 700 } });
+  const page = await browser.newPage({ reducedMotion: 'reduce', viewport: WINDOW });
   page.setDefaultTimeout(PATIENCE);
   collectComplaints(page, complaints, ['error', 'warning']);
   await page.goto(url);
