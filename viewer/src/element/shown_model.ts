@@ -7,18 +7,12 @@ import { areNear } from '../farthest.js';
 import { AGAIN, HierarchyProblem } from '../hierarchy/problem.js';
 import { CameraPose, type Pose } from '../scene/camera_pose.js';
 import { HierarchyView, type Plugin, type Stage } from '../scene/hierarchy_view.js';
-import { keyOf, Lighting } from '../scene/lighting.js';
-import { materialOf, rigOf, shownLook } from '../scene/shown_look.js';
-import type { Manifest } from '../hierarchy/manifest.js';
-import { poseOf } from '../view/pose.js';
-import { overFirst, readLink } from '../view/view_link.js';
-import { lookOf, standingOf } from '../view/view_look.js';
-import { says, type View } from '../view/view_table.js';
-import type { ShownParts } from './shown_parts.js';
+import { Lighting } from '../scene/lighting.js';
 import { Taps } from '../taps.js';
 import { isTyped } from '../typing.js';
 import type { ViewOptions } from '../scene/view_options.js';
 import { moveByKey } from './keyboard.js';
+import { ToldView } from './told_view.js';
 
 const ANGLE = 45; // degrees
 const MOST_RATIO = 2;
@@ -41,15 +35,13 @@ export class ShownModel implements Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(ANGLE);
-  private readonly lighting: Lighting;
+  readonly lighting: Lighting;
+  private readonly told: ToldView;
   private readonly controls: OrbitControls;
   private readonly sizes = new ResizeObserver(() => { this.wake(); });
   private readonly whole = new Box3();
   private readonly ending = new AbortController();
   private place: Pose | null;
-  private told = '';
-  private known: Manifest | null = null;
-  private parts: Promise<ShownParts | null> | null = null;
   private readonly taps = new Taps();
   private isSuspended = false;
   private frame = 0;
@@ -64,6 +56,7 @@ export class ShownModel implements Stage {
     this.renderer.toneMapping = NeutralToneMapping;
     this.surface = this.renderer.domElement;
     this.lighting = new Lighting(this.scene, this.camera);
+    this.told = new ToldView(this, (error) => { this.refuse(error); });
     this.scene.add(this.camera, this.view);
     this.controls = new OrbitControls(this.camera, this.surface);
     this.controls.zoomToCursor = true;
@@ -92,17 +85,12 @@ export class ShownModel implements Stage {
   /// Null: all of the model.
   look(place: Pose | null): void {
     this.place = place;
-    this.whole.makeEmpty();
-    this.wake();
+    this.frameAnew();
   }
 
   /// As a link says, its model left out; '': as the model is seen first.
   show(told: string): void {
-    if (told === this.told) return;
-    this.told = told;
-    if (this.view.manifest === null) return;
-    this.apply();
-    this.whole.makeEmpty();
+    if (this.told.tell(told)) this.frameAnew();
   }
 
   pose(): CameraPose {
@@ -183,53 +171,9 @@ export class ShownModel implements Stage {
 
   private begin(): void {
     if (this.signal.aborted) return;
-    this.apply();
+    this.told.apply();
     this.happenings.opened();
     this.wake();
-  }
-
-  /// As the element's view says, and of what it says nothing as the model is seen first; what neither says stays as it is.
-  private apply(): void {
-    const { view } = this;
-    const shown = this.shownView();
-    const light = shown.light ?? { name: 'auto', key: null };
-    if (says(shown, 'standing')) view.setStanding(standingOf(shown));
-    const rig = rigOf(light.name, view);
-    this.lighting.set(rig, light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] });
-    const look = says(shown, 'look') ? lookOf(shown) : view.look;
-    view.setLook({ ...shownLook(look, rig, view.standing.stretch, view), ...(says(shown, 'look') && { material: materialOf(light.name) }) });
-    view.mostLevel = shown.level ?? view.mostLevel;
-    this.applyParts(shown);
-    this.wake();
-  }
-
-  private shownView(): View {
-    const { manifest } = this.view;
-    return readLink(overFirst(this.told, manifest?.view ?? {}));
-  }
-
-  /// Their code comes when they are first wanted.
-  private applyParts(shown: View): void {
-    if (this.view.manifest === null || (this.parts === null && !says(shown, 'cut') && !says(shown, 'objects'))) return;
-    this.parts ??= import('./shown_parts.js').then(({ ShownParts }) => (this.signal.aborted ? null : new ShownParts(this.view)));
-    this.parts.then((parts) => parts?.show(this.shownView()), (error: unknown) => { this.refuse(error); });
-  }
-
-  /// The manifest is another one: it may say how the model is seen first.
-  private greet(manifest: Manifest | null): void {
-    if (manifest === this.known) return;
-    this.known = manifest;
-    this.apply();
-    this.whole.makeEmpty();
-  }
-
-  /// From there the model is seen if nobody says otherwise; null: all of it is in the picture.
-  private firstPlace(): Pose | null {
-    const { camera } = readLink(this.told);
-    const first = this.view.manifest?.view ?? {};
-    const stands = JSON.stringify(standingOf(first)) === JSON.stringify(this.view.standing);
-    const numbers = camera ?? (stands ? first.camera : undefined);
-    return numbers === undefined ? null : poseOf(numbers);
   }
 
   private async await(opened: Promise<void>): Promise<void> {
@@ -273,7 +217,7 @@ export class ShownModel implements Stage {
   private draw(now: number): void {
     this.frame = 0;
     if (this.isSuspended || !this.fit()) return;
-    if (this.view.manifest !== this.known) this.greet(this.view.manifest);
+    if (this.told.greet()) this.frameAnew();
     this.aim();
     const news = this.view.update(this.camera, this.renderer.domElement, now);
     this.view.draw(this.renderer, this.scene, this.camera);
@@ -293,6 +237,12 @@ export class ShownModel implements Stage {
     return true;
   }
 
+  /// The next frame begins where the camera belongs.
+  private frameAnew(): void {
+    this.whole.makeEmpty();
+    this.wake();
+  }
+
   private aim(): void {
     if (!this.whole.equals(this.view.box)) this.frameAll();
     const radius = this.view.box.isEmpty() ? 1 : this.view.box.getBoundingSphere(new Sphere()).radius;
@@ -306,7 +256,7 @@ export class ShownModel implements Stage {
   /// The box is another one: that of the manifest is better than the root's.
   private frameAll(): void {
     this.whole.copy(this.view.box);
-    const place = this.place ?? this.firstPlace();
+    const place = this.place ?? this.told.place();
     if (place !== null) {
       this.camera.position.set(...place.position);
       this.controls.target.set(...place.target);
