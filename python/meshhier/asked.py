@@ -11,13 +11,15 @@ import tempfile
 from contextlib import contextmanager
 from typing import BinaryIO, Iterator
 
+import numpy as np
+
 from .errors import ExistsError, UsageError
 
 
 def whole(value: object, what: str) -> int:
     """A whole number, of Python or numpy. Raises UsageError that begins with `what`, as "a level is a whole number"."""
     try:
-        if not isinstance(value, bool):
+        if not isinstance(value, (bool, np.bool_)):
             return operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         pass
