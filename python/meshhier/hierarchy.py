@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .asked import length, whole
 from .boxes import Box
 from .checksum import checksum
-from .cut import CutPieces
+from .cut import FEW_TILES, MANY_TILES, CutPieces
 from .errors import CorruptError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
 from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
@@ -236,13 +236,13 @@ class Hierarchy:
     ) -> Iterator[Mesh]:
         """The mesh of `cut()`, which has the other parameters, in pieces: each triangle is in exactly one of them, those at seams too.
 
-        A piece is what one tile draws, and has `tiles`, `images` and so on of that one; its own vertices come first. A dozen tiles
-        are in memory, however large the cut is.
+        A piece is what one tile draws, and has `tiles`, `images` and so on of that one; its own vertices come first. At most 16 tiles
+        are in memory besides, however large the cut is.
 
         With `ids`, `piece.ids` are numbers of vertices: of one vertex in several pieces they are the same, and they ascend as the
         vertices of `cut()` do, though some numbers may be missing. `Mesh.join(pieces)` is the mesh of `cut()`.
         """
-        pieces, region = self._pieces(nodes, error, level, box, polygon, bool(ids))
+        pieces, region = self._pieces(nodes, error, level, box, polygon, bool(ids), FEW_TILES)
         return pieces.each(region) if ids else map(_without_ids, pieces.each(region))
 
     def cut(
@@ -267,7 +267,7 @@ class Hierarchy:
 
         All of the result is in memory; of a mesh that is larger, `iter_parts()` has the pieces.
         """
-        pieces, region = self._pieces(nodes, error, level, box, polygon, True)
+        pieces, region = self._pieces(nodes, error, level, box, polygon, True, MANY_TILES)
         return Mesh.join(pieces.at_least_one(region))
 
     def _level(self, level: Optional[int]) -> int:
@@ -295,6 +295,7 @@ class Hierarchy:
         box: Optional[Box],
         polygon: Optional[Polygon],
         with_ids: bool,
+        kept_tiles: int,
     ) -> tuple[CutPieces, Optional[Region]]:
         if nodes is None:
             rows = self._cut(error, level)
@@ -304,7 +305,7 @@ class Hierarchy:
             raise UsageError(f"nodes are a list, as [(1, 0), (1, 1)], not {nodes!r}")
         else:
             rows = self._index.check_cut(np.array([self._index.row(node) for node in nodes], np.int64))
-        return CutPieces(self._manifest, self._index, self.read_tile, rows, with_ids), self._region(box, polygon)
+        return CutPieces(self._manifest, self._index, self.read_tile, rows, with_ids, kept_tiles), self._region(box, polygon)
 
 
 def _without_ids(piece: Mesh) -> Mesh:
