@@ -37,6 +37,7 @@ from .http_client import Headers
 from .manifest import Scalar
 from .mesh import Conventions, Mesh
 from .objects import ObjectRow, ObjectTable
+from .packing import pack, unpack
 from .process import Progress, find_program
 from .program import build, clean, compare, draw, export, inspect, inspect_objects, page, plan, preview, progressive, reconstruct, task, task_status, verify, view
 from .remote import CACHE_BYTES
@@ -67,5 +68,5 @@ __all__ = [
     "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "InputError", "Leftover", "Mesh",
     "NetworkError", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
     "StoppedBuildError", "TaskStatus", "Tile", "Tree", "UsageError", "Verification", "VerifyError", "__version__", "build", "clean", "compare", "draw", "export",
-    "find_program", "inspect", "inspect_objects", "open", "page", "plan", "preview", "progressive", "reconstruct", "task", "task_status", "verify", "view",
+    "find_program", "inspect", "inspect_objects", "open", "pack", "page", "plan", "preview", "progressive", "reconstruct", "task", "task_status", "unpack", "verify", "view",
 ]  # fmt: skip

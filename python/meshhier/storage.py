@@ -108,6 +108,11 @@ class Archive:
         except (zipfile.BadZipFile, EOFError) as error:
             raise CorruptError(f"{self._path}: {name}: {error}") from error
 
+    def names(self) -> list[str]:
+        """Of all files, in their order."""
+        self.require_open()
+        return [facts.filename for facts in self._zip.infolist() if not facts.is_dir()]
+
     def require_open(self) -> None:
         if self._is_closed:
             raise closed(self._path)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""Directories of hierarchies as archives, and back (docs/file_format.md, section 8). No tile is made anew: files keep their bytes."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pathlib
+import re
+import shutil
+import struct
+import tempfile
+import zlib
+from dataclasses import dataclass
+from typing import BinaryIO, Iterator, Union
+
+from .asked import new_file
+from .errors import CorruptError, ExistsError, ReplacedError, UsageError
+from .hierarchy import Hierarchy
+from .http_client import is_web_address
+from .storage import Archive
+
+Path = Union[str, "os.PathLike[str]"]
+
+_INDEX = "@3dtilesIndex1@"
+_DATE = 0x0021  # 1980-01-01
+_FULL16, _FULL32 = 0xFFFF, 0xFFFFFFFF
+
+
+@dataclass(frozen=True)
+class _Entry:
+    name: bytes
+    offset: int
+    size: int
+    crc: int
+
+    @property
+    def _facts(self) -> bytes:
+        """What both headers have."""
+        version = 45 if self.offset >= _FULL32 else 10
+        return struct.pack("<5H3I2H", version, 0, 0, 0, _DATE, self.crc, self.size, self.size, len(self.name), 0)
+
+    def local_header(self) -> bytes:
+        return b"PK\3\4" + self._facts + self.name
+
+    def central_header(self) -> bytes:
+        extra = struct.pack("<2HQ", 1, 8, self.offset) if self.offset >= _FULL32 else b""
+        facts = self._facts[:-2] + struct.pack("<H", len(extra))
+        return b"PK\1\2" + struct.pack("<H", 45) + facts + struct.pack("<3HII", 0, 0, 0, 0, min(self.offset, _FULL32)) + self.name + extra
+
+
+class _ArchiveWriter:
+    """Writes files one behind the other, then the index and the directory."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._entries: list[_Entry] = []
+        self._end = 0
+
+    def add(self, name: str, data: bytes) -> None:
+        if len(data) >= _FULL32:
+            raise UsageError(f"{name} has {len(data)} bytes; a file in an archive has at most {_FULL32 - 1}")
+        entry = _Entry(name.encode("ascii"), self._end, len(data), zlib.crc32(data))
+        self._entries.append(entry)
+        self._write(entry.local_header() + data)
+
+    def finish(self) -> None:
+        places = [(*struct.unpack("<2Q", hashlib.md5(entry.name, usedforsecurity=False).digest()), entry.offset) for entry in self._entries]
+        self.add(_INDEX, b"".join(struct.pack("<3Q", *place) for place in sorted(places)))
+        begin = self._end
+        for entry in self._entries:
+            self._write(entry.central_header())
+        self._write(self._end_records(begin, self._end - begin))
+
+    def _end_records(self, begin: int, size: int) -> bytes:
+        count, at = len(self._entries), self._end
+        end = struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, min(count, _FULL16), min(count, _FULL16), min(size, _FULL32), min(begin, _FULL32), 0)
+        if count < _FULL16 and begin < _FULL32 and size < _FULL32:
+            return end
+        end64 = struct.pack("<4sQ2H2I4Q", b"PK\6\6", 44, 45, 45, 0, 0, count, count, size, begin)
+        return end64 + struct.pack("<4sIQI", b"PK\6\7", 0, at, 1) + end
+
+    def _write(self, data: bytes) -> None:
+        self._file.write(data)
+        self._end += len(data)
+
+
+def _names(hierarchy: Hierarchy) -> Iterator[str]:
+    """All files of a directory, in the order of an archive."""
+    manifest = hierarchy.manifest
+    first, *tiles = (hierarchy._manifest.tile_name(node) for node in hierarchy.tree.tiles())
+    objects = manifest.get("objects")
+    yield from ("hierarchy.json", first, "tiles.bin", "outline.glb")
+    yield from ["preview.webp"] if manifest.get("preview") else []
+    yield from ["objects.bin"] if objects else []
+    yield from tiles
+    yield from _tilesets(hierarchy)
+    yield from ["object_words.bin"] if objects and objects.get("words") else []
+
+
+def _tilesets(hierarchy: Hierarchy) -> list[str]:
+    folder = os.path.join(hierarchy.path, "tilesets")
+    found = [f"tilesets/{level}/{name}" for level in (os.listdir(folder) if os.path.isdir(folder) else []) for name in os.listdir(os.path.join(folder, level))]
+    names = ["tileset.json", *sorted(found, key=lambda name: (name.split("/")[1], len(name), name))]
+    if len(names) != hierarchy.manifest.get("tileset", {}).get("files", len(names)):
+        raise CorruptError(f"{hierarchy.path}: tilesets has not as many files as the manifest says")
+    return names
+
+
+def pack(hierarchy: Path, output: Path, *, force: bool = False) -> pathlib.Path:
+    """Makes one file, NAME.3tz, of a directory, NAME.hier: with the bytes that a build of an archive has. Returns its path.
+
+    Raises ExistsError if it is there already; CorruptError if the directory is not whole; ReplacedError if another build takes its
+    place meanwhile.
+    """
+    if is_web_address(os.fspath(hierarchy)) or not os.path.isdir(hierarchy):
+        raise UsageError(f"{os.fspath(hierarchy)}: expected a directory NAME.hier; unpack() makes one of an archive")
+    if not os.fspath(output).lower().endswith(".3tz"):
+        raise UsageError(f"{os.fspath(output)}: the name of an archive ends in .3tz")
+    with Hierarchy(hierarchy) as source, new_file(output, force) as file:
+        writer = _ArchiveWriter(file)
+        for name in _names(source):
+            writer.add(name, source._files.read(name))
+        writer.finish()
+        if source._is_replaced():
+            raise ReplacedError(f"{source.path}: another hierarchy has taken its place meanwhile: pack it again")
+    return pathlib.Path(output)
+
+
+def unpack(archive: Path, output: Path, *, force: bool = False) -> pathlib.Path:
+    """Makes a directory, NAME.hier, of an archive, NAME.3tz, also of one at an address. It is there complete or not at all. Returns its path.
+
+    Raises ExistsError if it is there already (`force` replaces a hierarchy, and nothing else); CorruptError, ReplacedError.
+    """
+    place = os.path.abspath(output)
+    with Hierarchy(archive) as source:
+        if not isinstance(source._files, Archive):
+            raise UsageError(f"{source.path}: expected an archive NAME.3tz; pack() makes one of a directory")
+        _require_free(place, force)
+        made = tempfile.mkdtemp(dir=os.path.dirname(place), prefix=f".{os.path.basename(place)}.")
+        try:
+            for name in source._files.names():
+                _unpack_file(source._files, name, made)
+            os.chmod(made, 0o777 & ~_mask())
+            _put(made, place)
+        except BaseException:
+            shutil.rmtree(made, ignore_errors=True)
+            raise
+    return pathlib.Path(output)
+
+
+def _require_free(place: str, force: bool) -> None:
+    if not os.path.lexists(place):
+        return
+    if not force:
+        raise ExistsError(f"{place} is there already: give another name, or force=True to replace it")
+    if not os.path.isfile(os.path.join(place, "hierarchy.json")):
+        raise ExistsError(f"{place} is no hierarchy, so force=True does not replace it")
+
+
+def _unpack_file(files: Archive, name: str, folder: str) -> None:
+    if name == _INDEX:
+        return
+    if not re.fullmatch(r"[!-\[\]-~]{1,255}", name) or {"", ".", ".."} & set(name.split("/")):
+        raise CorruptError(f"{name!r} is no name of a file in an archive")
+    path = os.path.join(folder, *name.split("/"))
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "xb") as file:
+        file.write(files.read(name))
+
+
+def _mask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _put(made: str, place: str) -> None:
+    """Gives a directory its name; one that has it already is removed then."""
+    if not os.path.lexists(place):
+        os.rename(made, place)
+        return
+    old = tempfile.mkdtemp(dir=os.path.dirname(place), prefix=f".{os.path.basename(place)}.")
+    os.rename(place, old)
+    os.rename(made, place)
+    shutil.rmtree(old)

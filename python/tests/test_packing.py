@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Archives of directories have the bytes of archives that are built."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Any, Callable
+
+import pytest
+from host import Host
+
+import meshhier
+from meshhier import packing
+
+FORMS: list[dict[str, object]] = [{}, {"partition__vertices": 30}, {"storage__compression": "meshopt_zlib", "preview": False}]
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("number", range(len(FORMS)))
+def test_it_has_the_bytes_of_a_build(number: int, torus: str, built: Any, tmp_path: Path) -> None:
+    folder = Path(built(torus, f"packing{number}.hier", **FORMS[number]))
+    archive = Path(built(torus, f"packing{number}.3tz", **FORMS[number]))
+    assert meshhier.pack(folder, tmp_path / "a.3tz").read_bytes() == archive.read_bytes()
+    assert files_of(meshhier.unpack(archive, tmp_path / "a.hier")) == files_of(folder)
+    meshhier.verify(tmp_path / "a.hier", input=torus)
+    assert sorted(os.listdir(tmp_path)) == ["a.3tz", "a.hier"]
+
+
+def test_objects_come_along(tmp_path: Path) -> None:
+    lines = [f"v {i} 0 0\nv {i}.5 0 0\nv {i} 1 0\ng house {i:04}\nf {3 * i + 1} {3 * i + 2} {3 * i + 3}\n" for i in range(400)]
+    (tmp_path / "a.obj").write_text("".join(lines))
+    for name in ("a.hier", "a.3tz"):
+        meshhier.build(tmp_path / "a.obj", tmp_path / name, objects="group").close()
+    assert (tmp_path / "a.hier" / "object_words.bin").exists()
+    assert meshhier.pack(tmp_path / "a.hier", tmp_path / "b.3tz").read_bytes() == (tmp_path / "a.3tz").read_bytes()
+
+
+def test_large_archives_have_the_records_of_zip64(torus: str, built: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if 2 MB were 4 GiB, and 20 files 65,535."""
+    monkeypatch.setattr(packing, "_FULL16", 20)
+    made = meshhier.pack(built(torus, "packing0.hier"), tmp_path / "a.3tz")
+    data = made.read_bytes()
+    assert data[-98:-94] == b"PK\6\6" and data[-42:-38] == b"PK\6\7"
+    end = bytearray(data)
+    end[-14:-10] = b"\xff\xff\xff\xff"  # the numbers of files, as they are where there are so many
+    made.write_bytes(end)
+    with zipfile.ZipFile(made) as archive:
+        assert archive.testzip() is None and len(archive.namelist()) > 20
+    entry = packing._Entry(b"a", 5 << 32, 3, 7)
+    assert entry.central_header()[-12:] == b"\1\0\x08\0" + (5 << 32).to_bytes(8, "little") and entry.local_header()[4] == 45
+
+
+def test_nothing_is_replaced_by_chance(torus: str, built: Any, tmp_path: Path) -> None:
+    folder, archive = built(torus, "packing0.hier"), built(torus, "packing0.3tz")
+    meshhier.pack(folder, tmp_path / "a.3tz")
+    meshhier.unpack(archive, tmp_path / "a.hier")
+    with pytest.raises(meshhier.ExistsError, match="force=True"):
+        meshhier.pack(folder, tmp_path / "a.3tz")
+    with pytest.raises(FileExistsError):
+        meshhier.unpack(archive, tmp_path / "a.hier")
+    assert meshhier.pack(folder, tmp_path / "a.3tz", force=True) and meshhier.unpack(archive, tmp_path / "a.hier", force=True)
+    (tmp_path / "photos").mkdir()
+    with pytest.raises(meshhier.ExistsError, match="no hierarchy"):
+        meshhier.unpack(archive, tmp_path / "photos", force=True)
+    assert sorted(os.listdir(tmp_path)) == ["a.3tz", "a.hier", "photos"]
+
+
+def test_what_makes_no_sense(torus: str, built: Any, tmp_path: Path) -> None:
+    folder, archive = built(torus, "packing0.hier"), built(torus, "packing0.3tz")
+    calls: list[Callable[[], object]] = [
+        lambda: meshhier.pack(archive, tmp_path / "a.3tz"),
+        lambda: meshhier.pack(folder, tmp_path / "a.zip"),
+        lambda: meshhier.unpack(folder, tmp_path / "a.hier"),
+    ]
+    for wrong in calls:
+        with pytest.raises(meshhier.UsageError):
+            wrong()
+    shutil.copytree(folder, tmp_path / "b.hier")
+    (tmp_path / "b.hier" / "outline.glb").unlink()
+    with pytest.raises(meshhier.CorruptError, match="outline.glb is missing"):
+        meshhier.pack(tmp_path / "b.hier", tmp_path / "b.3tz")
+    assert os.listdir(tmp_path) == ["b.hier"]
+
+
+@pytest.mark.parametrize("name", ["../out", "/etc/x", "tiles//a", "a\\b", "C:/x y"])
+def test_archives_that_want_to_write_elsewhere(name: str, torus: str, built: Any, tmp_path: Path) -> None:
+    evil = tmp_path / "evil.3tz"
+    shutil.copy(built(torus, "packing0.3tz"), evil)
+    with zipfile.ZipFile(evil, "a") as archive:
+        archive.writestr(name, b"x")
+    with pytest.raises(meshhier.CorruptError, match="no name"):
+        meshhier.unpack(evil, tmp_path / "a.hier")
+    assert os.listdir(tmp_path) == ["evil.3tz"] and not (tmp_path.parent / "out").exists()
+
+
+def test_an_archive_on_the_web(torus: str, built: Any, tmp_path: Path) -> None:
+    archive = Path(built(torus, "packing0.3tz"))
+    with Host(archive.parent) as host:
+        made = meshhier.unpack(f"{host.address}/{archive.name}", tmp_path / "a.hier")
+    assert files_of(made) == files_of(archive.with_suffix(".hier"))
+
+
+def test_damage_is_found(torus: str, built: Any, tmp_path: Path) -> None:
+    data = bytearray(Path(built(torus, "packing0.3tz")).read_bytes())
+    data[len(data) // 2] ^= 1
+    (tmp_path / "a.3tz").write_bytes(data)
+    with pytest.raises(meshhier.CorruptError):
+        meshhier.unpack(tmp_path / "a.3tz", tmp_path / "a.hier")
+    assert os.listdir(tmp_path) == ["a.3tz"]
