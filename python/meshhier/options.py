@@ -14,6 +14,9 @@ from types import TracebackType
 from typing import Any, Callable, Mapping, Optional, Sequence
 
 from .errors import UsageError
+from .polygons import rings_of
+
+_HELD = "meshhier-python-"
 
 
 class Files:
@@ -31,8 +34,8 @@ class Files:
             self._folder.cleanup()
 
     def hold(self, name: str, text: str) -> str:
-        """Writes a file; returns its path."""
-        self._folder = self._folder or tempfile.TemporaryDirectory(prefix="meshhier-")
+        """Writes a file, whose name begins with the keyword; returns its path."""
+        self._folder = self._folder or tempfile.TemporaryDirectory(prefix=_HELD)
         path = os.path.join(self._folder.name, name)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
@@ -126,7 +129,10 @@ def _cut(value: Any, files: Files) -> list[str]:
 
 
 def _polygon(value: Any, files: Files) -> list[str]:
-    return [files.hold("polygon.geojson", json.dumps(value)) if isinstance(value, Mapping) else path_word(value)]
+    if isinstance(value, (str, os.PathLike)):
+        return [path_word(value)]
+    rings = [[[*ring.tolist(), ring[0].tolist()] for ring in polygon] for polygon in rings_of(value)]
+    return [files.hold("polygon.geojson", json.dumps({"type": "MultiPolygon", "coordinates": rings}))]
 
 
 def _matrix(value: Any, files: Files) -> list[str]:
@@ -134,7 +140,7 @@ def _matrix(value: Any, files: Files) -> list[str]:
         return [path_word(value)]
     if not hasattr(value, "__len__") or [getattr(row, "__len__", int)() for row in value] != [4] * 4:
         raise ValueError("a file, or 4 rows of 4 numbers")
-    return [files.hold("matrix.txt", "".join(" ".join(_number(one) for one in row) + "\n" for row in value))]
+    return [files.hold("transform.txt", "".join(" ".join(_number(one) for one in row) + "\n" for row in value))]
 
 
 def _is_true_or(write: Callable[[Any, Files], list[str]]) -> Callable[[Any, Files], list[str]]:
@@ -276,17 +282,22 @@ def _call(words: Sequence[str]) -> Optional[str]:
     """A command line as a call, `clean("a.hier", remove=True)`; None if it is none."""
     command, arguments = words[0], list(words[1:])
     options = {option_name(keyword, option): (keyword, option) for keyword, option in COMMANDS[command].items()}
+    places: list[str] = []
     said: list[str] = []
     while arguments:
         word = arguments.pop(0)
         if not word.startswith("-"):
-            said.append(json.dumps(word, ensure_ascii=False))
+            places.append(_literal(word))
         elif word not in options or (not options[word][1].is_flag and not arguments):
             return None
         else:
-            said.append(f"{options[word][0]}={'True' if options[word][1].is_flag else arguments.pop(0)}")
-    said.sort(key=lambda one: not one.startswith('"'))
-    return f"meshhier.{command}({', '.join(said)})"
+            said.append(f"{options[word][0]}={'True' if options[word][1].is_flag else _literal(arguments.pop(0))}")
+    return f"meshhier.{command}({', '.join(places + said)})"
+
+
+def _literal(word: str) -> str:
+    """A word as Python has it: numbers, and what stands for something else (N, FILE), as they are."""
+    return word if re.fullmatch(r"[0-9]+|[A-Z]+", word) else json.dumps(word, ensure_ascii=False)
 
 
 def _call_in_text(found: re.Match[str]) -> str:
@@ -302,5 +313,6 @@ _QUOTED_COMMAND = re.compile(rf"([(`\"])meshhier ((?:{'|'.join(COMMANDS)}) [^()`
 def spoken(message: str, command: str) -> str:
     """A message of the program in the words of a caller: `restart=True` for --restart."""
     names = _spoken(command)
-    told = _QUOTED_COMMAND.sub(_call_in_text, message)
+    held = rf"{re.escape(tempfile.gettempdir())}/{_HELD}\w+/(\w+)\.\w+"  # the caller gave what is in it
+    told = _QUOTED_COMMAND.sub(_call_in_text, re.sub(held, r"\1", message))
     return re.sub(r"(?<![\w-])--[a-z][a-z-]*", lambda found: names.get(found[0], found[0]), told)

@@ -10,7 +10,7 @@ What all of them have in common:
     memory_budget, limit_rate: bytes, or "2GiB".
     headers: of requests, where a hierarchy is an address: {"Authorization": "Bearer ..."}.
     force: replaces what is there; without it that is an ExistsError.
-    box, polygon, crs, object, where: a piece of the model. `box` is two corners, `polygon` a GeoJSON file or what is in it, `object`
+    box, polygon, crs, object, where: a piece of the model. `box` is two corners, `polygon` a GeoJSON file, what is in one or corners (x, y), `object`
         one name or several, `where` a condition as SQL has them.
 
 Raise InputError, ExistsError, BusyError, BudgetError, UsageError, other ProgramErrors, and ProgramNotFoundError.
@@ -32,6 +32,7 @@ from .hierarchy import Hierarchy
 from .http_client import Headers
 from .objects import ObjectRow
 from .options import Files, option_words, path_word
+from .polygons import Polygon
 from .process import Listeners, Progress, ProgressCallback, Result, TextCallback, find_program, run_program
 from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Verification, comparison, record, verification
 
@@ -44,7 +45,6 @@ Nodes = Union[Path, Sequence[NodeName]]
 Vector = Union[Sequence[float], NDArray[Any]]
 Rows = Union[Sequence[Vector], NDArray[Any]]
 Names = Union[str, Sequence[str]]
-Polygon = Union[Path, Mapping[str, Any]]
 MadeFile = Union[pathlib.Path, bytes]
 
 if TYPE_CHECKING:

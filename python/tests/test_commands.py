@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 import warnings
 from pathlib import Path
 from typing import Any, Callable
@@ -85,6 +86,12 @@ def test_export_takes_pieces(hier: str, tmp_path: Path) -> None:
     ring = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]
     rows, _ = as_ply(meshhier.export(hier, level=2, polygon={"type": "Polygon", "coordinates": [ring]}, clip=True), tmp_path)
     assert rows["x"].min() > -1e-6 and rows["z"].max() < 1e-6, "y is up: a polygon is of x and -z"
+    corners = np.array([(0, 0), (2, 0), (2, 2)])
+    assert len(as_ply(meshhier.export(hier, level=2, polygon=corners), tmp_path)[0]) > 0
+    with pytest.raises(meshhier.UsageError, match="^polygon: "):
+        meshhier.export(hier, level=2, polygon=corners[:2])
+    with pytest.raises(meshhier.UsageError, match="^cut: not a cut"):
+        meshhier.export(hier, cut=[(1, 0)])
     with pytest.raises(meshhier.UsageError, match="level= excludes node="):
         meshhier.export(hier, level=1, node=(1, 0))
     with pytest.raises(meshhier.UsageError, match="level"):
@@ -265,19 +272,16 @@ def test_a_stopped_build_of_another_config(torus: str, tmp_path: Path) -> None:
 
 
 def test_two_builds_of_one_output(large: str, tmp_path: Path) -> None:
-    caught: list[BaseException] = []
-
-    def second(progress: meshhier.Progress) -> None:
-        if not caught:
-            try:
+    with subprocess.Popen([meshhier.find_program(), "build", large, "-o", tmp_path / "a.hier"], stdout=subprocess.DEVNULL) as other:
+        while not (tmp_path / ".a.hier.meshhier-work").exists():
+            assert other.poll() is None
+        time.sleep(0.1)
+        other.send_signal(signal.SIGSTOP)
+        try:
+            with pytest.raises(meshhier.BusyError, match="at work"):
                 meshhier.build(large, tmp_path / "a.hier")
-            except meshhier.ProgramError as error:
-                caught.append(error)
-            raise Stop
-
-    with pytest.raises(Stop):
-        meshhier.build(large, tmp_path / "a.hier", progress=second, settings={"threads": 1})
-    assert isinstance(caught[0], meshhier.BusyError)
+        finally:
+            other.kill()
 
 
 def test_what_is_there_is_an_error_of_files_too(torus: str, hier: str) -> None:

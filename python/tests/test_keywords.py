@@ -142,4 +142,5 @@ def test_messages_are_for_callers() -> None:
     assert spoken("--memory-budget: expected a size", "export") == "memory_budget=: expected a size"
     assert spoken("or remove it (meshhier clean --remove a b.hier)", "progressive") == 'or remove it (meshhier.clean("a", "b.hier", remove=True))'
     assert spoken("run `meshhier task w leaves --index 3` first", "task") == 'run `meshhier.task("w", "leaves", index=3)` first'
+    assert spoken('nix has no plan: "meshhier plan MESH --work nix --tasks N" makes one', "task") == 'nix has no plan: "meshhier.plan(MESH, work="nix", tasks=N)" makes one'
     assert spoken("a file named a--force.ply, and --no-such-thing", "build") == "a file named a--force.ply, and --no-such-thing"
