@@ -116,6 +116,7 @@ async function checkAll(browser, report, { pages, models, closed, names, picture
     for (const name of viewer === OWN_READER ? [PLAIN] : names) await checkPicture(browser, report, { decoder, pages, models, pictures }, viewer, name);
     for (const trouble of troubles) await checkMessage(browser, report, pages, viewer, trouble);
   }
+  await checkMessage(browser, report, pages, 'cesium', ['without a place', `?url=${models}models/${PLAIN}.hier&globe`, 'has no place on the globe']);
 }
 
 /// A copy of a hierarchy whose root tile is none.
