@@ -43,7 +43,7 @@ class Cell:
 
 
 def _entry(name: str, data: bytes) -> str:
-    packed = gzip.compress(data, 9, mtime=0)
+    packed = gzip.compress(data, 6, mtime=0)
     return f'"{name}":"{base64.b64encode(min(data, packed, key=len)).decode()}"'
 
 
