@@ -6,6 +6,7 @@ import { gzipSync } from 'node:zlib';
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
 import { inlineBoot } from './lean/boot.js';
+import { contentPolicy } from './lean/policy.js';
 import { leanThree } from './lean/three.js';
 
 /// Beside each script and style a copy in gzip, for hosts that send those.
@@ -33,7 +34,7 @@ export function withoutTranscoder(): Plugin {
 export default defineConfig({
   root: 'page',
   base: './',
-  plugins: [leanThree(), inlineBoot(), packedCopies()],
+  plugins: [leanThree(), inlineBoot(), contentPolicy(), packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
   test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', poolOptions: { threads: { minThreads: availableParallelism(), maxThreads: availableParallelism() } }, isolate: false, testTimeout: 120_000 }, // time decides no test

@@ -69,6 +69,17 @@ export function collectComplaints(page, complaints, types = ['error']) {
   page.on('pageerror', (error) => complaints.push(String(error)));
 }
 
+/// Adds styles to a page, also where its policy allows no inline ones. Returns a function that takes them away.
+export async function addStyle(page, css) {
+  const sheet = await page.evaluateHandle((text) => {
+    const made = new CSSStyleSheet();
+    made.replaceSync(text);
+    document.adoptedStyleSheets.push(made);
+    return made;
+  }, css);
+  return () => sheet.evaluate((made) => { document.adoptedStyleSheets = document.adoptedStyleSheets.filter((one) => one !== made); });
+}
+
 async function openPage(browser, url, errors) {
   const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
   collectComplaints(page, errors);

@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Pictures go to the directory PICTURES. Exit code 2: wrong use; else
 // see browser.mjs.
 import path from 'node:path';
-import { collectComplaints, inChromium, readHierarchy, comparePictures } from './browser.mjs';
+import { addStyle, collectComplaints, inChromium, readHierarchy, comparePictures } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WINDOW = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
@@ -103,7 +103,7 @@ async function checkElement(browser, report, origin, { element: code, camera }, 
 
 /// On white, without what lies over it.
 async function bareScreenshot(page, shown) {
-  await page.addStyleTag({ content: 'body, .view { background: #fff !important } .top-bar, .bar, .busy { display: none !important }' });
+  await addStyle(page, 'body, .view { background: #fff !important } .top-bar, .bar, .busy { display: none !important }');
   return page.locator(shown).screenshot();
 }
 

@@ -9,7 +9,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { addStyle, collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const PATIENCE = 120_000; // milliseconds
@@ -34,7 +34,7 @@ class Comparison {
     page.complaints = [];
     collectComplaints(page, page.complaints, ['error', 'warning']);
     await page.goto(`${this.origin}/index.html?${query}${hash}`);
-    if (bare) await page.addStyleTag({ content: BARE });
+    if (bare) await addStyle(page, BARE);
     await settle(page);
     return page;
   }
@@ -139,7 +139,7 @@ async function checkBlink(visit, alone) {
 async function checkOverlay(visit) {
   const page = await visit.open(visit.both, { hash: `${POSE}&way=overlay`, bare: false });
   await page.screenshot({ path: path.join(visit.pictures, 'pair-overlay.png') });
-  await page.addStyleTag({ content: BARE });
+  await addStyle(page, BARE);
   const pixels = await visit.picture(page);
   const counts = TINTS.map((tint) => tinted(pixels, tint));
   visit.check('overlay', counts.every((count) => count > 50), `${counts.join(' and ')} pixels of the two colours`);

@@ -9,7 +9,7 @@
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { collectComplaints, comparePictures, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { addStyle, collectComplaints, comparePictures, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
@@ -33,10 +33,10 @@ async function open(browser, address, complaints, options = WIDE) {
 
 /// The model and its marks, without bars and cards.
 async function bareScreenshot(page, file) {
-  const style = await page.addStyleTag({ content: '.top-bar, .bar, .busy, .tools, .tool-lasting, .view-legend { visibility: hidden !important }' });
+  const takeAway = await addStyle(page, '.top-bar, .bar, .busy, .tools, .tool-lasting, .view-legend { visibility: hidden !important }');
   await settle(page);
   const picture = await page.screenshot({ path: file });
-  await style.evaluate((element) => element.remove());
+  await takeAway();
   return picture;
 }
 
