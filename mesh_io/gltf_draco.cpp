@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "mesh_io/draco_numbers.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
 #include <draco/metadata/metadata_decoder.h>
@@ -33,13 +35,14 @@ constexpr std::uint16_t kHasMetadata = 0x8000;
 constexpr std::uint8_t kMesh = 1;
 constexpr std::uint8_t kEdgebreaker = 1;
 
-struct DracoCounts {
+struct DracoHead {
   std::uint64_t triangles = 0, points = 0;
+  bool is_edgebreaker = false;
 };
 
-/// Reads the counts in the stream's head, before the library believes them; nothing if it is no
+/// Reads the stream's head, before the library believes them; nothing if it is no
 /// mesh.
-std::optional<DracoCounts> read_counts(std::span<const std::byte> stream) {
+std::optional<DracoHead> read_head(std::span<const std::byte> stream) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size(), kDracoVersion);
   std::array<char, kDracoMagic.size()> magic{};
@@ -60,7 +63,13 @@ std::optional<DracoCounts> read_counts(std::span<const std::byte> stream) {
   std::uint32_t first = 0, second = 0;
   if (!draco::DecodeVarint(&first, &buffer) || !draco::DecodeVarint(&second, &buffer))
     return std::nullopt;
-  return method == kEdgebreaker ? DracoCounts{second, first} : DracoCounts{first, second};
+  return method == kEdgebreaker ? DracoHead{second, first, true} : DracoHead{first, second};
+}
+
+std::unique_ptr<draco::MeshDecoder> decoder_for(const DracoHead& head) {
+  if (head.is_edgebreaker)
+    return std::make_unique<draco::MeshEdgebreakerDecoder>();
+  return std::make_unique<draco::MeshSequentialDecoder>();
 }
 
 /// One primitive's decoding.
@@ -77,8 +86,7 @@ class Decoding {
     file_.room().check();
     std::vector<std::byte> stream(range.size);
     range.read(0, stream);
-    check_counts(stream);
-    decode(stream);
+    decode(stream, check_head(stream));
     take_indices();
     for (const auto& [name, id] : primitive_.draco->ids) {
       if (primitive_.attribute(name))
@@ -99,28 +107,32 @@ class Decoding {
     return bytes;
   }
 
-  void check_counts(std::span<const std::byte> stream) {
-    const auto counts = read_counts(stream);
-    if (!counts)
+  DracoHead check_head(std::span<const std::byte> stream) {
+    const auto head = read_head(stream);
+    if (!head)
       fail("is no mesh of Draco's version 2.2");
     const auto position = primitive_.attribute("POSITION");
-    most_points_ = counts->points;
+    most_points_ = head->points;
     if (position)
       most_points_ = std::max(most_points_, file_.document().accessors[*position].count);
-    if (counts->triangles > file_.room().memory_bytes || most_points_ > file_.room().memory_bytes)
-      file_.require_memory(std::max(counts->triangles, most_points_), name_);
+    if (head->triangles > file_.room().memory_bytes || most_points_ > file_.room().memory_bytes)
+      file_.require_memory(std::max(head->triangles, most_points_), name_);
     taken_ = file_.take_memory(
-        stream.size() + counts->triangles * kTriangleBytes + most_points_ * point_bytes(), name_);
+        stream.size() + head->triangles * kTriangleBytes + most_points_ * point_bytes(), name_);
+    return *head;
   }
 
-  void decode(std::span<const std::byte> stream) {
+  void decode(std::span<const std::byte> stream, const DracoHead& head) {
+    const std::unique_ptr<draco::MeshDecoder> decoder = decoder_for(head);
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
+    mesh_ = std::make_unique<draco::Mesh>();
     try {
-      auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-      if (!decoded.ok())
-        fail("is broken: " + plain_text(decoded.status().error_msg_string(), 100));
-      mesh_ = std::move(decoded).value();
+      const draco::Status status = decoder->Decode({}, &buffer, mesh_.get());
+      if (!status.ok())
+        fail("is broken: " + plain_text(status.error_msg_string(), 100));
+      for (int i = 0; i < mesh_->num_attributes(); ++i)
+        compute_floats(decoder->GetPortableAttribute(i), *mesh_->attribute(i));
     } catch (const Error&) {
       throw;
     } catch (const std::exception&) {  // sizes that it believed

@@ -1,5 +1,7 @@
 #include "mesh_io/gltf_meshopt.h"
 
+#include "mesh_io/meshopt_filters.h"
+
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
@@ -56,9 +58,9 @@ void unfilter(const GltfMeshopt& view, std::span<std::byte> plain) {
     case Filter::none:
       return;
     case Filter::octahedral:
-      return meshopt_decodeFilterOct(plain.data(), view.count, view.stride);
+      return undo_octahedral(plain, view.stride);
     case Filter::quaternion:
-      return meshopt_decodeFilterQuat(plain.data(), view.count, view.stride);
+      return undo_quaternion(plain);
     case Filter::exponential:
       return meshopt_decodeFilterExp(plain.data(), view.count, view.stride);
   }

@@ -399,9 +399,10 @@ Complaints check_quiet(const std::vector<Source>& all) {
 }
 
 /// Functions of the C library whose last bits differ between processors and versions, with their
-/// variants for float and long double. What is left out is exact: sqrt, floor, ldexp and such.
+/// variants for float and long double; and those that read a long double, which has 80 or 128 bits.
+/// What is left out is exact: sqrt, floor, ldexp and such.
 std::set<std::string> inexact_functions() {
-  std::set<std::string> names;
+  std::set<std::string> names{"stold", "strtold"};
   for (const std::string name :
        {"acos",  "acosh",  "asin",   "asinh", "atan",  "atan2", "atanh", "cbrt",
         "cos",   "cosh",   "erf",    "erfc",  "exp",   "exp2",  "expm1", "fma",
@@ -436,6 +437,8 @@ Complaints check_exact(const std::vector<Source>& all) {
   for (const Source& source : all) {
     for (std::size_t i = 0; i < source.lines.size() && !source.is_in({"app", "bench", "server"});
          ++i) {
+      if (has_word(code_of(source.lines[i]), "long double"))
+        complaints.push_back(at(source, i + 1) + ": a long double differs between processors");
       for (const std::string& name : called_in(source.lines[i])) {
         if (inexact.contains(name))
           complaints.push_back(at(source, i + 1) + ": " + name + " differs between processors");
