@@ -37,6 +37,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation);
 void add_inspect_command(CLI::App& parser, Invocation& invocation);
 void add_verify_command(CLI::App& parser, Invocation& invocation);
 void add_compare_command(CLI::App& parser, Invocation& invocation);
+void add_query_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
 void add_preview_command(CLI::App& parser, Invocation& invocation);
 void add_draw_command(CLI::App& parser, Invocation& invocation);

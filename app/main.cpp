@@ -47,6 +47,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier inspect david.hier                        what is in it
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier compare new.hier old.hier --tolerance 0.5 how far two scans are from each other
+  meshhier query david.hier --points p.csv           the nearest place of each point
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
   meshhier progressive david.hier -o david.prog      a base and details, for weak clients
   meshhier page david.hier -o david.html             one file to send, which opens by a double click
@@ -232,6 +233,7 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
   add_compare_command(parser, invocation);
+  add_query_command(parser, invocation);
   add_export_command(parser, invocation);
   add_preview_command(parser, invocation);
   add_draw_command(parser, invocation);

@@ -1,8 +1,9 @@
 // A tree of boxes over triangles, for whoever asks which of them are near.
 //
 // Problem. Textures are baked from the nearest points of a finer surface, one a texel; distances
-// between surfaces are those of many points to the nearest triangle. Both want to look at few of
-// the triangles, but measure them in ways of their own: quick and facing alike, or exact.
+// between surfaces are those of many points to the nearest triangle; rays ask what they hit first.
+// All want to look at few of the triangles, but measure them in ways of their own: quick and facing
+// alike, or exact.
 //
 // Idea. Each node has four children and measures their boxes in one go. The tree decides which
 // leaves are looked at, nearest boxes first; the caller measures what a leaf holds and lowers the
@@ -22,12 +23,14 @@
 #pragma once
 
 #include "base/four_floats.h"
+#include "base/ray.h"
 #include "base/vec.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -84,6 +87,18 @@ class TriangleTree {
       }
       return squared;
     }
+    /// Returns how far along a ray each child's box begins, no less than 0; infinite if it misses
+    /// it.
+    std::array<double, 4> distances(const Ray& ray) const {
+      std::array<double, 4> entries{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Ray::Span span =
+            ray.span(Vec3f{low_x[k], low_y[k], low_z[k]}, Vec3f{high_x[k], high_y[k], high_z[k]});
+        entries[k] =
+            span.is_empty() ? std::numeric_limits<double>::infinity() : std::max(span.entry, 0.0);
+      }
+      return entries;
+    }
     bool is_leaf(std::size_t child) const { return (children[child] & kIsLeaf) != 0; }
     /// Requires is_leaf().
     std::uint32_t leaf(std::size_t child) const { return children[child] & ~kIsLeaf; }
@@ -105,7 +120,8 @@ class TriangleTree {
 
   /// Calls look(leaf) for each leaf whose box is no farther than `reach`, a squared distance that
   /// `look` may lower; of a node's children the nearest first. `to`: a Query with a float, or a
-  /// Vec3d with a double: slower, but it tells boxes apart however far, tiny or huge they are.
+  /// Vec3d with a double: slower, but it tells boxes apart however far, tiny or huge they are; or a
+  /// Ray with a double, for boxes on it, whose distances are along it and not squared, and finite.
   template <class To, class Real, class Look>
   void look_nearest(const To& to, const Real& reach, const Look& look) const {
     struct Open {

@@ -48,24 +48,10 @@ struct Opened {
         reader(files.files(), place.path) {}
 
   const BoundsD& box() const { return reader.manifest().source.bounds; }
-  /// Positions of tiles are so far from what their error is told of.
-  double rounding() const {
-    const auto& quantization = reader.manifest().quantization;
-    return quantization ? quantization->worst_rounding : 0;
-  }
-
   std::string name;
   storage::HierarchyFiles files;
   storage::HierarchyReader reader;
 };
-
-Cut cut_of(const storage::HierarchyReader& reader, const CompareOptions& options) {
-  const Tree& tree = reader.tree();
-  if (const auto* error = std::get_if<exporting::LargestError>(&options.selection))
-    return cut_by_error(reader, *error);
-  const auto* level = std::get_if<Level>(&options.selection);
-  return Cut::of_level(tree, level != nullptr ? std::min(*level, tree.depth()) : tree.depth());
-}
 
 ComparedSurface facts_of(const Opened& opened, const CutSurface& surface) {
   ComparedSurface facts;
@@ -73,9 +59,7 @@ ComparedSurface facts_of(const Opened& opened, const CutSurface& surface) {
   facts.tiles = surface.size();
   facts.vertices = surface.place_count();
   facts.triangles = surface.total().triangles;
-  for (const NodeId node : surface.cut().nodes())
-    facts.error_bound = std::max(facts.error_bound, double{opened.reader.record(node).bound});
-  facts.error_bound += opened.rounding();
+  facts.error_bound = error_bound(opened.reader, surface.cut());
   return facts;
 }
 
@@ -107,8 +91,10 @@ class Comparer {
         options_(options),
         progress_(progress),
         cancel_(cancel),
-        surface_(from.reader, cut_of(from.reader, options), spare_bytes(options) / 8),
-        target_(open_target()),
+        surface_(from.reader, selected_cut(from.reader, options.selection),
+                 spare_bytes(options) / 8),
+        target_(selected_surface(to.reader, options.selection, spare_bytes(options) / 8, progress,
+                                 cancel)),
         search_(target_, spare_bytes(options) / 2),
         result_(options.tolerance) {
     result_.from = facts_of(from_, surface_);
@@ -140,17 +126,6 @@ class Comparer {
   }
 
  private:
-  /// Tiles that are chosen by their error are of several levels, so that only they tell their
-  /// boxes.
-  CutSurface open_target() const {
-    Cut cut = cut_of(to_.reader, options_);
-    const std::uint64_t cache = spare_bytes(options_) / 8;
-    if (!std::holds_alternative<exporting::LargestError>(options_.selection))
-      return {to_.reader, std::move(cut), cache};
-    progress_.stage("read", cut.size(), "tiles");
-    return {to_.reader, std::move(cut), cache, progress_, cancel_};
-  }
-
   void warn(std::string text) {
     progress_.warn(text);
     result_.warnings.push_back(std::move(text));
@@ -258,14 +233,17 @@ class Comparer {
     const std::vector<std::uint32_t> order = curve_order(middles);
     const std::vector<Vec3d> sorted = in_order(middles, order);
     const std::vector<NearestOnSurface> nearest = search_.nearest(sorted, cancel_);
-    const std::vector<SurfaceTriangle> targets = search_.triangles(nearest, cancel_);
+    std::vector<TriangleOfTile> named;
+    for (const NearestOnSurface& one : nearest)
+      named.push_back({one.tile, one.triangle});
+    const auto targets = shown_triangles(search_.trees(), target_.size(), named, cancel_);
     std::vector<double> most(loose.size());
     execution::parallel_for(
         (loose.size() + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
           const std::size_t first = block * kSearchedPoints;
           for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
             for (const Vec3d corner : loose[order[i]].corners)
-              most[i] = std::max(most[i], squared_distance(corner, targets[i]));
+              most[i] = std::max(most[i], squared_distance(corner, targets[i].corners));
           }
         });
     for (std::size_t i = 0; i < loose.size(); ++i) {

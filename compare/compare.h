@@ -5,10 +5,9 @@
 #include "compare/distance_tally.h"
 #include "compare/object_distances.h"
 #include "compare/place_transform.h"
+#include "compare/selected_surface.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
-#include "export/cut_by_error.h"
-#include "hierarchy/ids.h"
 #include "hierarchy/model_view.h"
 #include "hierarchy/unit.h"
 #include "storage/io/file.h"
@@ -17,20 +16,16 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 namespace meshhier::comparing {
 
-/// Selects the original surfaces.
-struct Originals {};
-
 struct CompareOptions {
   /// The part of both hierarchies: all partitions; a level, or the finest one of a tree that is
   /// less deep; tiles by their error.
-  std::variant<Originals, Level, exporting::LargestError> selection{};
+  SurfaceSelection selection{};
   bool is_signed = true;
   /// Bound each triangle by the one of `to` that is nearest to its middle: distances to it are
   /// convex. Else bounds are loose where distances are less than edges. Two more points a vertex.

@@ -112,10 +112,11 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
   exporting::DrawnTile drawn = draw_tile(reader_.tree(), numbered_, position, tile);
   PlacedTile placed;
   if (const auto object = placed_object(reader_.tile_format().attributes))
-    placed.objects = objects_of(mesh, drawn, *object);
+    placed.facts.objects = objects_of(mesh, drawn, *object);
   placed.base = numbered_.base(position);
   placed.own_count = mesh.own_count;
-  placed.interior_count = mesh.interior.size();
+  placed.facts.interior_count = mesh.interior.size();
+  placed.facts.border = std::move(drawn.border);
 
   placed.is_used.resize(mesh.own_count);
   for (const auto* triangles : {&mesh.interior, &mesh.border}) {
@@ -170,18 +171,18 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
 }
 
 TileSurface CutSurface::load(std::size_t position) const {
-  const PlacedTile placed = load_placed(position);
+  PlacedTile placed = load_placed(position);
   const auto tile_of = [&](std::uint32_t place) {
     return place < placed.own_count ? static_cast<std::uint32_t>(position)
                                     : placed.foreign[place - placed.own_count].tile;
   };
   TileSurface surface;
-  surface.interior_count = placed.interior_count;
+  surface.facts = std::move(placed.facts);
   surface.triangles.reserve(placed.triangles.size());
-  surface.touched.reserve(placed.triangles.size() - placed.interior_count);
+  surface.touched.reserve(placed.triangles.size() - surface.facts.interior_count);
   for (const Triangle<std::uint32_t>& t : placed.triangles) {
     surface.triangles.push_back({placed.places[t[0]], placed.places[t[1]], placed.places[t[2]]});
-    if (surface.triangles.size() > surface.interior_count)
+    if (surface.triangles.size() > surface.facts.interior_count)
       surface.touched.push_back({tile_of(t[0]), tile_of(t[1]), tile_of(t[2])});
   }
   return surface;

@@ -18,11 +18,25 @@
 
 namespace meshhier::comparing {
 
+/// Facts about the triangles that a tile draws: interior ones, then border ones.
+struct TriangleFacts {
+  std::size_t interior_count = 0;
+  std::vector<std::uint32_t> border;   ///< of border triangles the indices in the tile's border
+  std::vector<std::uint32_t> objects;  ///< of all triangles; empty if the mesh has none
+
+  /// Returns the number of a triangle among all of the tile's, of which others may draw some:
+  /// interior ones, then the border.
+  std::uint32_t number_in_tile(std::uint32_t triangle) const {
+    const auto interior = static_cast<std::uint32_t>(interior_count);
+    return triangle < interior ? triangle : interior + border[triangle - interior];
+  }
+};
+
 /// The triangles that one tile draws in its cut. Corners are where the cut shows them, relative to
 /// the origin.
 struct TileSurface {
-  std::vector<SurfaceTriangle> triangles;  ///< interior ones, then border ones
-  std::size_t interior_count = 0;
+  std::vector<SurfaceTriangle> triangles;
+  TriangleFacts facts;
   /// For each border triangle the positions in the cut of the tiles that have its corners.
   std::vector<Triangle<std::uint32_t>> touched;
 };
@@ -41,8 +55,7 @@ struct PlacedTile {
   std::vector<bool> is_used;     ///< for each own place: a triangle of the tile has it
   std::vector<Foreign> foreign;  ///< places from own_count on, ascending by number
   std::vector<Triangle<std::uint32_t>> triangles;  ///< corners are among places
-  std::size_t interior_count = 0;
-  std::vector<std::uint32_t> objects;  ///< of the triangles; empty if the mesh has none
+  TriangleFacts facts;
 
   std::uint32_t number(std::uint32_t place) const {
     return place < own_count ? base + place : foreign[place - own_count].number;

@@ -76,7 +76,7 @@ void ObjectDistances::add(std::uint32_t position, const PlacedTile& tile,
     const Triangle<std::uint32_t>& t = tile.triangles[i];
     const Vec3d a = points[t[0]], b = points[t[1]], c = points[t[2]];
     const double third = length(cross(b - a, c - a)) / 6;
-    auto [found, is_first] = all.try_emplace(tile.objects[i]);
+    auto [found, is_first] = all.try_emplace(tile.facts.objects[i]);
     for (const std::uint32_t corner : t) {
       add_corner(found->second, distances[corner], third, is_first);
       is_first = false;

@@ -112,20 +112,28 @@ std::vector<SurfaceSample> SurfaceSampler::draw(std::size_t position, const Tile
   return samples;
 }
 
+ZCurve::ZCurve(const BoundsD& box)
+    : corner_(box.min),
+      side_(std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z})) {}
+
+std::uint64_t ZCurve::place_of(Vec3d point) const {
+  constexpr double kCells = 0x1FFFFF;
+  const auto cell = [this](double from_corner) {
+    const double part = side_ > 0 ? std::clamp(from_corner / side_, 0.0, 1.0) : 0;
+    return spread_bits(static_cast<std::uint64_t>(part * kCells));
+  };
+  const Vec3d p = point - corner_;
+  return cell(p.x) | cell(p.y) << 1 | cell(p.z) << 2;
+}
+
 std::vector<std::uint32_t> curve_order(const std::vector<Vec3d>& points) {
   BoundsD box;
   for (Vec3d p : points)
     box.add(p);
-  const double side =
-      std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
-  const auto cell = [side](double from_min) {
-    return spread_bits(side > 0 ? static_cast<std::uint64_t>(from_min / side * 0x1FFFFF) : 0);
-  };
+  const ZCurve curve(box);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(points.size());
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const Vec3d p = points[i] - box.min;
-    keys[i] = {cell(p.x) | cell(p.y) << 1 | cell(p.z) << 2, i};
-  }
+  for (std::uint32_t i = 0; i < keys.size(); ++i)
+    keys[i] = {curve.place_of(points[i]), i};
   std::sort(keys.begin(), keys.end());
   std::vector<std::uint32_t> order(points.size());
   std::transform(keys.begin(), keys.end(), order.begin(),

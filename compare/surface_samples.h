@@ -1,6 +1,7 @@
 // Points that are spread evenly over the surface of a cut.
 #pragma once
 
+#include "base/bounds.h"
 #include "base/vec.h"
 #include "compare/cut_surface.h"
 
@@ -55,6 +56,20 @@ class SurfaceSampler {
   std::size_t last_ = 0;       ///< the last tile with any area
   std::uint64_t count_;
   std::uint64_t stream_;
+};
+
+/// A Z curve through a cube.
+class ZCurve {
+ public:
+  /// `box`: in the cube, at its least corner.
+  explicit ZCurve(const BoundsD& box);
+  /// Returns how far along the curve the cell of a point is, one of 2^63; beyond the cube, that of
+  /// the nearest cell. Requires finite coordinates.
+  std::uint64_t place_of(Vec3d point) const;
+
+ private:
+  Vec3d corner_;
+  double side_;
 };
 
 /// Returns the order of points along a Z curve through their box: neighbours in it are near each

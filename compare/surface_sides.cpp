@@ -155,8 +155,8 @@ void complete(const CutSurface& surface, TreeCache& trees,
   const std::vector<TileQuery> queries = other_tiles(surface, open, nearest);
   std::vector<Fan> fans(queries.size());
   look_up(trees, queries, cancel,
-          [&](const TriangleSearch& tree, std::size_t number, const TileQuery& query) {
-            fans[number] = fan_in(tree, open[query.point]->feature);
+          [&](const TileTree& tree, std::size_t number, const TileQuery& query) {
+            fans[number] = fan_in(tree.search, open[query.point]->feature);
           });
   for (std::size_t i = 0; i < queries.size(); ++i) {
     Fan& fan = open[queries[i].point]->fan;
@@ -183,18 +183,17 @@ std::vector<Side> surface_sides(const CutSurface& surface, TreeCache& trees,
     sides[point] = side_of(points[point], feature.point, normal);
   };
   OpenFans open(points.size());
-  look_up(trees, queries, cancel,
-          [&](const TriangleSearch& tree, std::size_t, const TileQuery& query) {
-            const std::uint32_t point = query.point;
-            const SurfaceTriangle& triangle = tree[nearest[point].triangle];
-            const Feature feature = feature_of(triangle, points[point]);
-            if (feature.count == 0)
-              return take(point, feature, cross_of(triangle));
-            Fan fan = fan_in(tree, feature);
-            if (is_closed(fan, feature))
-              return take(point, feature, pseudo_normal(fan, feature));
-            open[point] = std::make_unique<OpenFan>(OpenFan{feature, std::move(fan)});
-          });
+  look_up(trees, queries, cancel, [&](const TileTree& tree, std::size_t, const TileQuery& query) {
+    const std::uint32_t point = query.point;
+    const SurfaceTriangle& triangle = tree.search[nearest[point].triangle];
+    const Feature feature = feature_of(triangle, points[point]);
+    if (feature.count == 0)
+      return take(point, feature, cross_of(triangle));
+    Fan fan = fan_in(tree.search, feature);
+    if (is_closed(fan, feature))
+      return take(point, feature, pseudo_normal(fan, feature));
+    open[point] = std::make_unique<OpenFan>(OpenFan{feature, std::move(fan)});
+  });
   complete(surface, trees, nearest, open, cancel);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!open[i])

@@ -32,14 +32,13 @@ float reach_of(double squared) {
   return squared > 0 ? static_cast<float>(squared) + Float::min() : -1;
 }
 
-double squared_size(std::span<const SurfaceTriangle> triangles) {
+Bounds box_of(std::span<const SurfaceTriangle> triangles) {
   Bounds box;
   for (const SurfaceTriangle& triangle : triangles) {
     for (const Vec3f corner : triangle)
       box.add(corner);
   }
-  const Vec3d size = box.empty() ? Vec3d{} : to_double(box.max) - to_double(box.min);
-  return dot(size, size);
+  return box;
 }
 
 /// Boxes so large, squared, are told apart by floats, with room for farther points.
@@ -51,6 +50,11 @@ constexpr double kFarInSizes = 0x1p16;
 
 }  // namespace
 
+double squared_diagonal(const Bounds& box) {
+  const Vec3d size = box.empty() ? Vec3d{} : to_double(box.max) - to_double(box.min);
+  return dot(size, size);
+}
+
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
   const auto [a, b, c] = widest_first(triangle[0], triangle[1], triangle[2]);
   return squared_distance(point, TriangleFrame(a, b, c));
@@ -59,31 +63,76 @@ double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
 TriangleSearch::TriangleSearch(std::vector<SurfaceTriangle> triangles)
     : triangles_(std::move(triangles)),
       tree_(triangles_, kLeafSize),
-      squared_size_(squared_size(triangles_)) {}
+      squared_size_(squared_diagonal(box_of(triangles_))) {}
 
 std::uint64_t TriangleSearch::memory_bytes() const {
   return sizeof *this + size() * sizeof(SurfaceTriangle) + tree_.memory_bytes();
 }
 
+/// A squared distance beyond which no box is looked into; below 0: none is at all.
+struct TriangleSearch::Reach {
+  double squared;
+  float rounded;
+
+  explicit Reach(double within) : squared(within), rounded(reach_of(within)) {}
+};
+
+/// Calls offer(triangle) for those whose boxes are in reach, which it may lower.
+template <class Offer>
+void TriangleSearch::look_within(Vec3d point, const Reach& reach, const Offer& offer) const {
+  const auto look = [&](std::uint32_t leaf) { offer(tree_.triangles(leaf).front()); };
+  if (suits_floats(squared_size_) && reach.squared < kFarInSizes * squared_size_)
+    tree_.look_nearest(comparing::around(point), reach.rounded, look);
+  else
+    tree_.look_nearest(point, reach.squared, look);
+}
+
 double TriangleSearch::nearest(Vec3d point, double limit, std::uint32_t& hint) const {
   if (triangles_.empty())
     return limit;
-  float reach = reach_of(limit);
+  Reach reach(limit);
   const auto offer = [&](std::uint32_t triangle) {
     const double squared = squared_distance(point, triangles_[triangle]);
     if (squared < limit) {
       limit = squared;
-      reach = reach_of(squared);
+      reach = Reach(squared);
       hint = triangle;
     }
   };
   offer(hint);
-  const auto look = [&](std::uint32_t leaf) { offer(tree_.triangles(leaf).front()); };
-  if (suits_floats(squared_size_) && limit < kFarInSizes * squared_size_)
-    tree_.look_nearest(comparing::around(point), reach, look);
-  else if (limit > 0)
-    tree_.look_nearest(point, limit, look);
+  if (limit > 0)
+    look_within(point, reach, offer);
   return limit;
+}
+
+NearTriangle TriangleSearch::first_nearest(Vec3d point, double limit, std::uint32_t hint) const {
+  NearTriangle best{limit, TriangleTree::kNone};
+  if (triangles_.empty())
+    return {};
+  Reach reach(with_rounding(limit, squared_size_));
+  const auto offer = [&](std::uint32_t triangle) {
+    const double squared = squared_distance(point, triangles_[triangle]);
+    if (squared < best.squared)
+      reach = Reach(with_rounding(squared, squared_size_));
+    if (squared < best.squared || (squared == best.squared && triangle < best.triangle))
+      best = {squared, triangle};
+  };
+  offer(hint);
+  look_within(point, reach, offer);
+  return best.triangle == TriangleTree::kNone ? NearTriangle{} : best;
+}
+
+HitTriangle TriangleSearch::first_hit(const Ray& ray, double limit) const {
+  HitTriangle best{limit, TriangleTree::kNone};
+  tree_.look_nearest(ray, best.distance, [&](std::uint32_t leaf) {
+    const std::uint32_t triangle = tree_.triangles(leaf).front();
+    const auto& [a, b, c] = triangles_[triangle];
+    const auto distance = ray.hit(a, b, c);
+    if (distance &&
+        (*distance < best.distance || (*distance == best.distance && triangle < best.triangle)))
+      best = {*distance, triangle};
+  });
+  return best.triangle == TriangleTree::kNone ? HitTriangle{} : best;
 }
 
 std::vector<SurfaceTriangle> TriangleSearch::around(Vec3f corner) const {

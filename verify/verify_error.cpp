@@ -136,9 +136,9 @@ class Owners {
 
   std::uint32_t operator()(std::uint32_t triangle) const {
     std::uint32_t owner = own_;
-    if (triangle < tile_.interior_count)
+    if (triangle < tile_.facts.interior_count)
       return owner;
-    for (std::uint32_t position : tile_.touched[triangle - tile_.interior_count]) {
+    for (std::uint32_t position : tile_.touched[triangle - tile_.facts.interior_count]) {
       const auto other = static_cast<std::uint32_t>(direction_.shown_tile(position));
       if (bound(other) > bound(owner))
         owner = other;

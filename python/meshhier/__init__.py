@@ -40,6 +40,7 @@ from .objects import ObjectRow, ObjectTable
 from .packing import pack, unpack
 from .process import Progress, find_program
 from .program import build, clean, compare, draw, export, inspect, inspect_objects, page, plan, preview, progressive, reconstruct, task, task_status, verify, view
+from .queries import Hits, Nearest
 from .remote import CACHE_BYTES
 from .results import BuildPlan, Comparison, Leftover, TaskStatus, Verification
 from .tile import Tile
@@ -65,8 +66,8 @@ def open(path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cac
 
 
 __all__ = [
-    "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "InputError", "Leftover", "Mesh",
-    "NetworkError", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
+    "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "Hits", "InputError", "Leftover", "Mesh",
+    "Nearest", "NetworkError", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
     "StoppedBuildError", "TaskStatus", "Tile", "Tree", "UsageError", "Verification", "VerifyError", "__version__", "build", "clean", "compare", "draw", "export",
     "find_program", "inspect", "inspect_objects", "open", "pack", "page", "plan", "preview", "progressive", "reconstruct", "task", "task_status", "unpack", "verify", "view",
 ]  # fmt: skip

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .asked import length, whole
 from .boxes import Box
@@ -21,6 +21,7 @@ from .manifest import Scalar, read_manifest
 from .mesh import Mesh
 from .objects import ObjectTable
 from .polygons import Polygon
+from .queries import Hits, Nearest, nearest, rays
 from .region import Region
 from .remote import CACHE_BYTES, open_place
 from .tile import Tile, read_tile
@@ -209,6 +210,49 @@ class Hierarchy:
         that they touch. What is summed over triangles is summed over `iter_parts()`.
         """
         return map(self.read_tile, self.cut_nodes(error=error, level=level))
+
+    # Questions.
+
+    def nearest(
+        self,
+        points: ArrayLike,
+        *,
+        level: Optional[int] = None,
+        error: Optional[float] = None,
+        signed: bool = False,
+        memory_budget: Union[int, str, None] = None,
+    ) -> Nearest:
+        """The nearest place of the surface to each point, exactly, and its distance: millions of points are sorted, and tiles read, by
+        the program within a memory budget.
+
+        Args:
+            points: (n, 3), input coordinates; or one point.
+            level, error: the surface of a level, or of the coarsest tiles that are no farther than this from the original one, instead of
+                this. `bound` of the result says how far it is.
+            signed: distances are below 0 inside; takes longer.
+            memory_budget: bytes, or "2GiB"; 1 GiB if not given.
+
+        Of triangles that are equally near, the first one of the first tile is named. Raises UsageError, ReplacedError, ProgramError,
+        ProgramNotFoundError.
+        """
+        return nearest(self, points, level, error, signed, memory_budget)
+
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        level: Optional[int] = None,
+        error: Optional[float] = None,
+        memory_budget: Union[int, str, None] = None,
+    ) -> Hits:
+        """What each ray hits first, from either side of the surface; no ray slips through between two triangles.
+
+        Args:
+            origins, directions: (n, 3) each, input coordinates; or one of either for all rays. Directions have any length but 0.
+            level, error, memory_budget: as those of `nearest()`.
+        """
+        return rays(self, origins, directions, level, error, memory_budget)
 
     # Cuts.
 

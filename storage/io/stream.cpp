@@ -21,6 +21,14 @@ namespace {
 /// The longest wait before looking whether the job is cancelled.
 constexpr int kPatienceMilliseconds = 50;
 
+/// Waits until a descriptor is ready for `events`, or has failed.
+void wait_for(int descriptor, short events, const std::function<void()>& check) {
+  pollfd waiting{descriptor, events, 0};
+  do {
+    check();
+  } while (::poll(&waiting, 1, kPatienceMilliseconds) <= 0);
+}
+
 class PosixStream final : public File {
  public:
   PosixStream(std::filesystem::path path, int descriptor, std::shared_ptr<IoCounters> counters,
@@ -60,12 +68,7 @@ class PosixStream final : public File {
   }
 
  private:
-  void wait_until_ready() const {
-    pollfd waiting{descriptor_, POLLOUT, 0};
-    do {
-      check_();
-    } while (::poll(&waiting, 1, kPatienceMilliseconds) <= 0);
-  }
+  void wait_until_ready() const { wait_for(descriptor_, POLLOUT, check_); }
 
   int descriptor_;
   std::shared_ptr<IoCounters> counters_;
@@ -106,6 +109,17 @@ std::unique_ptr<File> open_posix_stream(const std::filesystem::path& path,
   if (!is_own && !is_stream(descriptor))
     throw Error(ErrorCode::io, fmt::format("cannot open {}: it has been replaced", path.string()));
   return stream;
+}
+
+std::size_t read_standard_input(std::span<std::byte> to, const std::function<void()>& check) {
+  for (;;) {
+    wait_for(STDIN_FILENO, POLLIN, check);
+    const ssize_t count = ::read(STDIN_FILENO, to.data(), to.size());
+    if (count >= 0)
+      return static_cast<std::size_t>(count);
+    if (errno != EINTR && errno != EAGAIN)
+      fail_system("read", "standard input", errno);
+  }
 }
 
 bool is_own_output(const std::filesystem::path& path) {

@@ -30,8 +30,8 @@ TEST_F(CommandLine, HelpTeaches) {
 }
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
-  for (const char* command : {"build", "inspect", "verify", "compare", "export", "preview", "draw",
-                              "progressive", "reconstruct", "serve"}) {
+  for (const char* command : {"build", "inspect", "verify", "compare", "query", "export", "preview",
+                              "draw", "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out,

@@ -3,7 +3,9 @@
 
 #include "base/error.h"
 #include "compare/cut_surface.h"
+#include "compare/surface_rays.h"
 #include "compare/surface_samples.h"
+#include "compare/tile_trees.h"
 #include "compare/triangle_search.h"
 #include "export/random_cut.h"
 #include "tests/support/meshes.h"
@@ -15,6 +17,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -306,14 +309,15 @@ TEST_F(SurfaceTest, BorderTrianglesNameTheTilesTheyTouch) {
     const CutSurface surface = surface_of(exporting::random_cut(tree(), seed));
     for (std::size_t i = 0; i < surface.size(); ++i) {
       const TileSurface tile = surface.load(i);
-      ASSERT_EQ(tile.interior_count + tile.touched.size(), tile.triangles.size());
+      ASSERT_EQ(tile.facts.interior_count + tile.touched.size(), tile.triangles.size());
       for (std::size_t t = 0; t < tile.touched.size(); ++t) {
         EXPECT_THAT(tile.touched[t], testing::Contains(i));
         for (std::size_t corner = 0; corner < 3; ++corner) {
           const NodeId node = surface.cut()[tile.touched[t][corner]];
           const TileMesh& mesh = sample_->tile(node).mesh;
           const auto own = std::span(mesh.vertices.positions).first(mesh.own_count);
-          EXPECT_THAT(own, testing::Contains(tile.triangles[tile.interior_count + t][corner]));
+          EXPECT_THAT(own,
+                      testing::Contains(tile.triangles[tile.facts.interior_count + t][corner]));
         }
       }
     }
@@ -460,6 +464,115 @@ TEST_F(SurfaceTest, DistancesAreExactForEveryCutAndCache) {
     EXPECT_THAT(distances, testing::Pointwise(testing::DoubleNear(kRounding), expected));
     EXPECT_EQ(rich.distances(points, execution::CancelToken()), distances);
     EXPECT_EQ(rich.distances(points, execution::CancelToken()), distances) << "from the cache";
+  }
+}
+
+/// What trying all triangles finds: the least number, and its first triangle.
+template <class Found, class Measure>
+Found first_of_all(const CutSurface& surface, Found best, const Measure& measure) {
+  for (std::uint32_t tile = 0; tile < surface.size(); ++tile) {
+    const TileSurface triangles = surface.load(tile);
+    for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
+      measure(triangles.triangles[i], tile, i, best);
+  }
+  return best;
+}
+
+NearestOnSurface first_nearest_of_all(const CutSurface& surface, Vec3d point) {
+  return first_of_all(surface, NearestOnSurface{},
+                      [&](const SurfaceTriangle& triangle, std::uint32_t tile, std::uint32_t i,
+                          NearestOnSurface& best) {
+                        const double squared = squared_distance(point, triangle);
+                        if (squared < best.squared)
+                          best = {squared, tile, i};
+                      });
+}
+
+HitOnSurface first_hit_of_all(const CutSurface& surface, const Ray& ray) {
+  return first_of_all(surface, HitOnSurface{},
+                      [&](const SurfaceTriangle& triangle, std::uint32_t tile, std::uint32_t i,
+                          HitOnSurface& best) {
+                        const auto hit = ray.hit(triangle[0], triangle[1], triangle[2]);
+                        if (hit && *hit < best.distance)
+                          best = {*hit, tile, i};
+                      });
+}
+
+/// Meshes with many equally near triangles: at corners, in duplicates, in a grid.
+std::vector<tests::TestMesh> meshes_with_ties() {
+  return {tests::torus(700, 0.02F), tests::duplicates(600), tests::open_grid(15, 15),
+          tests::non_manifold(500), tests::soup(300)};
+}
+
+TEST_F(SurfaceTest, TheFirstOfNearestTrianglesIsThatOfTryingAll) {
+  for (const tests::TestMesh& mesh : meshes_with_ties()) {
+    write(mesh, {7, 40, false, false, {}});
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      const CutSurface surface = surface_of(exporting::random_cut(tree(), seed));
+      auto points = points_around(surface);
+      for (const Vec3f corner : mesh.positions)
+        points.push_back(to_double(corner));
+      SurfaceDistance search(surface, seed == 0 ? 0 : 1 << 22);
+      const auto found = search.nearest(points, execution::CancelToken(), Ties::first);
+      std::ranges::reverse(points);
+      const auto reversed = search.nearest(points, execution::CancelToken(), Ties::first);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const NearestOnSurface expected = first_nearest_of_all(surface, points[i]);
+        for (const NearestOnSurface& one : {reversed[i], found[points.size() - 1 - i]}) {
+          ASSERT_EQ(one.squared, expected.squared);
+          ASSERT_EQ(std::pair(one.tile, one.triangle), std::pair(expected.tile, expected.triangle));
+        }
+      }
+    }
+  }
+}
+
+TEST_F(SurfaceTest, TheFirstHitOfARayIsThatOfTryingAll) {
+  for (const tests::TestMesh& mesh : meshes_with_ties()) {
+    write(mesh, {7, 40, false, false, {}});
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      const CutSurface surface = surface_of(exporting::random_cut(tree(), seed));
+      std::vector<Ray> rays;
+      for (const Vec3d target : points_around(surface)) {
+        const Vec3d from = noise_point(rays.size(), 51) * 4, way = target - from;
+        rays.push_back({from, way * (1 / length(way))});
+      }
+      for (const Vec3f corner : mesh.positions)
+        rays.push_back({to_double(corner) + Vec3d{0, 0, 3}, {0, 0, -1}});
+      TreeCache trees(surface, seed == 0 ? 0 : 1 << 22);
+      const auto found = SurfaceRays(surface, trees).first_hits(rays, execution::CancelToken());
+      std::size_t hits = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const HitOnSurface expected = first_hit_of_all(surface, rays[i]);
+        ASSERT_EQ(found[i].distance, expected.distance);
+        ASSERT_EQ(std::pair(found[i].tile, found[i].triangle),
+                  std::pair(expected.tile, expected.triangle));
+        hits += expected.is_there() ? 1 : 0;
+      }
+      EXPECT_GT(hits, 20U);
+    }
+  }
+}
+
+TEST_F(SurfaceTest, TrianglesAreNamedByTheirNumbersInTheTile) {
+  write(tests::torus(900), {6, 30, false, false, {}});
+  const CutSurface surface = original();
+  TreeCache trees(surface, 1 << 20);
+  for (std::uint32_t tile = 0; tile < surface.size(); ++tile) {
+    const TileMesh& mesh = sample_->tile(surface.cut()[tile]).mesh;
+    std::vector<TriangleOfTile> named(surface.load(tile).triangles.size() + 1);
+    for (std::uint32_t i = 0; i + 1 < named.size(); ++i)
+      named[i] = {tile, i};
+    const auto shown = shown_triangles(trees, surface.size(), named, execution::CancelToken());
+    for (std::size_t i = 0; i + 1 < named.size(); ++i) {
+      const std::size_t number = shown[i].number_in_tile;
+      ASSERT_LT(number, mesh.interior.size() + mesh.border.size());
+      const TileTriangle& triangle = number < mesh.interior.size()
+                                         ? mesh.interior[number]
+                                         : mesh.border[number - mesh.interior.size()];
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        EXPECT_EQ(shown[i].corners[corner], mesh.vertices.positions[raw(triangle[corner])]);
+    }
   }
 }
 
