@@ -1,4 +1,4 @@
-# Installs what the program prints. Given: `program`, and `made`, a directory for it.
+# Installs what the program prints. Given: `program`, with an emulator before it if need be, and `made`, a directory for it.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(zsh_folder vendor-completions)  # where Debian's zsh looks for those of packages
 else()
@@ -6,7 +6,7 @@ else()
 endif()
 
 function(install_printed folder name)
-  execute_process(COMMAND "${program}" ${ARGN} OUTPUT_FILE "${made}/${name}" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${program} ${ARGN} OUTPUT_FILE "${made}/${name}" COMMAND_ERROR_IS_FATAL ANY)
   file(INSTALL DESTINATION "${CMAKE_INSTALL_PREFIX}/share/${folder}" TYPE FILE FILES "${made}/${name}")
 endfunction()
 

@@ -1,12 +1,38 @@
 # shellcheck shell=bash
-# For scripts to source: the programs in build/release and the viewer's page. To be sourced at the root.
+# For scripts to source: the programs in build/release, or for another machine, and the viewer's page. To be sourced at the root.
 
+preset=release
 release=build/release
 page=viewer/dist/page
+machine=$(uname -m)  # for which the programs are
+sysroot=             # its libraries lie below this
+emulator=()          # runs its programs here
+
+# From here on programs are for the machine $1, as uname or Debian names it: this one's, or ARM64 where this is x86-64.
+build_for() {
+  local asked=${1/#amd64/x86_64}
+  asked=${asked/#arm64/aarch64}
+  [[ $asked != "$machine" ]] || return 0
+  [[ $asked == aarch64 && $machine == x86_64 ]] || {
+    echo "on $machine no programs for $1 are made" >&2
+    return 1
+  }
+  machine=aarch64 preset=arm64 release=build/arm64 sysroot=$PWD/build/sysroot-arm64
+  emulator=(qemu-aarch64-static -L "$sysroot")
+  if [[ ! -d $sysroot ]] || ! command -v aarch64-linux-gnu-g++ >/dev/null || ! command -v qemu-aarch64-static >/dev/null; then
+    echo "what makes programs for ARM64 is not there: run scripts/install_dependencies arm64" >&2
+    return 1
+  fi
+}
+
+# Runs a program that was built.
+run_program() {
+  "${emulator[@]}" "$release/$1" "${@:2}"
+}
 
 # Builds the targets that are given. Uses what is built already; a build that was set up in another way stays so.
 build_program() {
-  [[ -f $release/CMakeCache.txt ]] || cmake --preset release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
+  [[ -f $release/CMakeCache.txt ]] || cmake --preset "$preset" -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
   cmake --build "$release" --target "$@"
 }
 

@@ -2,7 +2,7 @@
 //
 //   bin/NAME                        this, linked statically: it runs where there is no loader
 //   lib/meshhier/NAME               the program
-//   lib/meshhier/ld-linux-x86-64.so.2, *.so.*
+//   lib/meshhier/ld-linux-*.so.*, *.so.*      MESHHIER_LOADER is the loader's name
 //   share/meshhier/proj             what PROJ knows of maps
 //
 // The program finds itself by MESHHIER_PROGRAM: what runs is the loader.
@@ -62,7 +62,7 @@ int main(int count, char** words) {
   const std::string libraries = root + "/lib/meshhier";
   if (libraries.find_first_of(":;") != std::string::npos)
     fail(root + ": unpack it into a folder without ':' and ';' in its path");
-  const std::string loader = libraries + "/ld-linux-x86-64.so.2";
+  const std::string loader = libraries + "/" MESHHIER_LOADER;
   const std::string program = libraries + own.substr(own.rfind('/'));
   const std::string name = count > 0 ? words[0] : own;
   ::setenv("MESHHIER_PROGRAM", own.c_str(), 1);
