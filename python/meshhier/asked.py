@@ -7,7 +7,7 @@ import math
 import numbers
 import operator
 import os
-import tempfile
+import secrets
 from contextlib import contextmanager
 from typing import BinaryIO, Iterator
 
@@ -43,13 +43,14 @@ def new_file(path: str | os.PathLike[str], force: bool) -> Iterator[BinaryIO]:
         with open(place, "wb") as stream:
             yield stream
         return
-    handle, made = tempfile.mkstemp(dir=os.path.dirname(place), prefix=f".{os.path.basename(place)}.")
+    made = os.path.join(os.path.dirname(place), f".{os.path.basename(place)[:200]}.{secrets.token_hex(4)}")
     try:
-        with open(handle, "wb") as file:
+        file = open(made, "xb")
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, os.fspath(path)) from None
+    try:
+        with file:
             yield file
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(made, 0o666 & ~mask)
         os.replace(made, place)
     except BaseException:
         os.unlink(made)

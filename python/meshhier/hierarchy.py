@@ -41,8 +41,9 @@ class Hierarchy:
     """
 
     def __init__(self, path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> None:
-        self._asked = os.fspath(path), headers, cache_bytes
-        self.path, self._files = open_place(*self._asked)
+        asked = os.fspath(path)
+        self._place = (asked if is_web_address(asked) else os.path.abspath(asked)), headers, cache_bytes
+        self.path, self._files = open_place(asked, headers, cache_bytes)
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
         facts = self._manifest.json.get("objects")
         self._objects = self._open_objects(facts, "objects.bin", self._open_objects(facts.get("words"), "object_words.bin")) if facts else None
@@ -60,8 +61,8 @@ class Hierarchy:
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._files.require_open()
-        place, *how = self._asked
-        return _reopened, (type(self), self._manifest.build, place if is_web_address(place) else os.path.abspath(place), *how)
+        place, *how = self._place
+        return _reopened, (type(self), self._manifest.build, place, *how)
 
     def close(self) -> None:
         """Closes it. Nothing can be read any more: UsageError."""

@@ -22,6 +22,7 @@ _Bools = NDArray[np.bool_]
 _Floats = NDArray[np.float64]
 _Point = tuple[Fraction, Fraction]
 _MOST_BYTES = 64 << 20  # of a file
+_FARTHEST = 1e100  # of coordinates, whose products are finite
 _EPSILON = 2.0**-53
 _TURN_ROUNDING = (3 + 16 * _EPSILON) * _EPSILON  # Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, section 4.3
 _SAFE = 1e6  # so many times the rounding is no rounding
@@ -85,6 +86,8 @@ class _GeoJson:
             raise self.fail("a position is no list of numbers") from None
         if not np.isfinite(ring).all():
             raise self.fail("a position is not finite")
+        if (np.abs(ring) > _FARTHEST).any():
+            raise self.fail(f"a position is farther away than {_FARTHEST}")
         if len(ring) > 1 and (ring[0] == ring[-1]).all():
             ring = ring[:-1]
         if len(ring) < 3:

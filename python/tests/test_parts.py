@@ -195,7 +195,7 @@ def test_polygons_come_in_many_forms(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "polygon",
-    [[(0, 0), (1, 1)], [(0, 0), (1, 0), (0, float("nan"))], [1, 2, 3], 5, "nowhere.geojson", {"type": "Point", "coordinates": [0, 0]}, {"a": 1}, {"type": "Polygon", "coordinates": 7}, b"x", [(0, 0), (1, 0), ("a", 1)]],
+    [[(0, 0), (1, 1)], [(0, 0), (1, 0), (0, float("nan"))], [(0, 0), (1e308, 0), (0, 1e308)], [1, 2, 3], 5, "nowhere.geojson", {"type": "Point", "coordinates": [0, 0]}, {"a": 1}, {"type": "Polygon", "coordinates": 7}, b"x", [(0, 0), (1, 0), ("a", 1)]],
 )  # fmt: skip
 def test_what_is_no_polygon_is_refused(polygon: Any, torus: str, built: Any) -> None:
     with pytest.raises(meshhier.UsageError, match="polygon|GeoJSON|geojson"):
