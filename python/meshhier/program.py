@@ -71,7 +71,7 @@ def _maker(function: Callable[Concatenate[Place, Optional[Path], Options], MadeF
 
 def _place(place: Place) -> str:
     try:
-        return path_word(place._asked[0] if isinstance(place, Hierarchy) else place)
+        return path_word(place._place[0] if isinstance(place, Hierarchy) else place)
     except ValueError as error:
         raise UsageError(f"expected {error}, found {place!r}") from None
 
@@ -82,7 +82,7 @@ def _listeners(given: Mapping[str, Any]) -> Listeners:
 
 def _run(command: str, places: Sequence[Place], given: Mapping[str, Any], *further: str, **how: Any) -> Result:
     """Runs a command with the keywords of a call."""
-    known = next((place._asked[1] for place in places if isinstance(place, Hierarchy)), None)
+    known = next((place._place[1] for place in places if isinstance(place, Hierarchy)), None)
     given = {**given, "headers": given.get("headers") or known}
     with Files() as files:
         words = [command, *(_place(place) for place in places), *further, *option_words(command, given, files)]
