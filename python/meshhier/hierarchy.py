@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .asked import length, whole
 from .boxes import Box
 from .checksum import checksum
-from .cut import FEW_TILES, MANY_TILES, CutPieces
-from .errors import CorruptError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
+from .errors import CorruptError, NetworkError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
 from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
@@ -86,7 +85,7 @@ class Hierarchy:
     def _is_replaced(self) -> bool:
         try:
             now = read_manifest(self._files.read("hierarchy.json"), self.path)
-        except (CorruptError, NotAHierarchyError, OSError):
+        except (CorruptError, NetworkError, NotAHierarchyError, OSError):
             return False  # then what failed says why
         return now.build != self._manifest.build
 

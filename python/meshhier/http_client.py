@@ -200,9 +200,7 @@ class HttpClient:
                 return response, connection, origin
             response.close()
             connection.close()
-            url = urllib.parse.urljoin(url, target)
-            if not is_web_address(url):
-                raise NetworkError(f"{address.shown}: the host leads to something that is not on the web")
+            url = _led_to(address, url, target)
         raise NetworkError(f"{address.shown}: the host leads on and on, {_MOST_REDIRECTS} times")
 
     def _secrets(self, address: Address, parts: urllib.parse.SplitResult, is_own: bool) -> dict[str, str]:
@@ -240,6 +238,16 @@ class HttpClient:
                 if is_new:
                     raise _failure(address, error) from None
                 # else the host had closed a connection that was kept: the next one is new, or kept as well
+
+
+def _led_to(address: Address, url: str, target: str) -> str:
+    """Where a redirect leads."""
+    try:
+        led = urllib.parse.urljoin(url, target)
+        _split(led)
+        return led
+    except (UsageError, ValueError):
+        raise NetworkError(f"{address.shown}: the host leads to something that is not on the web") from None
 
 
 def _user_in_netrc(address: Address, host: str) -> Optional[tuple[str, str]]:

@@ -39,8 +39,14 @@ def _context() -> ssl.SSLContext:
 def _proxy_of(origin: Origin) -> Optional[urllib.parse.SplitResult]:
     """The proxy of `https_proxy` and the like."""
     scheme, host, port = origin
-    proxy = None if urllib.request.proxy_bypass(f"{host}:{port}") else urllib.request.getproxies().get(scheme)
-    return urllib.parse.urlsplit(proxy if "://" in proxy else f"http://{proxy}") if proxy else None
+    known = {} if urllib.request.proxy_bypass(f"{host}:{port}") else urllib.request.getproxies()
+    proxy = known.get(scheme) or known.get("all")
+    if not proxy:
+        return None
+    parts = urllib.parse.urlsplit(proxy if "://" in proxy else f"http://{proxy}")
+    if parts.scheme != "http":
+        raise NetworkError(f"the proxy for {scheme} is a {parts.scheme} one; http ones can be used: set {scheme}_proxy or no_proxy")
+    return parts
 
 
 class Connections:

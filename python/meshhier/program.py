@@ -33,7 +33,7 @@ from .http_client import Headers
 from .objects import ObjectRow
 from .options import Files, option_words, path_word
 from .polygons import Polygon
-from .process import Listeners, Progress, ProgressCallback, Result, TextCallback, find_program, run_program
+from .process import Listeners, ProgressCallback, Result, TextCallback, find_program, run_program
 from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Verification, comparison, record, verification
 
 Path = Union[str, "os.PathLike[str]"]

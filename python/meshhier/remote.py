@@ -178,9 +178,8 @@ class RemoteFolder:
 
     def __init__(self, place: Web) -> None:
         self._web, self._path = place, place.shown
-        self._client, self._blocks = HttpClient(place.headers), Blocks(place.cache_bytes)
-        self._process, self._is_closed = os.getpid(), False
-        self._known: dict[str, RemoteFile] = {}
+        self._is_closed = False
+        self._connect()
         self._manifest: Optional[bytes] = None
         try:
             self._manifest = self.read("hierarchy.json")
@@ -188,6 +187,10 @@ class RemoteFolder:
             raise NotAHierarchyError(f"{self._path}: there is no hierarchy.json on the host") from None
         if self._manifest.lstrip()[:1] != b"{":
             raise NotAHierarchyError(f"{self._path}: the host sends something else than a hierarchy.json; is this the address of the directory NAME.hier?")
+
+    def _connect(self) -> None:
+        self._client, self._blocks, self._process = HttpClient(self._web.headers), Blocks(self._web.cache_bytes), os.getpid()
+        self._known: dict[str, RemoteFile] = {}
 
     def __reduce__(self) -> tuple[Any, ...]:
         self.require_open()
@@ -214,8 +217,7 @@ class RemoteFolder:
         if self._is_closed:
             raise closed(self._path)
         if self._process != os.getpid():  # processes that share a connection get each other's answers
-            self._client, self._process = HttpClient(self._web.headers), os.getpid()
-            self._known.clear()
+            self._connect()
 
     def close(self) -> None:
         self._is_closed = True

@@ -411,7 +411,7 @@ def test_redirects_take_no_secret_to_another_host(host: Host, root: Path, tmp_pa
     assert [path for path, _ in host.requests][:2] == ["/a.3tz", "/b/a.3tz"] and all(headers["X-Key"] == "k" for _, headers in host.requests)
 
 
-@pytest.mark.parametrize("target, match", [("/a.3tz", "on and on"), ("file:///etc/passwd", "not on the web"), ("ftp://127.0.0.1/a.3tz", "not on the web")])
+@pytest.mark.parametrize("target, match", [("/a.3tz", "on and on"), ("file:///etc/passwd", "not on the web"), ("ftp://127.0.0.1/a.3tz", "not on the web"), ("http://[", "not on the web")])
 def test_redirects_that_lead_nowhere(target: str, match: str, host: Host) -> None:
     host.reply = status(302, Location=target)
     with pytest.raises(meshhier.NetworkError, match=match):
@@ -465,7 +465,22 @@ def test_proxies(host: Host, root: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert host.requests[0][1]["Host"].startswith("models.invalid") and host.requests[0][1]["Proxy-Authorization"].startswith("Basic ")
 
 
+def test_proxies_of_other_kinds(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("all_proxy", "socks5://127.0.0.1:1")
+    with pytest.raises(meshhier.NetworkError, match="socks5.*no_proxy"):
+        meshhier.open(f"{host.address}/a.3tz")
+    monkeypatch.setenv("no_proxy", "127.0.0.1")
+    meshhier.open(f"{host.address}/a.3tz")
+
+
 # Uses.
+
+
+@pytest.mark.parametrize("name", ["a.hier", "gzip.hier"])
+def test_files_that_are_larger_than_the_first_part(name: str, host: Host, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "_START", 1000)
+    with meshhier.open(f"{host.address}/{name}") as web, meshhier.open(root / name) as disk:
+        assert same(web.cut(level=1), disk.cut(level=1))
 
 
 def test_they_can_be_pickled(host: Host, own: Host) -> None:
