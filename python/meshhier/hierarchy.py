@@ -43,6 +43,13 @@ class Hierarchy:
         asked = os.fspath(path)
         self._place = (asked if is_web_address(asked) else os.path.abspath(asked)), headers, cache_bytes
         self.path, self._files = open_place(asked, headers, cache_bytes)
+        try:
+            self._read_facts()
+        except BaseException:
+            self._files.close()
+            raise
+
+    def _read_facts(self) -> None:
         self._manifest = read_manifest(self._files.read("hierarchy.json"), self.path)
         facts = self._manifest.json.get("objects")
         self._objects = self._open_objects(facts, "objects.bin", self._open_objects(facts.get("words"), "object_words.bin")) if facts else None

@@ -63,7 +63,7 @@ class Result:
         output: its standard output.
         said: lines of its standard error that are for people.
         failure: why it failed, by --progress json.
-        summary: the result, by the same.
+        summary: the result, by the same: of a build its output.
     """
 
     code: int = 0
@@ -203,6 +203,10 @@ def _hear(line: str, result: Result, listeners: Listeners, told: Warnings) -> No
         told.tell(str(event["message"]))
     elif kind == "finish":
         result.summary = str(event.get("summary", ""))
+    elif kind in ("up_to_date", "outdated"):
+        message = str(event["message"])
+        result.said.append(message + "\n")
+        result.summary = str(event.get("output", message.removesuffix(" is up to date"))) if kind == "up_to_date" else ""
     elif listeners.progress is not None and "stage" in event:
         listeners.progress(_progress(event))
 

@@ -154,6 +154,13 @@ class RemoteArchive(Archive):
 
     def _read_directory(self) -> zipfile.ZipFile:
         self._client = HttpClient(self._web.headers)
+        try:
+            return self._archive_on_host()
+        except BaseException:
+            self._client.close()
+            raise
+
+    def _archive_on_host(self) -> zipfile.ZipFile:
         address = Address(self._web.address, self._web.shown)
         start = self._client.get(address, 0, BLOCK)
         if start is None:
@@ -182,11 +189,19 @@ class RemoteFolder:
         self._connect()
         self._manifest: Optional[bytes] = None
         try:
-            self._manifest = self.read("hierarchy.json")
+            self._manifest = self._first_manifest()
+        except BaseException:
+            self._client.close()
+            raise
+
+    def _first_manifest(self) -> bytes:
+        try:
+            manifest = self.read("hierarchy.json")
         except CorruptError:
             raise NotAHierarchyError(f"{self._path}: there is no hierarchy.json on the host") from None
-        if self._manifest.lstrip()[:1] != b"{":
+        if manifest.lstrip()[:1] != b"{":
             raise NotAHierarchyError(f"{self._path}: the host sends something else than a hierarchy.json; is this the address of the directory NAME.hier?")
+        return manifest
 
     def _connect(self) -> None:
         self._client, self._blocks, self._process = HttpClient(self._web.headers), Blocks(self._web.cache_bytes), os.getpid()

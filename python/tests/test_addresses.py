@@ -202,6 +202,17 @@ def test_where_there_is_none(name: str, host: Host) -> None:
         meshhier.open(f"{host.address}/{name}")
 
 
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_nothing_stays_open_where_opening_fails(name: str, own: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[http_client.HttpClient] = []
+    monkeypatch.setattr(http_client.HttpClient, "close", lambda self: closed.append(self))
+    (own.root / "a.3tz").write_bytes(bytes(100_000))
+    (own.root / "a.hier" / "tiles.bin").write_bytes(b"")
+    with pytest.raises(meshhier.Error):
+        meshhier.open(f"{own.address}/{name}")
+    assert closed
+
+
 def test_pages_for_everything_are_no_hierarchies(host: Host) -> None:
     host.reply = status(200)
     with pytest.raises(meshhier.NotAHierarchyError, match="something else"):

@@ -8,6 +8,7 @@ import io
 import json
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -257,8 +258,12 @@ def test_a_build_that_is_there_already_is_done(torus: str, tmp_path: Path) -> No
     before = os.stat(tmp_path / "a.hier" / "hierarchy.json").st_ino
     assert meshhier.build(torus, tmp_path / "a.hier", update=True).triangles == first.triangles
     assert os.stat(tmp_path / "a.hier" / "hierarchy.json").st_ino == before
-    meshhier.build(torus, tmp_path / "a.hier", update=True, settings={"partition.vertices": 700})
+    told: list[str] = []
+    meshhier.build(torus, tmp_path / "a.hier", update=True, settings={"partition.vertices": 700}, account=told.append)
+    assert "partition.vertices" in told[0] and "made " in told[0]
     assert os.stat(tmp_path / "a.hier" / "hierarchy.json").st_ino != before
+    shutil.copy(torus, tmp_path / "scan.ply")
+    assert [meshhier.build(tmp_path / "scan.ply", update=True).path for _ in range(2)] == [str(tmp_path / "scan.hier")] * 2
 
 
 def test_a_stopped_build_of_another_config(large: str, tmp_path: Path) -> None:
