@@ -116,7 +116,7 @@ async function checkHand(visitor) {
   visitor.check('colours', await until(page, async () => page.url().includes('by=') && (await ends.first().isVisible())), (await ends.evaluateAll((inputs) => inputs.map(({ value }) => value))).join(' to '));
   await ends.last().fill('20');
   await ends.last().press('Enter');
-  visitor.check('range in the link', await until(page, async () => /between=[\d.]+%2C20(&|$)/.test(page.url())), page.url().replace(/.*&by/, 'by'));
+  visitor.check('range in the link', await until(page, async () => /between=[\d.]+,20(&|$)/.test(decodeURIComponent(page.url()))), page.url().replace(/.*&by/, 'by'));
   await settle(page);
   await visitor.picture(page, 'colours');
   await checkLink(visitor, page, name);

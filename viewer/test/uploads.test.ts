@@ -22,11 +22,18 @@ describe('Uploads', () => {
     const textures = [texture(LARGE), texture(LARGE), texture(LARGE)];
     uploads.add(1, textures.slice(0, 2));
     uploads.add(2, textures.slice(2));
-    expect([uploads.step(device), uploads.awaits(1), uploads.awaits(2)]).toEqual([true, true, true]);
-    expect([uploads.step(device), uploads.awaits(1), uploads.awaits(2)]).toEqual([true, false, true]);
-    expect([uploads.step(device), uploads.awaits(1), uploads.awaits(2)]).toEqual([false, false, false]);
+    expect([uploads.step(device, true), uploads.awaits(1), uploads.awaits(2)]).toEqual([true, true, true]);
+    expect([uploads.step(device, true), uploads.awaits(1), uploads.awaits(2)]).toEqual([true, false, true]);
+    expect([uploads.step(device, true), uploads.awaits(1), uploads.awaits(2)]).toEqual([false, false, false]);
     expect(device.uploaded).toEqual(textures);
-    expect(uploads.step(device)).toBe(false);
+    expect(uploads.step(device, true)).toBe(false);
+  });
+
+  it('gives more of them while the camera rests', () => {
+    const [uploads, device] = [new Uploads(), new Device()];
+    uploads.add(1, [texture(LARGE), texture(LARGE), texture(LARGE)]);
+    expect(uploads.step(device, false)).toBe(true);
+    expect(device.uploaded).toHaveLength(2);
   });
 
   it('gives several small ones, and none of a tile that has gone', () => {
@@ -35,7 +42,7 @@ describe('Uploads', () => {
     uploads.add(1, Array.from({ length: 20 }, () => texture(SMALL)));
     uploads.add(2, [gone]);
     uploads.forget(2);
-    expect(uploads.step(device)).toBe(false);
+    expect(uploads.step(device, true)).toBe(false);
     expect(device.uploaded).toHaveLength(20);
     expect(device.uploaded).not.toContain(gone);
     expect(uploads.awaits(1)).toBe(false);

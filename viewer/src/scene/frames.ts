@@ -46,7 +46,7 @@ export class Frames {
     this.wasMoving = motion.isMoving;
     if (!isDue) return false;
     const isDirty = context.takeFrame();
-    if (context.tiles.upload()) context.wake();
+    if (context.tiles.upload(motion.isMoving)) context.wake();
     this.viewpoint = viewpointOf(camera, context.tiles, viewport);
     this.pixels = viewport.width * viewport.height;
     const isElse = this.refine(this.viewpoint, now);

@@ -90,8 +90,8 @@ export class TileScene extends Group {
   }
 
   /// Brings pictures to the GPU, as many as go in a frame. Returns whether there are more.
-  upload(): boolean {
-    return this.renderer !== null && this.uploads.step(this.renderer);
+  upload(isMoving: boolean): boolean {
+    return this.renderer !== null && this.uploads.step(this.renderer, isMoving);
   }
 
   /// Resolves once tiles with normal maps and without can be drawn at once.

@@ -3,8 +3,9 @@
 // several times as long.
 import type { Texture, WebGLRenderer } from 'three';
 
-/// So many texels go in one frame, but for one texture that has more: a phone takes some milliseconds for as many.
-const FRAME_TEXELS = 2 ** 19;
+/// So many texels go in one frame, but for one texture that has more: a phone takes some milliseconds for as many. While the camera rests a frame
+/// may take longer: nothing is seen to move.
+const FRAME_TEXELS = { moving: 2 ** 19, resting: 2 ** 21 };
 
 interface WaitingTexture {
   readonly key: number;
@@ -35,13 +36,14 @@ export class Uploads {
   }
 
   /// Uploads what goes in one frame, first what came first. Returns whether anything is left.
-  step(renderer: Pick<WebGLRenderer, 'initTexture'>): boolean {
+  step(renderer: Pick<WebGLRenderer, 'initTexture'>, isMoving: boolean): boolean {
+    const most = FRAME_TEXELS[isMoving ? 'moving' : 'resting'];
     for (let texels = 0; this.queue.length > 0; ) {
       const [{ texture }] = this.queue;
       texels += texelsOf(texture);
       renderer.initTexture(texture);
       this.queue.shift();
-      if (this.queue.length > 0 && texels + texelsOf(this.queue[0].texture) > FRAME_TEXELS) break;
+      if (this.queue.length > 0 && texels + texelsOf(this.queue[0].texture) > most) break;
     }
     return this.queue.length > 0;
   }
