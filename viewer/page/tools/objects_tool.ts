@@ -16,6 +16,7 @@ import { ObjectTree } from './object_tree.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
+import './objects.css';
 
 const AGAIN = 500; // milliseconds between two taps that are one
 const NEAR = 0.06; // of half a picture, between their places
