@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .asked import length, whole
 from .boxes import Box
 from .checksum import checksum
+from .cut import FEW_TILES, MANY_TILES, CutPieces
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
 from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
