@@ -112,7 +112,7 @@ class Hierarchy:
                 "/files/david.hier"; "": nowhere.
             size: bytes of the cell's output, at the most.
 
-        Raises UsageError if not even the root fits, ProgramNotFoundError if there is no viewer.
+        Raises UsageError if not even the root fits, ProgramNotFoundError if there is no viewer, ReplacedError, CorruptError.
         """
         from .cell import make_cell
 

@@ -138,6 +138,16 @@ def test_a_link_is_all_that_is_asked(model: str, viewer: str) -> None:
                 hierarchy.show(link=address)
 
 
+def test_a_hierarchy_that_was_replaced_is_not_shown(built: Build, torus: str, model: str, tmp_path: Path) -> None:
+    path = tmp_path / "shown.hier"
+    shutil.copytree(model, path)
+    with meshhier.open(path) as hierarchy:
+        shutil.rmtree(path)
+        shutil.copytree(built(torus, "other.hier", partition__vertices=500), path)
+        with pytest.raises(meshhier.ReplacedError):
+            hierarchy.show()
+
+
 def test_without_a_viewer_it_is_text(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("meshhier.viewer_files._folders", lambda: iter([]))
     with meshhier.open(model) as hierarchy:
