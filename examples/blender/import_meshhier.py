@@ -177,6 +177,7 @@ def make_object(hierarchy: Any, cut: Any, name: str) -> tuple[Any, int]:
     set_texcoords(mesh, cut.texcoords, cut.triangles, bool(cut.images))
     set_attributes(mesh, cut)
     unread = set_materials(mesh, cut, Look(hierarchy, cut.colours is not None), name)
+    mesh.validate(clean_customdata=False)  # as Blender's own importers: simplified surfaces may have two faces of the same corners
     set_normals(mesh, cut.normals)
     return bpy.data.objects.new(name, mesh), unread
 
@@ -217,7 +218,7 @@ class ImportHierarchy(bpy.types.Operator, ImportHelper):
         try:
             with meshhier.open(path) as hierarchy:
                 self.add(context, hierarchy, hierarchy.cut(**self.wanted(hierarchy)), path)
-        except (meshhier.Error, OSError) as error:
+        except (meshhier.Error, OSError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
@@ -229,6 +230,8 @@ class ImportHierarchy(bpy.types.Operator, ImportHelper):
         return {"error": self.error, **box} if self.by == "ERROR" else box
 
     def add(self, context: Any, hierarchy: Any, cut: Any, path: str) -> None:
+        if self.use_box and len(cut.triangles) == 0:
+            raise ValueError(f"{path}: no triangle touches the box; the model is from {hierarchy.bounds[0]} to {hierarchy.bounds[1]}")
         name = os.path.splitext(os.path.basename(path.rstrip("/")))[0]
         made, unread = make_object(hierarchy, cut, name)
         set_facts(made, hierarchy, os.path.abspath(path))
@@ -236,7 +239,7 @@ class ImportHierarchy(bpy.types.Operator, ImportHelper):
         context.collection.objects.link(made)
         context.view_layer.objects.active = made
         made.select_set(True)
-        self.report({"INFO"}, f"{name}: {len(cut.triangles)} triangles of {len(cut.tiles)} tiles")
+        self.report({"INFO"}, f"{name}: {len(made.data.polygons)} triangles of {len(cut.tiles)} tiles")
         if unread:
             self.report({"WARNING"}, f"{unread} pictures are in KTX2, which Blender does not read: build the hierarchy with texture.format jpeg, png or webp")
 

@@ -182,9 +182,11 @@ def check_pictures() -> None:
 
 
 def check_errors() -> None:
-    for path, words in ((WORK / "none.3tz", "no such file"), (WORK / "torus.ply", "archive")):
+    away = {"by": "ORIGINAL", "use_box": True, "low": (1e3, 1e3, 1e3), "high": (2e3, 2e3, 2e3)}
+    near = WORK / "near.hier" / "hierarchy.json"
+    for path, options, words in ((WORK / "none.3tz", {}, "no such file"), (WORK / "torus.ply", {}, "archive"), (near, away, "no triangle touches the box")):
         try:
-            bpy.ops.import_scene.meshhier(filepath=str(path))
+            bpy.ops.import_scene.meshhier(filepath=str(path), **options)
         except RuntimeError as error:
             assert words in str(error), error
         else:
