@@ -1,13 +1,17 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "app/upload_token.h"
+#include "app/token_file.h"
 #include "app/viewer_place.h"
 #include "base/error.h"
+#include "base/named_value.h"
 #include "base/plain_text.h"
 #include "config/config.h"
+#include "server/health_question.h"
 #include "server/http_server.h"
+#include "server/log_text.h"
 #include "server/site.h"
 #include "server/uploads.h"
+#include "server/vitals.h"
 #include "server/watch.h"
 #include "storage/io/own_program.h"
 
@@ -37,49 +41,55 @@ struct ServeArguments {
   bool open = false;
   std::string viewer;
   std::string cors;
+  std::string frame;
   std::string inbox;
   bool takes_uploads = false;
   std::uint64_t upload_limit = server::UploadOptions().limit_bytes;
   std::string token_file;
+  std::string metrics_token_file;
+  std::uint64_t disk_floor = server::ReadinessOptions{}.disk_floor;
+  server::LogFormat log_format = server::LogFormat::text;
+  std::optional<server::Health> question;  ///< asked of a server that runs
   std::string config;
   double settle_seconds = 2;
   bool verbose = false;
   bool quiet = false;
 };
 
-/// Lines are cut there: names and messages come from files that nobody vouches for.
-constexpr std::size_t kLongestLine = 4096;
-
 /// Prints lines on standard error, whole ones from any thread.
 class Console {
  public:
-  Console(std::ostream& out, bool quiet) : out_(out), quiet_(quiet) {}
+  Console(std::ostream& out, bool quiet, server::LogFormat format)
+      : out_(out), quiet_(quiet), format_(format) {}
 
-  void tell(const std::string& message) {
+  void tell(server::LogLevel level, const std::string& message) {
     if (!quiet_)
-      print(message);
+      print(level, message);
   }
-  void print(const std::string& message) {
-    const std::lock_guard lock(mutex_);
-    out_ << "meshhier: " << plain_text(message, kLongestLine) << std::endl;
+  void print(server::LogLevel level, const std::string& message) {
+    print_line(server::log_line(format_, std::chrono::system_clock::now(), level, message));
+  }
+  void print(const server::Served& served) {
+    print_line(server::log_line(format_, std::chrono::system_clock::now(), served));
   }
 
  private:
+  void print_line(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    out_ << line << std::endl;
+  }
+
   std::ostream& out_;
   bool quiet_;
+  server::LogFormat format_;
   std::mutex mutex_;
 };
 
 /// The inbox is looked at no more often, however soon files count as whole.
 constexpr std::chrono::milliseconds kShortestLook{50};
 
-/// A target that a client sent is cut there, and cleaned, before a terminal shows it.
-constexpr std::size_t kLongestTarget = 200;
-
-std::string log_line(const server::Served& served) {
-  return fmt::format("{} {} {} {} {}", served.client, plain_text(served.method, kLongestTarget),
-                     plain_text(served.target, kLongestTarget), served.status, served.bytes);
-}
+/// Names of folders are cut there, and cleaned, before a terminal shows them.
+constexpr std::size_t kLongestName = 200;
 
 void check_folder(const std::string& option, const std::string& folder, Environment& environment) {
   if (environment.files.is_directory(folder))
@@ -124,7 +134,20 @@ server::UploadOptions upload_options(const ServeArguments& arguments, Environmen
   options.suffix = suffix_of(arguments.config, environment);
   options.is_loopback = server::is_loopback_host(arguments.server.host);
   if (!arguments.token_file.empty())
-    options.token = read_upload_token(environment.files, arguments.token_file);
+    options.token = read_token(environment.files, "--upload-token-file", arguments.token_file);
+  return options;
+}
+
+server::VitalsOptions vitals_options(const ServeArguments& arguments, Environment& environment) {
+  storage::FileSystem& files = environment.files;
+  server::VitalsOptions options;
+  options.readiness = {
+      .folder = files.canonical(arguments.folder),
+      .inbox = arguments.inbox.empty() ? std::filesystem::path() : files.canonical(arguments.inbox),
+      .takes_uploads = arguments.takes_uploads,
+      .disk_floor = arguments.disk_floor};
+  if (!arguments.metrics_token_file.empty())
+    options.token = read_token(files, "--metrics-token-file", arguments.metrics_token_file);
   return options;
 }
 
@@ -142,7 +165,8 @@ std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Cons
           std::vector<std::string>{program.string(), url}, storage::ChildProcess::Errors::dropped);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  console.print("--open: there is no xdg-open here (package xdg-utils); open the URL by hand");
+  console.print(server::LogLevel::warning,
+                "--open: there is no xdg-open here (package xdg-utils); open the URL by hand");
   return nullptr;
 }
 
@@ -168,7 +192,7 @@ server::PlaceNames place_names(const ServeArguments& arguments, storage::FileSys
 }
 
 std::string empty_text(const ServeArguments& arguments) {
-  const std::string folder = plain_text(arguments.folder, kLongestTarget);
+  const std::string folder = plain_text(arguments.folder, kLongestName);
   if (arguments.inbox.empty()) {
     return fmt::format(
         "there are no hierarchies in {} yet; those that \"meshhier build\" puts "
@@ -177,7 +201,14 @@ std::string empty_text(const ServeArguments& arguments) {
   }
   return fmt::format(
       "there are no hierarchies in {} yet; mesh files that are put into {} become some", folder,
-      plain_text(arguments.inbox, kLongestTarget));
+      plain_text(arguments.inbox, kLongestName));
+}
+
+/// Probes of a service manager come every few seconds: those that went well are not told.
+bool is_told(const server::Served& served) {
+  const std::string path = served.target.substr(0, served.target.find('?'));
+  return served.status >= 400 || path.empty() ||
+         !server::Vitals::is_vital(std::string_view(path).substr(1));
 }
 
 constexpr const char* kNoUploads =
@@ -189,34 +220,44 @@ class Service {
  public:
   Service(const ServeArguments& arguments, Environment& environment)
       : environment_(environment),
-        console_(environment.messages, arguments.quiet),
-        tell_([this](const std::string& message) { console_.tell(message); }),
-        hierarchies_(storage::open_folder(arguments.folder), tell_) {
+        console_(environment.messages, arguments.quiet, arguments.log_format),
+        tell_([this](server::LogLevel level, const std::string& message) {
+          console_.tell(level, message);
+        }),
+        warn_([this](const std::string& message) { tell_(server::LogLevel::warning, message); }),
+        complain_([this](const std::string& message) { tell_(server::LogLevel::error, message); }),
+        vitals_(
+            vitals_options(arguments, environment), environment.files, [this] { return figures(); },
+            tell_),
+        hierarchies_(storage::open_folder(arguments.folder), warn_) {
     ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
     if (!viewer.folder)
-      console_.print(viewer.missing + ' ' + kServedWithoutPage);
+      console_.print(server::LogLevel::warning, viewer.missing + ' ' + kServedWithoutPage);
     if (!arguments.inbox.empty()) {
       server::WatchOptions options = watch_options(arguments, environment);
       options.on_new = [this] { site_->refresh(); };
       watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
     }
     if (arguments.takes_uploads) {
-      uploads_.emplace(upload_options(arguments, environment), environment.files, tell_);
+      uploads_.emplace(upload_options(arguments, environment), environment.files, complain_);
       if (!uploads_->offer())
-        console_.tell(kNoUploads);
+        tell_(server::LogLevel::warning, kNoUploads);
       views_.emplace(environment.files.canonical(arguments.folder), *uploads_, hierarchies_,
-                     environment.files, tell_);
+                     environment.files, complain_);
     }
-    site_.emplace(server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
-                                      server::is_loopback_host(arguments.server.host),
-                                      arguments.cors, place_names(arguments, environment.files),
-                                      uploads_ ? &*uploads_ : nullptr, views_ ? &*views_ : nullptr},
-                  hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(),
-                  tell_);
-    const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
+    site_.emplace(
+        server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
+                            server::is_loopback_host(arguments.server.host), arguments.cors,
+                            arguments.frame, place_names(arguments, environment.files),
+                            uploads_ ? &*uploads_ : nullptr, views_ ? &*views_ : nullptr, &vitals_},
+        hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), complain_);
     http_.emplace(
         arguments.server, [this](const server::Request& request) { return site_->answer(request); },
-        arguments.verbose ? log : server::HttpServer::Log());
+        [this, is_verbose = arguments.verbose](const server::Served& served) {
+          vitals_.count(served);
+          if (is_verbose && is_told(served))
+            console_.print(served);
+        });
   }
 
   void run(const ServeArguments& arguments) {
@@ -228,7 +269,7 @@ class Service {
       watch_->start();
     const auto browser = arguments.open ? open_browser(url, console_, environment_.files) : nullptr;
     wait_for_end(environment_.cancel, *http_);
-    console_.tell("stopping");
+    tell_(server::LogLevel::info, "stopping");
     http_->stop();
     if (watch_)
       watch_->stop();
@@ -241,15 +282,30 @@ class Service {
   void tell_if_empty(const ServeArguments& arguments) {
     try {
       if (hierarchies_.list().empty())
-        console_.tell(empty_text(arguments));
+        tell_(server::LogLevel::info, empty_text(arguments));
     } catch (const Error& error) {
-      console_.tell(error.what());
+      warn_(error.what());
     }
+  }
+
+  server::Figures figures() {
+    server::Figures figures{.traffic = http_->traffic()};
+    try {
+      figures.models = site_->model_count();
+    } catch (const Error&) {  // the folder cannot be listed now, as /readyz tells
+    }
+    if (watch_)
+      figures.builds = watch_->counts();
+    if (uploads_)
+      figures.uploads = uploads_->counts();
+    return figures;
   }
 
   Environment& environment_;
   Console console_;
-  server::Hierarchies::Tell tell_;
+  server::Watch::Tell tell_;
+  server::Hierarchies::Tell warn_, complain_;
+  server::Vitals vitals_;  ///< asks the others, but only for http_
   server::Hierarchies hierarchies_;
   std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_
   std::optional<server::Watch> watch_;
@@ -258,7 +314,17 @@ class Service {
   std::optional<server::HttpServer> http_;
 };
 
+/// Asks the server that was started with the same words; 0: its reply is what is hoped for.
+int ask_health(const ServeArguments& arguments, Environment& environment) {
+  const server::HealthAnswer answer =
+      server::ask_health(arguments.server.host, arguments.server.port, *arguments.question);
+  (answer.is_well ? environment.out : environment.messages) << answer.text << std::endl;
+  return answer.is_well ? 0 : 1;
+}
+
 int run_serve(const ServeArguments& arguments, Environment& environment) {
+  if (arguments.question)
+    return ask_health(arguments, environment);
   check_folder("FOLDER", arguments.folder, environment);
   if (!arguments.inbox.empty())
     check_folder(arguments.takes_uploads ? "--inbox" : "--watch", arguments.inbox, environment);
@@ -287,6 +353,8 @@ everybody who knows the token. Nothing in INBOX is replaced.
 
   GET /                            the page
   GET /models.json                 what there is
+  GET /healthz, /readyz            whether it is alive, and ready, with reasons
+  GET /metrics                     figures for Prometheus; for this machine only, or by a token
   GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, preview.webp, tiles/LL/NNNNNN.glb, ...
   PUT /inbox/NAME.ply              with --inbox: a mesh
   POST /inbox/NAME                 with --inbox: a form of files, one of which is a mesh
@@ -297,17 +365,19 @@ Examples:
   meshhier serve models --port 0 --open
   meshhier serve models --watch inbox --config scans.json
   meshhier serve models --host 0.0.0.0 --cors '*'
+  meshhier serve models --log json --verbose
+  meshhier serve models --check ready
   meshhier serve models --inbox inbox &
   curl -T scan.ply http://localhost:8080/inbox/scan.ply
   curl -F f=@house.obj -F f=@house.mtl -F f=@wall.jpg http://localhost:8080/inbox/house
 )";
 
-std::string check_cors(const std::string& text) {
+std::string check_origin(const std::string& text) {
   const std::size_t scheme = text.find("://");
   const bool is_origin = scheme != std::string::npos && scheme > 0 &&
                          text.find('/', scheme + 3) == std::string::npos &&
                          text.size() > scheme + 3;
-  const bool is_plain = text.find_first_of(" \t\r\n,") == std::string::npos;
+  const bool is_plain = text.find_first_of(" \t\r\n,;'\"") == std::string::npos;
   if (text == "*" || (is_origin && is_plain))
     return "";
   return "expected an origin (\"https://example.org\") or \"*\", found \"" + text + "\"";
@@ -324,7 +394,39 @@ void add_network_options(CLI::App& command, ServeArguments& arguments) {
                      });
   command.add_option("--cors", arguments.cors, "Whose pages may read the models, too")
       ->type_name("ORIGIN|*")
-      ->check(check_cors);
+      ->check(check_origin);
+  command.add_option("--frame", arguments.frame, "Whose pages may show ours in a frame, too")
+      ->type_name("ORIGIN|*")
+      ->check(check_origin);
+}
+
+/// Returns what takes the name of a row, for add_text_option().
+template <class Table, class Value>
+std::function<bool(const std::string&)> taker(const Table& table, Value& value) {
+  return [&table, &value](const std::string& text) {
+    const auto named = value_named(table, text);
+    if (named)
+      value = *named;
+    return named.has_value();
+  };
+}
+
+void add_service_options(CLI::App& command, ServeArguments& arguments) {
+  add_text_option(
+      command,
+      {"--log", "How the lines of the log are written [text]", "json|text", "json or text"},
+      taker(server::kLogFormats, arguments.log_format));
+  add_size_option(command, "--disk-floor",
+                  "With --watch or --inbox: with less disk left it is not ready",
+                  arguments.disk_floor);
+  command
+      .add_option("--metrics-token-file", arguments.metrics_token_file,
+                  "Who reads /metrics must know the word in this file; else only this machine may")
+      ->type_name("FILE");
+  add_text_option(command,
+                  {"--check", "Start nothing; ask the server that was started with the same words",
+                   "alive|ready", "alive or ready"},
+                  taker(server::kHealths, arguments.question));
 }
 
 void add_upload_options(CLI::App& command, CLI::Option& inbox, ServeArguments& arguments) {
@@ -366,7 +468,7 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
 void check_needs(const CLI::App& command) {
   if (command.count("--watch") + command.count("--inbox") > 0)
     return;
-  for (const char* option : {"--config", "--settle"}) {
+  for (const char* option : {"--config", "--settle", "--disk-floor"}) {
     if (command.count(option) > 0)
       throw CLI::RequiresError(option, "--watch or --inbox");
   }
@@ -385,6 +487,7 @@ void add_serve_command(CLI::App& parser, Invocation& invocation) {
   command->add_option("--viewer", arguments->viewer, "Where the page lies, if not as installed")
       ->type_name("DIR");
   add_watch_options(*command, *arguments);
+  add_service_options(*command, *arguments);
   CLI::Option* verbose =
       command->add_flag("--verbose", arguments->verbose, "Print a line for each request");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but the URL and what is missing")

@@ -28,5 +28,8 @@ compress("${share}/man/man1/meshhier.1")
 file(REMOVE "${documents}/LICENSE")  # /usr/share/common-licenses has it
 file(COPY "${CMAKE_CURRENT_LIST_DIR}/copyright" DESTINATION "${documents}"
      FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+file(COPY "${CMAKE_CURRENT_LIST_DIR}/systemd/meshhier.default" DESTINATION "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/etc/default"
+     FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+file(RENAME "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/etc/default/meshhier.default" "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/etc/default/meshhier")
 # There is no report in Debian's tracker that this package closes: it is not made for Debian's own archive.
 file(WRITE "${share}/lintian/overrides/meshhier" "meshhier: initial-upload-closes-no-bugs *\n")

@@ -31,4 +31,11 @@ std::string client_key(const std::string& address) {
   return text_of(AF_INET6, &bytes) + "/64";
 }
 
+bool is_loopback_client(const std::string& address) {
+  const std::string key = client_key(address);
+  in6_addr bytes{};
+  return key.starts_with("127.") ||
+         (::inet_pton(AF_INET6, address.c_str(), &bytes) == 1 && IN6_IS_ADDR_LOOPBACK(&bytes));
+}
+
 }  // namespace meshhier::server

@@ -10,4 +10,7 @@ namespace meshhier::server {
 /// IPv6. Other text is returned as it is.
 std::string client_key(const std::string& address);
 
+/// Whether a numeric address is this machine's own: 127.x.x.x, perhaps mapped into IPv6, or ::1.
+bool is_loopback_client(const std::string& address);
+
 }  // namespace meshhier::server

@@ -40,13 +40,14 @@ std::string address_of(socket_t socket, const Ask& ask) {
 }  // namespace
 
 Connection::Connection(socket_t socket, const ConnectionLimits& limits, MustYield must_yield,
-                       std::function<bool()> is_stopping)
+                       std::function<bool()> is_stopping, Sent sent)
     : socket_(socket),
       address_(address_of(socket, ::getpeername)),
       client_(client_key(address_)),
       limits_(limits),
       must_yield_(std::move(must_yield)),
-      is_stopping_(std::move(is_stopping)) {}
+      is_stopping_(std::move(is_stopping)),
+      sent_(std::move(sent)) {}
 
 Connection::~Connection() {
   ::close(socket_);
@@ -187,7 +188,10 @@ ssize_t Connection::write(const char* bytes, std::size_t count) {
   if (sent < 0 && (errno == EAGAIN || errno == EINTR))
     return 0;
   is_broken_ = sent < 0;
-  exchanged_bytes_ += is_broken_ ? 0 : static_cast<std::size_t>(sent);
+  if (is_broken_)
+    return sent;
+  exchanged_bytes_ += static_cast<std::size_t>(sent);
+  sent_(static_cast<std::size_t>(sent));
   return sent;
 }
 

@@ -26,9 +26,12 @@ class Connection final : public httplib::Stream {
   /// Whether a slow reply to that client must end, because others wait.
   using MustYield = std::function<bool(const std::string& client)>;
 
+  /// Hears how many bytes a client has taken.
+  using Sent = std::function<void(std::size_t bytes)>;
+
   /// Takes the socket over. `is_stopping`: the server is to end.
   Connection(socket_t socket, const ConnectionLimits& limits, MustYield must_yield,
-             std::function<bool()> is_stopping);
+             std::function<bool()> is_stopping, Sent sent);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() override;
@@ -102,6 +105,7 @@ class Connection final : public httplib::Stream {
   ConnectionLimits limits_;
   MustYield must_yield_;
   std::function<bool()> is_stopping_;
+  Sent sent_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
   std::size_t place_ = 0;  ///< bytes that were read of the head

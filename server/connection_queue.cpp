@@ -79,9 +79,9 @@ bool ConnectionQueue::must_yield(const std::string& client) const {
   return waiting_accepts_ > 0 || schedule_.must_yield(client);
 }
 
-std::size_t ConnectionQueue::served() const {
+ConnectionQueue::Load ConnectionQueue::load() const {
   const std::lock_guard lock(mutex_);
-  return schedule_.served();
+  return {schedule_.pending().size(), schedule_.served(), schedule_.refused()};
 }
 
 void ConnectionQueue::close() {

@@ -40,8 +40,12 @@ class ConnectionQueue {
   /// Whether a slow reply to `client` must end: a new connection waits, or a ready one by the rule
   /// of ConnectionSchedule::must_yield().
   bool must_yield(const std::string& client) const;
-  /// Returns how many connections have a thread.
-  std::size_t served() const;
+  struct Load {
+    std::size_t pending = 0;
+    std::size_t served = 0;     ///< these have a thread
+    std::uint64_t refused = 0;  ///< closed so far to make room for others
+  };
+  Load load() const;
   /// Serves nobody any more, and closes all pending connections.
   void close();
 

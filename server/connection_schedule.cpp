@@ -56,6 +56,7 @@ bool ConnectionSchedule::make_room(Clock::time_point now) {
   if (victim == pending_.end() || now - victim->second.since < limits_.patience)
     return false;
   pending_.erase(victim);
+  ++refused_;
   return true;
 }
 

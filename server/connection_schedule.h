@@ -44,6 +44,7 @@ class ConnectionSchedule {
   Id add(PendingConnection connection);
   /// The pending ones; they may be changed until they are taken.
   std::map<Id, PendingConnection>& pending() { return pending_; }
+  const std::map<Id, PendingConnection>& pending() const { return pending_; }
 
   /// Whether a pending connection may be served now.
   bool has_next() const;
@@ -53,6 +54,8 @@ class ConnectionSchedule {
   /// Says that one of that client is served no more.
   void release(const std::string& client);
   std::size_t served() const { return all_served_; }
+  /// Returns how many make_room() has closed so far.
+  std::uint64_t refused() const { return refused_; }
 
   /// Whether a slow reply to `client` keeps a ready connection from a thread. It only yields to
   /// clients that have no more threads than `client`.
@@ -78,6 +81,7 @@ class ConnectionSchedule {
   Id next_id_ = 0;
   std::map<std::string, std::size_t> served_;  ///< connections with a thread, by client
   std::size_t all_served_ = 0;
+  std::uint64_t refused_ = 0;
 };
 
 }  // namespace meshhier::server

@@ -51,9 +51,11 @@ struct Request {
   std::optional<std::string> origin{};  ///< "" if there are several
   std::optional<std::string> authorization{};
   std::optional<std::string> content_type{};
-  bool is_part = false;   ///< its body is a part of something (Content-Range)
-  bool has_body = false;  ///< more than 0 bytes are announced behind the head
-  Body* body = nullptr;   ///< null if no Content-Length tells how long it is
+  bool is_part = false;       ///< its body is a part of something (Content-Range)
+  bool has_body = false;      ///< more than 0 bytes are announced behind the head
+  Body* body = nullptr;       ///< null if no Content-Length tells how long it is
+  std::string client{};       ///< the address that it came from; empty: not known
+  bool is_passed_on = false;  ///< a proxy says so: `client` is the proxy's
 };
 
 /// A part of a file, sent piece by piece.

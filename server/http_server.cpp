@@ -8,6 +8,7 @@
 #include "storage/io/open_files.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -73,6 +74,13 @@ std::optional<std::string> origin_of(const httplib::Request& request) {
   return header(request, "Origin").value_or("");
 }
 
+/// Whether a proxy says that it asks for somebody else.
+bool is_passed_on(const httplib::Request& request) {
+  constexpr std::array kProxyHeaders{"Forwarded", "Via", "X-Forwarded-For", "X-Real-IP"};
+  return std::ranges::any_of(kProxyHeaders,
+                             [&](const char* name) { return request.has_header(name); });
+}
+
 Request request_of(const httplib::Request& request, Body* body) {
   return {request.method,
           request.target,
@@ -86,7 +94,9 @@ Request request_of(const httplib::Request& request, Body* body) {
           header(request, "Content-Type"),
           request.has_header("Content-Range"),
           announces_body(request),
-          body};
+          body,
+          request.remote_addr,
+          is_passed_on(request)};
 }
 
 /// Sends a file piece by piece. The library has no place for exceptions here: a file that cannot be
@@ -179,7 +189,11 @@ class HttpServer::Library final : public httplib::Server {
 
   std::uint16_t port() const { return port_; }
   bool is_lost() const { return is_lost_; }
-  std::size_t served() const { return queue_.served(); }
+  Traffic traffic() const {
+    const ConnectionQueue::Load load = queue_.load();
+    return {load.pending + load.served, load.served, accepted_, load.refused + failed_,
+            sent_bytes_};
+  }
 
   void begin() {
     thread_ = std::thread([this] { run(); });
@@ -289,12 +303,15 @@ class HttpServer::Library final : public httplib::Server {
       auto connection = std::make_unique<Connection>(
           socket, options_.limits,
           [this](const std::string& client) { return queue_.must_yield(client); },
-          [this] { return is_stopping_.load(); });
+          [this] { return is_stopping_.load(); },
+          [this](std::size_t bytes) { sent_bytes_ += bytes; });
       is_owned = true;
+      ++accepted_;
       queue_.accept(std::move(connection));
     } catch (const std::exception&) {
       if (!is_owned)
         ::close(socket);
+      ++failed_;
       return false;
     }
     return true;
@@ -370,6 +387,7 @@ class HttpServer::Library final : public httplib::Server {
   std::uint16_t port_ = 0;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_lost_{false};
+  std::atomic<std::uint64_t> accepted_{0}, failed_{0}, sent_bytes_{0};
   ConnectionQueue queue_;
   std::thread thread_;
   std::vector<std::thread> workers_;
@@ -384,8 +402,8 @@ std::uint16_t HttpServer::port() const {
   return library_->port();
 }
 
-std::size_t HttpServer::served() const {
-  return library_->served();
+Traffic HttpServer::traffic() const {
+  return library_->traffic();
 }
 
 bool HttpServer::is_lost() const {

@@ -32,7 +32,16 @@ struct Served {
   std::uint64_t bytes = 0;  ///< the body's, as announced
 };
 
-/// For one thread; served() and is_lost() may be called by any.
+/// The connections of a server at this moment, and what went over them since it began.
+struct Traffic {
+  std::size_t open = 0;    ///< connections
+  std::size_t served = 0;  ///< of them; each has a thread
+  std::uint64_t accepted = 0;
+  std::uint64_t refused = 0;  ///< closed without a reply: there were too many, or no memory
+  std::uint64_t sent_bytes = 0;
+};
+
+/// For one thread; traffic() and is_lost() may be called by any.
 class HttpServer {
  public:
   using Answer = std::function<Reply(const Request&)>;
@@ -49,8 +58,7 @@ class HttpServer {
   ~HttpServer();
 
   std::uint16_t port() const;
-  /// Returns how many connections a thread serves at this moment.
-  std::size_t served() const;
+  Traffic traffic() const;
   /// Starts the threads, or as many as the system gives, and returns when connections are taken.
   /// Throws std::system_error if there can be none.
   void start();

@@ -52,6 +52,9 @@ class Inbox {
   /// Returns the mesh files that are there now. One in a folder is whole when all files there are.
   /// Links are left out, and archives that hold hierarchies. Throws Error(io).
   std::vector<InboxFile> look();
+  /// Returns the folders of the last look that give no model, and why, once they have been so for
+  /// as long as files settle. Those of hierarchies, and hidden ones, are not told.
+  const std::map<std::string, std::string>& left_out() const { return left_out_; }
   /// Opens a file, without following it if it has become a link. Null if it is not there, or of
   /// another version. Throws Error(io).
   std::unique_ptr<storage::File> open(const std::string& name,
@@ -68,12 +71,21 @@ class Inbox {
   Time note(const std::string& name, const InputVersion& version, Time now, SeenFiles& seen) const;
   static bool is_archived_hierarchy(const storage::Folder& inbox, const std::string& name,
                                     SeenFiles& seen);
-  std::optional<InboxFile> look_into(const storage::Folder& inbox, const std::string& folder,
-                                     Time now, SeenFiles& seen) const;
+  /// What was found in a folder: a mesh, or why there is none.
+  struct FolderLook {
+    std::optional<InboxFile> file{};
+    std::string why_not{};
+    Time since = Time::min();  ///< it has not changed
+  };
+  FolderLook look_into(const storage::Folder& inbox, const storage::FolderEntry& folder, Time now,
+                       SeenFiles& seen) const;
+  FolderLook look_at_ignored(const storage::Folder& inbox, const storage::FolderEntry& folder,
+                             Time now, SeenFiles& seen) const;
 
   std::filesystem::path directory_;  ///< opened anew each time: it may be another one by then
   Options options_;
   SeenFiles seen_;
+  std::map<std::string, std::string> left_out_;
 };
 
 }  // namespace meshhier::server

@@ -60,6 +60,17 @@ std::string_view content_type(std::string_view file_name) {
 constexpr std::string_view kModels = "models/";
 constexpr std::string_view kInbox = "/inbox/";
 constexpr std::string_view kAssets = "assets/";
+constexpr std::string_view kPageEnding = ".html";
+// The page's own policy (viewer/lean/policy.ts) says what it may load; a host can only say the
+// rest.
+constexpr const char* kPolicy = "Content-Security-Policy";
+constexpr std::string_view kPagePolicy = "base-uri 'none'; form-action 'none'; object-src 'none'";
+// A worker is bound by its script's. It may fetch models from any host; what transcodes KTX2 makes
+// functions of texts.
+constexpr std::string_view kScriptPolicy =
+    "default-src 'self' http: https: data: blob:; script-src 'self' blob: 'unsafe-eval'";
+// All else is data: opened by itself it may do nothing.
+constexpr std::string_view kFilePolicy = "default-src 'none'";
 constexpr const char* kMethods = "GET, HEAD, OPTIONS";
 constexpr const char* kMethodsWithUploads = "GET, HEAD, OPTIONS, POST, PUT";
 
@@ -113,7 +124,9 @@ Reply Site::answer(const Request& request) {
   }
   if (reply.status >= 400)
     forbid_keeping(reply);
-  add_common_headers(reply);
+  add_safety_headers(reply);
+  if (!options_.cors.empty() && !is_vital(request))
+    add_cors_headers(reply);
   return reply;
 }
 
@@ -148,6 +161,8 @@ Reply Site::route(const Request& request) {
   const std::optional<std::string> path = decode_path(request.target);
   if (!path)
     return not_found();
+  if (is_vital(request))
+    return options_.vitals->answer(request, *path);
   if (*path == "models.json")
     return models_json(request);
   if (path->starts_with(kModels))
@@ -162,6 +177,11 @@ const char* Site::methods() const {
 bool Site::is_upload(const Request& request) const {
   return options_.uploads != nullptr && (request.method == "PUT" || request.method == "POST") &&
          request.target.starts_with(kInbox);
+}
+
+bool Site::is_vital(const Request& request) const {
+  const auto path = options_.vitals == nullptr ? std::nullopt : decode_path(request.target);
+  return path && Vitals::is_vital(*path);
 }
 
 Reply Site::take_view(const Request& request) {
@@ -228,13 +248,30 @@ Reply Site::viewer_file(const Request& request, const std::string& path) {
                                      .may_be_gzip = is_packed});
   if (!is_packed)
     reply.headers.emplace_back("Vary", "Accept-Encoding");
+  const bool is_page = name.ends_with(kPageEnding);
+  reply.headers.emplace_back(kPolicy, policy(is_page ? kPagePolicy : kScriptPolicy));
+  if (is_page)
+    reply.headers.emplace_back("Referrer-Policy", "same-origin");
   return reply;
 }
 
-void Site::add_common_headers(Reply& reply) const {
+/// Returns a policy with the pages that may show the reply in a frame. Without a word on them all
+/// may, also those of a disk, which "*" leaves out.
+std::string Site::policy(std::string_view directives) const {
+  std::string text(directives);
+  if (options_.frame != "*")
+    text.append("; frame-ancestors 'self'")
+        .append(options_.frame.empty() ? "" : " " + options_.frame);
+  return text;
+}
+
+void Site::add_safety_headers(Reply& reply) const {
   reply.headers.emplace_back("X-Content-Type-Options", "nosniff");
-  if (options_.cors.empty())
-    return;
+  if (reply.header(kPolicy).empty())
+    reply.headers.emplace_back(kPolicy, policy(kFilePolicy));
+}
+
+void Site::add_cors_headers(Reply& reply) const {
   reply.headers.emplace_back("Access-Control-Allow-Origin", options_.cors);
   reply.headers.emplace_back(
       "Access-Control-Expose-Headers",

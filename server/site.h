@@ -6,6 +6,7 @@
 #include "server/http.h"
 #include "server/uploads.h"
 #include "server/view_requests.h"
+#include "server/vitals.h"
 #include "storage/io/folder.h"
 
 #include <atomic>
@@ -23,9 +24,11 @@ struct SiteOptions {
   std::string missing_viewer{};                     ///< the reply to "/" then
   bool is_loopback = true;  ///< requests must name this machine by its loopback
   std::string cors{};       ///< an origin whose pages may read, or "*"; empty: none but ours
+  std::string frame{};      ///< an origin whose pages may show ours in a frame, or "*"; empty: ours
   PlaceNames places{};
   Uploads* uploads = nullptr;     ///< null: none are taken; must outlive the site
   ViewRequests* views = nullptr;  ///< likewise
+  Vitals* vitals = nullptr;       ///< null: nobody is told; must outlive the site
 };
 
 /// Makes the reply to each request. Thread-safe.
@@ -48,16 +51,23 @@ class Site {
   /// Says that a hierarchy has appeared: from now on it is listed.
   void refresh() { gallery_.refresh(); }
 
+  /// Returns how many models there were at the last look, at most a second ago or as Gallery says.
+  /// Throws Error(io) if they cannot be listed.
+  std::size_t model_count() { return gallery_.catalogue()->models().size(); }
+
  private:
   Reply route(const Request& request);
   const char* methods() const;
   bool is_upload(const Request& request) const;
+  bool is_vital(const Request& request) const;
   Reply take_view(const Request& request);
   Reply models_json(const Request& request);
   Reply model_file(const Request& request, std::string_view path);
   Reply viewer_file(const Request& request, const std::string& path);
   void tell_busy(const std::string& cause);
-  void add_common_headers(Reply& reply) const;
+  std::string policy(std::string_view directives) const;
+  void add_safety_headers(Reply& reply) const;
+  void add_cors_headers(Reply& reply) const;
 
   SiteOptions options_;
   Jobs jobs_;

@@ -8,6 +8,7 @@
 #include "server/build_target.h"
 #include "server/folder_scan.h"
 #include "server/multipart.h"
+#include "server/secret.h"
 #include "server/staged_upload.h"
 #include "server/text.h"
 #include "server/url_path.h"
@@ -160,15 +161,6 @@ bool is_of_own_page(const Request& request) {
   return *request.origin == "http://" + host || *request.origin == "https://" + host;
 }
 
-std::string_view bearer_of(const Request& request) {
-  constexpr std::string_view kScheme = "bearer ";
-  const std::string_view value =
-      request.authorization ? std::string_view(*request.authorization) : std::string_view();
-  return lower_case(value.substr(0, kScheme.size())) == kScheme
-             ? trimmed(value.substr(kScheme.size()))
-             : std::string_view();
-}
-
 }  // namespace
 
 /// Counts an upload among those that may be under way at once.
@@ -184,14 +176,6 @@ class Uploads::Slot {
   std::atomic<std::size_t>& count_;
   std::size_t number_;
 };
-
-bool is_same_secret(std::string_view a, std::string_view b) {
-  unsigned difference = a.size() == b.size() ? 0 : 1;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    difference |= static_cast<unsigned char>(a[i]) ^
-                  static_cast<unsigned char>(b.empty() ? ~a[i] : b[i % b.size()]);
-  return difference == 0;
-}
 
 Uploads::Uploads(UploadOptions options, storage::FileSystem& files, Tell tell)
     : options_(std::move(options)), files_(files), tell_(std::move(tell)) {
@@ -212,11 +196,9 @@ std::optional<Reply> Uploads::refuse_sender(const Request& request) const {
                       "Meshes are taken from this machine only: start the server with "
                       "--upload-token-file to send them from others.");
   }
-  if (options_.token.empty() || is_same_secret(bearer_of(request), options_.token))
+  if (options_.token.empty() || knows_secret(request, options_.token))
     return std::nullopt;
-  Reply reply = text_reply(401, "The token is missing or wrong (Authorization: Bearer TOKEN).");
-  reply.headers.emplace_back("WWW-Authenticate", "Bearer");
-  return reply;
+  return secret_needed();
 }
 
 std::optional<Reply> Uploads::refuse_size(const Request& request) const {
@@ -238,7 +220,19 @@ std::optional<Reply> Uploads::refuse_name(const std::string& name) const {
   return refuse_length(name, options_.suffix);
 }
 
+UploadCounts Uploads::counts() const {
+  return {taken_, refused_, bytes_, at_once_};
+}
+
 Reply Uploads::take(const Request& request, std::string_view place) {
+  Reply reply = reply_to(request, place);
+  ++(reply.status == 201 ? taken_ : refused_);
+  if (reply.status == 201)
+    bytes_ += request.body->bytes();
+  return reply;
+}
+
+Reply Uploads::reply_to(const Request& request, std::string_view place) {
   if (auto refused = refuse_sender(request))
     return std::move(*refused);
   const std::optional<std::string> name = decode_path(place);

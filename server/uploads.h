@@ -32,6 +32,14 @@ struct UploadOptions {
   std::size_t most_at_once = 8;  ///< each holds a thread
 };
 
+/// The uploads so far, and those under way.
+struct UploadCounts {
+  std::uint64_t taken = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t bytes = 0;  ///< of the requests that were taken
+  std::size_t at_once = 0;
+};
+
 /// Takes uploads. Thread-safe.
 class Uploads {
  public:
@@ -49,10 +57,12 @@ class Uploads {
   /// one line. Reads the body in this thread, as long as the client sends it. Throws nothing but
   /// storage::Busy.
   Reply take(const Request& request, std::string_view place);
+  UploadCounts counts() const;
 
  private:
   class Slot;
 
+  Reply reply_to(const Request& request, std::string_view place);
   std::optional<Reply> refuse_size(const Request& request) const;
   std::optional<Reply> refuse_name(const std::string& name) const;
   Reply take_whole(const Request& request, const std::string& name);
@@ -63,9 +73,7 @@ class Uploads {
   storage::FileSystem& files_;
   Tell tell_;
   std::atomic<std::size_t> at_once_{0};
+  std::atomic<std::uint64_t> taken_{0}, refused_{0}, bytes_{0};
 };
-
-/// Whether two secrets are equal. The time that it takes does not depend on where they differ.
-bool is_same_secret(std::string_view a, std::string_view b);
 
 }  // namespace meshhier::server

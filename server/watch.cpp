@@ -24,6 +24,9 @@ constexpr std::chrono::milliseconds kHearFor{50};
 /// A build's lines have some hundred bytes; anything longer is no line of a build.
 constexpr std::size_t kLongestLine = 64 * 1024;
 
+/// So many folders of the inbox that are left out are told.
+constexpr std::size_t kMostLeftOut = 100;
+
 constexpr int kExists = static_cast<int>(ErrorCode::exists);
 constexpr int kLocked = static_cast<int>(ErrorCode::locked);
 constexpr int kOtherWork = static_cast<int>(ErrorCode::other_work);
@@ -41,8 +44,7 @@ constexpr const char* kGrowing = "waits until the file no longer changes";
 
 }  // namespace
 
-Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies,
-             Hierarchies::Tell tell)
+Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies, Tell tell)
     : options_(std::move(options)),
       files_(files),
       inbox_files_(storage::make_posix_file_system({false, options_.inbox})),
@@ -85,6 +87,26 @@ nlohmann::ordered_json Watch::jobs() const {
   return list;
 }
 
+BuildCounts Watch::counts() const {
+  const std::lock_guard lock(mutex_);
+  BuildCounts counts = counts_;
+  for (const auto& [name, entry] : entries_) {
+    counts.at_work += entry.state == State::building ? 1 : 0;
+    counts.not_built += entry.state == State::failed ? 1 : 0;
+    counts.waiting += entry.job.state == JobState::waiting && entry.state != State::done ? 1 : 0;
+  }
+  return counts;
+}
+
+/// Counts a build that has ended; one that was stopped, or found another at work, is none.
+void Watch::count(const Outcome& outcome, Clock::duration time) {
+  if (is_stopping() || outcome.code == kExists)
+    return;
+  const std::lock_guard lock(mutex_);
+  ++(outcome.code == 0 ? counts_.done : counts_.failed);
+  counts_.seconds += std::chrono::duration<double>(time).count();
+}
+
 void Watch::run() {
   while (!is_stopping()) {
     look();
@@ -120,10 +142,25 @@ void Watch::look() {
     for (const InboxFile& file : files)
       note(file);
     drop_what_is_done();
+    tell_left_out();
     trouble_.clear();
   } catch (const std::exception& error) {
     if (std::exchange(trouble_, error.what()) != error.what())
-      tell_(error.what());
+      tell_(LogLevel::error, error.what());
+  }
+}
+
+/// Tells each folder that is left out once; another reason is told anew.
+void Watch::tell_left_out() {
+  for (const auto& [folder, why] : inbox_.left_out()) {
+    const auto told = told_left_out_.find(folder);
+    if ((told != told_left_out_.end() && told->second == why) ||
+        told_left_out_.size() >= kMostLeftOut)
+      continue;
+    told_left_out_[folder] = why;
+    tell_(LogLevel::info, fmt::format("{}/ is left out: {}", folder, why));
+    if (told_left_out_.size() == kMostLeftOut)
+      tell_(LogLevel::info, "no more folders that are left out are told");
   }
 }
 
@@ -157,7 +194,7 @@ void Watch::keep_fresh(const std::string& name, const std::string& cause) {
     if (std::exchange(entries_[name].job.message, cause) == cause)
       return;
   }
-  tell_(fmt::format("{}: {}", name, cause));
+  tell_(LogLevel::warning, fmt::format("{}: {}", name, cause));
 }
 
 std::vector<std::string> Watch::names_in(std::optional<State> state) const {
@@ -212,7 +249,7 @@ void Watch::handle(const std::string& name) {
   } catch (const std::exception& error) {
     if (is_stopping())
       return;
-    tell_(fmt::format("{}: {}", name, error.what()));
+    tell_(LogLevel::error, fmt::format("{}: {}", name, error.what()));
     set_state(name, State::failed, error.what());
   }
 }
@@ -310,7 +347,7 @@ void Watch::keep_note(const std::string& hierarchy, const storage::InputNote& no
   try {
     notes_.write(hierarchy, note);
   } catch (const Error& error) {
-    tell_(error.what());
+    tell_(LogLevel::warning, error.what());
   }
 }
 
@@ -354,12 +391,14 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
     entry.state = State::building;
     entry.job = {.name = name, .state = JobState::building};
   }
-  tell_(fmt::format("{}: building {}", name, target.name));
+  tell_(LogLevel::info, fmt::format("{}: building {}", name, target.name));
+  const auto start = Clock::now();
   Outcome outcome = run_build(name, target, false);
   // A build that was begun with another config, or from another version of the file, is of no use
   // any more.
   if (outcome.code == kOtherWork && !is_stopping())
     outcome = run_build(name, target, true);
+  count(outcome, Clock::now() - start);
   settle(name, target, version, outcome);
 }
 
@@ -404,7 +443,7 @@ Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
       take_line(job, std::string_view(text).substr(0, end));
       text.erase(0, end + 1);
       if (job.warnings.size() > known)
-        tell_(fmt::format("{}: warning: {}", name, job.warnings.back()));
+        tell_(LogLevel::warning, fmt::format("{}: {}", name, job.warnings.back()));
       const std::lock_guard lock(mutex_);
       const auto found = entries_.find(name);
       if (found != entries_.end() && found->second.state == State::building)
@@ -424,7 +463,8 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
     return;
   if (outcome.code == 0)
     return settle_built(name, target, version, outcome.warnings);
-  tell_(fmt::format("{}: {}", name, outcome.message));
+  tell_(outcome.code == kExists ? LogLevel::info : LogLevel::error,
+        fmt::format("{}: {}", name, outcome.message));
   if (version_of(name) != version)
     set_state(name, State::growing, kGrowing);
   else if (outcome.code == kExists || outcome.code == kLocked)
@@ -443,11 +483,12 @@ void Watch::settle_built(const std::string& name, const BuildTarget& target,
   if (model && is_still(name, version.mesh) && is_made_of(name, *model, Unknown::is_another)) {
     keep_mark(name);
     keep_warnings(name, *model, warnings);
-    tell_(name + ": done" +
-          (warnings.empty() ? "" : ", with " + counted(warnings.size(), "warnings")));
+    tell_(LogLevel::info,
+          name + ": done" +
+              (warnings.empty() ? "" : ", with " + counted(warnings.size(), "warnings")));
     return set_state(name, State::done, "");
   }
-  tell_(name + ": it was changed while it was built; it is looked at again");
+  tell_(LogLevel::info, name + ": it was changed while it was built; it is looked at again");
   set_state(name, State::growing, kGrowing);
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "execution/cancel.h"
+#include "server/build_counts.h"
 #include "server/build_target.h"
 #include "server/companions.h"
 #include "server/hierarchies.h"
 #include "server/inbox.h"
 #include "server/input_notes.h"
 #include "server/job.h"
+#include "server/log_text.h"
 #include "storage/io/child_process.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
@@ -49,11 +51,12 @@ struct WatchOptions {
 /// ended, is gone on with by the next one.
 class Watch {
  public:
+  using Tell = std::function<void(LogLevel level, const std::string& message)>;
+
   /// `tell` hears messages for people, from the thread of this object, as `options.on_new` is
   /// called. `files` and `hierarchies`, of the same folder, must outlive this. Throws Error(io) if
   /// a folder cannot be opened.
-  Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies,
-        Hierarchies::Tell tell);
+  Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies, Tell tell);
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
   /// Stops, as stop().
@@ -66,6 +69,8 @@ class Watch {
 
   /// Returns the jobs of all files that are no hierarchies yet, by name. Thread-safe.
   nlohmann::ordered_json jobs() const;
+  /// Thread-safe.
+  BuildCounts counts() const;
 
  private:
   using Time = std::chrono::steady_clock::time_point;
@@ -90,6 +95,8 @@ class Watch {
   std::string next_waiting() const;
   void handle(const std::string& name);
   void drop_what_is_done();
+  void tell_left_out();
+  void count(const Outcome& outcome, std::chrono::steady_clock::duration time);
   void leave_fresh(const std::string& name, State state);
   void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
@@ -130,7 +137,7 @@ class Watch {
   storage::FileSystem& files_;
   std::unique_ptr<storage::FileSystem> inbox_files_;  ///< its input() leads nowhere else
   Hierarchies& hierarchies_;
-  Hierarchies::Tell tell_;
+  Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
   InputNotes notes_;
   /// By mesh: the note of the hierarchy that was looked at last, and the mark of its files then.
@@ -141,11 +148,13 @@ class Watch {
   std::map<std::string, Known> known_;
   Inbox inbox_;
   Time last_look_;
-  std::string trouble_;  ///< the failure of the last look, told once
+  std::string trouble_;                               ///< the failure of the last look, told once
+  std::map<std::string, std::string> told_left_out_;  ///< folders of the inbox, and why
 
   execution::CancelToken cancel_;
-  mutable std::mutex mutex_;  ///< guards entries_
+  mutable std::mutex mutex_;  ///< guards entries_ and counts_
   std::map<std::string, Entry> entries_;
+  BuildCounts counts_;
   std::condition_variable stopped_;
   std::thread thread_;
 };

@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -42,6 +43,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
+using testing::Not;
+using testing::StartsWith;
 using tests::text_of;
 using tests::wait_until;
 
@@ -202,11 +205,44 @@ TEST_F(ServeTest, RequestsAreToldOnlyWhereThatIsAskedFor) {
   quiet.end(SIGTERM);
   EXPECT_THAT(quiet.messages(), IsEmpty());
   ServeProcess& verbose = serve({"--viewer", folder_.viewer().string(), "--verbose"});
-  tests::RawClient(verbose.port()).get("/nothing?x");
+  tests::RawClient(verbose.port()).get("/nothing?x=geheim&build=1f");
+  tests::RawClient(verbose.port()).get("/healthz");
   tests::RawClient(verbose.port()).get("/nothing?\x1b[31m");
   verbose.end(SIGTERM);
-  EXPECT_THAT(verbose.messages(),
-              AllOf(HasSubstr("127.0.0.1 GET /nothing?x 404"), HasSubstr("127.0.0.1 - - 400 0")));
+  EXPECT_THAT(
+      verbose.messages(),
+      AllOf(HasSubstr("Z info 127.0.0.1 GET /nothing?x=...&build=1f 404"),
+            HasSubstr("127.0.0.1 - - 400 0"), Not(HasSubstr("geheim")), Not(HasSubstr("healthz"))));
+}
+
+TEST_F(ServeTest, IsAskedWhetherItIsWell) {
+  const fs::path inbox = folder_.path() / "inbox";
+  fs::create_directory(inbox);
+  ServeProcess& process = serve({"--inbox", inbox.string(), "--log", "json", "--verbose"});
+  const std::string port = std::to_string(process.port());
+  const auto ask = [&](const char* what, int code) {
+    ServeProcess question(folder_.path() / "viewer",
+                          {models().string(), "--port", port, "--check", what});
+    EXPECT_EQ(question.wait(), code) << what;
+    return question.out() + question.messages();
+  };
+  EXPECT_EQ(ask("alive", 0), "{\"status\":\"alive\"}\n");
+  EXPECT_THAT(ask("ready", 0), StartsWith("{\"status\":\"ready\""));
+  fs::remove(inbox);
+  EXPECT_THAT(ask("ready", 1), AllOf(HasSubstr("not ready"), HasSubstr("\"inbox\""),
+                                     Not(HasSubstr(folder_.path().string()))));
+  EXPECT_THAT(ask("alive", 0), HasSubstr("alive"));
+  EXPECT_THAT(tests::RawClient(process.port()).get("/metrics").body,
+              AllOf(HasSubstr("meshhier_requests_total{method=\"GET\",status=\"2xx\"} 3\n"),
+                    HasSubstr("meshhier_requests_total{method=\"GET\",status=\"5xx\"} 1\n"),
+                    HasSubstr("meshhier_models 3\n")));
+  process.end(SIGTERM);
+  EXPECT_THAT(ask("alive", 1), HasSubstr("no answer"));
+  std::vector<std::string> levels;
+  std::istringstream lines(process.messages());
+  for (std::string line; std::getline(lines, line);)
+    levels.push_back(json::parse(line).at("level"));
+  EXPECT_THAT(levels, testing::Contains("warning")) << process.messages();
 }
 
 TEST_F(ServeTest, OtherCommandsReadWhatIsServed) {
@@ -254,7 +290,12 @@ TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
   fails({folder, "--watch", "nowhere"}, 4, "--watch nowhere");
   fails({folder, "--port", "65536"}, 2, "0 to 65535");
   fails({folder, "--cors", "example.org"}, 2, "expected an origin");
+  fails({folder, "--frame", "https://a.example; script-src *"}, 2, "expected an origin");
+  fails({folder, "--log", "yaml"}, 2, "json or text");
+  fails({folder, "--check", "well"}, 2, "alive or ready");
+  fails({folder, "--metrics-token-file", "nowhere"}, 4, "nowhere");
   fails({folder, "--config", "x.json"}, 2, "--watch");
+  fails({folder, "--disk-floor", "1GiB"}, 2, "--watch");
   fails({folder, "--settle", "1"}, 2, "--inbox");
   fails({folder, "--inbox", "nowhere"}, 4, "--inbox nowhere");
   fails({folder, "--inbox", folder, "--watch", folder}, 2, "excludes");
@@ -284,7 +325,8 @@ TEST_F(ServeTest, WhatIsMissingIsToldToTheQuiet) {
       serve_with_path(folder_.path(), {"--open", "--quiet", "--viewer", folder_.viewer().string()});
   tests::RawClient(process.port()).get("/models.json");
   EXPECT_EQ(process.end(SIGTERM), 0);
-  EXPECT_THAT(process.messages(), MatchesRegex("meshhier: --open: there is no xdg-open[^\n]*\n"));
+  EXPECT_THAT(process.messages(),
+              MatchesRegex("20[-0-9]*T[0-9:.]*Z warning --open: there is no xdg-open[^\n]*\n"));
 }
 
 TEST_F(ServeTest, ABrowserThatHasMuchToSayIsNotHeldUp) {

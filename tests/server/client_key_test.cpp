@@ -22,6 +22,14 @@ TEST(ClientKeyTest, AMappedAddressIsThatOfIPv4) {
   EXPECT_NE(client_key("::ffff:192.0.2.7"), client_key("::ffff:192.0.2.8"));
 }
 
+TEST(ClientKeyTest, TheLoopbackIsKnownHoweverItIsWritten) {
+  for (const char* own : {"127.0.0.1", "127.255.0.9", "::1", "::ffff:127.0.0.1", "0:0:0:0:0:0:0:1"})
+    EXPECT_TRUE(is_loopback_client(own)) << own;
+  for (const char* other : {"", "128.0.0.1", "12.7.0.0", "::", "::2", "::ffff:10.0.0.1", "1::1",
+                            "::7f00:1", "localhost", "fe80::1%lo"})
+    EXPECT_FALSE(is_loopback_client(other)) << other;
+}
+
 TEST(ClientKeyTest, OtherTextStays) {
   for (const char* text : {"", "unknown", "1:2"})
     EXPECT_EQ(client_key(text), text);

@@ -352,9 +352,9 @@ TEST_F(HttpServerTest, OneAddressLeavesAThreadForTheNextOne) {
     greedy.push_back(std::make_unique<RawClient>(port(), 4096));
     greedy.back()->send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
   }
-  tests::wait_until([&] { return server_->served() == 3; });
+  tests::wait_until([&] { return server_->traffic().served == 3; });
   EXPECT_EQ(RawClient(port(), 0, "127.0.0.2").get("/models.json").status, 200);
-  tests::wait_until([&] { return server_->served() == 3; });
+  tests::wait_until([&] { return server_->traffic().served == 3; });
 }
 
 TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {

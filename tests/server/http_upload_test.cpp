@@ -276,7 +276,7 @@ TEST_F(HttpUploadTest, SlowSendersOfOneAddressHoldNotAllThreads) {
     slow.push_back(std::make_unique<RawClient>(port()));
     slow.back()->send(head("a" + std::to_string(i) + ".ply", 1000) + "half");
   }
-  tests::wait_until([&] { return server_->served() == 3; });
+  tests::wait_until([&] { return server_->traffic().served == 3; });
   EXPECT_EQ(RawClient(port(), 0, "127.0.0.2").get("/models.json").status, 200);
 }
 

@@ -15,7 +15,10 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
 using tests::write_text;
 
 class InboxTest : public testing::Test {
@@ -28,6 +31,11 @@ class InboxTest : public testing::Test {
         names.push_back(file.name);
     }
     return names;
+  }
+
+  void put(const std::filesystem::path& name) const {
+    std::filesystem::create_directories((directory_.path() / name).parent_path());
+    write_text(directory_.path() / name, "1");
   }
 
   tests::TemporaryDirectory directory_;
@@ -58,6 +66,42 @@ TEST_F(InboxTest, AnArchiveOfAHierarchyIsNoMesh) {
   write_text(directory_.path() / "b.3tz", tests::zip_of({{"tileset.json", "{ }"}}));
   EXPECT_THAT(whole_after(milliseconds(0)), ElementsAre("a.3tz", "c.3tz"));
   EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.3tz", "b.3tz", "c.3tz"));
+}
+
+TEST_F(InboxTest, FoldersThatGiveNoModelAreToldOnceTheyHaveSettled) {
+  put("one/a.ply");
+  put("two/a.ply");
+  put("two/b.obj");
+  put("none/notes.txt");
+  put("made.hier/hierarchy.json");
+  put(".hidden/notes.txt");
+  std::filesystem::create_symlink(directory_.path() / "two", directory_.path() / "link");
+  whole_after(milliseconds(0));
+  EXPECT_THAT(inbox_.left_out(), IsEmpty());
+  whole_after(milliseconds(2000));
+  EXPECT_THAT(inbox_.left_out(),
+              ElementsAre(Pair("none", "it holds no mesh"), Pair("two", HasSubstr("2 meshes"))));
+  std::filesystem::remove(directory_.path() / "two/b.obj");
+  put("one/b.ply");
+  whole_after(milliseconds(0));
+  EXPECT_THAT(inbox_.left_out(), ElementsAre(Pair("none", "it holds no mesh")))
+      << "they have changed";
+  whole_after(milliseconds(2000));
+  EXPECT_THAT(inbox_.left_out(),
+              ElementsAre(Pair("none", "it holds no mesh"), Pair("one", HasSubstr("2 meshes"))));
+}
+
+TEST_F(InboxTest, WithoutFoldersAllAreToldWithWhatTakesThem) {
+  Inbox inbox{directory_.path(), {.settle = milliseconds(0)}};
+  put("one/a.ply");
+  put("made.hier/hierarchy.json");
+  inbox.look();
+  EXPECT_THAT(inbox.left_out(), ElementsAre(Pair("one", HasSubstr("--inbox"))));
+  inbox.look();
+  EXPECT_THAT(inbox.left_out(), SizeIs(1));
+  std::filesystem::remove_all(directory_.path() / "one");
+  inbox.look();
+  EXPECT_THAT(inbox.left_out(), IsEmpty());
 }
 
 TEST_F(InboxTest, AFileThatGrowsBeginsAnew) {

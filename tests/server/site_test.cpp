@@ -31,9 +31,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 using tests::text_of;
 
@@ -89,6 +92,39 @@ class SiteTest : public testing::Test {
   std::unique_ptr<Hierarchies> hierarchies_;
   std::unique_ptr<Site> site_;
 };
+
+TEST_F(SiteTest, EachReplyHasOnePolicy) {
+  const auto policy = [&](const std::string& target) {
+    const Reply reply = get(target);
+    EXPECT_EQ(std::ranges::count(reply.headers, "Content-Security-Policy",
+                                 [](const auto& header) { return header.first; }),
+              1)
+        << target;
+    return std::string(reply.header("Content-Security-Policy"));
+  };
+  EXPECT_THAT(policy("/"), AllOf(HasSubstr("object-src 'none'"), Not(HasSubstr("script-src")),
+                                 EndsWith("frame-ancestors 'self'")));
+  EXPECT_EQ(get("/").header("Referrer-Policy"), "same-origin");
+  for (const char* target : {"/models.json", "/models/plain.hier/hierarchy.json", "/nothing",
+                             "/models/plain.hier/nothing"})
+    EXPECT_EQ(policy(target), "default-src 'none'; frame-ancestors 'self'") << target;
+  Request again = request("/");
+  again.if_none_match = get("/").header("ETag");
+  EXPECT_EQ(site_->answer(again).status, 304);
+  EXPECT_EQ(site_->answer(again).header("Content-Security-Policy"), policy("/"));
+}
+
+TEST_F(SiteTest, OthersMayFrameThePageWhereThatIsAllowed) {
+  open({.frame = "https://a.example:8443"});
+  for (const char* target : {"/", "/models.json"}) {
+    EXPECT_THAT(std::string(get(target).header("Content-Security-Policy")),
+                EndsWith("frame-ancestors 'self' https://a.example:8443"));
+  }
+  open({.frame = "*"});
+  EXPECT_THAT(std::string(get("/").header("Content-Security-Policy")),
+              Not(HasSubstr("frame-ancestors")))
+      << "a page of a disk is no network's, which * means";
+}
 
 TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   const Reply reply = get("/models.json");

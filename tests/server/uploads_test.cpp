@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "server/build_target.h"
+#include "server/secret.h"
 #include "server/staged_upload.h"
 #include "storage/io/output_file.h"
 #include "tests/server/form_text.h"

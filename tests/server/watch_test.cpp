@@ -62,7 +62,7 @@ class WatchTest : public testing::Test {
     hierarchies_ = std::make_unique<Hierarchies>(
         std::make_shared<tests::RefusingFolder>(folder_, refused_), [](const std::string&) {});
     watch_ = std::make_unique<Watch>(options, *files_, *hierarchies_,
-                                     [this](const std::string& message) {
+                                     [this](LogLevel, const std::string& message) {
                                        const std::lock_guard lock(mutex_);
                                        told_.push_back(message);
                                      });
@@ -267,7 +267,7 @@ TEST_F(WatchTest, WarningsAreToldAndStayWithTheModel) {
   start();
   drop_obj();  // without its library
   wait_until([&] { return is_there("a.hier") && is_idle(); });
-  EXPECT_THAT(told(), Contains(AllOf(StartsWith("a.obj: warning: "), HasSubstr("a.mtl"))));
+  EXPECT_THAT(told(), Contains(AllOf(StartsWith("a.obj: "), HasSubstr("a.mtl"))));
   EXPECT_THAT(told(), Contains(StartsWith("a.obj: done, with ")));
   const auto warnings = [&] { return hierarchies_->list().at(0).warnings; };
   EXPECT_THAT(warnings(), Contains(HasSubstr("a.mtl")));

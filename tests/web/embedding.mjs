@@ -135,9 +135,9 @@ const STRANGER = `(register) => register(() => ({
 /// The same plug-in in the page and in the element.
 async function checkPlugin(browser, report, origin, { name }) {
   const hosts = [
-    ['page', await open(browser, `${origin}/index.html?model=models/${name}.hier`), 'window.meshhier.view.registerPlugin(make())', 'window.meshhier?.settled()', '.surface canvas'],
+    ['page', await open(browser, `${origin}/index.html?model=models/${name}.hier`), 'window.meshhier.view.registerPlugin(make())', () => window.meshhier?.settled(), '.surface canvas'],
     ['element', await host(browser, origin, `<script type="module" src="${origin}/meshhier-viewer.js"></script><meshhier-viewer src="${origin}/models/${name}.hier"></meshhier-viewer>`, []),
-      "document.querySelector('meshhier-viewer').registerPlugin(make)", "document.querySelector('meshhier-viewer').view?.stats().settled", 'meshhier-viewer canvas'],
+      "document.querySelector('meshhier-viewer').registerPlugin(make)", () => document.querySelector('meshhier-viewer').view?.stats().settled, 'meshhier-viewer canvas'],
   ];
   for (const [what, page, register, settled, canvas] of hosts) {
     await page.waitForFunction(settled, null, { timeout: PATIENCE });

@@ -1,4 +1,4 @@
-#include "app/upload_token.h"
+#include "app/token_file.h"
 
 #include "base/error.h"
 #include "base/text_mark.h"
@@ -24,7 +24,8 @@ bool is_visible(char c) {
 
 }  // namespace
 
-std::string read_upload_token(storage::FileSystem& files, const std::filesystem::path& path) {
+std::string read_token(storage::FileSystem& files, std::string_view option,
+                       const std::filesystem::path& path) {
   const std::unique_ptr<storage::File> file = files.open(path);
   std::string token(std::min(file->size(), kMostBytes + 1), '\0');
   file->read_exact(0, std::as_writable_bytes(std::span(token)));
@@ -33,10 +34,9 @@ std::string read_upload_token(storage::FileSystem& files, const std::filesystem:
   if (token.size() >= kFewestCharacters && token.size() <= kMostBytes &&
       std::all_of(token.begin(), token.end(), is_visible))
     return token;
-  throw Error(ErrorCode::usage,
-              fmt::format("--upload-token-file {}: expected one word of {} to {} visible ASCII "
-                          "characters; make one with: openssl rand -hex 32",
-                          path.string(), kFewestCharacters, kMostBytes));
+  throw Error(ErrorCode::usage, fmt::format("{} {}: expected one word of {} to {} visible ASCII "
+                                            "characters; make one with: openssl rand -hex 32",
+                                            option, path.string(), kFewestCharacters, kMostBytes));
 }
 
 }  // namespace meshhier::app

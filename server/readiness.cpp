@@ -1,0 +1,61 @@
+#include "server/readiness.h"
+
+#include "base/error.h"
+#include "execution/size_text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace meshhier::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string why_not_readable(const fs::path& folder, storage::FileSystem& files) {
+  try {
+    files.children(folder);
+    return {};
+  } catch (const Error&) {
+    return "it cannot be listed";
+  }
+}
+
+std::string why_not_writable(const fs::path& folder, storage::FileSystem& files) {
+  const std::string cause = files.why_not_writable(folder);
+  return cause.empty() ? cause : "nothing can be written into it: " + cause;
+}
+
+std::string first_of(std::string reason, const std::string& next) {
+  return reason.empty() ? next : reason;
+}
+
+Check check_disk(const ReadinessOptions& options, storage::FileSystem& files) {
+  try {
+    std::uint64_t free = files.free_bytes(options.folder);
+    if (options.takes_uploads)
+      free = std::min(free, files.free_bytes(options.inbox));
+    if (free >= options.disk_floor)
+      return {"disk"};
+    return {"disk", fmt::format("{} are free, and {} must be (--disk-floor)",
+                                execution::rounded_size_text(free),
+                                execution::exact_size_text(options.disk_floor))};
+  } catch (const Error&) {
+    return {"disk", "it does not tell what is free"};
+  }
+}
+
+}  // namespace
+
+std::vector<Check> check_readiness(const ReadinessOptions& options, storage::FileSystem& files) {
+  Check folder{"folder", why_not_readable(options.folder, files)};
+  if (options.inbox.empty())
+    return {folder};
+  folder.reason = first_of(folder.reason, why_not_writable(options.folder, files));
+  Check inbox{"inbox", why_not_readable(options.inbox, files)};
+  if (options.takes_uploads)
+    inbox.reason = first_of(inbox.reason, why_not_writable(options.inbox, files));
+  return {folder, inbox, check_disk(options, files)};
+}
+
+}  // namespace meshhier::server

@@ -1,0 +1,30 @@
+// Whether a server can do now what it is for: show a folder, take meshes, build.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace meshhier::server {
+
+struct ReadinessOptions {
+  std::filesystem::path folder{};  ///< the hierarchies'
+  std::filesystem::path inbox{};   ///< watched; empty: none is, and nothing is written
+  bool takes_uploads = false;      ///< into the inbox
+  std::uint64_t disk_floor = std::uint64_t{1} << 30;  ///< bytes that must be free to write
+};
+
+/// One thing that must be so.
+struct Check {
+  std::string name;      ///< "folder", "inbox", "disk"
+  std::string reason{};  ///< why it is not, without paths of this machine; empty: it is so
+};
+
+/// Returns all checks; takes some system calls. Thread-safe if `files` is. Never throws for what is
+/// wrong.
+std::vector<Check> check_readiness(const ReadinessOptions& options, storage::FileSystem& files);
+
+}  // namespace meshhier::server
