@@ -40,8 +40,8 @@ struct DracoHead {
   bool is_edgebreaker = false;
 };
 
-/// Reads the stream's head, before the library believes them; nothing if it is no
-/// mesh.
+/// Reads counts and method in the stream's head, before the library believes them; nothing if it is
+/// no mesh.
 std::optional<DracoHead> read_head(std::span<const std::byte> stream) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size(), kDracoVersion);
