@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Any, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError
 
-Box = Sequence[Sequence[float]]
+Box = Union[Sequence[Sequence[float]], Sequence[NDArray[Any]], NDArray[Any]]
 Corner = NDArray[np.float64]
 
 _ROUNDING = 2.0**-50  # of coordinates: a corner or an edge on a side is enough, as for `meshhier export`

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -281,7 +281,7 @@ class Hierarchy:
         *,
         error: Optional[float] = None,
         level: Optional[int] = None,
-        nodes: Optional[Sequence[NodeLike]] = None,
+        nodes: Optional[Iterable[NodeLike]] = None,
         box: Optional[Box] = None,
         polygon: Optional[Polygon] = None,
         ids: bool = False,
@@ -302,7 +302,7 @@ class Hierarchy:
         *,
         error: Optional[float] = None,
         level: Optional[int] = None,
-        nodes: Optional[Sequence[NodeLike]] = None,
+        nodes: Optional[Iterable[NodeLike]] = None,
         box: Optional[Box] = None,
         polygon: Optional[Polygon] = None,
     ) -> Mesh:
@@ -341,7 +341,7 @@ class Hierarchy:
 
     def _pieces(
         self,
-        nodes: Optional[Sequence[NodeLike]],
+        nodes: Optional[Iterable[NodeLike]],
         error: Optional[float],
         level: Optional[int],
         box: Optional[Box],

@@ -6,16 +6,26 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from fractions import Fraction
-from typing import Any, Iterator, Mapping, Sequence, Union
+from typing import Any, Iterator, Mapping, Protocol, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError
 
+
+
+class Shape(Protocol):
+    """A geometry of another library."""
+
+    @property
+    def __geo_interface__(self) -> Mapping[str, Any]: ...
+
+
 Ring = NDArray[np.float64]
-Polygon = Union[str, "os.PathLike[str]", Mapping[str, Any], Sequence[Sequence[float]], NDArray[Any]]
+Polygon = Union[str, "os.PathLike[str]", Mapping[str, Any], Shape, Sequence[Sequence[float]], NDArray[Any]]
 """A GeoJSON file, an object as GeoJSON has them (or with `__geo_interface__`, as shapely's), or the corners (x, y) of a ring."""
 
 _Bools = NDArray[np.bool_]
@@ -130,33 +140,46 @@ class Polygons:
         ends = self._plan(np.stack([low, high]))
         return bool(self._near(ends).any() or self._contains(ends[:1])[0])
 
+    def contains(self, points: _Floats) -> _Bools:
+        """For each of (..., 3) points whether it lies within."""
+        plan = self._plan(points)
+        if plan.size == 0:
+            return np.zeros(plan.shape[:-1], bool)
+        return self._contains(plan.reshape(-1, 2)).reshape(plan.shape[:-1])
+
     def touches(self, corners: _Floats) -> _Bools:
-        """For each of (m, 3, 3) triangles whether a part of it lies within."""
+        """For each of (m, 3, 3) triangles whether a corner or a part of it lies within."""
+        touches = np.zeros(len(corners), bool)
+        if len(corners) > 0 and not self._near(self._plan(corners).reshape(-1, 2)).any():
+            touches[:] = self.contains(corners[0, 0])
+            return touches
+        touches = self.contains(corners).any(axis=1)
+        touches[~touches] = self.has_part(corners[~touches])
+        return touches
+
+    def has_part(self, corners: _Floats) -> _Bools:
+        """For each of (m, 3, 3) triangles whether a part of it lies within that is as large as it is from above: an area, a line or a point."""
         plan = self._plan(corners)
-        touches = np.zeros(len(plan), bool)
         if len(plan) == 0:
-            return touches
+            return np.zeros(0, bool)
         borders = self._all[self._near(plan.reshape(-1, 2))]
-        if len(borders) == 0:
-            touches[:] = self._contains(plan[:1, 0])[0]
-            return touches
-        touches = self._contains(plan.reshape(-1, 2)).reshape(-1, 3).any(axis=1)
         turn, rounding = _turns(plan[:, 0], plan[:, 1], plan[:, 2])
         is_upright = np.abs(turn) <= rounding
         for number in np.flatnonzero(is_upright):
             is_upright[number] = _turn(*map(_fractions, plan[number])) == 0
         plan[turn < 0] = plan[turn < 0][:, ::-1]
         low, high = plan.min(axis=1), plan.max(axis=1)
+        has_part = np.zeros(len(plan), bool)
         for border in borders:
-            asked = ~touches & ~is_upright & (low <= border.max(axis=0)).all(axis=1) & (high >= border.min(axis=0)).all(axis=1)
+            asked = ~has_part & ~is_upright & (low <= border.max(axis=0)).all(axis=1) & (high >= border.min(axis=0)).all(axis=1)
             rows = np.flatnonzero(asked)
-            touches[rows] = _crosses(plan[rows], border)
+            has_part[rows] = _crosses(plan[rows], border)
         # No border runs through what is left: it is within or without.
-        rest = np.flatnonzero(~touches & ~is_upright)
-        touches[rest] = self._has_middle(plan[rest])
-        for number in np.flatnonzero(~touches & is_upright):
-            touches[number] = self._has_line(plan[number], borders)
-        return touches
+        rest = np.flatnonzero(~has_part & ~is_upright)
+        has_part[rest] = self._has_middle(plan[rest])
+        for number in np.flatnonzero(is_upright):
+            has_part[number] = self._has_line(plan[number], borders)
+        return has_part
 
     def _near(self, points: _Floats) -> _Bools:
         """The borders whose boxes meet that of the points."""
@@ -216,7 +239,7 @@ class Polygons:
         return within
 
     def _has_line(self, triangle: _Floats, borders: _Floats) -> bool:
-        """Whether a part of an upright triangle, a line from above, lies within."""
+        """Whether a part of an upright triangle, a line or a point from above, lies within."""
         a, *_, b = sorted(map(_fractions, triangle))
         stops = {Fraction(0), Fraction(1)}
         low, high = triangle.min(axis=0), triangle.max(axis=0)
@@ -224,17 +247,57 @@ class Polygons:
             stops.update(stop for stop in _stops(a, b, *map(_fractions, border)) if 0 < stop < 1)
         ordered = sorted(stops)
         middles = [(one + other) / 2 for one, other in zip(ordered, ordered[1:])]
-        return a != b and any(self._has((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))) for t in middles)
+        return self._has(a) if a == b else any(self._has((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))) for t in middles)
 
 
 def _borders_of(polygon: list[Ring]) -> _Floats:
-    """(n, 2, 2): from corner to corner of its rings, without those that run twice, as a slit to a hole does."""
-    borders = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in polygon] or [np.zeros((0, 2, 2))])
-    borders = borders[(borders[:, 0] != borders[:, 1]).any(axis=1)] + 0.0
+    """(n, 2, 2): from corner to corner of its rings. Where two run over each other, as a slit to a hole does, there is none."""
+    borders = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in polygon] or [np.zeros((0, 2, 2))]) + 0.0
+    borders = borders[(borders[:, 0] != borders[:, 1]).any(axis=1)]
     is_turned = (borders[:, 0, 0] > borders[:, 1, 0]) | ((borders[:, 0, 0] == borders[:, 1, 0]) & (borders[:, 0, 1] > borders[:, 1, 1]))
     borders[is_turned] = borders[is_turned][:, ::-1]
-    each, counts = np.unique(borders.reshape(-1, 4), axis=0, return_counts=True)
-    return each[counts % 2 == 1].reshape(-1, 2, 2)
+    lines: dict[Any, list[_Floats]] = {}
+    alone: list[_Floats] = []
+    for border, has_parallel in zip(borders, _have_parallels(borders)):
+        if has_parallel:
+            lines.setdefault(_line_of(*map(_fractions, border)), []).append(border)
+        else:
+            alone.append(border)
+    return np.array([*alone, *(part for line in lines.values() for part in _odd_parts(line))]).reshape(-1, 2, 2)
+
+
+def _have_parallels(borders: _Floats) -> _Bools:
+    """False only of borders to which no other one is parallel."""
+    way = borders[:, 1] - borders[:, 0]
+    angles = np.arctan2(way[:, 1], way[:, 0])
+    order = np.argsort(angles)
+    is_close = np.diff(angles[order]) < 1e-9
+    found = np.zeros(len(borders), bool)
+    found[order[1:]] |= is_close
+    found[order[:-1]] |= is_close
+    return found
+
+
+def _line_of(a: _Point, b: _Point) -> tuple[Fraction, ...]:
+    """What borders on one line have in common: slope, and where it meets an axis."""
+    if a[0] == b[0]:
+        return (a[0],)
+    slope = (b[1] - a[1]) / (b[0] - a[0])
+    return slope, a[1] - slope * a[0]
+
+
+def _odd_parts(line: list[_Floats]) -> list[_Floats]:
+    """The parts of a line over which an odd number of these borders runs, all in one direction."""
+    if len(line) == 1:
+        return line
+    counts = Counter((float(x), float(y)) for border in line for x, y in border)
+    ends = sorted(counts)
+    parts, is_odd = [], False
+    for end, following in zip(ends, ends[1:]):
+        is_odd ^= counts[end] % 2 == 1
+        if is_odd:
+            parts.append(np.array([end, following]))
+    return parts
 
 
 def _stops(a: _Point, b: _Point, c: _Point, d: _Point) -> list[Fraction]:

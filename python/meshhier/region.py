@@ -42,12 +42,12 @@ class Region:
 
     def _touches_both(self, corners: _Floats, polygons: Polygons) -> NDArray[np.bool_]:
         """The same of triangles that have a point in each of the two."""
-        both = np.ones(len(corners), bool)
         is_within = ((corners >= self._low) & (corners <= self._high)).all(axis=2)
-        for number in np.flatnonzero(~is_within.all(axis=1)):
+        both = is_within.all(axis=1) | (is_within & polygons.contains(corners)).any(axis=1)
+        for number in np.flatnonzero(~both):
             part = _within(corners[number], self._low, self._high)
             fans = np.stack([np.broadcast_to(part[0], part[1:-1].shape), part[1:-1], part[2:]], axis=1) if len(part) > 2 else np.zeros((0, 3, 3))
-            both[number] = bool(polygons.touches(fans).any())
+            both[number] = bool(polygons.has_part(fans).any())
         return both
 
 
@@ -63,7 +63,7 @@ def _within(polygon: _Floats, low: _Floats, high: _Floats) -> _Floats:
             for corner, other, here, there in zip(polygon, following, inside, beyond):
                 if here >= 0:
                     made.append(corner)
-                if (here < 0) != (there < 0):
+                if here < 0 < there or there < 0 < here:
                     cut = corner + (other - corner) * (here / (here - there))
                     cut[axis] = side
                     made.append(cut)

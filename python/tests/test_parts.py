@@ -144,6 +144,54 @@ def test_boxes_and_polygons_are_those_of_export(name: str, torus: str, built: An
                 assert (corners(list(hierarchy.iter_parts(**cut, polygon=polygon, box=box))) == corners([mesh])).all()
 
 
+@pytest.fixture(scope="module")
+def steps(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Flat squares of whole coordinates on different heights, with walls between: from above and from the side most triangles are lines."""
+    path, side = tmp_path_factory.mktemp("steps") / "steps.obj", 12
+    heights = np.random.default_rng(5).integers(0, 4, (side + 1, side + 1))
+    places: dict[tuple[int, ...], int] = {}
+    faces: list[str] = []
+
+    def add(*corners: tuple[int, ...]) -> None:
+        numbers = [places.setdefault(corner, len(places) + 1) for corner in corners]
+        faces.append("f " + " ".join(map(str, numbers)))
+
+    for x, y in np.ndindex(side, side):
+        z, east, north = (int(heights[at]) for at in ((x, y), (x + 1, y), (x, y + 1)))
+        add((x, y, z), (x + 1, y, z), (x + 1, y + 1, z), (x, y + 1, z))
+        if east != z:
+            add((x + 1, y, z), (x + 1, y, east), (x + 1, y + 1, east), (x + 1, y + 1, z))
+        if north != z:
+            add((x, y + 1, z), (x, y + 1, north), (x + 1, y + 1, north), (x + 1, y + 1, z))
+    path.write_text("\n".join([f"v {x} {y} {z}" for x, y, z in places] + faces))
+    return str(path)
+
+
+@pytest.mark.parametrize("up", ["y", "z"])
+def test_borders_through_corners_and_along_edges(up: str, steps: str, built: Any, tmp_path: Path) -> None:
+    hierarchy = meshhier.open(built(steps, f"steps_{up}.hier", up=up, partition__vertices=150, preview="false"))
+    random, least = np.random.default_rng(9), 0 if up == "z" else -4
+    taken = 0
+    for number in range(16):
+        x, y = random.integers(0, 25, (2, 2, 6)) / 2, random.integers(2 * least, 2 * (least + (12 if up == "z" else 4)) + 1, (2, 6)) / 2
+        rings = [np.stack([x[0, ring], y[ring]], 1).tolist() for ring in range(2)]
+        (tmp_path / "a.geojson").write_text(json.dumps({"type": "Polygon", "coordinates": [rings[0], rings[1][: 3 + number % 4]]}))
+        where = ["--polygon", str(tmp_path / "a.geojson"), "--level", str(hierarchy.levels - 1)]
+        box = np.sort(random.integers(0, 5, (2, 3)) * [3, 3, 1], axis=0) if number % 2 else None
+        if box is not None:
+            where += ["--box", *(",".join(map(str, corner)) for corner in box)]
+        mesh = hierarchy.cut(polygon=tmp_path / "a.geojson", box=box)
+        taken += len(mesh.triangles) > 0
+        try:
+            rows, triangles = exported(hierarchy, tmp_path / "a.ply", *where)
+        except subprocess.CalledProcessError as error:
+            assert error.returncode == 2 and len(mesh.triangles) == 0  # there is nothing
+            continue
+        theirs = triangle_set(triangles, np.stack([rows[axis] for axis in "xyz"], 1))
+        assert len(theirs) == len(mesh.triangles) and (theirs == triangle_set(mesh.triangles, mesh.positions)).all()
+    assert taken > 8
+
+
 def test_what_is_near_is_as_fine_as_asked(torus: str, built: Any) -> None:
     hierarchy = meshhier.open(built(torus, "plain.hier"))
     low, high = hierarchy.bounds
@@ -173,6 +221,8 @@ def test_polygons_are_decided_exactly() -> None:
         ((1.5, -1), (1.5, 2), (1.5, 1)): False,
         ((-1, 2), (0.5, 0.5), (2, -1)): True,
     }
+    folded = Polygons(rings_of([(0, 0), (1, 0), (1, 1), (1, 0.5), (2, 0.5), (5, 0.5), (3, 0.5), (1, 0.5), (1, 1), (0, 1)]), True, np.zeros(3))
+    assert folded.touches(np.array([[[3.5, 0, 0], [4, 0, 0], [3.5, 1, 0]], [[0.5, 0.4, 0], [4, 0, 0], [4, 1, 0]]], float)).tolist() == [False, True]
     for plan, is_within in triangles.items():
         corners = np.array([[(x, y, height) for height, (x, y) in enumerate(plan)]], float)
         for turned in (corners, corners[:, ::-1], np.roll(corners, 1, axis=1)):
