@@ -230,13 +230,15 @@ COMMANDS: Mapping[str, Mapping[str, Option]] = {
     "plan": {**_SETTINGS, **_FORCE, "work": PATH, "tasks": TEXT},
     "task": {**_MEMORY, "index": TEXT, "of": TEXT, "scratch": PATH, "threads": TEXT, "status": FLAG},
     "clean": {"remove": FLAG},
+    "query": {**_MEMORY, "headers": _WEB["headers"], "level": TEXT, "error": TEXT, "signed": FLAG},
 }  # fmt: skip
 
 #: Options that no keyword stands for: how the program tells what it does, which the functions settle.
 SETTLED = {"--help", "--json", "--progress", "--output"}
-#: The same of single commands, and what takes their place.
+#: The same of single commands, and what takes their place, if anything does.
 LEFT_OUT: Mapping[str, Mapping[str, str]] = {
     "build": {"--help-config": "the manual", "--help-formats": "the manual", "--each": "a loop of Python", "--jobs": "a loop of Python"},
+    "query": {"--points": "nearest()", "--rays": "rays()", "--format": "arrays", "--force": "arrays", "--limit-rate": "none"},
     "task": {"--stages": "task_status()", "--next": "task_status()"},
 }
 

@@ -14,14 +14,13 @@ from typing import IO, TYPE_CHECKING, Any, NoReturn, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import BudgetError, InputError, ProgramError, ProgramNotFoundError, ReplacedError, UsageError
+from .errors import ProgramNotFoundError, ReplacedError, UsageError, program_error
+from .options import Files, option_words, path_word, spoken
 from .process import find_program
 from .tree import Node
 
 if TYPE_CHECKING:
     from .hierarchy import Hierarchy
-
-_ERRORS = {3: InputError, 6: BudgetError}
 
 
 @dataclass(frozen=True, repr=False)
@@ -164,30 +163,31 @@ def _ask(
     hierarchy: Hierarchy, option: str, rows: NDArray[Any], words: Sequence[str], memory_budget: Union[int, str, None]
 ) -> tuple[NDArray[Any], dict[str, Any]]:
     """The answers of the program, and its account."""
-    path = f"./{hierarchy.path}" if hierarchy.path.startswith("-") else hierarchy.path
-    budget = [] if memory_budget is None else ["--memory-budget", str(memory_budget)]
-    command = [find_program(), "query", path, option, "-", "-o", "-", "--format", "npy", "--json", "--progress", "none", *words, *budget]
-    try:
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    except OSError as failure:
-        raise ProgramNotFoundError(f"cannot start {command[0]}: {failure}") from failure
-    said: list[bytes] = []
-    assert process.stdin is not None and process.stdout is not None and process.stderr is not None
-    threads = [
-        threading.Thread(target=_send, args=(process.stdin, rows), daemon=True),
-        threading.Thread(target=lambda stream: said.append(stream.read()), args=(process.stderr,), daemon=True),
-    ]
-    try:
-        with process:
-            for thread in threads:
-                thread.start()
-            answers = _receive(process.stdout)
-            for thread in threads:
-                thread.join()
-    except BaseException:
-        process.terminate()
-        process.wait()
-        raise
+    place, headers, _ = hierarchy._asked
+    with Files() as files:
+        known = option_words("query", {"headers": headers, "memory_budget": memory_budget}, files)
+        command = [find_program(), "query", path_word(place), option, "-", "-o", "-", "--format", "npy", "--json", "--progress", "none", *words, *known]
+        try:
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        except OSError as failure:
+            raise ProgramNotFoundError(f"cannot start {command[0]}: {failure}") from failure
+        said: list[bytes] = []
+        assert process.stdin is not None and process.stdout is not None and process.stderr is not None
+        threads = [
+            threading.Thread(target=_send, args=(process.stdin, rows), daemon=True),
+            threading.Thread(target=lambda stream: said.append(stream.read()), args=(process.stderr,), daemon=True),
+        ]
+        try:
+            with process:
+                for thread in threads:
+                    thread.start()
+                answers = _receive(process.stdout)
+                for thread in threads:
+                    thread.join()
+        except BaseException:
+            process.terminate()
+            process.wait()
+            raise
     text = said[0].decode("utf-8", "replace")
     if process.returncode != 0 or answers is None:
         _fail(text, process.returncode)
@@ -227,10 +227,5 @@ def _receive(stream: IO[bytes]) -> Optional[NDArray[Any]]:
 
 
 def _fail(said: str, code: int) -> NoReturn:
-    name = "meshhier: "
-    message = said.strip() or f"the program ended with exit code {code}"
-    message = message[len(name) :] if message.startswith(name) else message
-    if code == 2:
-        raise UsageError(message)
-    exit_code = code if code > 0 else 128 - code
-    raise _ERRORS.get(exit_code, ProgramError)(message, exit_code)
+    message = said.strip().removeprefix("meshhier: ") or f"the program ended with exit code {code}"
+    raise program_error(spoken(message, "query"), code if code > 0 else 128 - code)

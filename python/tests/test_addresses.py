@@ -539,6 +539,7 @@ def test_the_program_reads_them_with_the_same_secrets(host: Host, tmp_path: Path
     with meshhier.open(f"{host.address}/a.3tz?sig=s", headers={"X-Key": "k"}) as web:
         host.requests.clear()
         assert meshhier.export(web, level=0) and meshhier.inspect(web)["source"]["triangles"] == 20736
+        assert web.nearest([(0, 0, 0)]).distances[0] > 0
         assert len(host.requests) > 1 and all(path.endswith("?sig=s") and headers["X-Key"] == "k" for path, headers in host.requests)
 
 
