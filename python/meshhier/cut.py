@@ -53,7 +53,10 @@ class CutPieces:
         other tiles' vertices are below 0, and known to this piece alone, if they were not asked for."""
         places = np.arange(len(self._rows)) if region is None else self._reaching(region)
         for place in places:
-            piece = self._piece(int(place), region)
+            try:
+                piece = self._piece(int(place), region)
+            except (IndexError, ValueError) as error:
+                raise CorruptError(f"{self._manifest.tile_name(self._index.node(self._rows[place]))}: {error}") from error
             if region is None or len(piece.triangles) > 0:
                 yield piece
 

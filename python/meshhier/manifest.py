@@ -86,6 +86,8 @@ def _scalar(value: dict[str, Any]) -> Scalar:
 
 
 def _conventions(text: dict[str, Any]) -> Conventions:
+    if text["up"] not in ("y", "z"):
+        raise ValueError("up is neither y nor z")
     attributes, texture = text["source"]["attributes"], text["storage"].get("texture", {})
     return Conventions(text["up"], attributes.get("linear_colours", False), attributes.get("tints", False), texture.get("unlit", False))
 

@@ -257,3 +257,19 @@ def test_a_broken_geojson_is_refused(text: str, torus: str, built: Any, tmp_path
     (tmp_path / "a.geojson").write_text(text)
     with pytest.raises(meshhier.UsageError, match="a.geojson"):
         meshhier.open(built(torus, "plain.hier")).cut(polygon=tmp_path / "a.geojson")
+
+
+@pytest.mark.parametrize("section", ["copy_of", "border", "chains"])
+def test_tiles_that_contradict_each_other_are_damage(section: str, split: str, built: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    hierarchy = meshhier.open(built(split, "split_parts.hier", partition__count=11))
+    read = hierarchy.read_tile
+
+    def read_damaged(node: meshhier.NodeLike) -> meshhier.Tile:
+        tile = read(node)
+        for values in tile.chains if section == "chains" else [getattr(tile, section)]:
+            values[...] = 1 << 40
+        return tile
+
+    monkeypatch.setattr(hierarchy, "read_tile", read_damaged)
+    with pytest.raises(meshhier.CorruptError, match=r"tiles/.*glb"):
+        hierarchy.cut(error=between(hierarchy))
