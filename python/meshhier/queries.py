@@ -163,7 +163,7 @@ def _ask(
     hierarchy: Hierarchy, option: str, rows: NDArray[Any], words: Sequence[str], memory_budget: Union[int, str, None]
 ) -> tuple[NDArray[Any], dict[str, Any]]:
     """The answers of the program, and its account."""
-    place, headers, _ = hierarchy._asked
+    place, headers, _ = hierarchy._place
     with Files() as files:
         known = option_words("query", {"headers": headers, "memory_budget": memory_budget}, files)
         command = [find_program(), "query", path_word(place), option, "-", "-o", "-", "--format", "npy", "--json", "--progress", "none", *words, *known]
