@@ -115,16 +115,13 @@ void add_query_command(CLI::App& parser, Invocation& invocation) {
 
   add_file_output_options(*command, "What to write: .npy, or else a CSV; if not given, \"-\"",
                           arguments->output, arguments->options.replace, Given::not_always);
-  command
-      ->add_option_function<std::string>(
-          "--format",
-          [arguments](const std::string& format) {
-            arguments->format =
-                format == "npy" ? querying::AnswerFormat::npy : querying::AnswerFormat::csv;
-          },
-          "What to write, whatever the name")
-      ->type_name("csv|npy")
-      ->check(CLI::IsMember({"csv", "npy"}));
+  add_text_option(*command,
+                  {"--format", "What to write, whatever the name", "csv|npy", "csv or npy"},
+                  [arguments](const std::string& text) {
+                    arguments->format =
+                        text == "npy" ? querying::AnswerFormat::npy : querying::AnswerFormat::csv;
+                    return text == "npy" || text == "csv";
+                  });
   command->add_flag("--json", arguments->json, "Tell what was done for scripts");
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);

@@ -237,7 +237,7 @@ QuerySummary run_query(storage::FileSystem& place, const std::filesystem::path& 
   Query query(place, path, options, progress, cancel);
   if (!storage::is_standard_output(files, options.output)) {
     storage::require_outside(files, options.output);
-    mesh_io::require_true_ending(options.output.string(), {},
+    mesh_io::require_true_ending(options.output.string(), {".csv", ".npy", ".txt"},
                                  "query writes .csv and .npy; choose one of these");
   }
   storage::OutputRequest request{options.output, options.replace, {path}};

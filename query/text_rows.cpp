@@ -49,10 +49,10 @@ class Lines {
       // A carriage return at the end may be half of a line end.
       const bool is_whole =
           end != std::string::npos && (text_[end] == '\n' || end + 1 < text_.size());
+      if (std::min(end, text_.size()) - begin_ > kMostLineBytes)
+        fail(fmt::format("the line has more than {} bytes", kMostLineBytes));
       if (is_whole || at_end_)
         return take(end);
-      if (text_.size() - begin_ > kMostLineBytes)
-        fail(fmt::format("the line has more than {} bytes", kMostLineBytes));
       read_on();
     }
   }
