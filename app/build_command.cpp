@@ -1,3 +1,5 @@
+#include "app/build_arguments.h"
+#include "app/build_batch.h"
 #include "app/command.h"
 #include "app/options.h"
 #include "app/shell_word.h"
@@ -13,6 +15,8 @@
 #include "pipeline/estimate.h"
 #include "pipeline/plan/build_plan.h"
 #include "pipeline/plan/build_stats.h"
+#include "pipeline/update.h"
+#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
 
 #include <algorithm>
@@ -33,22 +37,7 @@ namespace meshhier::app {
 
 namespace {
 
-struct BuildArguments {
-  std::vector<std::string> named;  ///< a config, or meshes
-  std::string output;
-  std::vector<std::string> settings;
-  std::string stats;       ///< file for the account; empty: none
-  std::string input_note;  ///< file for the names of the files that were read; empty: none
-  bool force = false;
-  bool restart = false;
-  bool verbose = false;  ///< also the account
-  bool no_links = false;
-  std::string within;  ///< the folder that holds all input; empty: anywhere
-  bool dry_run = false;
-  bool json = false;         ///< the estimate as JSON
-  std::string help_config;   ///< a form of key_references(), or empty
-  std::string help_formats;  ///< a form of format_references(), or empty
-};
+constexpr std::size_t kLongestPath = 4096;
 
 /// Returns the request for a file, which must not take the place of one that the build reads or
 /// makes.
@@ -57,6 +46,25 @@ storage::OutputRequest output_request(const std::string& path, const BuildArgume
   storage::OutputRequest request{path, arguments.force, config::read_by(config)};
   request.inputs.push_back(config.output);
   request.inputs.insert(request.inputs.end(), arguments.named.begin(), arguments.named.end());
+  return request;
+}
+
+/// Whether the file is the account of an earlier build.
+bool is_account(const std::string& path, storage::FileSystem& files) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+  if (files.kind(path) != storage::FileKind::regular || files.identity(path).bytes > kMostBytes)
+    return false;
+  const std::vector<std::byte> bytes = storage::read_file(files, path, kMostBytes);
+  const auto account = storage::parse_ordered_json_text(
+      {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, nullptr, {.throws = false});
+  return account.is_object() && account.contains("generator") && account.contains("stages");
+}
+
+/// Returns the request for the account. --update replaces that of the build before.
+storage::OutputRequest stats_request(const BuildArguments& arguments, const config::Config& config,
+                                     storage::FileSystem& files) {
+  storage::OutputRequest request = output_request(arguments.stats, arguments, config);
+  request.replace = request.replace || (arguments.update && is_account(arguments.stats, files));
   return request;
 }
 
@@ -99,7 +107,7 @@ storage::OutputRequest note_request(const BuildArguments& arguments, const confi
 /// Writes the note, when all is done: a build that is killed leaves none for an unfinished
 /// hierarchy.
 void write_input_note(const BuildArguments& arguments, const config::Config& config,
-                      const storage::InputNote& note, Environment& environment) {
+                      const storage::InputNote& note, const Environment& environment) {
   const std::string text = to_json_text(note);
   storage::OutputFile(environment.files, note_request(arguments, config, environment.files))
       .publish(std::as_bytes(std::span(text)));
@@ -158,26 +166,45 @@ void tell_warnings(std::string_view account, execution::Progress& progress) {
   }
 }
 
-int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
-              const Environment& around) {
-  const auto guarded = guarded_files(arguments);
-  Environment environment{guarded ? *guarded : around.files,
-                          around.cancel,
-                          around.out,
-                          around.messages,
-                          around.terminal,
-                          around.program};
-  config::CommandLine words(arguments.settings);
-  words.output = arguments.output;
-  storage::FileSystem& files = arguments.no_links ? environment.files.input() : environment.files;
-  const config::Config config =
-      config::load_named(files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
-  if (arguments.dry_run)
-    return run_estimate(config, arguments, environment);
+/// Tells programs by an event, people by a line.
+void tell_update(const char* event, const std::string& message, execution::ProgressMode mode,
+                 std::ostream& out, const Environment& environment) {
+  if (mode == execution::ProgressMode::json) {
+    const nlohmann::ordered_json told{{"event", event}, {"message", message}};
+    environment.messages << storage::json_text(told) << std::endl;
+  } else {
+    out << message << std::endl;
+  }
+}
+
+/// Whether the output is up to date, with --update; tells that, or why it is not.
+bool is_up_to_date(const BuildArguments& arguments, const config::Config& config,
+                   execution::ProgressMode mode, execution::Progress& progress,
+                   const Environment& environment) {
+  if (!arguments.update)
+    return false;
+  const std::string reason = pipeline::reason_to_build(
+      config, arguments.input_note, {environment.files, progress, environment.cancel});
+  const std::string output = plain_text(config.output.string(), kLongestPath);
+  if (reason.empty()) {
+    tell_update("up_to_date", output + " is up to date", mode, environment.out, environment);
+  } else if (mode == execution::ProgressMode::json || environment.terminal.is_terminal) {
+    tell_update("outdated", fmt::format("{} is built: {}", output, reason), mode,
+                environment.messages, environment);
+  }
+  return reason.empty();
+}
+
+/// Checks the files that are to be written besides, and builds.
+int run_one(const BuildArguments& arguments, const config::Config& config,
+            execution::ProgressMode mode, const Environment& environment) {
   require_two_files(arguments, environment.files);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  if (is_up_to_date(arguments, config, mode, *progress, environment))
+    return 0;
   std::optional<storage::OutputFile> stats;
   if (!arguments.stats.empty()) {
-    stats.emplace(environment.files, output_request(arguments.stats, arguments, config),
+    stats.emplace(environment.files, stats_request(arguments, config, environment.files),
                   [&] { environment.cancel.check(); });
   }
   if (!arguments.input_note.empty())
@@ -188,10 +215,9 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
         "at most {} of memory, {}\n", execution::rounded_size_text(pipeline::memory_budget(config)),
         counted(pipeline::thread_count(config), "threads"));
   }
-  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  const pipeline::BuildReport report =
-      pipeline::build_hierarchy(config, {arguments.force, arguments.restart, others_of(arguments)},
-                                {environment.files, *progress, environment.cancel});
+  const pipeline::BuildReport report = pipeline::build_hierarchy(
+      config, {arguments.force || arguments.update, arguments.restart, others_of(arguments)},
+      {environment.files, *progress, environment.cancel});
   if (mode == execution::ProgressMode::json)
     tell_warnings(report.text, *progress);
   progress->finish(config.output.string());
@@ -205,6 +231,28 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     out << report.account;
   out << "next: " << serve_line(config, environment.program) << '\n';
   return 0;
+}
+
+int run_build(BuildArguments arguments, execution::ProgressMode mode, const Environment& around) {
+  const auto guarded = guarded_files(arguments);
+  Environment environment{guarded ? *guarded : around.files,
+                          around.cancel,
+                          around.out,
+                          around.messages,
+                          around.terminal,
+                          around.program};
+  if (arguments.each)
+    return run_batch(arguments, mode, environment);
+  config::CommandLine words(arguments.settings);
+  words.output = arguments.output;
+  storage::FileSystem& files = arguments.no_links ? environment.files.input() : environment.files;
+  const config::Config config =
+      config::load_named(files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
+  if (arguments.dry_run)
+    return run_estimate(config, arguments, environment);
+  if (arguments.update && arguments.input_note.empty())
+    arguments.input_note = pipeline::input_note_path(config, environment.files).string();
+  return run_one(arguments, config, mode, environment);
 }
 
 using References = std::map<std::string, std::string (*)()>;
@@ -255,7 +303,32 @@ Examples:
   meshhier build project/ -o project.hier
   meshhier build david.json
   meshhier build david.json --set partition.count=128 -o coarse.hier --stats coarse.json
+  meshhier build --each scans/*.ply -o models/ --jobs 2 --update
 )";
+}
+
+/// Adds --each and --jobs; returns the first.
+CLI::Option* add_batch_options(CLI::App& command, BuildArguments& arguments) {
+  CLI::Option* each = command.add_flag(
+      "--each", arguments.each,
+      "Make a hierarchy of each FILE, a mesh or a config; -o names the folder for all");
+  constexpr std::uint64_t kMostJobs = 256;
+  add_integer_option(command, {"--jobs", "With --each: so many builds at once [1]", 1, kMostJobs},
+                     [&arguments](std::uint64_t jobs) { arguments.jobs = jobs; })
+      ->needs(each);
+  return each;
+}
+
+/// Throws for options that are for one build alone.
+void check_batch(const CLI::App& command, const BuildArguments& arguments) {
+  if (!arguments.each)
+    return;
+  for (const char* option : {"--stats", "--input-note", "--verbose"}) {
+    if (command.count(option) > 0)
+      throw CLI::ExcludesError("--each", option);
+  }
+  if (arguments.named.empty())
+    throw CLI::RequiredError("FILE");
 }
 
 }  // namespace
@@ -301,7 +374,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
           },
           "Properties of the objects: CSV or lines of JSON, with a column id or name")
       ->type_name("FILE");
-  command->add_flag("--force", arguments->force, "Replace an existing output");
+  CLI::Option* force = command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");
   command->add_flag("--verbose", arguments->verbose,
@@ -320,6 +393,13 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                         "Read only the mesh's header (or import it to count it); "
                         "tell what the build would make and take, or why it "
                         "would refuse");
+  command
+      ->add_flag("--update", arguments->update,
+                 "Build only if the output is not of this input, config and program; it is "
+                 "replaced then, as with --force")
+      ->excludes(force)
+      ->excludes(dry_run);
+  add_batch_options(*command, *arguments)->excludes(dry_run);
   command->add_flag("--json", arguments->json, "With --dry-run: one JSON object, for programs")
       ->needs(dry_run);
   command
@@ -347,7 +427,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->check(CLI::IsMember(format_references()));
   add_progress_option(*command, invocation.progress);
   command->footer(footer());
-  command->callback([arguments, &invocation] {
+  command->callback([arguments, command, &invocation] {
     if (const auto reference = reference_of(*arguments); reference != nullptr) {
       invocation.run = [reference](Environment& environment) {
         environment.out << reference();
@@ -356,6 +436,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       return;
     }
     give_back_files(arguments->settings, arguments->named);
+    check_batch(*command, *arguments);
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_build(*arguments, invocation.progress, environment);
     };

@@ -68,6 +68,7 @@ Exit codes:
   7    the hierarchy is damaged: verify found a problem
   8    another process is at work on the output; try again later
   9    what a stopped build left belongs to another config or input (see build --restart)
+  10   build --each, serve --once: several failed, for different reasons
   70   a defect in meshhier
   130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was (serve: 0)
 )";
@@ -162,6 +163,9 @@ int execute(const Invocation& invocation, const execution::CancelToken& cancel) 
 /// Throws if a file that any command is told to write takes the place of one that it is told to
 /// read. The files that those name, a command checks itself.
 void require_inputs_stay(const CLI::App& command, storage::FileSystem& files) {
+  const CLI::Option* const each = command.get_option_no_throw("--each");
+  if (each != nullptr && each->count() > 0)
+    return;  // -o is a folder, in which meshes may lie, too; each build checks its own output
   const std::vector<std::filesystem::path> read = files_named(command, FileUse::read);
   for (const std::filesystem::path& output : files_named(command, FileUse::written)) {
     const bool is_stream = storage::is_standard_output(files, output) ||

@@ -13,6 +13,8 @@
 #include "server/uploads.h"
 #include "server/vitals.h"
 #include "server/watch.h"
+#include "storage/io/child_process.h"
+#include "storage/io/output_file.h"
 #include "storage/io/own_program.h"
 
 #include <chrono>
@@ -52,6 +54,7 @@ struct ServeArguments {
   std::optional<server::Health> question;  ///< asked of a server that runs
   std::string config;
   double settle_seconds = 2;
+  bool once = false;
   bool verbose = false;
   bool quiet = false;
 };
@@ -322,12 +325,55 @@ int ask_health(const ServeArguments& arguments, Environment& environment) {
   return answer.is_well ? 0 : 1;
 }
 
+/// Locks the folder against another one that does the same.
+std::unique_ptr<storage::FileLock> lock_once(const ServeArguments& arguments,
+                                             storage::FileSystem& files) {
+  auto lock =
+      files.try_lock(storage::output_lock_path(files.canonical(arguments.folder) / "serve-once"));
+  if (!lock) {
+    throw Error(ErrorCode::locked, fmt::format("another \"meshhier serve --once\" is at work on {}",
+                                               arguments.folder));
+  }
+  return lock;
+}
+
+std::string once_text(const server::Watch::Outcome& outcome) {
+  return fmt::format("{} built, {} up to date, {} failed, {} left for the next time\n",
+                     outcome.built, outcome.up_to_date, outcome.failed, outcome.left);
+}
+
+/// Builds what is in the inbox and due, without a server.
+int run_once(const ServeArguments& arguments, Environment& environment) {
+  constexpr std::chrono::milliseconds kLook{20};
+  const auto lock = lock_once(arguments, environment.files);
+  Console console(environment.messages, arguments.quiet, arguments.log_format);
+  const server::Watch::Tell tell = [&](server::LogLevel level, const std::string& message) {
+    console.tell(level, message);
+  };
+  server::Hierarchies hierarchies(
+      storage::open_folder(arguments.folder),
+      [&](const std::string& message) { tell(server::LogLevel::warning, message); });
+  server::WatchOptions options = watch_options(arguments, environment);
+  options.once = true;
+  server::Watch watch(std::move(options), environment.files, hierarchies, tell);
+  watch.start();
+  while (!environment.cancel.cancelled() && !watch.is_over())
+    std::this_thread::sleep_for(kLook);
+  watch.stop();
+  environment.out << once_text(watch.outcome()) << std::flush;
+  if (environment.cancel.cancelled())
+    throw Error(ErrorCode::interrupted, "interrupted; the same command goes on where it was");
+  return server::exit_code_of(watch.outcome().failures);
+}
+
 int run_serve(const ServeArguments& arguments, Environment& environment) {
   if (arguments.question)
     return ask_health(arguments, environment);
   check_folder("FOLDER", arguments.folder, environment);
   if (!arguments.inbox.empty())
     check_folder(arguments.takes_uploads ? "--inbox" : "--watch", arguments.inbox, environment);
+  if (arguments.once)
+    return run_once(arguments, environment);
   Service service(arguments, environment);
   service.run(arguments);
   return 0;
@@ -351,6 +397,10 @@ together, as an OBJ with its MTL and pictures, are sent as one form; they become
 A folder in INBOX with one mesh in it is built, too. Only this machine may send; with --host and --upload-token-file
 everybody who knows the token. Nothing in INBOX is replaced.
 
+With --once, for cron, what is in INBOX is built, and this ends: exit code 0 if all became models, or were, else that
+of the builds that failed (10 if theirs differ), 8 while another one is at work. There is no page, and no port is
+opened. Files that still change are left for the next time.
+
   GET /                            the page
   GET /models.json                 what there is
   GET /healthz, /readyz            whether it is alive, and ready, with reasons
@@ -364,6 +414,7 @@ Examples:
   meshhier serve models
   meshhier serve models --port 0 --open
   meshhier serve models --watch inbox --config scans.json
+  meshhier serve models --watch inbox --once
   meshhier serve models --host 0.0.0.0 --cors '*'
   meshhier serve models --log json --verbose
   meshhier serve models --check ready
@@ -461,6 +512,10 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
                   "A file in INBOX that has not changed for so long is whole [2]")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 86400.0));
+  CLI::Option* once = command.add_flag("--once", arguments.once,
+                                       "Build what is there and due, and end; no page, no port");
+  for (const char* option : {"--host", "--port", "--cors", "--open", "--viewer"})
+    once->excludes(command.get_option(option));
   add_upload_options(command, *inbox, arguments);
 }
 
@@ -468,7 +523,7 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
 void check_needs(const CLI::App& command) {
   if (command.count("--watch") + command.count("--inbox") > 0)
     return;
-  for (const char* option : {"--config", "--settle", "--disk-floor"}) {
+  for (const char* option : {"--config", "--settle", "--once", "--disk-floor"}) {
     if (command.count(option) > 0)
       throw CLI::RequiresError(option, "--watch or --inbox");
   }

@@ -289,10 +289,15 @@ ModelView with_settings(const ModelView& view, std::span<const std::string> sett
   return config.view;
 }
 
-Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
+Config read_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words) {
   const ConfigOrigin origin{file.string(), file.parent_path()};
-  return with_files(files, parse_config(read_text(files, file), origin, words));
+  return parse_config(read_text(files, file), origin, words);
+}
+
+Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
+                   const CommandLine& words) {
+  return with_files(files, read_config(files, file, words));
 }
 
 std::vector<std::filesystem::path> read_by(const Config& config) {

@@ -269,6 +269,10 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words);
 
+/// Does the same, but for what only the meshes that it names tell: these are not looked at.
+Config read_config(storage::FileSystem& files, const std::filesystem::path& file,
+                   const CommandLine& words);
+
 /// Returns all files that a build of that config reads.
 std::vector<std::filesystem::path> read_by(const Config& config);
 

@@ -92,15 +92,20 @@ void require_no_output_among(storage::FileSystem& files, const std::vector<fs::p
 
 Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
                   CommandLine words) {
+  return with_files(files, read_named(files, named, std::move(words)));
+}
+
+Config read_named(storage::FileSystem& files, const std::vector<fs::path>& named,
+                  CommandLine words) {
   require_no_output_among(files.input(), named);
   const auto config =
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {
     words.meshes.assign(named.begin(), named.end());
-    return with_files(files, parse_config("{}", {"--set", {}}, words));
+    return parse_config("{}", {"--set", {}}, words);
   }
   if (named.size() == 1)
-    return load_config(files, *config, words);
+    return read_config(files, *config, words);
   throw Error(ErrorCode::usage, fmt::format("{} is a config: a build takes one config, or meshes; "
                                             "a config names its meshes by the key \"input\"",
                                             config->string()));

@@ -18,4 +18,9 @@ namespace meshhier::config {
 Config load_named(storage::FileSystem& files, const std::vector<std::filesystem::path>& named,
                   CommandLine words);
 
+/// Does the same, but for what only the meshes tell, of which no more is read than shows what they
+/// are.
+Config read_named(storage::FileSystem& files, const std::vector<std::filesystem::path>& named,
+                  CommandLine words);
+
 }  // namespace meshhier::config

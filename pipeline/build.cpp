@@ -5,6 +5,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/pack_stage.h"
+#include "pipeline/plan/disk_claims.h"
 #include "pipeline/read_stage.h"
 #include "pipeline/stage_costs.h"
 #include "pipeline/stages.h"
@@ -35,6 +36,12 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
 /// Returns the failure with a sentence that says where the work lies that can be gone on with.
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
                        const std::filesystem::path& output);
+
+/// Claims the disk that is needed, as far as it is known; throws Error(budget) if others have
+/// claimed it just now.
+void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
+                const std::optional<BuildPlan>& plan, const config::Config& config,
+                storage::FileSystem& files);
 
 /// Removes the imported mesh while the work directory is still locked.
 struct DropAtEnd {
@@ -73,6 +80,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   storage::WorkDirectory work(files, output, options.force);
   if (options.restart)
     work.clear();
+  claim_room(work, input, plan, config, files);
   const DropAtEnd drop{input};
   StageMeter meter({environment.progress, files.counters(), pool.scratch_use()});
   if (!plan)
@@ -91,6 +99,18 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
 }
 
 namespace {
+
+void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
+                const std::optional<BuildPlan>& plan, const config::Config& config,
+                storage::FileSystem& files) {
+  if (plan) {
+    claim_disk(work.path(), plan->disk.room_bytes, files);
+    check_disk(plan->disk, config.output, files);
+  } else {
+    claim_disk(work.path(), import_disk(input, config), files);
+    check_import_disk(import_disk(input, config), config.output, files);
+  }
+}
 
 /// Bytes that went to files which are not temporary.
 std::uint64_t written_for_good(storage::FileSystem& files, const storage::ScratchUse& use) {

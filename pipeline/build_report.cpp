@@ -6,15 +6,14 @@
 #include "config/placement.h"
 #include "execution/size_text.h"
 #include "import/import_input.h"
+#include "pipeline/input_note.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
-#include "storage/io/zip_files.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -166,36 +165,6 @@ std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   return text + stats_text(stats);
 }
 
-/// Returns a file, or the archive that it lies in, whose checksum nobody knows: if that is touched,
-/// it counts as another one.
-storage::NotedFile noted(const importing::ReadFile& file, storage::FileSystem& files) {
-  if (const auto archive = storage::archive_around(files, file.path))
-    return {*archive, files.identity(*archive), 0};
-  return {file.path, file.identity, file.checksum};
-}
-
-/// Returns the note on an input. Its paths start at the folder of the first mesh, as the folder may
-/// move.
-storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t content,
-                           storage::FileSystem& files) {
-  const std::filesystem::path folder = noted(input.files[0], files).path.parent_path();
-  const auto from_folder = [&](const std::filesystem::path& path) {
-    const std::filesystem::path relative = path.lexically_relative(folder);
-    return relative.empty() ? path : relative;
-  };
-  storage::InputNote note{.content = content, .files = {}, .awaited = {}};
-  std::set<std::filesystem::path> known;
-  for (const importing::ReadFile& file : input.files) {
-    storage::NotedFile one = noted(file, files);
-    one.path = from_folder(one.path);
-    if (known.insert(one.path).second)
-      note.files.push_back(std::move(one));
-  }
-  for (const std::filesystem::path& place : input.awaited)
-    note.awaited.push_back(from_folder(place));
-  return note;
-}
-
 }  // namespace
 
 std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem& files) {
@@ -264,7 +233,7 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
         counted(outcome.copies_between_tiles, "vertices"));
   report.text += notes_text(made, context.config, outcome.has_area);
   report.account = account_text(source, report.stats);
-  report.input = note_of(outcome.input, source.checksum, context.files);
+  report.input = note_of(outcome.input, source.checksum, context.config, context.files);
   return report;
 }
 

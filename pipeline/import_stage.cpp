@@ -6,6 +6,7 @@
 #include "import/find_copies.h"
 #include "import/import_input.h"
 #include "pipeline/journal/workshop.h"
+#include "pipeline/plan/disk_claims.h"
 #include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 #include "storage/format/object_table.h"
@@ -199,6 +200,7 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   BuildPlan plan = make_plan();
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
   check_coders(plan.job);
+  claim_disk(work.path(), plan.disk.room_bytes, environment.files);
   check_disk(plan.disk, config.output, environment.files);
   return plan;
 }

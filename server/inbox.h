@@ -19,7 +19,7 @@ namespace meshhier::server {
 /// The state of a mesh with all that belongs to it: another one as soon as anything is changed.
 struct InputVersion {
   storage::FileVersion mesh;
-  std::uint64_t companions = 0;  ///< Companions::mark()
+  std::uint64_t companions = 0;  ///< storage::NotedFiles::mark()
   friend bool operator==(const InputVersion&, const InputVersion&) = default;
 };
 

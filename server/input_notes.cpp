@@ -2,9 +2,7 @@
 
 #include "base/error.h"
 #include "storage/format/layout.h"
-#include "storage/io/output_file.h"
 
-#include <span>
 #include <utility>
 
 namespace meshhier::server {
@@ -27,9 +25,7 @@ std::optional<storage::InputNote> InputNotes::find(const std::string& hierarchy)
 }
 
 void InputNotes::write(const std::string& hierarchy, const storage::InputNote& note) const {
-  const std::string text = to_json_text(note);
-  storage::OutputFile(files_, {.path = path(hierarchy), .replace = true})
-      .publish(std::as_bytes(std::span(text)));
+  storage::write_input_note(files_, path(hierarchy), note);
 }
 
 }  // namespace meshhier::server

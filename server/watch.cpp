@@ -18,12 +18,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A build's words are shown, and a request to stop is heard, within so long.
-constexpr std::chrono::milliseconds kHearFor{50};
-
-/// A build's lines have some hundred bytes; anything longer is no line of a build.
-constexpr std::size_t kLongestLine = 64 * 1024;
-
 /// So many folders of the inbox that are left out are told.
 constexpr std::size_t kMostLeftOut = 100;
 
@@ -99,15 +93,42 @@ BuildCounts Watch::counts() const {
 }
 
 /// Counts a build that has ended; one that was stopped, or found another at work, is none.
-void Watch::count(const Outcome& outcome, Clock::duration time) {
-  if (is_stopping() || outcome.code == kExists)
+void Watch::count(const BuildEnd& outcome, Clock::duration time) {
+  if (is_stopping() || outcome.code == kExists || outcome.code == kLocked)
     return;
   const std::lock_guard lock(mutex_);
   ++(outcome.code == 0 ? counts_.done : counts_.failed);
   counts_.seconds += std::chrono::duration<double>(time).count();
 }
 
+bool Watch::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return is_over_;
+}
+
+Watch::Outcome Watch::outcome() const {
+  Outcome outcome;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, entry] : entries_) {
+    if (entry.state == State::failed)
+      ++outcome.failed;
+    else if (entry.state != State::done)
+      ++outcome.left;
+    if (entry.state == State::fresh)  // its hierarchy cannot be looked at
+      outcome.failures.push_back(static_cast<int>(ErrorCode::io));
+    else if (entry.state != State::done && entry.code != 0)
+      outcome.failures.push_back(entry.code);
+    if (entry.state == State::done)
+      ++(entry.was_built ? outcome.built : outcome.up_to_date);
+  }
+  if (!trouble_.empty())
+    outcome.failures.push_back(static_cast<int>(ErrorCode::io));
+  return outcome;
+}
+
 void Watch::run() {
+  if (options_.once)
+    return run_once();
   while (!is_stopping()) {
     look();
     const std::string name = next_waiting();
@@ -117,6 +138,24 @@ void Watch::run() {
       handle(name);
     }
   }
+}
+
+/// Does what is there. A file is whole if it does not change while it is waited for.
+void Watch::run_once() {
+  look();
+  if (!names_in(State::growing).empty()) {
+    std::unique_lock lock(mutex_);
+    stopped_.wait_for(lock, options_.settle, [this] { return is_stopping(); });
+  }
+  look();
+  for (std::string name = next_waiting(); !name.empty() && !is_stopping(); name = next_waiting()) {
+    handle(name);
+    look();
+  }
+  for (const std::string& name : names_in(State::growing))
+    tell_(LogLevel::info, name + ": is left for the next time, as it still changes");
+  const std::lock_guard lock(mutex_);
+  is_over_ = true;
 }
 
 void Watch::sleep() {
@@ -242,15 +281,14 @@ void Watch::handle(const std::string& name) {
     }
     check_target(name, target);
     if (is_in_hand(target))
-      return put_off(name, "waits for another build that is at work on " + target.name);
+      return put_off(name, "waits for another build that is at work on " + target.name, kLocked);
     build(name, target);
   } catch (const storage::Busy& error) {
-    put_off(name, error.what());
+    put_off(name, error.what(), static_cast<int>(error.code()));
+  } catch (const Error& error) {
+    fail(name, error.what(), static_cast<int>(error.code()));
   } catch (const std::exception& error) {
-    if (is_stopping())
-      return;
-    tell_(LogLevel::error, fmt::format("{}: {}", name, error.what()));
-    set_state(name, State::failed, error.what());
+    fail(name, error.what(), static_cast<int>(ErrorCode::internal));
   }
 }
 
@@ -272,20 +310,24 @@ storage::InputNote Watch::note_of(const Model& model) const {
 bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unknown) {
   storage::InputNote note = note_of(model);
   Known& known = known_[name];
-  const Companions companions = companions_of(name);
+  const storage::NotedFiles companions = companions_of(name);
   known = {note, companions.mark(note)};
   const storage::FileIdentity noted = note.files[0].identity;
   if (!is_mesh_of(name, note.files[0], unknown))
     return false;
-  const Companions::Comparison others =
-      companions.compare(note, unknown == Unknown::is_read, [&] { cancel_.check(); });
-  if (others.is_same && (others.was_read || !is_untouched(noted, note.files[0].identity)))
+  const storage::NotedFiles::Comparison others =
+      companions.compare(note,
+                         {.from = 1,
+                          .may_read = unknown == Unknown::is_read,
+                          .gone = storage::NotedFiles::Gone::is_same},
+                         [&] { cancel_.check(); });
+  if (!others.other && (others.was_read || !is_untouched(noted, note.files[0].identity)))
     keep_note(model.path, note);
-  return others.is_same;
+  return !others.other;
 }
 
 /// Returns the companions of a mesh, whose paths start at its folder.
-Companions Watch::companions_of(const std::string& name) const {
+storage::NotedFiles Watch::companions_of(const std::string& name) const {
   return {inbox_files_->input(), (options_.inbox / name).parent_path()};
 }
 
@@ -375,12 +417,24 @@ bool Watch::is_in_hand(const BuildTarget& target) {
   return files_.exists(work) && files_.try_lock(storage::lock_path(work)) == nullptr;
 }
 
-void Watch::put_off(const std::string& name, const std::string& message) {
+void Watch::put_off(const std::string& name, const std::string& message, int code) {
   set_state(name, State::waiting, message);
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
-  if (found != entries_.end())
-    found->second.not_before = Clock::now() + options_.try_again;
+  if (found == entries_.end())
+    return;
+  found->second.code = code;
+  found->second.not_before = options_.once ? Time::max() : Clock::now() + options_.try_again;
+}
+
+void Watch::fail(const std::string& name, const std::string& message, int code) {
+  if (is_stopping())
+    return;
+  tell_(LogLevel::error, fmt::format("{}: {}", name, message));
+  set_state(name, State::failed, message);
+  const std::lock_guard lock(mutex_);
+  if (const auto found = entries_.find(name); found != entries_.end())
+    found->second.code = code;
 }
 
 void Watch::build(const std::string& name, const BuildTarget& target) {
@@ -393,7 +447,7 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   }
   tell_(LogLevel::info, fmt::format("{}: building {}", name, target.name));
   const auto start = Clock::now();
-  Outcome outcome = run_build(name, target, false);
+  BuildEnd outcome = run_build(name, target, false);
   // A build that was begun with another config, or from another version of the file, is of no use
   // any more.
   if (outcome.code == kOtherWork && !is_stopping())
@@ -402,15 +456,24 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   settle(name, target, version, outcome);
 }
 
-Watch::Outcome Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
-  storage::ChildProcess child(words(name, target, restart));
-  const Job job = hear(child, name);
-  Outcome outcome{child.wait(), job.message, job.warnings};
-  if (outcome.message.empty() && outcome.code > 128)
-    outcome.message = fmt::format("the build was ended by signal {}", outcome.code - 128);
-  else if (outcome.message.empty())
-    outcome.message = fmt::format("the build ended with exit code {}", outcome.code);
-  return outcome;
+BuildEnd Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
+  std::size_t told = 0;
+  const auto heard = [&](std::string_view /*line*/, const Job& job) {
+    for (; told < job.warnings.size(); ++told)
+      tell_(LogLevel::warning, fmt::format("{}: {}", name, job.warnings[told]));
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(name);
+    if (found != entries_.end() && found->second.state == State::building)
+      found->second.job = job;
+  };
+  // Meanwhile the inbox is looked at as ever, and the file that is built may go from it.
+  const auto is_to_stop = [&] {
+    if (Clock::now() - last_look_ >= options_.look_every)
+      look();
+    return is_stopping();
+  };
+  return run_build_process(words(name, target, restart),
+                           {.name = name, .state = JobState::building}, {heard, is_to_stop});
 }
 
 std::vector<std::string> Watch::words(const std::string& name, const BuildTarget& target,
@@ -429,48 +492,19 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   return list;
 }
 
-/// Hears a build until it has ended; meanwhile the inbox is looked at as ever, and the file that is
-/// built may go from it. Returns the job as the build told it last.
-Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
-  Job job{.name = name, .state = JobState::building};
-  std::string text;
-  bool is_asked = false;
-  while (child.hear(text, kHearFor)) {
-    if (is_stopping() && !std::exchange(is_asked, true))
-      child.ask_to_stop();
-    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
-      const std::size_t known = job.warnings.size();
-      take_line(job, std::string_view(text).substr(0, end));
-      text.erase(0, end + 1);
-      if (job.warnings.size() > known)
-        tell_(LogLevel::warning, fmt::format("{}: {}", name, job.warnings.back()));
-      const std::lock_guard lock(mutex_);
-      const auto found = entries_.find(name);
-      if (found != entries_.end() && found->second.state == State::building)
-        found->second.job = job;
-    }
-    if (text.size() > kLongestLine)
-      text.clear();
-    if (Clock::now() - last_look_ >= options_.look_every)
-      look();
-  }
-  return job;
-}
-
 void Watch::settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
-                   const Outcome& outcome) {
+                   const BuildEnd& outcome) {
   if (is_stopping())
     return;
   if (outcome.code == 0)
     return settle_built(name, target, version, outcome.warnings);
-  tell_(outcome.code == kExists ? LogLevel::info : LogLevel::error,
-        fmt::format("{}: {}", name, outcome.message));
+  if (version_of(name) == version && outcome.code != kExists && outcome.code != kLocked)
+    return fail(name, outcome.message, outcome.code);
+  tell_(LogLevel::info, fmt::format("{}: {}", name, outcome.message));
   if (version_of(name) != version)
     set_state(name, State::growing, kGrowing);
-  else if (outcome.code == kExists || outcome.code == kLocked)
-    put_off(name, outcome.message);
   else
-    set_state(name, State::failed, outcome.message);
+    put_off(name, outcome.message, outcome.code);
 }
 
 /// Settles a build that succeeded. Files that are now as they were when the build read them are
@@ -483,6 +517,11 @@ void Watch::settle_built(const std::string& name, const BuildTarget& target,
   if (model && is_still(name, version.mesh) && is_made_of(name, *model, Unknown::is_another)) {
     keep_mark(name);
     keep_warnings(name, *model, warnings);
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto found = entries_.find(name); found != entries_.end())
+        found->second.was_built = true;
+    }
     tell_(LogLevel::info,
           name + ": done" +
               (warnings.empty() ? "" : ", with " + counted(warnings.size(), "warnings")));

@@ -3,14 +3,14 @@
 
 #include "execution/cancel.h"
 #include "server/build_counts.h"
+#include "server/build_process.h"
 #include "server/build_target.h"
-#include "server/companions.h"
 #include "server/hierarchies.h"
 #include "server/inbox.h"
 #include "server/input_notes.h"
 #include "server/job.h"
 #include "server/log_text.h"
-#include "storage/io/child_process.h"
+#include "storage/format/noted_files.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
 
@@ -40,6 +40,7 @@ struct WatchOptions {
   Inbox::Folders folders = Inbox::Folders::ignored;
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
+  bool once = false;  ///< ends when all that is there is built, but for files that still change
   /// A build that another process has in hand is tried again after so long.
   std::chrono::milliseconds try_again{5000};
   std::function<void()> on_new = [] {
@@ -67,6 +68,16 @@ class Watch {
   /// Asks the build at work to stop, which keeps its work for the next one, and waits for it.
   void stop();
 
+  /// Whether it has ended by itself, as WatchOptions::once has it. Thread-safe.
+  bool is_over() const;
+  /// The files of the inbox when it has ended.
+  struct Outcome {
+    std::size_t built = 0, up_to_date = 0, failed = 0;
+    std::size_t left = 0;       ///< they still change, or another process builds there
+    std::vector<int> failures;  ///< exit codes, of what another process builds, too
+  };
+  Outcome outcome() const;
+
   /// Returns the jobs of all files that are no hierarchies yet, by name. Thread-safe.
   nlohmann::ordered_json jobs() const;
   /// Thread-safe.
@@ -81,22 +92,18 @@ class Watch {
     State state = State::fresh;
     Job job;
     Time not_before;  ///< another process was at work on the output
+    int code = 0;     ///< exit code of the last try
+    bool was_built = false;
   };
-  /// The end of a build.
-  struct Outcome {
-    int code = 0;
-    std::string message;
-    std::vector<std::string> warnings;
-  };
-
   void run();
+  void run_once();
   void look();
   void note(const InboxFile& file);
   std::string next_waiting() const;
   void handle(const std::string& name);
   void drop_what_is_done();
   void tell_left_out();
-  void count(const Outcome& outcome, std::chrono::steady_clock::duration time);
+  void count(const BuildEnd& outcome, std::chrono::steady_clock::duration time);
   void leave_fresh(const std::string& name, State state);
   void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
@@ -107,7 +114,7 @@ class Watch {
   storage::InputNote note_of(const Model& model) const;
   bool is_made_of(const std::string& name, const Model& model, Unknown unknown);
   bool is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown);
-  Companions companions_of(const std::string& name) const;
+  storage::NotedFiles companions_of(const std::string& name) const;
   std::uint64_t mark_of(const std::string& name) const;
   std::uint64_t read_checksum(const std::string& name, const storage::FileVersion& version);
   InputVersion version_of(const std::string& name) const;
@@ -116,12 +123,12 @@ class Watch {
   void keep_mark(const std::string& name);
   void check_target(const std::string& name, const BuildTarget& target) const;
   bool is_in_hand(const BuildTarget& target);
-  void put_off(const std::string& name, const std::string& message);
+  void put_off(const std::string& name, const std::string& message, int code);
+  void fail(const std::string& name, const std::string& message, int code);
   void build(const std::string& name, const BuildTarget& target);
-  Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
-  Job hear(storage::ChildProcess& child, const std::string& name);
+  BuildEnd run_build(const std::string& name, const BuildTarget& target, bool restart);
   void settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
-              const Outcome& outcome);
+              const BuildEnd& outcome);
   void settle_built(const std::string& name, const BuildTarget& target, const InputVersion& version,
                     const std::vector<std::string>& warnings);
   void keep_warnings(const std::string& name, const Model& model,
@@ -152,9 +159,10 @@ class Watch {
   std::map<std::string, std::string> told_left_out_;  ///< folders of the inbox, and why
 
   execution::CancelToken cancel_;
-  mutable std::mutex mutex_;  ///< guards entries_ and counts_
+  mutable std::mutex mutex_;  ///< guards what follows
   std::map<std::string, Entry> entries_;
   BuildCounts counts_;
+  bool is_over_ = false;
   std::condition_variable stopped_;
   std::thread thread_;
 };

@@ -81,7 +81,22 @@ void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
     add_leaves(inner, path.empty() ? key : path + '.' + key, leaves);
 }
 
-/// Returns "partition.vertices was 8192 and is 4096, ...".
+/// Returns what take() does; false also if the entry has values of another kind.
+template <class Take>
+bool is_understood(const Take& take) {
+  try {
+    return take();
+  } catch (const Value::exception&) {
+    return false;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    return false;
+  }
+}
+
+}  // namespace
+
 std::string differences(const Value& was, const Value& is) {
   Leaves before, now;
   add_leaves(was, "", before);
@@ -101,22 +116,6 @@ std::string differences(const Value& was, const Value& is) {
   }
   return text;
 }
-
-/// Returns what take() does; false also if the entry has values of another kind.
-template <class Take>
-bool is_understood(const Take& take) {
-  try {
-    return take();
-  } catch (const Value::exception&) {
-    return false;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt)
-      throw;
-    return false;
-  }
-}
-
-}  // namespace
 
 bool add_entry(const Value& entry, EarlierBuild& build) {
   return is_understood([&] {

@@ -61,6 +61,9 @@ struct BuildIdentity {
   std::int64_t input_times = 0;   ///< the input may be the same after it was touched
 };
 
+/// Returns "partition.vertices was 8192 and is 4096, ...": all that differs between two objects.
+std::string differences(const nlohmann::json& was, const nlohmann::json& is);
+
 /// The facts that an earlier build has noted of itself.
 struct EarlierBuild {
   nlohmann::json decides_result;

@@ -7,6 +7,7 @@
 #include "hierarchy/normal_code.h"
 #include "hierarchy/value_channels.h"
 #include "images/formats.h"
+#include "pipeline/plan/disk_claims.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
@@ -34,6 +35,31 @@ std::uint32_t largest_partition(const Tree& tree) {
 std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
   const std::filesystem::path work = storage::work_path(output);
   return files.exists(work) ? storage::bytes_below(files, work) : 0;
+}
+
+/// The disk that a build may take.
+struct FreeDisk {
+  std::filesystem::path directory;
+  std::uint64_t free_bytes = 0;
+  std::uint64_t claimed_bytes = 0;  ///< of these by other builds
+  std::uint64_t left_bytes = 0;     ///< by an earlier build of the output, besides
+
+  bool has(std::uint64_t bytes) const {
+    return free_bytes + left_bytes >= bytes && free_bytes + left_bytes - bytes >= claimed_bytes;
+  }
+  std::string text() const {
+    const std::string free =
+        fmt::format("{} has {} free", directory.string(), execution::rounded_size_text(free_bytes));
+    return claimed_bytes == 0 ? free
+                              : fmt::format("{}, of which other builds at work there will take {}",
+                                            free, execution::rounded_size_text(claimed_bytes));
+  }
+};
+
+FreeDisk find_free_disk(const std::filesystem::path& output, storage::FileSystem& files) {
+  const std::filesystem::path directory = storage::existing_directory(files, output);
+  return {directory, files.free_bytes(directory), claimed_beside(output, files),
+          bytes_left(output, files)};
 }
 
 void add_textures(const config::Config& config, const TexturePlan& textures, JobSize& job) {
@@ -150,14 +176,11 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
 
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files) {
-  const std::filesystem::path directory = storage::existing_directory(files, output);
-  const std::uint64_t free = files.free_bytes(directory);
-  if (free + bytes_left(output, files) < bytes) {
+  const FreeDisk disk = find_free_disk(output, files);
+  if (!disk.has(bytes)) {
     throw Error(ErrorCode::budget,
-                fmt::format("{} has {} free; to import the input takes up to about {} of temporary "
-                            "files",
-                            directory.string(), execution::rounded_size_text(free),
-                            execution::rounded_size_text(bytes)));
+                fmt::format("{}; to import the input takes up to about {} of temporary files",
+                            disk.text(), execution::rounded_size_text(bytes)));
   }
 }
 
@@ -182,16 +205,12 @@ void check_coders(const JobSize& job) {
 
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files) {
-  const std::filesystem::path directory = storage::existing_directory(files, output);
-  const std::uint64_t free = files.free_bytes(directory);
-  if (free + bytes_left(output, files) < need.room_bytes) {
-    throw Error(
-        ErrorCode::budget,
-        fmt::format(
-            "{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
-            directory.string(), execution::rounded_size_text(free),
-            execution::rounded_size_text(need.output_bytes),
-            execution::rounded_size_text(need.temporary_bytes)));
+  const FreeDisk disk = find_free_disk(output, files);
+  if (!disk.has(need.room_bytes)) {
+    throw Error(ErrorCode::budget,
+                fmt::format("{}; the hierarchy will take about {} and up to {} of temporary files",
+                            disk.text(), execution::rounded_size_text(need.output_bytes),
+                            execution::rounded_size_text(need.temporary_bytes)));
   }
 }
 

@@ -61,7 +61,8 @@ void check_apart(const config::Config& config, storage::FileSystem& files);
 void check_apart(const importing::CompanionFiles& companions, const config::Config& config,
                  const std::vector<std::filesystem::path>& others, storage::FileSystem& files);
 
-/// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.
+/// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import,
+/// beside what others claim (disk_claims.h).
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files);
 
@@ -69,7 +70,8 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
 /// or larger than the format allows.
 void check_coders(const JobSize& job);
 
-/// Throws Error(budget) if the disk that will hold `output` has too little room.
+/// Throws Error(budget) if the disk that will hold `output` has too little room, beside what others
+/// claim.
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files);
 

@@ -2,8 +2,10 @@
 
 #include "base/error.h"
 #include "storage/format/sealed_json.h"
+#include "storage/io/output_file.h"
 
 #include <cstddef>
+#include <span>
 #include <string_view>
 
 namespace meshhier::storage {
@@ -48,6 +50,7 @@ InputNote read_note(const Json& document) {
   for (const Json& place : document.at("awaited"))
     note.awaited.push_back(bytes_path(place.get_ref<const std::string&>()));
   note.warnings = document.value("warnings", std::vector<std::string>());
+  note.build = document.value("build", Json());
   return note;
 }
 
@@ -66,6 +69,8 @@ std::string to_json_text(const InputNote& note) {
       {"content", note.content}, {"files", std::move(files)}, {"awaited", std::move(awaited)}};
   if (!note.warnings.empty())
     document["warnings"] = note.warnings;
+  if (!note.build.is_null())
+    document["build"] = note.build;
   return sealed_text(kNoteFormat, std::move(document));
 }
 
@@ -80,6 +85,11 @@ InputNote read_input_note(const File& file, const std::string& name) {
   } catch (const Json::exception&) {
     throw Error(ErrorCode::corrupt, name + ": is no list of files");
   }
+}
+
+void write_input_note(FileSystem& files, const std::filesystem::path& path, const InputNote& note) {
+  const std::string text = to_json_text(note);
+  OutputFile(files, {.path = path, .replace = true}).publish(std::as_bytes(std::span(text)));
 }
 
 }  // namespace meshhier::storage

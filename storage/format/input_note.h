@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace meshhier::storage {
 
 struct NotedFile {
@@ -22,11 +24,17 @@ struct InputNote {
   std::vector<NotedFile> files;                ///< the mesh, and what belongs to it
   std::vector<std::filesystem::path> awaited;  ///< files that were looked for and were not there
   std::vector<std::string> warnings{};         ///< the build's, a line each
+  /// The program, its config and the files that this names, as who asks compares them; null: not
+  /// known.
+  nlohmann::ordered_json build = nullptr;
 };
 
 /// Returns JSON that carries its own checksum.
 std::string to_json_text(const InputNote& note);
 /// Reads such a file. Throws Error(io), Error(corrupt) that starts with `name`.
 InputNote read_input_note(const File& file, const std::string& name);
+/// Writes a note in the place of an older one; it is there complete or not at all. Throws as
+/// OutputFile.
+void write_input_note(FileSystem& files, const std::filesystem::path& path, const InputNote& note);
 
 }  // namespace meshhier::storage

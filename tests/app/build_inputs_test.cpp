@@ -1,5 +1,6 @@
 // Inputs of a build: meshes, configs, settings, and files that they name.
 #include "tests/app/command_line.h"
+#include "tests/app/small_picture.h"
 #include "tests/support/gzip.h"
 #include "tests/support/zip_archive.h"
 
@@ -33,15 +34,6 @@ class WithCompanions : public CommandLine {
   }
   void write_library(const std::string& picture) const {
     write_text(work() / "a.mtl", "newmtl m\nmap_Kd " + picture + '\n');
-  }
-  static void write_picture(const Path& path) {
-    constexpr unsigned char kPng[] = {
-        0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,   0,    0,    13,   'I',  'H',
-        'D',  'R',  0,    0,    0,    1,    0,    0,    0,   1,    8,    2,    0,    0,
-        0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,    12,  'I',  'D',  'A',  'T',  0x78,
-        0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,   1,    0,    0xc9, 0xfe, 0x92,
-        0xef, 0,    0,    0,    0,    'I',  'E',  'N',  'D', 0xae, 0x42, 0x60, 0x82};
-    write_text(path, {reinterpret_cast<const char*>(kPng), sizeof kPng});
   }
   std::uint64_t texels() const {
     const json manifest = json::parse(text_of(Path(hierarchy()) / "hierarchy.json"));

@@ -539,7 +539,7 @@ TEST_F(TasksTest, ATaskMayRunTwiceAtOnce) {
           run(stage.name);
         } catch (const Error& error) {  // one finishes while the other wants to
           EXPECT_EQ(stage.name, "finish") << error.what();
-          EXPECT_EQ(error.code(), ErrorCode::io) << error.what();
+          EXPECT_EQ(error.code(), ErrorCode::locked) << error.what();
         }
       });
     }

@@ -1,0 +1,431 @@
+// Builds for cron and scripts: `build --update`, `build --each`, `serve --once`.
+#include "tests/app/command_line.h"
+#include "tests/app/small_picture.h"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::app {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace fs = std::filesystem;
+
+void set_time(const fs::path& file, fs::file_time_type time) {
+  fs::last_write_time(file, time);
+}
+
+class Update : public CommandLine {
+ protected:
+  /// Without a preview and normal maps, which take most of so small a build.
+  static Arguments update(const fs::path& input, const Arguments& more = {}) {
+    Arguments words{"build", input.string(),  "--update",
+                    "--set", "preview=false", "storage.normals=smooth"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// Whether a build with these words does nothing, and says so; else it must have succeeded.
+  testing::AssertionResult is_up_to_date(const fs::path& input, const Arguments& more = {}) const {
+    const Outcome outcome = run(update(input, more));
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    const bool says_so = outcome.out.ends_with(" is up to date\n");
+    EXPECT_NE(says_so, outcome.out.starts_with("made ")) << outcome.out;
+    return says_so ? testing::AssertionSuccess() : testing::AssertionFailure() << outcome.out;
+  }
+  fs::path output() const { return work() / "a.hier"; }
+  fs::path note() const { return work() / ".a.hier.meshhier-input"; }
+
+  fs::path write_obj() const {
+    write_text(work() / "a.obj",
+               "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
+               "usemtl m\nf 1/1 2/2 3/3\nf 2/2 4/4 3/3\n");
+    return work() / "a.obj";
+  }
+};
+
+TEST_F(Update, BuildsWhatIsNotThereAndNothingTwice) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  const auto before = contents(output());
+  const auto time = fs::last_write_time(output() / "hierarchy.json");
+  EXPECT_TRUE(is_up_to_date(mesh));
+  EXPECT_TRUE(is_up_to_date(mesh, {"threads=1", "memory_budget=300MiB"}))
+      << "these do not decide the result";
+  EXPECT_EQ(fs::last_write_time(output() / "hierarchy.json"), time);
+  EXPECT_EQ(contents(output()), before);
+  EXPECT_EQ(names(), (std::set<std::string>{".a.hier.meshhier-input", "a.hier", "a.ply"}));
+  EXPECT_EQ(run({"clean", work()}).out.find("meshhier-input"), std::string::npos);
+}
+
+TEST_F(Update, TheNoteChangesNoByteOfTheHierarchy) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  const auto updated = contents(output());
+  ASSERT_EQ(
+      run({"build", mesh, "--force", "--set", "preview=false", "storage.normals=smooth"}).code, 0);
+  EXPECT_EQ(contents(output()), updated);
+  EXPECT_TRUE(is_up_to_date(mesh)) << "the note is as true as before";
+}
+
+TEST_F(Update, AConfigOfAnotherResultIsBuilt) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  EXPECT_FALSE(is_up_to_date(mesh, {"partition.vertices=500"}));
+  EXPECT_TRUE(is_up_to_date(mesh, {"partition.vertices=500"}));
+  EXPECT_FALSE(is_up_to_date(mesh, {"partition.vertices=500", "licence=mine"}));
+  EXPECT_FALSE(is_up_to_date(mesh, {"texture.use=false"}))
+      << "of a mesh without pictures it decides nothing, but nobody asks the mesh";
+}
+
+TEST_F(Update, ATouchedFileIsReadAndAChangedOneBuilt) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  set_time(mesh, fs::last_write_time(mesh) + std::chrono::hours(1));
+  const std::string before = text_of(note());
+  EXPECT_TRUE(is_up_to_date(mesh));
+  EXPECT_NE(text_of(note()), before) << "it is not read again";
+  // Another content of the same size and time.
+  const auto time = fs::last_write_time(mesh);
+  std::string text = text_of(mesh);
+  text.replace(text.find("end_header\n0 0 0"), 16, "end_header\n0 0 9");
+  write_text(mesh, text);
+  set_time(mesh, time);
+  EXPECT_FALSE(is_up_to_date(mesh));
+  EXPECT_TRUE(is_up_to_date(mesh));
+}
+
+TEST_F(Update, FilesThatTheMeshNamesCount) {
+  const fs::path mesh = write_obj();
+  EXPECT_FALSE(is_up_to_date(mesh));
+  EXPECT_TRUE(is_up_to_date(mesh));
+  write_text(work() / "a.mtl", "newmtl m\nKd 1 0 0\n");
+  EXPECT_FALSE(is_up_to_date(mesh)) << "a library that was missing has appeared";
+  EXPECT_TRUE(is_up_to_date(mesh));
+  write_text(work() / "a.mtl", "newmtl m\nKd 0 1 0\n");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  write_text(work() / "a.mtl", "newmtl m\nmap_Kd wood.png\n");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  EXPECT_TRUE(is_up_to_date(mesh)) << "the picture is still missing";
+  write_picture(work() / "wood.png");
+  EXPECT_FALSE(is_up_to_date(mesh)) << "the picture has appeared";
+  EXPECT_TRUE(is_up_to_date(mesh));
+  fs::remove(work() / "wood.png");
+  EXPECT_FALSE(is_up_to_date(mesh)) << "it is gone";
+}
+
+TEST_F(Update, TheTableOfObjectsCounts) {
+  const fs::path mesh = write_obj();
+  const Path table = work() / "t.csv";
+  write_text(table, "id,colour\n0,red\n");
+  const Arguments with{"objects.from=material", "--object-table", table};
+  EXPECT_FALSE(is_up_to_date(mesh, with));
+  EXPECT_TRUE(is_up_to_date(mesh, with));
+  write_text(table, "id,colour\n0,blue\n");
+  EXPECT_FALSE(is_up_to_date(mesh, with));
+  EXPECT_FALSE(is_up_to_date(mesh, {"objects.from=material"})) << "it is left out";
+}
+
+TEST_F(Update, AListOfMeshesIsComparedInItsOrder) {
+  const Path a = write_mesh("a.ply"), b = write_mesh("b.ply", 2499, 0.5);
+  const auto is_done = [&](const std::string& first, const std::string& second) {
+    return is_up_to_date(first, {"-o", output().string(), second});
+  };
+  EXPECT_FALSE(is_done(a, b));
+  EXPECT_TRUE(is_done(a, b));
+  EXPECT_FALSE(is_done(b, a));
+  EXPECT_FALSE(is_up_to_date(b, {"-o", output().string()}));
+}
+
+TEST_F(Update, AHierarchyThatWasBuiltByHandIsKnownByReadingItsMesh) {
+  const Path mesh = write_mesh("a.ply");
+  ASSERT_EQ(run({"build", mesh, "--set", "preview=false", "storage.normals=smooth"}).code, 0);
+  EXPECT_TRUE(is_up_to_date(mesh));
+  EXPECT_TRUE(fs::exists(note()));
+  const fs::path other = write_obj();
+  ASSERT_EQ(run({"build", other, "-o", work() / "b.hier"}).code, 0);
+  EXPECT_FALSE(is_up_to_date(other, {"-o", (work() / "b.hier").string()}))
+      << "nobody knows which library it lacked";
+}
+
+TEST_F(Update, AViewThatWasGivenLaterStays) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  ASSERT_EQ(run({"view", output(), "--set", "view.light=raking"}).code, 0);
+  EXPECT_TRUE(is_up_to_date(mesh));
+}
+
+TEST_F(Update, WhatIsNoHierarchyIsNeverReplaced) {
+  const Path mesh = write_mesh("a.ply");
+  fs::create_directory(output());
+  write_text(output() / "diary.txt", "precious");
+  EXPECT_EQ(run(update(mesh)).code, kExists);
+  EXPECT_EQ(text_of(output() / "diary.txt"), "precious");
+  fs::remove_all(output());
+  write_text(output(), "a file");
+  EXPECT_EQ(run(update(mesh)).code, kExists);
+  EXPECT_EQ(text_of(output()), "a file");
+}
+
+TEST_F(Update, ADamagedHierarchyIsBuiltAnew) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_FALSE(is_up_to_date(mesh));
+  std::string manifest = text_of(output() / "hierarchy.json");
+  manifest[manifest.size() / 2] ^= 1;
+  write_text(output() / "hierarchy.json", manifest);
+  EXPECT_FALSE(is_up_to_date(mesh));
+  write_text(note(), "no note\n");
+  EXPECT_EQ(run(update(mesh, {"partition.vertices=500"})).code, kExists)
+      << "a file in the note's place that is no note stays";
+  EXPECT_EQ(text_of(note()), "no note\n");
+}
+
+TEST_F(Update, AnAccountIsReplacedAndNoOtherFile) {
+  const Path mesh = write_mesh("a.ply"), account = work() / "stats.json";
+  EXPECT_FALSE(is_up_to_date(mesh, {"--stats", account}));
+  EXPECT_FALSE(is_up_to_date(mesh, {"partition.vertices=500", "--stats", account}));
+  write_text(account, "my notes\n");
+  EXPECT_EQ(run(update(mesh, {"--stats", account})).code, kExists);
+  EXPECT_EQ(text_of(account), "my notes\n");
+}
+
+TEST_F(Update, AnArchiveIsUpdatedToo) {
+  const Path mesh = write_mesh("a.ply");
+  const Arguments packed{"-o", (work() / "a.3tz").string()};
+  EXPECT_FALSE(is_up_to_date(mesh, packed));
+  EXPECT_TRUE(is_up_to_date(mesh, packed));
+  EXPECT_FALSE(is_up_to_date(mesh, {"partition.vertices=500", "-o", packed[1]}));
+}
+
+TEST_F(Update, ProgramsAreTold) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_THAT(run(update(mesh, {"--progress", "json"})).messages,
+              HasSubstr(R"({"event":"outdated","message":")"));
+  const Outcome second = run(update(mesh, {"--progress", "json"}));
+  EXPECT_THAT(second.messages,
+              AllOf(HasSubstr(R"({"event":"up_to_date","message":")"), Not(HasSubstr("stage"))));
+  EXPECT_EQ(second.out, "");
+}
+
+class Each : public CommandLine {
+ protected:
+  Arguments each(const Arguments& inputs, const Arguments& more = {}) const {
+    Arguments words{"build", "--each"};
+    words.insert(words.end(), inputs.begin(), inputs.end());
+    words.insert(words.end(), {"-o", models().string()});
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--set", "preview=false", "storage.normals=smooth"});
+    return words;
+  }
+  fs::path models() const { return work() / "models"; }
+  std::set<std::string> made() const {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(models()))
+      found.insert(entry.path().filename());
+    return found;
+  }
+};
+
+TEST_F(Each, MakesAHierarchyOfEachFileAndTellsOfAll) {
+  const Path a = write_mesh("a.ply"), b = write_mesh("b.ply", 2499, 0.5);
+  const Outcome outcome = run(each({a, b, a}, {"--jobs", "2"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.messages << outcome.out;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("done        " + (models() / "a.hier").string() + ", in "),
+                    HasSubstr("2 models: 2 done\n")));
+  EXPECT_EQ(made(), (std::set<std::string>{"a.hier", "b.hier"}));
+  ASSERT_EQ(run({"build", a, "-o", work() / "alone.hier", "--set", "preview=false",
+                 "storage.normals=smooth"})
+                .code,
+            0);
+  EXPECT_EQ(contents(models() / "a.hier"), contents(work() / "alone.hier"));
+  EXPECT_EQ(run(each({a, b})).code, kExists) << "both are there";
+}
+
+TEST_F(Each, MeshesMayLieInTheFolderOfTheOutputs) {
+  fs::create_directory(models());
+  const Path a = write_mesh("models/a.ply");
+  const Outcome outcome = run(each({a}, {"--update"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.messages << outcome.out;
+  EXPECT_EQ(made(), (std::set<std::string>{".a.hier.meshhier-input", "a.hier", "a.ply"}));
+}
+
+TEST_F(Each, AFailureStopsNoOther) {
+  const Path a = write_mesh("a.ply"), broken = write_mesh("broken.ply", 9999);
+  const Path b = write_mesh("b.ply", 2499, 0.5);
+  write_text(work() / "text.txt", "this is no mesh\n");
+  const Outcome outcome =
+      run(each({broken, a, work() / "text.txt", b, work() / "*.stl"}, {"--update", "--jobs", "2"}));
+  EXPECT_EQ(outcome.code, 10) << "the reasons differ";
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("failed      " + (models() / "broken.hier").string() + " (3): "),
+                    HasSubstr("text.txt (2): "),
+                    HasSubstr("*.stl (4): " + (work() / "*.stl").string() + ": no file has a name"),
+                    HasSubstr("5 models: 2 done, 3 failed\n")));
+  const Outcome again = run(each({broken, a, b}, {"--update"}));
+  EXPECT_EQ(again.code, kInput) << "the reason of all that failed";
+  EXPECT_THAT(again.out, HasSubstr("3 models: 2 up to date, 1 failed\n"));
+}
+
+TEST_F(Each, TwoFilesOfOneOutputAreRefusedBeforeAnythingIsBuilt) {
+  fs::create_directory(work() / "one");
+  fs::create_directory(work() / "two");
+  const Path a = write_mesh("one/a.ply"), b = write_mesh("two/a.ply", 2499, 0.5);
+  const Outcome outcome = run(each({a, b}));
+  EXPECT_EQ(outcome.code, kUsage);
+  EXPECT_THAT(outcome.messages, AllOf(HasSubstr("one/a.ply and "), HasSubstr("two/a.ply"),
+                                      HasSubstr("models/a.hier")));
+  EXPECT_FALSE(fs::exists(models()));
+  const Outcome beside = run({"build", "--each", a, b, "--set", "preview=false"});
+  EXPECT_EQ(beside.code, 0) << beside.messages << beside.out;
+  EXPECT_TRUE(fs::exists(work() / "one" / "a.hier"));
+  EXPECT_TRUE(fs::exists(work() / "two" / "a.hier"));
+}
+
+TEST_F(Each, TakesConfigsAndFoldersAndMakesArchives) {
+  write_mesh("a.ply");
+  const std::string config = write_config();
+  fs::create_directory(work() / "town");
+  write_text(work() / "town" / "tileset.json",
+             R"({"asset": {"version": "1.1"}, "geometricError": 1, "root": {
+ "boundingVolume": {"sphere": [0, 0, 0, 1]}, "geometricError": 0, "content": {"uri": "t.glb"}}})");
+  const Outcome outcome = run(each({config, work() / "town"}, {"--update"}));
+  EXPECT_EQ(outcome.code, kInput) << "the tile is not there";
+  EXPECT_THAT(outcome.out, HasSubstr((models() / "town.hier").string() + " (3): "));
+  EXPECT_EQ(made(), (std::set<std::string>{".a.hier.meshhier-input", "a.hier"}));
+  EXPECT_EQ(run({"build", "--each", work() / "a.ply", "-o", models(), "--set",
+                 "storage.container=3tz", "preview=false"})
+                .code,
+            0);
+  EXPECT_TRUE(fs::is_regular_file(models() / "a.3tz"));
+}
+
+TEST_F(Each, WordsThatDoNotGoTogetherAreRefused) {
+  const Path a = write_mesh("a.ply");
+  EXPECT_EQ(run({"build", "--each"}).code, kUsage);
+  EXPECT_EQ(run({"build", "--each", a, "--stats", work() / "s.json"}).code, kUsage);
+  EXPECT_EQ(run({"build", a, "--jobs", "2"}).code, kUsage);
+  EXPECT_EQ(run(each({a}, {"--set", "output=x.hier"})).code, kUsage);
+  EXPECT_EQ(run(each({a}, {"--set", "partition.vertex=5"})).code, kUsage) << "no such key";
+  EXPECT_EQ(run({"build", "--each", a, "-o", a}).code, kUsage) << "a file is no folder";
+  EXPECT_EQ(run({"build", a, "--update", "--force"}).code, kUsage);
+}
+
+TEST_F(Each, ProgramsAreToldOfEachModel) {
+  const Path a = write_mesh("a.ply"), broken = write_mesh("broken.ply", 9999);
+  const Outcome outcome = run(each({a, broken}, {"--progress", "json"}));
+  std::istringstream lines(outcome.messages);
+  std::vector<std::string> ends;
+  std::set<std::string> models_told;
+  for (std::string line; std::getline(lines, line);) {
+    const auto event = nlohmann::json::parse(line);
+    models_told.insert(event.at("model"));
+    if (event.at("event") == "model_end")
+      ends.push_back(event.at("result").get<std::string>() + event.at("code").dump());
+  }
+  EXPECT_THAT(ends, testing::UnorderedElementsAre("done0", "failed3"));
+  EXPECT_EQ(models_told, (std::set<std::string>{(models() / "a.hier").string(),
+                                                (models() / "broken.hier").string()}));
+}
+
+/// The program at work in the background, whose output nobody reads.
+pid_t start(const Arguments& arguments) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0600);
+  const pid_t process = spawn(arguments, actions);
+  posix_spawn_file_actions_destroy(&actions);
+  return process;
+}
+
+TEST_F(Each, WhatWasStoppedOrKilledGoesOn) {
+  const Path a = write_mesh("a.ply"), b = write_mesh("b.ply", 2499, 0.5);
+  for (const int signal : {SIGINT, SIGKILL}) {
+    const pid_t process = start(each({a, b}, {"--update", "--jobs", "2"}));
+    for (int i = 0; i < 2000 && !fs::exists(models()); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    kill(process, signal);
+    const int code = wait_for(process);
+    if (code != 0) {
+      EXPECT_EQ(code, signal == SIGKILL ? 1000 + SIGKILL : kInterrupted);
+    }
+  }
+  const Outcome rest = run(each({a, b}, {"--update", "--jobs", "2"}));
+  EXPECT_EQ(rest.code, 0) << rest.out << rest.messages;
+  EXPECT_EQ(run({"verify", models() / "a.hier", "--input", a}).code, 0);
+  EXPECT_EQ(run({"verify", models() / "b.hier", "--input", b}).code, 0);
+  EXPECT_THAT(run({"clean", models()}).out, Not(HasSubstr("stopped")));
+}
+
+class Once : public CommandLine {
+ protected:
+  Once() {
+    fs::create_directory(inbox());
+    fs::create_directory(models());
+    write_text(
+        work() / "quick.json",
+        R"({"preview": false, "storage": {"normals": "smooth"}, "partition": {"vertices": 500}})");
+  }
+  Arguments once(const std::string& settle = "0") const {
+    return {"serve", models(),   "--watch",
+            inbox(), "--once",   "--settle",
+            settle,  "--config", work() / "quick.json"};
+  }
+  Path inbox() const { return work() / "inbox"; }
+  Path models() const { return work() / "models"; }
+};
+
+TEST_F(Once, WhatIsInTheInboxIsBuiltAndNoPortIsOpened) {
+  write_mesh("inbox/a.ply");
+  const Outcome first = run(once());
+  EXPECT_EQ(first.code, 0) << first.messages;
+  EXPECT_EQ(first.out, "1 built, 0 up to date, 0 failed, 0 left for the next time\n");
+  EXPECT_EQ(run({"verify", models() / "a.hier", "--input", inbox() / "a.ply"}).code, 0);
+  const Outcome second = run(once());
+  EXPECT_EQ(second.code, 0) << second.messages;
+  EXPECT_EQ(second.out, "0 built, 1 up to date, 0 failed, 0 left for the next time\n");
+  write_mesh("inbox/broken.ply", 9999);
+  const Outcome broken = run(once());
+  EXPECT_EQ(broken.code, kInput);
+  EXPECT_THAT(broken.messages, HasSubstr("broken.ply: "));
+  EXPECT_EQ(broken.out, "0 built, 1 up to date, 1 failed, 0 left for the next time\n");
+  EXPECT_EQ(run({"serve", models(), "--once"}).code, kUsage) << "of which inbox?";
+  Arguments with_port = once();
+  with_port.insert(with_port.end(), {"--port", "0"});
+  EXPECT_EQ(run(with_port).code, kUsage);
+}
+
+TEST_F(Once, ASecondOneIsRefusedUntilTheFirstHasEnded) {
+  write_mesh("inbox/a.ply");
+  const pid_t first = start(once("60"));
+  const auto lock = models() / ".serve-once.meshhier-lock";
+  for (int i = 0; i < 10000 && !fs::exists(lock); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const Outcome second = run(once());
+  EXPECT_EQ(second.code, kLocked);
+  EXPECT_THAT(second.messages, HasSubstr("another \"meshhier serve --once\""));
+  kill(first, SIGTERM);
+  EXPECT_EQ(wait_for(first), kInterrupted);
+  EXPECT_EQ(run(once()).code, 0);
+  EXPECT_FALSE(fs::exists(lock));
+}
+
+}  // namespace
+}  // namespace meshhier::app
