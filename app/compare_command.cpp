@@ -1,13 +1,12 @@
 #include "app/command.h"
 #include "app/compared_hierarchy.h"
 #include "app/hierarchy_place.h"
-#include "app/number_text.h"
 #include "app/options.h"
 #include "base/error.h"
 #include "compare/compare.h"
 #include "export/piece_mesh.h"
+#include "hierarchy/length.h"
 #include "hierarchy/object_row.h"
-#include "hierarchy/unit.h"
 #include "pipeline/build.h"
 #include "storage/io/output_file.h"
 
@@ -40,18 +39,15 @@ struct CompareArguments {
 
 /// Stores "0.5" or "0.5mm".
 void store_tolerance(const std::string& text, comparing::CompareOptions& options) {
-  const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
-  const auto number = parse_number<double>(std::string_view(text).substr(0, end));
-  const std::string_view unit = std::string_view(text).substr(end);
-  const auto known = value_named(kUnits, unit);
-  if (!number || !(*number >= 0) || (!unit.empty() && !known)) {
+  const auto length = parse_length(text);
+  if (!length || !(length->number >= 0)) {
     throw CLI::ValidationError(
         "--tolerance",
         fmt::format("expected a length of 0 or more, perhaps with one of {}, found \"{}\"",
                     names_in(kUnits), text));
   }
-  options.tolerance = *number;
-  options.tolerance_unit = known;
+  options.tolerance = length->number;
+  options.tolerance_unit = length->unit;
 }
 
 comparing::PlaceTransform read_transform(storage::FileSystem& files, const std::string& path) {

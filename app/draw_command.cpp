@@ -1,9 +1,11 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
-#include "app/number_text.h"
 #include "app/options.h"
+#include "app/written_file.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "drawing/drawing.h"
+#include "hierarchy/length.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,38 +34,46 @@ struct DrawArguments {
   DrawingOptions options;
 };
 
-/// Returns the finite numbers of a text, "X,Y"; nothing if it is anything else.
-std::optional<std::vector<double>> numbers_in(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const auto number = parse_number<double>(text.substr(0, comma));
-    if (!number || !std::isfinite(*number))
-      return std::nullopt;
-    numbers.push_back(*number);
-    if (comma == text.size())
-      return numbers;
-    text.remove_prefix(comma + 1);
-  }
-}
-
+/// Returns so many numbers of a text, "X,Y"; nothing if it is anything else.
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t count) {
-  auto numbers = numbers_in(text);
+  auto numbers = parse_numbers(text);
   return numbers && numbers->size() == count ? numbers : std::nullopt;
 }
 
 /// Returns a number above 0.
-std::optional<double> length_in(std::string_view text) {
+std::optional<double> positive_in(std::string_view text) {
   const auto number = parse_number<double>(text);
   return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
+}
+
+/// Returns a length above 0.
+std::optional<Length> length_in(std::string_view text) {
+  const auto length = parse_length(text);
+  return length && length->number > 0 ? length : std::nullopt;
+}
+
+/// Returns the heights of "1.2m,4m"; nothing if one of them is none.
+std::optional<std::vector<Length>> heights_in(std::string_view text) {
+  std::vector<Length> heights;
+  while (true) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const auto height = parse_length(text.substr(0, comma));
+    if (!height)
+      return std::nullopt;
+    heights.push_back(*height);
+    if (comma == text.size())
+      return heights;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 /// Returns N of "1:N", of "N", or of "2:1", which is twice as large.
 std::optional<double> scale_in(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos)
-    return length_in(text);
-  const auto paper = length_in(text.substr(0, colon)), model = length_in(text.substr(colon + 1));
+    return positive_in(text);
+  const auto paper = positive_in(text.substr(0, colon)),
+             model = positive_in(text.substr(colon + 1));
   const bool is_scale = paper && model && std::isfinite(*model / *paper) && *model / *paper > 0;
   return is_scale ? std::optional(*model / *paper) : std::nullopt;
 }
@@ -85,20 +94,16 @@ std::string format_of(const DrawArguments& arguments) {
 
 int run_draw(const DrawArguments& arguments, execution::ProgressMode mode,
              Environment& environment) {
-  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   DrawingOptions options = arguments.options;
   options.output = arguments.output;
   options.format = format_of(arguments);
   if (!options.region.crs.empty())
     require_region(options.region, "--crs");
-  require_no_terminal(environment, arguments.output);
-  std::ostream& account = account_stream(environment, arguments.output);
-  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line =
-      drawing::draw(place.files(), place.path(), options, *progress, environment.cancel);
-  progress->finish(arguments.output);
-  account << line << '\n' << place.account();
-  return 0;
+  return write_file({arguments.hierarchy, arguments.web, {arguments.output}}, mode, environment,
+                    [&](const HierarchyPlace& place, execution::Progress& progress) {
+                      return drawing::draw(place.files(), place.path(), options, progress,
+                                           environment.cancel);
+                    });
 }
 
 /// Stores what `read` finds in the text; returns whether that is anything.
@@ -163,14 +168,14 @@ void add_cuts(CLI::App& command, DrawingOptions& options) {
                   {"--cut-height",
                    "Cuts at this height: what is above is taken away, and the lines of the cut are "
                    "drawn. Several heights give as many lines",
-                   "Z,...", "heights, Z or Z,Z,..."},
+                   "Z,...", "heights, Z or Z,Z,..., perhaps with units"},
                   [&options](const std::string& text) {
-                    return store_found(options.cut_heights, numbers_in(text));
+                    return store_found(options.cut_heights, heights_in(text));
                   });
   add_text_option(
       *cut,
       {"--contours", "Contour lines at multiples of this; each fifth is an index contour",
-       "INTERVAL", "a length above 0"},
+       "INTERVAL", "a length above 0, perhaps with a unit"},
       [&options](const std::string& text) {
         return store_found(options.contours, length_in(text));
       });
@@ -208,7 +213,8 @@ void add_sheet(CLI::App& command, DrawingOptions& options) {
           [&options](const std::string& text) {
             options.paper.has_grid = true;
             if (!text.empty() && !store_found(options.paper.grid, length_in(text)))
-              throw CLI::ValidationError("--grid", "expected a length above 0, found " + text);
+              throw CLI::ValidationError(
+                  "--grid", "expected a length above 0, perhaps with a unit, found " + text);
           },
           "A grid of coordinates with their numbers; =LENGTH says how far apart its lines are")
       ->type_name("LENGTH")
@@ -243,10 +249,11 @@ the model, and a .geojson as longitudes and latitudes. Lines are those of the or
 counts as above it.
 
 Coordinates, heights and lengths are those of the map that the model lies on, else of the model, z-up.
+Heights, intervals and the grid's may have a unit: 1.2m, 50cm, 10ft.
 
 Examples:
   meshhier draw house.hier --scale 1:50 -o plan.png
-  meshhier draw house.hier --cut-height 1.2 --scale 1:50 --grid -o floor.png
+  meshhier draw house.hier --cut-height 1.2m --scale 1:50 --grid=50cm -o floor.png
   meshhier draw house.hier --cut-height 1.2 -o floor.dxf
   meshhier draw house.hier --elevation front --scale 1:100 --dpi 600 -o front.png
   meshhier draw church.hier --section 0,4 20,4 --scale 1:100 -o section.svg

@@ -1,18 +1,17 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
-#include "app/number_text.h"
 #include "app/options.h"
+#include "app/written_file.h"
+#include "base/number_text.h"
 #include "export/export.h"
 #include "export/orthophoto.h"
 #include "export/piece_mesh.h"
 #include "pipeline/build.h"
-#include "storage/io/output_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -115,23 +114,16 @@ std::string make_rasters(const HierarchyPlace& place, const ExportArguments& arg
 
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
-  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   if (arguments.clip)
     require_region(arguments.region, "--clip");
   if (!arguments.region.crs.empty())
     require_region(arguments.region, "--crs");
-  require_no_terminal(environment, arguments.output);
-  require_no_terminal(environment, arguments.heights);
-  const bool is_streamed = storage::is_standard_output(environment.files, arguments.output) ||
-                           storage::is_standard_output(environment.files, arguments.heights);
-  std::ostream& account = is_streamed ? environment.messages : environment.out;
-  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line = is_raster(arguments)
-                               ? make_rasters(place, arguments, *progress, environment)
-                               : make_mesh(place, arguments, *progress, environment);
-  progress->finish(arguments.output.empty() ? arguments.heights : arguments.output);
-  account << line << '\n' << place.account();
-  return 0;
+  return write_file(
+      {arguments.hierarchy, arguments.web, {arguments.output, arguments.heights}}, mode,
+      environment, [&](const HierarchyPlace& place, execution::Progress& progress) {
+        return is_raster(arguments) ? make_rasters(place, arguments, progress, environment)
+                                    : make_mesh(place, arguments, progress, environment);
+      });
 }
 
 constexpr const char* kExportFooter =

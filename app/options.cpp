@@ -1,8 +1,8 @@
 #include "app/options.h"
 
-#include "app/number_text.h"
 #include "app/process.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "execution/size_text.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"

@@ -3,6 +3,7 @@
 #include "app/options.h"
 #include "app/story_pictures.h"
 #include "app/viewer_place.h"
+#include "app/written_file.h"
 #include "base/error.h"
 #include "export/page_file.h"
 #include "server/static_site.h"
@@ -13,7 +14,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <utility>
 
@@ -130,19 +130,20 @@ std::string make_site(const PageArguments& arguments, execution::Progress& progr
        .copied = [&] { progress.advance(1); }});
 }
 
+/// Whether it is a folder of hierarchies.
+bool is_folder(const HierarchyPlace& place, const Environment& environment) {
+  return !place.is_remote() && environment.files.is_directory(place.path()) &&
+         !environment.files.exists(place.path() / "hierarchy.json");
+}
+
 int run_page(const PageArguments& arguments, execution::ProgressMode mode,
              Environment& environment) {
-  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
-  require_no_terminal(environment, arguments.output);
-  std::ostream& account = account_stream(environment, arguments.output);
-  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const bool is_folder = !place.is_remote() && environment.files.is_directory(place.path()) &&
-                         !environment.files.exists(place.path() / "hierarchy.json");
-  const std::string line = is_folder ? make_site(arguments, *progress, environment)
-                                     : make_page(arguments, place, *progress, environment);
-  progress->finish(arguments.output);
-  account << line << '\n' << place.account();
-  return 0;
+  return write_file({arguments.hierarchy, arguments.web, {arguments.output}}, mode, environment,
+                    [&](const HierarchyPlace& place, execution::Progress& progress) {
+                      return is_folder(place, environment)
+                                 ? make_site(arguments, progress, environment)
+                                 : make_page(arguments, place, progress, environment);
+                    });
 }
 
 constexpr const char* kPageFooter =

@@ -1,10 +1,10 @@
 #include "app/command.h"
 #include "app/hierarchy_place.h"
-#include "app/number_text.h"
 #include "app/options.h"
+#include "app/written_file.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "inspection/preview.h"
-#include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -137,9 +136,8 @@ ImageFormat format_of(const PreviewArguments& arguments) {
   return *format;
 }
 
-int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
-                Environment& environment) {
-  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+/// Returns the options as they were meant together. Throws Error(usage) if they do not go together.
+PreviewOptions checked_options(const PreviewArguments& arguments) {
   PreviewOptions options = arguments.options;
   options.output = arguments.output;
   options.format = format_of(arguments);
@@ -154,14 +152,17 @@ int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
     throw Error(ErrorCode::usage, "--ramp and --range need --attribute or --colour-by");
   if (!options.region.crs.empty())
     require_region(options.region, "--crs");
-  require_no_terminal(environment, arguments.output);
-  std::ostream& account = account_stream(environment, arguments.output);
-  const HierarchyPlace place(environment, arguments.hierarchy, arguments.web);
-  const std::string line =
-      inspection::make_picture(place.files(), place.path(), options, *progress, environment.cancel);
-  progress->finish(arguments.output);
-  account << line << '\n' << place.account();
-  return 0;
+  return options;
+}
+
+int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
+                Environment& environment) {
+  const PreviewOptions options = checked_options(arguments);
+  return write_file({arguments.hierarchy, arguments.web, {arguments.output}}, mode, environment,
+                    [&](const HierarchyPlace& place, execution::Progress& progress) {
+                      return inspection::make_picture(place.files(), place.path(), options,
+                                                      progress, environment.cancel);
+                    });
 }
 
 void add_what(CLI::App& command, PreviewArguments& arguments) {

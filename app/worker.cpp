@@ -1,10 +1,10 @@
 #include "app/worker.h"
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/plain_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <limits>
 
@@ -17,10 +17,8 @@ std::optional<std::uint32_t> number(const Variables& variables, const char* name
   const std::optional<std::string> text = variables(name);
   if (!text || text->empty())
     return std::nullopt;
-  std::uint32_t value = 0;
-  const char* const end = text->data() + text->size();
-  if (const auto read = std::from_chars(text->data(), end, value);
-      read.ec != std::errc() || read.ptr != end) {
+  const auto value = parse_number<std::uint32_t>(*text);
+  if (!value) {
     throw Error(ErrorCode::usage, fmt::format("the variable {} is \"{}\", and no number: give "
                                               "--index and --of",
                                               name, meshhier::plain_text(*text, 60)));

@@ -2,11 +2,11 @@
 
 #include "base/error.h"
 #include "base/flat_axes.h"
+#include "base/number_text.h"
 #include "base/plain_text.h"
 #include "base/text_mark.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
@@ -36,11 +36,10 @@ PlaceTransform parse_transform(std::string_view text, const std::string& name) {
     const std::string_view word =
         text.substr(at, std::min(text.find_first_of(kBetween, at), text.size()) - at);
     at += word.size();
-    double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
+    const auto number = parse_number<double>(word);
+    if (!number || !std::isfinite(*number))
       fail("\"" + plain_text(std::string(word.substr(0, 40)), 40) + "\"");
-    numbers.push_back(number);
+    numbers.push_back(*number);
     if (numbers.size() > 16)
       fail("more");
   }

@@ -230,7 +230,7 @@ std::string draw_lines(storage::FileSystem& files, const std::filesystem::path& 
 
   LineDrawing drawing{.manifest = reader.manifest(),
                       .sheet = asked.sheet,
-                      .levels = levels_of(options, asked.sheet, all.min.z, all.max.z),
+                      .levels = levels_of(asked, all.min.z, all.max.z),
                       .are_contours = options.contours.has_value(),
                       .unit = asked.unit,
                       .named_unit = asked.named_unit,

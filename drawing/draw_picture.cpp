@@ -69,12 +69,12 @@ exporting::Region region_below(const exporting::MapFrame& view, double height) {
   return region;
 }
 
-std::optional<exporting::Region> region_kept(const DrawingOptions& options, const Sheet& sheet) {
-  if (sheet.plane)
-    return region_below(sheet.view, *sheet.plane);
-  if (options.cut_heights.empty())
+std::optional<exporting::Region> region_kept(const Asked& asked) {
+  if (asked.sheet.plane)
+    return region_below(asked.sheet.view, *asked.sheet.plane);
+  if (asked.cut_heights.empty())
     return std::nullopt;
-  return region_below(sheet.view, *std::ranges::max_element(options.cut_heights));
+  return region_below(asked.sheet.view, *std::ranges::max_element(asked.cut_heights));
 }
 
 PixelGrid grid_of(const Paper& paper, double dots_per_inch) {
@@ -322,7 +322,7 @@ std::string draw_picture(storage::FileSystem& files, const std::filesystem::path
   std::optional<exporting::Region> region;
   if (options.region.is_any())
     region = exporting::region_of(files, reader, options.region, cancel);
-  std::optional<exporting::Region> kept = region_kept(options, asked.sheet);
+  std::optional<exporting::Region> kept = region_kept(asked);
   const BoundsD box = exporting::drawn_box(reader, asked.sheet.view, options.region, region,
                                            kept ? &*kept->box : nullptr);
   if (box.empty() && kept)
@@ -336,9 +336,12 @@ std::string draw_picture(storage::FileSystem& files, const std::filesystem::path
                                  .has_colours = true,
                                  .is_soft = !options.contours};
   exporting::NamedCut cut = chosen_pixels(files, reader, options, view);
-  const Picture picture{
-      {reader, std::move(cut.cut), std::move(region), cancel}, options,         view,
-      levels_of(options, asked.sheet, box.min.z, box.max.z),   std::move(kept), std::move(paper)};
+  const Picture picture{{reader, std::move(cut.cut), std::move(region), cancel},
+                        options,
+                        view,
+                        levels_of(asked, box.min.z, box.max.z),
+                        std::move(kept),
+                        std::move(paper)};
   const Account account = draw_windows(picture, *output.file(), progress);
   if (account.covered == 0)
     throw Error(ErrorCode::usage,

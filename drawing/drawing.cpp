@@ -75,6 +75,24 @@ void warn_of_unused(const DrawingOptions& options, const LineFormat* lines,
   }
 }
 
+/// Returns a length in the sheet's unit. `option`: which asked for it.
+double on_sheet(const Length& length, const SheetUnit& unit, std::string_view option) {
+  if (length.unit && unit.metres == 0) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} {:.12g}{}: the unit of the model's coordinates is not known: give "
+                            "--units m, or the one that it is, or leave the unit out",
+                            option, length.number, name_of(*length.unit)));
+  }
+  return length.in(unit.metres);
+}
+
+void take_lengths(const DrawingOptions& options, Asked& asked) {
+  for (const Length& height : options.cut_heights)
+    asked.cut_heights.push_back(on_sheet(height, asked.unit, "--cut-height"));
+  if (options.contours)
+    asked.contours = on_sheet(*options.contours, asked.unit, "--contours");
+}
+
 }  // namespace
 
 std::vector<std::string> format_names() {
@@ -115,15 +133,16 @@ Asked asked_of(const storage::Manifest& manifest, const DrawingOptions& options)
     asked.unit.name = row->name;
     asked.named_unit = row->value;
   }
+  take_lengths(options, asked);
   return asked;
 }
 
-CutLevels levels_of(const DrawingOptions& options, const Sheet& sheet, double low, double high) {
-  if (options.contours)
-    return CutLevels::contours(*options.contours, low, high);
-  if (sheet.plane)
-    return CutLevels({*sheet.plane});
-  return CutLevels(options.cut_heights);
+CutLevels levels_of(const Asked& asked, double low, double high) {
+  if (asked.contours)
+    return CutLevels::contours(*asked.contours, low, high);
+  if (asked.sheet.plane)
+    return CutLevels({*asked.sheet.plane});
+  return CutLevels(asked.cut_heights);
 }
 
 }  // namespace meshhier::drawing

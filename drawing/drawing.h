@@ -9,6 +9,7 @@
 #include "execution/progress.h"
 #include "export/asked_region.h"
 #include "export/export.h"
+#include "hierarchy/length.h"
 #include "hierarchy/unit.h"
 #include "storage/io/file.h"
 
@@ -27,8 +28,8 @@ struct DrawingOptions {
   bool replace = false;
   View view{};
   /// Heights of a plan's cuts: its picture shows what lies below the highest one.
-  std::vector<double> cut_heights{};
-  std::optional<double> contours{};  ///< a plan's interval, above 0
+  std::vector<Length> cut_heights{};
+  std::optional<Length> contours{};  ///< a plan's interval, above 0
   PaperRequest paper{};
   std::optional<Unit> units{};  ///< of the input's coordinates, where the hierarchy tells none
   double dots_per_inch = 300;   ///< of pictures
@@ -59,12 +60,15 @@ struct Asked {
   Sheet sheet;
   SheetUnit unit{};
   std::optional<Unit> named_unit{};
+  std::vector<double> cut_heights{};  ///< in that unit
+  std::optional<double> contours{};
 };
-/// Throws Error(usage) for a unit that contradicts the map's; and as sheet_of().
+/// Throws Error(usage) for a unit that contradicts the map's, or lengths with a unit where that of
+/// the sheet is not known; and as sheet_of().
 Asked asked_of(const storage::Manifest& manifest, const DrawingOptions& options);
 
-/// Returns the levels of the options: the view's plane, or heights, or contours of what lies
+/// Returns the levels that are asked for: the view's plane, or heights, or contours of what lies
 /// between `low` and `high` above the sheet. Throws as CutLevels::contours().
-CutLevels levels_of(const DrawingOptions& options, const Sheet& sheet, double low, double high);
+CutLevels levels_of(const Asked& asked, double low, double high);
 
 }  // namespace meshhier::drawing

@@ -179,7 +179,8 @@ Paper paper_for(const BoundsD& box, const SheetUnit& unit, const PaperRequest& r
   const double margin = request.has_grid ? kMarginOfLabels : kMargin;
   paper.scale = request.scale.value_or(fitting_scale(across, down, unit.metres, 2 * margin));
   paper.mm_per_unit = 1000 * unit.metres / paper.scale;
-  const double step = request.grid.value_or(round_length(kGridApart / paper.mm_per_unit));
+  const double step =
+      request.grid ? request.grid->in(unit.metres) : round_length(kGridApart / paper.mm_per_unit);
   paper.margin = request.has_grid ? std::max(margin, label_width(box, step) + 2) : margin;
   paper.inner_width = across * paper.mm_per_unit;
   paper.inner_height = down * paper.mm_per_unit;

@@ -15,6 +15,7 @@
 
 #include "base/bounds.h"
 #include "export/plan_region.h"
+#include "hierarchy/length.h"
 
 #include <optional>
 #include <string>
@@ -29,7 +30,7 @@ using exporting::PlanPoint;
 struct PaperRequest {
   std::optional<double> scale{};  ///< N of 1:N; none: the largest round one that fits on A4
   bool has_grid = false;
-  std::optional<double> grid{};  ///< between its lines, units of the sheet; none: a round length
+  std::optional<Length> grid{};  ///< between its lines, units of the sheet; none: a round length
   bool has_bar = true;
 };
 

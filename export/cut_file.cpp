@@ -1,12 +1,12 @@
 #include "export/cut_file.h"
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/plain_text.h"
 #include "base/text_mark.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -22,15 +22,6 @@ std::string_view trimmed(std::string_view text) {
   if (begin == std::string_view::npos)
     return {};
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
-template <class Number>
-std::optional<Number> parse_number(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size())
-    return std::nullopt;
-  return number;
 }
 
 NodeId parse_node(std::string_view text, const std::string& place) {

@@ -1,6 +1,7 @@
 #include "import/kept_objects.h"
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/plain_text.h"
 #include "execution/spool_cursor.h"
 #include "hierarchy/object_set.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,14 +24,13 @@ constexpr std::size_t kShownNumberBytes = 60;
 
 std::uint32_t row_named(std::string_view name, std::uint32_t rows,
                         const std::filesystem::path& path) {
-  std::uint32_t row = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), row);
-  if (error != std::errc{} || end != name.data() + name.size() || row >= rows) {
+  const auto row = parse_number<std::uint32_t>(name);
+  if (!row || *row >= rows) {
     mesh_io::fail_file(path, fmt::format("is the table of a hierarchy: what the mesh has are to be "
                                          "numbers of its {} rows, and \"{}\" is none",
                                          rows, plain_text(name, kShownNumberBytes)));
   }
-  return row;
+  return *row;
 }
 
 /// What the build finds out by itself is left out.

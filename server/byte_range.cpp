@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kUnit = "bytes=";
 
 /// Parses a number of digits only; one beyond 64 bits counts as the largest.
-std::optional<std::uint64_t> parse_number(std::string_view text) {
+std::optional<std::uint64_t> parse_digits(std::string_view text) {
   if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos)
     return std::nullopt;
   std::uint64_t number = 0;
@@ -36,8 +36,8 @@ RangeAnswer find_range(std::string_view header, std::uint64_t file_bytes) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos)
     return {};
-  const auto first = parse_number(text.substr(0, dash));
-  const auto last = parse_number(text.substr(dash + 1));
+  const auto first = parse_digits(text.substr(0, dash));
+  const auto last = parse_digits(text.substr(dash + 1));
   if (dash == 0)
     return last ? last_bytes(*last, file_bytes) : RangeAnswer{};
   const bool is_open = dash + 1 == text.size();

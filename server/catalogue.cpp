@@ -1,6 +1,7 @@
 #include "server/catalogue.h"
 
 #include "base/named_value.h"
+#include "base/number_text.h"
 #include "base/percent_code.h"
 #include "base/sound_utf8.h"
 #include "server/url_path.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -107,12 +107,7 @@ std::string path_of(const std::string& listed) {
 }
 
 std::optional<std::size_t> read_count(std::optional<std::string_view> text) {
-  std::size_t value = 0;
-  if (!text)
-    return std::nullopt;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  return error == std::errc() && end == text->data() + text->size() ? std::optional(value)
-                                                                    : std::nullopt;
+  return text ? parse_number<std::size_t>(*text) : std::nullopt;
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "storage/format/view_keys.h"
 
+#include "base/number_text.h"
 #include "hierarchy/scalar_value.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -15,21 +15,6 @@
 #include <fmt/ranges.h>
 
 namespace meshhier::storage {
-
-std::optional<std::vector<double>> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t end = std::min(text.find(','), text.size());
-    double number = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + end, number);
-    if (error != std::errc{} || rest != text.data() + end || !std::isfinite(number))
-      return std::nullopt;
-    numbers.push_back(number);
-    if (end == text.size())
-      return numbers;
-    text.remove_prefix(end + 1);
-  }
-}
 
 namespace {
 

@@ -90,7 +90,4 @@ std::variant<ModelView, ViewProblem> parse_view(const nlohmann::ordered_json& js
 /// Returns an object that parse_view() reads as the same view; keys in the table's order.
 nlohmann::ordered_json view_json(const ModelView& view);
 
-/// Reads finite numbers with commas between them; nothing if one of them is none.
-std::optional<std::vector<double>> parse_numbers(std::string_view text);
-
 }  // namespace meshhier::storage

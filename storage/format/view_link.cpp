@@ -1,5 +1,6 @@
 #include "storage/format/view_link.h"
 
+#include "base/number_text.h"
 #include "base/percent_code.h"
 #include "base/sound_utf8.h"
 

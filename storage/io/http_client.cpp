@@ -1,10 +1,10 @@
 #include "storage/io/http_client.h"
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/small_letters.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <exception>
@@ -63,17 +63,11 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::optional<std::uint64_t> number(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc{} || end != text.data() + text.size())
-    return std::nullopt;
-  return value;
-}
+constexpr auto whole_number = parse_number<std::uint64_t>;
 
 /// Parses a length in bytes; nothing if no file can be so long.
 std::optional<std::uint64_t> file_length(std::string_view text) {
-  const std::optional<std::uint64_t> value = number(text);
+  const std::optional<std::uint64_t> value = whole_number(text);
   return value && *value <= static_cast<std::uint64_t>(INT64_MAX) ? value : std::nullopt;
 }
 
@@ -131,7 +125,7 @@ struct Head {
     total = length_of(value.substr(slash + 1));
     const std::size_t dash = value.find('-');
     if (dash != std::string_view::npos && dash < slash)
-      first = number(value.substr(kUnit.size(), dash - kUnit.size()));
+      first = whole_number(value.substr(kUnit.size(), dash - kUnit.size()));
   }
 };
 
