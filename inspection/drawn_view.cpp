@@ -82,7 +82,7 @@ DrawnView drawn_view(const storage::HierarchyReader& reader, const PreviewOption
   if (drawn.is_plain)
     return drawn;
   take_options(options, reader.manifest().up, drawn.view);
-  drawn.has_perspective = !options.view && (!options.link.empty() || !drawn.view.camera.empty());
+  drawn.has_pose = !options.view && (!options.link.empty() || !drawn.view.camera.empty());
   warn_of_attribute(reader, drawn.view, progress);
   drawn.view = render::known_view(drawn.view, reader.manifest().source);
   if (const std::string left = render::not_drawn(drawn.view); !left.empty())

@@ -15,8 +15,8 @@ namespace meshhier::inspection {
 
 struct DrawnView {
   ModelView view{};
-  bool has_perspective = false;  ///< as the page shows it
-  bool is_plain = true;          ///< nobody said how it is shown: as the file stands, its colours
+  bool has_pose = false;  ///< it is seen from where the page sees it, else from a side, by options
+  bool is_plain = true;   ///< nobody said how it is shown: as the file stands, its colours
 };
 
 /// Warns of what the picture does not show of the view. Throws Error(usage) if the link is none.

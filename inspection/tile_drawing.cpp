@@ -89,7 +89,8 @@ void TileDrawing::take_root(PublishedTile root) {
   } else {
     placement_.emplace(view, reader_.manifest().up, reader_.manifest().origin);
     render::add_to_look(view, root, placement_->standing(), look_);
-    if (drawn_.has_perspective)
+    looks_in_ = render::looks_in(view, root.mesh, placement_->standing().upwards());
+    if (drawn_.has_pose)
       root_points_ = points_of(root.mesh, placement_->standing());
   }
   layout_ = render::painted_layout(view, painter_, layout_);
@@ -136,32 +137,34 @@ render::Pose TileDrawing::pose() const {
   return render::frame_whole(
       root_points_,
       placement_->standing().upright(BoundsD{box.min - manifest.origin, box.max - manifest.origin}),
-      direction, double{1} * options_.width / options_.height);
+      direction, double{1} * options_.width / options_.height, render::rays_of(drawn_.view));
+}
+
+render::Sight TileDrawing::sight(std::span<const render::Facet> framed) {
+  const render::Framing framing{.width = options_.width, .height = options_.height, .samples = 2};
+  if (drawn_.has_pose)
+    return placement_->look_from(pose(), render::rays_of(drawn_.view), framing);
+  const render::View view = render::view_from(standpoint(), up());
+  return {placement_ ? render::portrait_camera(placement_->upright(framed), view, framing)
+                     : render::portrait_camera(framed, view, framing),
+          render::axes_of(view)};
 }
 
 void TileDrawing::aim(std::span<const render::Facet> framed) {
-  const render::Framing framing{.width = options_.width, .height = options_.height, .samples = 2};
-  if (drawn_.has_perspective) {
-    placement_->look_from(pose(), framing);
-    camera_ = placement_->perspective()->camera();
-    axes_ = placement_->perspective()->axes();
-    return;
-  }
-  const render::View view = render::view_from(standpoint(), up());
-  camera_ = placement_ ? render::portrait_camera(placement_->upright(framed), view, framing)
-                       : render::portrait_camera(framed, view, framing);
-  axes_ = render::axes_of(view);
+  sight_ = sight(framed);
+  if (looks_in_)
+    placement_->hide_backs(*sight_);
 }
 
 bool TileDrawing::is_fine(const TileRecord& record) const {
   if (drawn_.view.level && raw(record.node.level) >= *drawn_.view.level)
     return true;
   if (!placement_)
-    return record.error <= camera_->pixel() * kPixelPart;
+    return record.error <= camera().pixel() * kPixelPart;
   const double error = record.error * placement_->standing().stretch();
   const auto& perspective = placement_->perspective();
   if (!perspective)
-    return error <= camera_->pixel() * kPixelPart;
+    return error <= camera().pixel() * kPixelPart;
   const BoundsD box = placement_->standing().upright(
       BoundsD{to_double(record.bounds.min), to_double(record.bounds.max)});
   return record.bounds.empty() || !perspective->sees(box) ||

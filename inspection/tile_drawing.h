@@ -34,8 +34,8 @@ class TileDrawing {
   /// The facets of the root, which has the extent of the whole.
   std::span<const render::Facet> root() const { return root_; }
 
-  const render::Camera& camera() const { return *camera_; }
-  const render::ViewAxes& axes() const { return axes_; }
+  const render::Camera& camera() const { return sight_->camera; }
+  const render::ViewAxes& axes() const { return sight_->axes; }
   const render::Look& look() const { return look_; }
   /// Returns for people what the colours of objects mean, or nothing.
   const std::string& legend() const { return legend_; }
@@ -54,6 +54,7 @@ class TileDrawing {
  private:
   void choose_painter(const execution::CancelToken& cancel);
   void take_root(PublishedTile root);
+  render::Sight sight(std::span<const render::Facet> framed);
   Standpoint standpoint() const;
   Vec3d up() const;
   render::Pose pose() const;
@@ -66,10 +67,10 @@ class TileDrawing {
   AttributeLayout layout_;
   render::Look look_;
   std::vector<render::Facet> root_;
-  std::vector<Vec3d> root_points_;              ///< of its triangles; only with perspective
+  std::vector<Vec3d> root_points_;              ///< of its triangles; only with a pose
   std::optional<render::Placement> placement_;  ///< none: as the file stands
-  std::optional<render::Camera> camera_;
-  render::ViewAxes axes_{};
+  std::optional<render::Sight> sight_;
+  bool looks_in_ = false;  ///< facets that look away are not drawn
 };
 
 }  // namespace meshhier::inspection

@@ -99,8 +99,7 @@ std::vector<render::Facet> root_facets(const PublishedTile& root, const Attribut
 
 /// The view of a model.
 struct Portrait {
-  render::Camera camera;
-  render::ViewAxes axes;
+  render::Sight sight;
   AttributeLayout layout;  ///< as it is drawn
   double point_side = 0;   ///< 0: triangles are drawn
   render::Look look{};
@@ -123,8 +122,7 @@ Portrait plain_portrait(const PublishedTile& root, const PreviewInput& input) {
   const std::vector<render::Facet> whole = root_facets(root, input.format.attributes);
   const render::View view =
       render::view_from(*root.first_view, direction_of(input.format.frame.up));
-  return {.camera = render::portrait_camera(whole, view, kFraming),
-          .axes = render::axes_of(view),
+  return {.sight = {render::portrait_camera(whole, view, kFraming), render::axes_of(view)},
           .layout = render::drawn_layout(whole, input.format.attributes),
           .look = look_of(root, input.format)};
 }
@@ -136,6 +134,7 @@ Portrait viewed_portrait(PublishedTile root, const PreviewInput& input, const Mo
   render::Placement placement(view, up, input.origin);
   render::Look look = look_of(root, input.format);
   render::add_to_look(view, root, placement.standing(), look);
+  const bool looks_in = render::looks_in(view, root.mesh, placement.standing().upwards());
   std::optional<render::AttributePainter> painter;
   if (const auto attribute = render::attribute_of(view, input.source))
     painter.emplace(input.source, *attribute);
@@ -148,15 +147,12 @@ Portrait viewed_portrait(PublishedTile root, const PreviewInput& input, const Mo
   const bool is_as_built = placement.standing().upwards() == direction_of(up);
   const render::View from =
       render::view_from(is_as_built ? *root.first_view : render::portrait_from(whole, kUp), kUp);
-  render::Camera camera = render::portrait_camera(whole, from, kFraming);
-  render::ViewAxes axes = render::axes_of(from);
-  if (const auto pose = render::pose_of(view)) {
-    placement.look_from(*pose, kFraming);
-    camera = placement.perspective()->camera();
-    axes = placement.perspective()->axes();
-  }
-  return {.camera = camera,
-          .axes = axes,
+  render::Sight sight{render::portrait_camera(whole, from, kFraming), render::axes_of(from)};
+  if (const auto pose = render::pose_of(view))
+    sight = placement.look_from(*pose, render::rays_of(view), kFraming);
+  if (looks_in)
+    placement.hide_backs(sight);
+  return {.sight = sight,
           .layout = layout,
           .look = look,
           .view = view,
@@ -169,7 +165,8 @@ Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const
   Portrait portrait =
       view.empty() ? plain_portrait(root, input) : viewed_portrait(root, input, view);
   if (is_of_points(input.records))
-    portrait.point_side = render::point_side(portrait.camera, vertices_of(cut, input.records));
+    portrait.point_side =
+        render::point_side(portrait.sight.camera, vertices_of(cut, input.records));
   return portrait;
 }
 
@@ -189,7 +186,7 @@ render::SceneTile drawn_tile(PublishedTile tile, const Portrait& portrait) {
   if (is_viewed)
     portrait.placement->place(drawn);
   if (portrait.point_side > 0)
-    drawn.facets = render::squares_of(drawn.facets, portrait.axes, portrait.point_side);
+    drawn.facets = render::squares_of(drawn.facets, portrait.sight.axes, portrait.point_side);
   return drawn;
 }
 
@@ -222,7 +219,7 @@ class DrawnTiles {
   /// Counts the samples of a tile's triangles, also where points are drawn.
   std::uint64_t samples(std::size_t tile) const {
     const auto count = [&](std::span<const render::Facet> facets) {
-      return render::samples_to_draw(facets, portrait_.camera);
+      return render::samples_to_draw(facets, portrait_.sight.camera);
     };
     return held_.empty()
                ? count(facets_of(tile_of(input_, nodes_[tile], context_), portrait_.layout))
@@ -292,7 +289,7 @@ MadePreview make_preview(const PreviewInput& input, PublishedTile root,
     root = {};
     const std::uint64_t samples = samples_of(tiles, context);
     return render::paint(scene_of(input, cut, portrait, tiles),
-                         affordable(portrait.camera, samples),
+                         affordable(portrait.sight.camera, samples),
                          {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }});
   }();
   images::FittedImage picture =

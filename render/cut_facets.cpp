@@ -60,6 +60,24 @@ void CutFacets::add(std::size_t facet, const CutCorner& a, const CutCorner& b, c
   skin.tangents = {a.tangent, b.tangent, c.tangent};
 }
 
+void drop_backs(SceneTile& tile, const Viewer& viewer) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tile.facets.size(); ++i) {
+    const Facet& facet = tile.facets[i];
+    const Vec3d corner = to_double(facet[0].position);
+    const Vec3d normal =
+        cross(to_double(facet[1].position) - corner, to_double(facet[2].position) - corner);
+    if (dot(normal, viewer.seen_from(corner)) <= 0 && normal != Vec3d{})
+      continue;
+    tile.facets[count] = facet;
+    if (!tile.skins.empty())
+      tile.skins[count] = tile.skins[i];
+    ++count;
+  }
+  tile.facets.resize(count);
+  tile.skins.resize(std::min(count, tile.skins.size()));
+}
+
 void clip(SceneTile& tile, std::span<const HalfSpace> kept) {
   if (kept.empty())
     return;

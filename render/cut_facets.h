@@ -51,6 +51,18 @@ class CutFacets {
   std::vector<Skin> skins_;
 };
 
+/// From where one looks: an eye, or a direction to the viewer, who is far away.
+struct Viewer {
+  Vec3d place;
+  bool is_far = false;
+
+  Vec3d seen_from(Vec3d point) const { return is_far ? place : place - point; }
+};
+
+/// Leaves of a tile the facets whose corners turn counter-clockwise for the viewer, and those
+/// without area, which stand for points. O(facets).
+void drop_backs(SceneTile& tile, const Viewer& viewer);
+
 /// Leaves of a tile what lies in all half-spaces. Facets without area, which stand for points, stay
 /// or go. O(facets).
 void clip(SceneTile& tile, std::span<const HalfSpace> kept);

@@ -47,6 +47,7 @@ class BorderPair {
  public:
   explicit BorderPair(double slope) : slope_(slope) {}
 
+  /// `depth`: 0 of rays that are parallel.
   void add(double place, double depth) {
     most_ = std::max(most_, place - slope_ * depth);
     least_ = std::max(least_, -place - slope_ * depth);
@@ -60,15 +61,24 @@ class BorderPair {
   double most_ = -std::numeric_limits<double>::infinity(), least_ = most_;
 };
 
+View view_of(const Pose& pose) {
+  return {pose.target - pose.position, {0, 1, 0}};
+}
+
+/// The size of a pixel at the target.
+double pixel_at(const Pose& pose, const Framing& framing) {
+  return 2 * length(pose.target - pose.position) * kHalfHeight / framing.height;
+}
+
 }  // namespace
 
 Perspective::Perspective(const Pose& pose, const Framing& framing)
     : eye_(pose.position),
       distance_(length(pose.target - pose.position)),
       nearest_(kNearest * distance_),
-      pixel_(2 * distance_ * kHalfHeight / framing.height),
-      axes_(axes_of({pose.target - pose.position, {0, 1, 0}})),
-      camera_({pose.target - pose.position, {0, 1, 0}}, Vec3d{}, pixel_, framing),
+      pixel_(pixel_at(pose, framing)),
+      axes_(axes_of(view_of(pose))),
+      camera_(view_of(pose), Vec3d{}, pixel_, framing),
       frustum_(frustum_of(nearest_, framing)) {}
 
 Vec3d Perspective::seen(Vec3d place) const {
@@ -149,8 +159,16 @@ Bounds Perspective::projected(const BoundsD& box) const {
   return all;
 }
 
+Camera parallel_camera(const Pose& pose, const Framing& framing) {
+  return {view_of(pose), pose.target, pixel_at(pose, framing), framing};
+}
+
+ViewAxes parallel_axes(const Pose& pose) {
+  return axes_of(view_of(pose));
+}
+
 Pose frame_whole(std::span<const Vec3d> points, const BoundsD& box, std::optional<Vec3d> direction,
-                 double aspect) {
+                 double aspect, Rays rays) {
   const Vec3d ahead = direction.value_or(kFirstDirection) * -1;
   const ViewAxes axes = axes_of({ahead, {0, 1, 0}});
   const double slope = kHalfHeight / kMargin;
@@ -158,7 +176,7 @@ Pose frame_whole(std::span<const Vec3d> points, const BoundsD& box, std::optiona
   const Vec3d centre = (box.min + box.max) * 0.5;
   for (const Vec3d& point : points) {
     const Vec3d from = point - centre;
-    const double depth = -dot(axes.back, from);
+    const double depth = rays == Rays::parallel ? 0 : -dot(axes.back, from);
     sides.add(dot(axes.right, from), depth);
     ends.add(dot(axes.up, from), depth);
   }

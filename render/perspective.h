@@ -48,6 +48,7 @@ class Perspective {
   /// Draws what project() has moved.
   const Camera& camera() const { return camera_; }
   const ViewAxes& axes() const { return axes_; }
+  Vec3d eye() const { return eye_; }
   /// Moves the facets that may be seen; the others go.
   void project(SceneTile& tile) const;
 
@@ -72,10 +73,17 @@ class Perspective {
   std::array<HalfSpace, 5> frustum_;  ///< by seen(), wider than the picture
 };
 
+/// The camera of parallel rays whose picture is as high at the target as that in perspective.
+/// Requires that the two points of the pose differ.
+Camera parallel_camera(const Pose& pose, const Framing& framing);
+ViewAxes parallel_axes(const Pose& pose);
+
+enum class Rays { meet_in_the_eye, parallel };
+
 /// The pose from which all points fill a picture of that aspect, with a margin. `direction`: to the
 /// viewer; none: a little aside and above. `box`: around them, not empty.
 Pose frame_whole(std::span<const Vec3d> points, const BoundsD& box, std::optional<Vec3d> direction,
-                 double aspect);
+                 double aspect, Rays rays = Rays::meet_in_the_eye);
 
 /// The farthest points in directions that are spread evenly: a shape's outline, from wherever it is
 /// seen. O(256 points).

@@ -1,12 +1,12 @@
 #include "render/shown_view.h"
 
 #include "base/named_value.h"
+#include "base/number_text.h"
 #include "base/srgb.h"
-#include "render/cut_facets.h"
+#include "render/interior.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -35,13 +35,9 @@ std::optional<LightAngles> key_of(const ModelView& view) {
   const std::size_t first = text.find(',');
   if (first == std::string::npos)
     return std::nullopt;
-  LightAngles key;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + first + 1, end, key.right);
-  if (error != std::errc{} || rest == end ||
-      std::from_chars(rest + 1, end, key.up).ec != std::errc{})
-    return std::nullopt;
-  return key;
+  const auto angles = parse_numbers(std::string_view(text).substr(first + 1));
+  return angles && angles->size() == 2 ? std::optional(LightAngles{(*angles)[0], (*angles)[1]})
+                                       : std::nullopt;
 }
 
 /// A colour of that hue, saturation and lightness (HSL), 0 to 1 each, as light.
@@ -61,6 +57,16 @@ Vec3f partition_colour(NodeId node) {
   return light_of_hue(std::fmod(node.index * kGolden + raw(node.level) * 0.13, 1), 0.55, 0.6);
 }
 
+/// A floor at `from` is drawn whole, a ceiling at `to` not at all, however their heights are
+/// rounded.
+void add_storey(double from, double to, Vec3d upwards, double origin,
+                std::vector<HalfSpace>& kept) {
+  constexpr double kHair = 1e-3;  // part of the range that both cuts are lower than its ends
+  const double hair = kHair * (to - from);
+  kept.push_back({upwards * -1, origin - from + hair});
+  kept.push_back({upwards, to - hair - origin});
+}
+
 }  // namespace
 
 Standing standing_of(const ModelView& view, UpAxis of_file) {
@@ -74,17 +80,28 @@ std::optional<Pose> pose_of(const ModelView& view) {
   return Pose{triple(numbers.first(3)), triple(numbers.last(3))};
 }
 
-std::vector<HalfSpace> kept_of(const ModelView& view, Vec3d origin) {
+std::vector<HalfSpace> kept_of(const ModelView& view, Vec3d upwards, Vec3d origin) {
+  std::vector<HalfSpace> kept;
   if (view.cut.size() == 4) {
     const Vec3d normal = triple(view.cut);
-    return {HalfSpace{normal * -1, view.cut[3] + dot(normal, origin)}};
+    kept.push_back({normal * -1, view.cut[3] + dot(normal, origin)});
+  } else if (view.box.size() == 6) {
+    const std::span<const double> numbers(view.box);
+    const auto sides = half_spaces_of(
+        BoundsD{triple(numbers.first(3)) - origin, triple(numbers.last(3)) - origin});
+    kept.assign(sides.begin(), sides.end());
   }
-  if (view.box.size() != 6)
-    return {};
-  const std::span<const double> numbers(view.box);
-  const auto sides =
-      half_spaces_of(BoundsD{triple(numbers.first(3)) - origin, triple(numbers.last(3)) - origin});
-  return {sides.begin(), sides.end()};
+  if (view.storey.size() == 2)
+    add_storey(view.storey[0], view.storey[1], upwards, dot(upwards, origin), kept);
+  return kept;
+}
+
+Rays rays_of(const ModelView& view) {
+  return view.projection == "parallel" ? Rays::parallel : Rays::meet_in_the_eye;
+}
+
+bool looks_in(const ModelView& view, const TileMesh& root, Vec3d upwards) {
+  return view.dollhouse == "auto" ? is_interior(root, upwards) : view.dollhouse == "on";
 }
 
 std::optional<AttributeColours> attribute_of(const ModelView& view, const SourceSummary& source) {
@@ -165,9 +182,22 @@ std::vector<Facet> Placement::upright(std::span<const Facet> facets) const {
   return std::move(tile.facets);
 }
 
+Sight Placement::look_from(const Pose& pose, Rays rays, const Framing& framing) {
+  if (rays == Rays::parallel)
+    return {parallel_camera(pose, framing), parallel_axes(pose)};
+  perspective_.emplace(pose, framing);
+  return {perspective_->camera(), perspective_->axes()};
+}
+
+void Placement::hide_backs(const Sight& sight) {
+  viewer_ = perspective_ ? Viewer{perspective_->eye()} : Viewer{sight.axes.back, true};
+}
+
 void Placement::place(SceneTile& tile) const {
   clip(tile, kept_);
   standing_.stand(tile);
+  if (viewer_)
+    drop_backs(tile, *viewer_);
   if (perspective_)
     perspective_->project(tile);
 }
@@ -184,10 +214,7 @@ Bounds Placement::box_of(const Bounds& box) const {
 std::string not_drawn(const ModelView& view) {
   const std::string_view light = name_of_light(view);
   const bool is_cut = !view.cut.empty() || !view.box.empty();
-  const std::array all{std::pair{view.projection == "parallel", "parallel rays"},
-                       std::pair{view.dollhouse == "on", "the look in from outside"},
-                       std::pair{!view.storey.empty(), "the storey"},
-                       std::pair{view.wires, "wires"},
+  const std::array all{std::pair{view.wires, "wires"},
                        std::pair{view.points, "points"},
                        std::pair{view.outline, "the outline"},
                        std::pair{view.isolines && view.colours == "attribute", "isolines"},

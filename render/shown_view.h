@@ -6,6 +6,8 @@
 #include "hierarchy/model_view.h"
 #include "hierarchy/published.h"
 #include "render/attribute_painter.h"
+#include "render/camera.h"
+#include "render/cut_facets.h"
 #include "render/perspective.h"
 #include "render/scene.h"
 #include "render/standing.h"
@@ -22,19 +24,29 @@ Standing standing_of(const ModelView& view, UpAxis of_file);
 /// The pose of a view's camera; none if it has none.
 std::optional<Pose> pose_of(const ModelView& view);
 
-/// The half-spaces that its cut or box keeps, relative to the origin.
-std::vector<HalfSpace> kept_of(const ModelView& view, Vec3d origin);
+/// The half-spaces that its cut or box, and its storey, keep, relative to the origin. `upwards`: of
+/// its standing.
+std::vector<HalfSpace> kept_of(const ModelView& view, Vec3d upwards, Vec3d origin);
+
+/// How a picture is seen.
+struct Sight {
+  Camera camera;
+  ViewAxes axes;
+};
 
 /// Where a view has the facets of tiles: cut, stood upright, and perhaps in perspective.
 class Placement {
  public:
   Placement(const ModelView& view, UpAxis of_file, Vec3d origin)
-      : standing_(standing_of(view, of_file)), kept_(kept_of(view, origin)) {}
+      : standing_(standing_of(view, of_file)), kept_(kept_of(view, standing_.upwards(), origin)) {}
 
   const Standing& standing() const { return standing_; }
   const std::optional<Perspective>& perspective() const { return perspective_; }
-  /// From now on things are placed in the perspective of that pose.
-  void look_from(const Pose& pose, const Framing& framing) { perspective_.emplace(pose, framing); }
+  /// Returns how it is seen from a pose. From now on things are placed in its perspective, unless
+  /// rays are parallel.
+  Sight look_from(const Pose& pose, Rays rays, const Framing& framing);
+  /// From now on facets go that turn their backs to who sees it so.
+  void hide_backs(const Sight& sight);
 
   /// Stands facets upright: all of them, without perspective.
   std::vector<Facet> upright(std::span<const Facet> facets) const;
@@ -46,6 +58,7 @@ class Placement {
   Standing standing_;
   std::vector<HalfSpace> kept_;
   std::optional<Perspective> perspective_;
+  std::optional<Viewer> viewer_;
 };
 
 /// The attribute that colours show; none if they show something else, or there is no attribute. One
@@ -54,6 +67,11 @@ std::optional<AttributeColours> attribute_of(const ModelView& view, const Source
 
 /// The view as the source has it: without attributes its own colours are shown instead.
 ModelView known_view(ModelView view, const SourceSummary& source);
+
+Rays rays_of(const ModelView& view);
+/// Whether a view looks into rooms from outside: facets that look away are not drawn. `root`: the
+/// root's mesh, which tells where the view does not.
+bool looks_in(const ModelView& view, const TileMesh& root, Vec3d upwards);
 
 /// Whether the input's own colours and pictures are shown.
 bool shows_own(const ModelView& view);

@@ -1,6 +1,13 @@
 #include "render/shown_view.h"
 
+#include "render/interior.h"
 #include "tests/render/drawn.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,18 +27,35 @@ SourceSummary with_values(const std::vector<ScalarAttribute>& values) {
 
 TEST(ShownView, CutsInInputCoordinates) {
   ModelView view;
-  EXPECT_TRUE(kept_of(view, {1, 2, 3}).empty());
+  EXPECT_TRUE(kept_of(view, {0, 0, 1}, {1, 2, 3}).empty());
   view.cut = {0, 0, 2, -8};  // kept: z >= 4
-  const auto cut = kept_of(view, {0, 0, 10});
+  const auto cut = kept_of(view, {0, 0, 1}, {0, 0, 10});
   ASSERT_EQ(cut.size(), 1U);
   EXPECT_LE(cut[0].beyond({0, 0, -6}), 0);
   EXPECT_GT(cut[0].beyond({0, 0, -6.01}), 0);
   view = {};
   view.box = {0, 0, 0, 1, 1, 1};
-  const auto box = kept_of(view, {0, 0, 10});
+  const auto box = kept_of(view, {0, 0, 1}, {0, 0, 10});
   ASSERT_EQ(box.size(), 6U);
   for (const HalfSpace& side : box)
     EXPECT_LT(side.beyond({0.5, 0.5, -9.5}), 0);
+}
+
+TEST(ShownView, KeepsAStoreyWithItsFloorAndWithoutItsCeiling) {
+  ModelView view;
+  view.storey = {10, 13};
+  const auto kept = kept_of(view, {0, 1, 0}, {0, 10, 0});
+  const auto is_kept = [&](double y) {
+    return std::ranges::all_of(kept, [&](const HalfSpace& half) {
+      return half.beyond({5, y, -7}) <= 0;
+    });
+  };
+  EXPECT_TRUE(is_kept(0));
+  EXPECT_TRUE(is_kept(2.9));
+  EXPECT_FALSE(is_kept(3));
+  EXPECT_FALSE(is_kept(-0.1));
+  view.cut = {1, 0, 0, -6};  // x >= 6
+  EXPECT_EQ(kept_of(view, {0, 1, 0}, {0, 10, 0}).size(), 3U);
 }
 
 TEST(ShownView, StandsOnTheAxisAskedFor) {
@@ -94,6 +118,98 @@ TEST(ShownView, TellsWhatAPictureDoesNotShow) {
   EXPECT_EQ(not_drawn(view), "wires, occlusion, the caps of cuts");
   view.caps = false;
   EXPECT_EQ(not_drawn(view), "wires, occlusion");
+}
+
+TEST(CutFacets, DropWhatTurnsItsBackToTheViewer) {
+  const auto left_for = [](const Viewer& viewer) {
+    SceneTile tile;
+    tile.facets = {flat_facet({-1, 0, 0}, {1, 0, 0}, {0, 1, 0}),  // looks along z
+                   flat_facet({1, 0, 5}, {-1, 0, 5}, {0, 1, 5}),  // along -z
+                   flat_facet({2, 2, 2}, {2, 2, 2}, {2, 2, 2})};  // a point
+    tile.skins.resize(3);
+    drop_backs(tile, viewer);
+    EXPECT_EQ(tile.skins.size(), tile.facets.size());
+    std::vector<float> depths;
+    for (const Facet& facet : tile.facets)
+      depths.push_back(facet[0].position.z);
+    return depths;
+  };
+  EXPECT_EQ(left_for({{0, 0, 9}}), (std::vector<float>{0, 2}));
+  EXPECT_EQ(left_for({{0, 0, 2}}), (std::vector<float>{0, 5, 2}));  // between the two
+  EXPECT_EQ(left_for({{0, 0, -1}, true}), (std::vector<float>{5, 2}));
+}
+
+/// A closed box of squares of two triangles; its front sides look inwards, or all outwards.
+TileMesh box_mesh(Vec3d size, bool is_inwards) {
+  constexpr int kParts = 8;
+  TileMesh mesh;
+  std::map<std::array<int, 3>, TileVertex> vertices;
+  const auto vertex_at = [&](const std::array<int, 3>& p) {
+    const auto [at, is_new] =
+        vertices.try_emplace(p, static_cast<TileVertex>(mesh.vertices.size()));
+    if (is_new) {
+      mesh.vertices.positions.push_back(
+          to_float(Vec3d{p[0] * size.x / kParts, p[1] * size.y / kParts, p[2] * size.z / kParts}));
+    }
+    return at->second;
+  };
+  for (int i = 0; i < 6 * kParts * kParts; ++i) {
+    const int face = i / (kParts * kParts), axis = face / 2;
+    const auto at = [&](int right, int up) {
+      std::array<int, 3> place{};
+      place[axis] = face % 2 * kParts;
+      place[(axis + 1) % 3] = i % kParts + right;
+      place[(axis + 2) % 3] = i / kParts % kParts + up;
+      return vertex_at(place);
+    };
+    const std::array corners{at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+    for (const std::size_t last : {2, 3}) {
+      TileTriangle triangle{corners[0], corners[last - 1], corners[last]};
+      if ((face % 2 == 0) != is_inwards)
+        std::swap(triangle[1], triangle[2]);
+      mesh.interior.push_back(triangle);
+    }
+  }
+  mesh.own_count = static_cast<std::uint32_t>(mesh.vertices.size());
+  return mesh;
+}
+
+/// The same with a hole, as scans of rooms have them.
+TileMesh open_box(Vec3d size, bool is_inwards) {
+  TileMesh mesh = box_mesh(size, is_inwards);
+  mesh.interior.pop_back();
+  return mesh;
+}
+
+TEST(ShownView, LooksIntoRoomsAndNotIntoBodies) {
+  constexpr Vec3d kUp{0, 0, 1};
+  EXPECT_TRUE(is_interior(open_box({10, 8, 3}, true), kUp));
+  EXPECT_FALSE(is_interior(open_box({10, 8, 3}, false), kUp));
+  EXPECT_FALSE(is_interior(open_box({1, 1, 40}, true), kUp));  // a well has hardly any floor
+  EXPECT_FALSE(is_interior(box_mesh({10, 8, 3}, true), kUp));  // a body, inside out
+  EXPECT_FALSE(is_interior({}, kUp));
+  ModelView view;
+  EXPECT_TRUE(looks_in(view, open_box({10, 8, 3}, true), kUp));
+  view.dollhouse = "off";
+  EXPECT_FALSE(looks_in(view, open_box({10, 8, 3}, true), kUp));
+  view.dollhouse = "on";
+  EXPECT_TRUE(looks_in(view, open_box({10, 8, 3}, false), kUp));
+}
+
+TEST(ShownView, SeesParallelRaysAsLargeAtTheTargetAsInPerspective) {
+  ModelView view;
+  view.projection = "parallel";
+  const Pose pose{{0, 0, 10}, {0, 0, 0}};
+  const Framing framing{.width = 100, .height = 100, .samples = 1};
+  Placement placement(view, UpAxis::y, {});
+  const Sight sight = placement.look_from(pose, rays_of(view), framing);
+  EXPECT_FALSE(placement.perspective());
+  const Sight other = Placement({}, UpAxis::y, {}).look_from(pose, Rays::meet_in_the_eye, framing);
+  EXPECT_EQ(sight.camera.pixel(), other.camera.pixel());
+  const Vec3d near = sight.camera.on_grid({1, 2, 8}), far = sight.camera.on_grid({1, 2, -80});
+  EXPECT_EQ(near.x, far.x);
+  EXPECT_EQ(near.y, far.y);
+  EXPECT_LT(near.z, far.z);
 }
 
 TEST(CutFacets, KeepWhatLiesInAllHalfSpaces) {

@@ -1,11 +1,11 @@
 // Rooms in the page, in headless Chromium: a house as if scanned from within shows its floors from above, is walked through, and one storey of
-// it is shown.
+// it is shown. `meshhier preview` of the same links draws the same.
 //
 //   node rooms.mjs MESHHIER PICTURES PAGE
 //
 // The house is made here (house.mjs). Exit code 2: wrong use; else see browser.mjs.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
@@ -17,6 +17,10 @@ const SIZE = { width: 640, height: 480 };
 const EYES = 0.64 * HOUSE.ceilings[0];
 const NEAR = 0.05; // metres
 const ABOVE = '5,22,2.51,5,0,2.5';
+const ASIDE = '14,12,16,5,1,4';
+/// Seen from outside: as it is, with its ceilings, in parallel rays, and the lower storey.
+const LOOKS = ['', '&dollhouse=off', '&projection=parallel', `&storey=-1,${HOUSE.ceilings[0] - 0.1}`];
+const MOST_OTHER = 0.01; // of the picture's pixels: along edges
 
 class Visitor {
   constructor(browser, origin, report, pictures) {
@@ -83,6 +87,30 @@ async function checkDollhouse(visitor, decoder) {
     visitor.check(`the ${surface} is seen`, surface === 'floor' ? g > 1.3 * b && g > 1.3 * r : b > 1.3 * g, `${r}, ${g}, ${b} in the middle`);
     const y = await pickedHeight(page);
     visitor.check(`the ${surface} is picked`, Math.abs(y - height) < NEAR, `at ${y}`);
+    await page.close();
+  }
+}
+
+/// What a pixel shows: a floor, a ceiling, or something else.
+function surfaceAt(pixels, i) {
+  const [r, g, b, alpha] = pixels.slice(4 * i, 4 * i + 4);
+  if (alpha < 128) return 'other';
+  return g > 1.3 * b && g > 1.3 * r ? 'floor' : b > 1.3 * g ? 'ceiling' : 'other';
+}
+
+/// The page without its bars, and the program's picture of the same link.
+async function checkPreview(visitor, decoder, draw) {
+  for (const look of LOOKS) {
+    const page = await visitor.open(`${ASIDE}&light=flat&cavities=off${look}`);
+    await page.addStyleTag({ content: '.top-bar, .bar, .busy, .tools, .tool-lasting { visibility: hidden !important }' });
+    if (look.includes('storey')) await until(page, () => page.evaluate(() => window.meshhier.view.plugins.cuts.length > 0));
+    await visitor.settle(page);
+    const shown = await decodePicture(decoder, await visitor.picture(page, `page${LOOKS.indexOf(look)}`));
+    const drawn = await decodePicture(decoder, draw(page.url(), `preview${LOOKS.indexOf(look)}`));
+    const places = Array.from({ length: SIZE.width * SIZE.height }, (_, i) => i);
+    const other = places.filter((i) => surfaceAt(shown, i) !== surfaceAt(drawn, i)).length / places.length;
+    const known = places.filter((i) => surfaceAt(shown, i) !== 'other').length / places.length;
+    visitor.check(`preview${look}`, other < MOST_OTHER && known > 0.1, `${(100 * other).toFixed(2)} % of pixels show something else; floors and ceilings are ${(100 * known).toFixed(0)} %`);
     await page.close();
   }
 }
@@ -162,6 +190,11 @@ async function main([meshhier, pictures, page]) {
       const visitor = new Visitor(browser, origin, report, pictures);
       const decoder = await browser.newPage();
       await checkDollhouse(visitor, decoder);
+      await checkPreview(visitor, decoder, (link, name) => {
+        const file = path.join(pictures, `rooms-${name}.png`);
+        execFileSync(meshhier, ['preview', hierarchy, '--link', link, '--size', `${SIZE.width}x${SIZE.height}`, '--background', 'white', '--force', '-o', file], { stdio: 'ignore' });
+        return readFileSync(file);
+      });
       for (const check of [checkWalk, checkStairs, checkClick, checkStorey]) await check(visitor);
       visitor.check('console', visitor.complaints.length === 0, visitor.complaints.join('; ') || 'no complaints');
     }));
