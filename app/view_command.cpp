@@ -58,9 +58,9 @@ int run_view(const ViewArguments& arguments, Environment& environment) {
 
 constexpr const char* kViewFooter =
     R"(Without an option it prints the view, as the config's key "view" has it; {} if there is none. Viewers,
-preview and inspect show it; "meshhier build --help-config" lists its keys. Only the manifest is written anew, and
-verify finds all in order; preview.webp stays as the build drew it. The directory may be served
-meanwhile. An archive is never changed: build it with the view in its config.
+preview and inspect show it; "meshhier build --help-config" lists its keys. Only the manifest is written anew, in
+one step, so the directory may be served meanwhile and verify finds all in order. preview.webp stays
+as the build drew it: the manifest holds its checksum, and two files cannot change in one step. An archive is never changed: build it with the view in its config.
 
 Examples:
   meshhier view scan.hier
