@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "config/suggest.h"
+#include "execution/memory_budget.h"
+#include "execution/size_text.h"
 #include "execution/threads.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
@@ -175,6 +177,19 @@ void require_inputs_stay(const CLI::App& command, storage::FileSystem& files) {
   }
 }
 
+/// Warns of a --memory-budget that is beyond what the process may use.
+void warn_of_budget(const CLI::App& command, execution::ProgressMode mode,
+                    Environment& environment) {
+  const CLI::Option* const option = command.get_option_no_throw("--memory-budget");
+  if (option == nullptr || option->count() == 0)
+    return;
+  const auto bytes = execution::parse_size(option->results().back());
+  const std::string warning =
+      bytes ? execution::budget_warning("--memory-budget", *bytes) : std::string();
+  if (!warning.empty())
+    execution::make_progress(mode, environment.messages, environment.terminal)->warn(warning);
+}
+
 /// The one place where failures end.
 int execute_guarded(const Invocation& invocation, const execution::CancelToken& cancel) {
   const auto fail = [&](ErrorCode code, const std::string& message) {
@@ -266,9 +281,12 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
     invocation.run = [&](Environment&) { return parser.exit(error); };  // --help and --version
     return execute_guarded(invocation, cancel);
   }
-  invocation.run = [&parser, chosen = std::move(invocation.run)](Environment& environment) {
-    for (const CLI::App* command : std::as_const(parser).get_subcommands())
+  invocation.run = [&parser, &invocation,
+                    chosen = std::move(invocation.run)](Environment& environment) {
+    for (const CLI::App* command : std::as_const(parser).get_subcommands()) {
       require_inputs_stay(*command, environment.files);
+      warn_of_budget(*command, invocation.progress, environment);
+    }
     return chosen(environment);
   };
   return execute_guarded(invocation, cancel);

@@ -3,6 +3,7 @@
 #include "app/process.h"
 #include "base/error.h"
 #include "base/number_text.h"
+#include "execution/memory_budget.h"
 #include "execution/size_text.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
@@ -197,6 +198,7 @@ void give_back_files(std::vector<std::string>& settings, std::vector<std::string
 
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {
   add_size_option(command, "--memory-budget", "Memory it may use", bytes);
+  bytes = std::min(bytes, execution::most_budget());
 }
 
 CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,

@@ -50,7 +50,7 @@ void give_back_files(std::vector<std::string>& settings, std::vector<std::string
 /// Adds an option whose value is a size, not 0. `bytes` is its default, 0 if it has none.
 CLI::Option* add_size_option(CLI::App& command, const std::string& name, const char* help,
                              std::uint64_t& bytes);
-/// Adds --memory-budget SIZE.
+/// Adds --memory-budget SIZE. `bytes`, its default, is lowered to execution::most_budget().
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);
 
 /// An option whose value is an integer from `minimum` to `maximum`. Digits only: no sign, no

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "execution/allocator.h"
+#include "execution/memory_budget.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/pack_stage.h"
@@ -57,6 +58,9 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   config::Config config = asked;
   config.output = storage::followed(files, asked.output);
   execution::configure_allocator(memory_budget(config));
+  if (const auto warning = execution::budget_warning("memory_budget", memory_budget(config));
+      !warning.empty())
+    environment.progress.warn(warning);
 
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "config/partition_size.h"
+#include "execution/memory_budget.h"
 #include "execution/size_text.h"
 #include "hierarchy/normal_code.h"
 #include "hierarchy/value_channels.h"
@@ -132,9 +133,12 @@ std::size_t thread_count(const config::Config& config) {
 std::uint64_t memory_budget(const config::Config& config) {
   constexpr std::uint64_t kLeast = std::uint64_t{512} << 20;
   constexpr std::uint64_t kMost = std::uint64_t{16} << 30;
-  static const std::uint64_t usable = storage::usable_memory();
+  static const storage::UsableMemory usable = storage::usable_memory();
   constexpr std::uint64_t kGrain = std::uint64_t{1} << 20;  // messages tell it: "6026MiB"
-  return config.memory_budget.value_or(std::clamp(usable / 4 / kGrain * kGrain, kLeast, kMost));
+  if (config.memory_budget)
+    return *config.memory_budget;
+  return std::min(std::clamp(usable.bytes / 4 / kGrain * kGrain, kLeast, kMost),
+                  execution::most_budget(usable));
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,

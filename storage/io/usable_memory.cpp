@@ -1,6 +1,9 @@
 #include "storage/io/usable_memory.h"
 
+#include "storage/io/process_state.h"
+
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -21,10 +24,13 @@ std::uint64_t machine_memory() {
              : UINT64_MAX;
 }
 
-std::uint64_t address_space() {
+/// Returns what a limit of the process leaves beside `used` bytes.
+template <class Resource>
+std::uint64_t left_of(Resource resource, std::uint64_t used) {
   rlimit limit{};
-  const bool is_limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  return is_limited ? limit.rlim_cur : UINT64_MAX;
+  if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return UINT64_MAX;
+  return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 
 /// Returns the number in a file; UINT64_MAX if there is another word ("max") or no file.
@@ -73,7 +79,8 @@ std::uint64_t group_limit(const fs::path& root) {
         std::string_view(line).substr(first + 1, second - first - 1);
     const fs::path group = line.substr(second + 1);
     if (controllers.empty())
-      least = std::min(least, limit_of(groups, group, "memory.max"));
+      least = std::min(
+          {least, limit_of(groups, group, "memory.max"), limit_of(groups, group, "memory.high")});
     else if (has_memory(controllers))
       least = std::min(least, limit_of(groups / "memory", group, "memory.limit_in_bytes"));
   }
@@ -82,8 +89,13 @@ std::uint64_t group_limit(const fs::path& root) {
 
 }  // namespace
 
-std::uint64_t usable_memory(const fs::path& root) {
-  return std::min({machine_memory(), address_space(), group_limit(root)});
+UsableMemory usable_memory(const fs::path& root) {
+  const std::array<UsableMemory, 4> bounds{
+      {{machine_memory(), MemoryBound::machine},
+       {left_of(RLIMIT_AS, process_state().virtual_bytes), MemoryBound::address_space},
+       {left_of(RLIMIT_DATA, 0), MemoryBound::data},
+       {group_limit(root), MemoryBound::group}}};
+  return *std::ranges::min_element(bounds, {}, &UsableMemory::bytes);
 }
 
 }  // namespace meshhier::storage

@@ -6,9 +6,23 @@
 
 namespace meshhier::storage {
 
-/// Returns, in bytes, the least of the machine's memory, the limit of the process's address space,
-/// and the limits of its control groups (versions 1 and 2) with all above them, as far as they can
-/// be read. `root`: the root of the system's files, another one in tests. Thread-safe.
-std::uint64_t usable_memory(const std::filesystem::path& root = "/");
+/// What keeps a process from using more.
+enum class MemoryBound {
+  machine,
+  address_space,  ///< ulimit -v
+  data,           ///< ulimit -d
+  group           ///< a control group's
+};
+
+struct UsableMemory {
+  std::uint64_t bytes = 0;
+  MemoryBound bound = MemoryBound::machine;
+};
+
+/// Returns the least of the machine's memory, the limits of the process's address space and data
+/// without what it has mapped by now, and the limits of its control groups (versions 1 and 2) with
+/// all above them, as far as they can be read. `root`: the root of the system's files, another one
+/// in tests. Thread-safe.
+UsableMemory usable_memory(const std::filesystem::path& root = "/");
 
 }  // namespace meshhier::storage

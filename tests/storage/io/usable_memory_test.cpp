@@ -2,11 +2,14 @@
 
 #include "tests/support/sample_hierarchy.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 namespace meshhier::storage {
 namespace {
@@ -20,7 +23,8 @@ class UsableMemoryTest : public testing::Test {
     fs::create_directories(path.parent_path());
     std::ofstream(path) << content;
   }
-  std::uint64_t usable() const { return usable_memory(directory_.path()); }
+  std::uint64_t usable() const { return usable_memory(directory_.path()).bytes; }
+  MemoryBound bound() const { return usable_memory(directory_.path()).bound; }
 
   tests::TemporaryDirectory directory_;
 };
@@ -32,7 +36,8 @@ TEST_F(UsableMemoryTest, IsThatOfTheMachineWithoutGroups) {
     put("proc/self/cgroup", nothing);
     EXPECT_EQ(usable(), all) << nothing;
   }
-  EXPECT_LE(usable_memory(), all);
+  EXPECT_EQ(bound(), MemoryBound::machine);
+  EXPECT_LE(usable_memory().bytes, all);
 }
 
 TEST_F(UsableMemoryTest, IsTheLeastLimitOfAGroupAndThoseAboveIt) {
@@ -40,10 +45,31 @@ TEST_F(UsableMemoryTest, IsTheLeastLimitOfAGroupAndThoseAboveIt) {
   put("sys/fs/cgroup/user.slice/memory.max", "50000\n");
   put("sys/fs/cgroup/user.slice/a:b/memory.max", "max\n");
   EXPECT_EQ(usable(), 50'000U);
+  EXPECT_EQ(bound(), MemoryBound::group);
   put("sys/fs/cgroup/user.slice/a:b/job/memory.max", "40000\n");
   EXPECT_EQ(usable(), 40'000U);
   put("sys/fs/cgroup/memory.max", "30000\n");
   EXPECT_EQ(usable(), 30'000U) << "in a container the path is from its own root";
+  put("sys/fs/cgroup/user.slice/memory.high", "20000\n");
+  EXPECT_EQ(usable(), 20'000U) << "beyond that a group is slowed down";
+}
+
+TEST_F(UsableMemoryTest, KnowsTheLimitsOfTheProcess) {
+  constexpr std::uint64_t kLimit = std::uint64_t{1} << 40;
+  const std::uint64_t all = usable();
+  for (const auto& [resource, expected] : {std::pair{RLIMIT_AS, MemoryBound::address_space},
+                                           std::pair{RLIMIT_DATA, MemoryBound::data}}) {
+    rlimit before{};
+    ASSERT_EQ(getrlimit(resource, &before), 0);
+    rlimit lower{std::min<rlim_t>(before.rlim_max, kLimit), before.rlim_max};
+    setrlimit(resource, &lower);
+    EXPECT_EQ(usable(), all) << "the machine has less";
+    lower.rlim_cur = all / 2;
+    setrlimit(resource, &lower);
+    EXPECT_LE(usable(), all / 2);
+    EXPECT_EQ(bound(), expected);
+    setrlimit(resource, &before);
+  }
 }
 
 TEST_F(UsableMemoryTest, KnowsGroupsOfTheFirstVersion) {
