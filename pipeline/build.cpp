@@ -42,7 +42,7 @@ Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
 /// claimed it just now.
 void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
                 const std::optional<BuildPlan>& plan, const config::Config& config,
-                storage::FileSystem& files);
+                storage::FileSystem& files, storage::ScratchUse& use);
 
 /// Removes the imported mesh while the work directory is still locked.
 struct DropAtEnd {
@@ -84,7 +84,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   storage::WorkDirectory work(files, output, options.force);
   if (options.restart)
     work.clear();
-  claim_room(work, input, plan, config, files);
+  claim_room(work, input, plan, config, files, pool.scratch_use());
   const DropAtEnd drop{input};
   StageMeter meter({environment.progress, files.counters(), pool.scratch_use()});
   if (!plan)
@@ -106,12 +106,12 @@ namespace {
 
 void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
                 const std::optional<BuildPlan>& plan, const config::Config& config,
-                storage::FileSystem& files) {
+                storage::FileSystem& files, storage::ScratchUse& use) {
   if (plan) {
-    claim_disk(work.path(), plan->disk.room_bytes, files);
+    claim_disk(work.path(), plan->disk.room_bytes, files, use);
     check_disk(plan->disk, config.output, files);
   } else {
-    claim_disk(work.path(), import_disk(input, config), files);
+    claim_disk(work.path(), import_disk(input, config), files, use);
     check_import_disk(import_disk(input, config), config.output, files);
   }
 }

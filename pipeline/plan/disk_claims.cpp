@@ -41,9 +41,11 @@ std::uint64_t left_of_claim(const fs::path& work, storage::FileSystem& files) {
 
 }  // namespace
 
-void claim_disk(const fs::path& work, std::uint64_t bytes, storage::FileSystem& files) {
+void claim_disk(const fs::path& work, std::uint64_t bytes, storage::FileSystem& files,
+                storage::ScratchUse& use) {
   const std::string text = fmt::format("{:0{}}", bytes, kClaimDigits);
   files.reopen(storage::lock_path(work))->write_at(0, std::as_bytes(std::span(text)));
+  use.add_written(text.size());
 }
 
 std::uint64_t claimed_beside(const fs::path& output, storage::FileSystem& files) {

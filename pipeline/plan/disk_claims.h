@@ -3,6 +3,7 @@
 #pragma once
 
 #include "storage/io/file.h"
+#include "storage/io/scratch_use.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -10,8 +11,9 @@
 namespace meshhier::pipeline {
 
 /// Notes that the build in the work directory `work`, which it has locked, will take so many bytes
-/// of disk at most. Throws Error(io).
-void claim_disk(const std::filesystem::path& work, std::uint64_t bytes, storage::FileSystem& files);
+/// of disk at most. The note itself counts in `use`. Throws Error(io).
+void claim_disk(const std::filesystem::path& work, std::uint64_t bytes, storage::FileSystem& files,
+                storage::ScratchUse& use);
 
 /// Returns how many bytes other builds will yet take that are at work beside `output`: what they
 /// claimed without what they have written. 0 for those that have not claimed, or have just ended.

@@ -22,6 +22,7 @@ class DiskClaimsTest : public testing::Test {
     return files_->try_lock(storage::lock_path(storage::work_path(output(name))));
   }
 
+  storage::ScratchUse use_;
   tests::TemporaryDirectory directory_;
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
 };
@@ -30,10 +31,10 @@ TEST_F(DiskClaimsTest, WhatOthersWillYetWriteCounts) {
   auto first = begin("a.hier");
   const auto work = storage::work_path(output("a.hier"));
   EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 0U) << "nothing is claimed yet";
-  claim_disk(work, 5'000'000'000, *files_);
-  claim_disk(work, 1000, *files_);
+  claim_disk(work, 5'000'000'000, *files_, use_);
+  claim_disk(work, 1000, *files_, use_);
   const auto second = begin("c.hier");
-  claim_disk(storage::work_path(output("c.hier")), 2000, *files_);
+  claim_disk(storage::work_path(output("c.hier")), 2000, *files_, use_);
   constexpr std::uint64_t kNotes = 20;  // a claim itself
   EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 3000U - 2 * kNotes);
   EXPECT_EQ(claimed_beside(output("a.hier"), *files_), 2000U - kNotes) << "not its own";
