@@ -1,4 +1,4 @@
-// The page in Firefox as it is installed: one HTML file from the disk, and an archive on a plain host of another origin.
+// The page in Firefox as it is installed: one HTML file from the disk, an archive on a plain host of another origin, and served with headers.
 //
 //   node firefox.mjs MESHHIER PICTURES PAGE HIERARCHY.hier HIERARCHY.3tz
 //
@@ -10,6 +10,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { Report } from './browser.mjs';
+import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
 const PATIENCE = 60_000; // milliseconds
@@ -79,6 +80,9 @@ async function checkAll(browser, report, [meshhier, pictures, pageDirectory, dir
   await checkShown(browser, report, 'an archive elsewhere', `${page.origin}/index.html?model=${encodeURIComponent(model)}`, path.join(pictures, 'firefox-archive.png'));
   host.close();
   page.close();
+  const server = startServer(meshhier, path.dirname(directory), '--viewer', pageDirectory);
+  await checkShown(browser, report, 'a served page, with its headers', `${await server.url}#models/${path.basename(directory)}`, path.join(pictures, 'firefox-served.png'));
+  await server.stop();
   rmSync(work, { recursive: true });
 }
 
