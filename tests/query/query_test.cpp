@@ -260,8 +260,10 @@ TEST_F(QueryTest, ByErrorTheBoundHolds) {
   write("points", points());
   run({.rows = file("points")});
   const auto exact = answers();
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  const double error = reader.record(tests::node(1, 0)).error;
   const QuerySummary quick =
-      run({.rows = file("points"), .selection = exporting::LargestError{0.2}});
+      run({.rows = file("points"), .selection = exporting::LargestError{error}});
   const auto found = answers();
   EXPECT_GT(quick.error_bound, 0);
   EXPECT_LT(quick.tiles, 11U);
