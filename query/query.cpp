@@ -30,8 +30,11 @@ namespace {
 /// The memory beside caches and sorts, about: the program, a batch with its answers and the trees
 /// that it is looked up in.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{88} << 20;
-/// Rows that are looked up together: enough to make the trees of their surroundings worth building.
-constexpr std::size_t kBatchRows = 65536;
+/// Rows that are looked up together at least: enough to make the trees of their surroundings worth
+/// building.
+constexpr std::size_t kLeastBatch = 65536;
+/// A row at work takes about a quarter of this; with its answer, and the tiles that it asks.
+constexpr std::uint64_t kSpareBytesPerRow = 1024;
 /// Names of objects that are kept: neighbours in a file often have the same.
 constexpr std::size_t kKeptNames = 16384;
 
@@ -88,8 +91,9 @@ class RowRun {
         curve_(box),
         progress_(progress),
         cancel_(cancel),
-        rows_(scratch, spare_bytes(options) / 6),
-        answers_(scratch, spare_bytes(options) / 6) {}
+        batch_(kLeastBatch + static_cast<std::size_t>(spare_bytes(options) / kSpareBytesPerRow)),
+        rows_(scratch, spare_bytes(options) / 8),
+        answers_(scratch, spare_bytes(options) / 8) {}
 
   void read(storage::FileSystem& files, QuerySummary& summary) {
     progress_.stage("read", 0, "rows");
@@ -126,7 +130,7 @@ class RowRun {
       for (const Row<Columns>& row : block) {
         batch.push_back(row.number);
         numbers.insert(numbers.end(), row.numbers.begin(), row.numbers.end());
-        if (batch.size() == kBatchRows)
+        if (batch.size() == batch_)
           ask();
       }
     });
@@ -163,6 +167,7 @@ class RowRun {
   comparing::ZCurve curve_;
   execution::Progress& progress_;
   const execution::CancelToken& cancel_;
+  std::size_t batch_;  ///< rows that are looked up together
   partition::ExternalSort<Row<Columns>, ByPlace> rows_;
   partition::ExternalSort<Answer, ByRow> answers_;
   std::uint64_t count_ = 0;
@@ -193,7 +198,7 @@ class Query {
     summary_.error_bound = comparing::error_bound(reader_, surface.cut());
     summary_.tiles = surface.size();
     const auto asker = make_asker(
-        surface, {options_.kind, options_.has_sides, reader_.manifest().origin, spare / 3});
+        surface, {options_.kind, options_.has_sides, reader_.manifest().origin, spare / 4});
     storage::MemoryPool pool(spare / 16);
     storage::ScratchFile scratch(files, output.scratch(), pool);
     const Bounds& box = surface.total().bounds;
