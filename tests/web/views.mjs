@@ -31,6 +31,12 @@ async function open(browser, address, complaints, options = WIDE) {
   return page;
 }
 
+/// To a page without a script and an icon: the model's address again would change the hash alone.
+async function leave(page, origin) {
+  await page.route('**/favicon.ico', (route) => route.fulfill({ status: 204 }));
+  await page.goto(`${origin}/models.json`);
+}
+
 /// The model and its marks, without bars and cards.
 async function bareScreenshot(page, file) {
   const takeAway = await addStyle(page, '.top-bar, .bar, .busy, .tools, .tool-lasting, .view-legend { visibility: hidden !important }');
@@ -151,11 +157,11 @@ async function checkFirst(browser, report, origin, { name, view, complaints, pic
   const own = await linkOf(page);
   report.line('own colours', own.includes('colours=plain') && (await page.locator('.view-legend').isHidden()), own);
   await page.evaluate(() => { localStorage.setItem('meshhier', JSON.stringify({ look: { colours: 'partition', wires: true } })); });
-  await page.goto('about:blank'); // the same address again would change the hash alone
+  await leave(page, origin);
   await page.goto(model);
   await settle(page);
   report.line('first view before the browser', await until(page, () => page.evaluate(() => { const { colours, wires } = window.meshhier.view.look; return colours === 'attribute' && !wires; })), JSON.stringify(await page.evaluate(() => window.meshhier.view.look)));
-  await page.goto('about:blank'); // the same address again would change the hash alone
+  await leave(page, origin);
   await page.goto(`${model}&colours=height`);
   await settle(page);
   report.line('link before the first view', (await page.evaluate(() => window.meshhier.view.look.colours)) === 'height', 'by height');
