@@ -92,7 +92,7 @@ class Console {
 constexpr std::chrono::milliseconds kShortestLook{50};
 
 /// Names of folders are cut there, and cleaned, before a terminal shows them.
-constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kLongestFolderName = 200;
 
 void check_folder(const std::string& option, const std::string& folder, Environment& environment) {
   if (environment.files.is_directory(folder))
@@ -195,7 +195,7 @@ server::PlaceNames place_names(const ServeArguments& arguments, storage::FileSys
 }
 
 std::string empty_text(const ServeArguments& arguments) {
-  const std::string folder = plain_text(arguments.folder, kLongestName);
+  const std::string folder = plain_text(arguments.folder, kLongestFolderName);
   if (arguments.inbox.empty()) {
     return fmt::format(
         "there are no hierarchies in {} yet; those that \"meshhier build\" puts "
@@ -204,7 +204,7 @@ std::string empty_text(const ServeArguments& arguments) {
   }
   return fmt::format(
       "there are no hierarchies in {} yet; mesh files that are put into {} become some", folder,
-      plain_text(arguments.inbox, kLongestName));
+      plain_text(arguments.inbox, kLongestFolderName));
 }
 
 /// Probes of a service manager come every few seconds: those that went well are not told.
