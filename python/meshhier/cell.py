@@ -14,7 +14,7 @@ from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Optional
 from urllib.parse import urlsplit
 
-from .errors import CorruptError, ReplacedError, UsageError
+from .errors import CorruptError, UsageError, replaced
 from .kernel_files import kernel_address
 from .tree import Node
 from .viewer_files import viewer_file
@@ -60,7 +60,7 @@ class _Filling:
         self._last_record = 0
         self.room -= len(self._entries[0])
         if hierarchy._is_replaced():
-            raise ReplacedError(f"{hierarchy.path}: another hierarchy has taken its place since it was opened: open it again")
+            raise replaced(hierarchy.path)
 
     def _index_bytes(self, record: int) -> int:
         return min(len(self._index), _INDEX_HEADER + (record // _PAGE_RECORDS + 1) * _PAGE_RECORDS * _RECORD)

@@ -23,6 +23,11 @@ class ReplacedError(Error):
     """Another build has taken the place of the hierarchy since it was opened: what is left of the two is never put together. Open it again."""
 
 
+def replaced(path: str) -> ReplacedError:
+    """What is raised where a hierarchy that is open is another one by now."""
+    return ReplacedError(f"{path}: another hierarchy has taken its place since it was opened: open it again")
+
+
 class UsageError(Error):
     """The call makes no sense for this hierarchy: a level that it does not have, a key that no config has."""
 

@@ -14,7 +14,7 @@ from .asked import length, whole
 from .boxes import Box
 from .checksum import checksum
 from .cut import FEW_TILES, MANY_TILES, CutPieces
-from .errors import CorruptError, NetworkError, NotAHierarchyError, ProgramNotFoundError, ReplacedError, UsageError
+from .errors import CorruptError, NetworkError, NotAHierarchyError, ProgramNotFoundError, UsageError, replaced
 from .http_client import Headers, is_web_address
 from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
@@ -84,7 +84,7 @@ class Hierarchy:
             return data
         except (CorruptError, OSError):
             if self._is_replaced():
-                raise ReplacedError(f"{self.path}: another hierarchy has taken its place since it was opened: open it again") from None
+                raise replaced(self.path) from None
             raise
 
     def _open_objects(self, facts: Any, file: str, words: Optional[ObjectTable] = None) -> Optional[ObjectTable]:
@@ -243,7 +243,7 @@ class Hierarchy:
         Of triangles that are equally near, the first one of the first tile is named. Raises UsageError, ReplacedError, ProgramError,
         ProgramNotFoundError.
         """
-        return nearest(self, points, level, error, signed, memory_budget)
+        return nearest(self, points, {**self._surface(error, level), "signed": signed, "memory_budget": memory_budget})
 
     def rays(
         self,
@@ -260,7 +260,7 @@ class Hierarchy:
             origins, directions: (n, 3) each, input coordinates; or one of either for all rays. Directions have any length but 0.
             level, error, memory_budget: as those of `nearest()`.
         """
-        return rays(self, origins, directions, level, error, memory_budget)
+        return rays(self, origins, directions, {**self._surface(error, level), "memory_budget": memory_budget})
 
     # Cuts.
 
@@ -329,11 +329,17 @@ class Hierarchy:
             raise UsageError(f"{refusal}, not {level}")
         return wanted
 
-    def _cut(self, error: Optional[float], level: Optional[int]) -> Rows:
+    def _surface(self, error: Optional[float], level: Optional[int]) -> dict[str, Any]:
+        """By what tiles are chosen, checked: the largest error, a level, or neither."""
         if error is not None and level is not None:
-            raise UsageError("a cut is by error or by level, not both")
-        most = None if error is None else length(error, "an error is a length in input units, 0 or more (of the coarsest tile, level=0)")
-        return self._index.cut(error=most, level=self._level(level))
+            raise UsageError("tiles are chosen by error or by level, not both")
+        if error is not None:
+            return {"error": length(error, "an error is a length in input units, 0 or more (of the coarsest tile, level=0)")}
+        return {} if level is None else {"level": self._level(level)}
+
+    def _cut(self, error: Optional[float], level: Optional[int]) -> Rows:
+        chosen = self._surface(error, level)
+        return self._index.cut(error=chosen.get("error"), level=chosen.get("level", self.tree.depth))
 
     def _region(self, box: Optional[Box], polygon: Optional[Polygon]) -> Optional[Region]:
         is_z_up = self._manifest.conventions.up == "z"
@@ -369,5 +375,5 @@ def _reopened(kind: type[Hierarchy], build: str, path: str, headers: Optional[He
     hierarchy = kind(path, headers=headers, cache_bytes=cache_bytes)
     if hierarchy._manifest.build != build:
         hierarchy.close()
-        raise ReplacedError(f"{hierarchy.path}: another hierarchy has taken its place since it was opened: open it again")
+        raise replaced(hierarchy.path)
     return hierarchy

@@ -12,7 +12,7 @@ import sys
 import threading
 import warnings
 from dataclasses import dataclass, field
-from typing import Any, Callable, Mapping, Optional, Sequence
+from typing import IO, Any, Callable, Mapping, Optional, Sequence
 
 from .errors import BuildWarning, ProgramNotFoundError, program_error
 from .options import spoken
@@ -129,18 +129,23 @@ def run_program(
     tells_progress: bool = True,
     prints_data: bool = False,
     expected: Sequence[int] = (0,),
+    send: Optional[Callable[[IO[bytes]], None]] = None,
+    receive: Callable[[IO[bytes]], bytes] = lambda stream: stream.read(),
 ) -> Result:
     """Runs a command to its end; a callback that raises, and Ctrl-C, stop it first.
 
     `tells_progress`: the command has --progress. `prints_data`: what it prints is for programs, not for `listeners.account`.
+    `send` writes its standard input, `receive` reads its standard output, each in a thread; what is returned is the result's output.
     Raises what its exit code means if that is none of `expected`; ProgramNotFoundError.
     """
     command = [find_program(), *words, *(["--progress=json"] if tells_progress else [])]
+    source = subprocess.PIPE if send else subprocess.DEVNULL
     try:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = subprocess.Popen(command, stdin=source, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except (OSError, ValueError) as error:  # ValueError: a zero byte in a word
         raise ProgramNotFoundError(f"cannot start {command[0]}: {error}") from error
-    result = _listen(process, listeners, Warnings(words[0], listeners.warning))
+    flows = [_Flow(receive, process.stdout), *([_Flow(send, process.stdin)] if send else [])]
+    result = _listen(process, flows, listeners, Warnings(words[0], listeners.warning))
     if result.code not in expected:
         raise program_error(spoken(_why(result), words[0]), result.code if result.code > 0 else 128 - result.code)
     account = ("" if prints_data else result.text) + "".join(result.said)
@@ -149,24 +154,50 @@ def run_program(
     return result
 
 
-def _listen(process: subprocess.Popen[bytes], listeners: Listeners, told: Warnings) -> Result:
-    assert process.stdout is not None and process.stderr is not None
-    output: list[bytes] = []
-    reader = threading.Thread(target=lambda stream: output.append(stream.read()), args=(process.stdout,), daemon=True)
-    reader.start()
+class _Flow(threading.Thread):
+    """What goes through a pipe while the program runs. A pipe that is not read or written to its end is closed, which ends the program."""
+
+    def __init__(self, pass_on: Callable[[IO[bytes]], Any], stream: Optional[IO[bytes]]) -> None:
+        super().__init__(daemon=True)
+        assert stream is not None
+        self._pass_on, self._stream = pass_on, stream
+        self._failure: Optional[BaseException] = None
+        self._got: Any = None
+        self.start()
+
+    def run(self) -> None:
+        try:
+            with self._stream:
+                self._got = self._pass_on(self._stream)
+        except BrokenPipeError:
+            pass  # the program has ended, and says why
+        except BaseException as failure:
+            self._failure = failure
+
+    def result(self) -> Any:
+        """What came through. Raises what `pass_on` raised."""
+        self.join()
+        if self._failure is not None:
+            raise self._failure
+        return self._got
+
+
+def _listen(process: subprocess.Popen[bytes], flows: Sequence[_Flow], listeners: Listeners, told: Warnings) -> Result:
+    """`flows`: the first one has the output."""
+    assert process.stderr is not None
     result = Result()
     try:
         for line in process.stderr:
             _hear(line.decode("utf-8", "replace"), result, listeners, told)
         result.code = process.wait()
+        result.output, *_ = [flow.result() for flow in flows]
     except BaseException:
         _stop(process)
         raise
     finally:
-        reader.join()
-        process.stdout.close()
         process.stderr.close()
-    result.output = output[0]
+        for flow in flows:
+            flow.join()
     return result
 
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 import ast
 import json
-import operator
-import subprocess
-import threading
 from dataclasses import dataclass
-from typing import IO, TYPE_CHECKING, Any, NoReturn, Optional, Sequence, Union
+from functools import partial
+from typing import IO, TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ProgramNotFoundError, ReplacedError, UsageError, program_error
-from .options import Files, option_words, path_word, spoken
-from .process import find_program
+from .errors import ProgramError, UsageError, replaced
+from .options import Files, option_words, path_word
+from .process import run_program
 from .tree import Node
 
 if TYPE_CHECKING:
@@ -85,32 +83,18 @@ class Hits(_Answers):
         return f"Hits({int(self.is_hit.sum())} of {len(self)} rays)"
 
 
-def nearest(
-    hierarchy: Hierarchy,
-    points: ArrayLike,
-    level: Optional[int],
-    error: Optional[float],
-    signed: bool,
-    memory_budget: Union[int, str, None],
-) -> Nearest:
-    words = [*_selection(level, error), *(["--signed"] if signed else [])]
-    answers, told = _ask(hierarchy, "--points", _rows(points, 3, "points"), words, memory_budget)
+def nearest(hierarchy: Hierarchy, points: ArrayLike, options: Mapping[str, Any]) -> Nearest:
+    """`options`: keywords of the command."""
+    answers, told = _ask(hierarchy, "--points", _rows(points, 3, "points"), options)
     return Nearest(**_common(answers, told), sides=_field(answers, "side"))
 
 
-def rays(
-    hierarchy: Hierarchy,
-    origins: ArrayLike,
-    directions: ArrayLike,
-    level: Optional[int],
-    error: Optional[float],
-    memory_budget: Union[int, str, None],
-) -> Hits:
+def rays(hierarchy: Hierarchy, origins: ArrayLike, directions: ArrayLike, options: Mapping[str, Any]) -> Hits:
     starts, ways = _rows(origins, 3, "origins"), _rows(directions, 3, "directions")
     if len(starts) != len(ways) and 1 not in (len(starts), len(ways)):
         raise UsageError(f"there are {len(starts)} origins and {len(ways)} directions: as many, or one of either, make rays")
     both = np.concatenate(np.broadcast_arrays(starts, ways), axis=1)
-    answers, told = _ask(hierarchy, "--rays", both, _selection(level, error), memory_budget)
+    answers, told = _ask(hierarchy, "--rays", both, options)
     return Hits(**_common(answers, told), normals=answers["normal"])
 
 
@@ -141,91 +125,53 @@ def _rows(given: ArrayLike, columns: int, name: str) -> NDArray[Any]:
     return array
 
 
-def _selection(level: Optional[int], error: Optional[float]) -> list[str]:
-    if level is not None and error is not None:
-        raise UsageError("a surface is asked for by error or by level, not both")
-    if level is not None:
-        try:
-            number = operator.index(level)
-        except TypeError:
-            number = -1
-        if number < 0 or isinstance(level, bool):
-            raise UsageError(f"a level is a number from 0 on, not {level!r}")
-        return ["--level", str(number)]
-    if error is not None:
-        if not 0 <= error < float("inf"):
-            raise UsageError(f"an error is 0 or more, in input units, not {error}")
-        return ["--error", repr(float(error))]
-    return []
-
-
-def _ask(
-    hierarchy: Hierarchy, option: str, rows: NDArray[Any], words: Sequence[str], memory_budget: Union[int, str, None]
-) -> tuple[NDArray[Any], dict[str, Any]]:
-    """The answers of the program, and its account."""
+def _ask(hierarchy: Hierarchy, kind: str, rows: NDArray[Any], options: Mapping[str, Any]) -> tuple[NDArray[Any], dict[str, Any]]:
+    """The answers of the program, and its account. `kind`: of the questions, --points or --rays."""
     place, headers, _ = hierarchy._place
+    answers: list[NDArray[Any]] = []
+
+    def receive(stream: IO[bytes]) -> bytes:
+        answers.extend(_receive(stream))
+        return b""
+
     with Files() as files:
-        known = option_words("query", {"headers": headers, "memory_budget": memory_budget}, files)
-        command = [find_program(), "query", path_word(place), option, "-", "-o", "-", "--format", "npy", "--json", "--progress", "none", *words, *known]
-        try:
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        except OSError as failure:
-            raise ProgramNotFoundError(f"cannot start {command[0]}: {failure}") from failure
-        said: list[bytes] = []
-        assert process.stdin is not None and process.stdout is not None and process.stderr is not None
-        threads = [
-            threading.Thread(target=_send, args=(process.stdin, rows), daemon=True),
-            threading.Thread(target=lambda stream: said.append(stream.read()), args=(process.stderr,), daemon=True),
-        ]
-        try:
-            with process:
-                for thread in threads:
-                    thread.start()
-                answers = _receive(process.stdout)
-                for thread in threads:
-                    thread.join()
-        except BaseException:
-            process.terminate()
-            process.wait()
-            raise
-    text = said[0].decode("utf-8", "replace")
-    if process.returncode != 0 or answers is None:
-        _fail(text, process.returncode)
-    told = json.loads(text[text.index("{") : text.rindex("}") + 1])
+        known = option_words("query", {**options, "headers": headers}, files)
+        words = ["query", path_word(place), kind, "-", "--output=-", "--format=npy", "--json", *known]
+        result = run_program(words, prints_data=True, send=partial(_send, rows), receive=receive)
+    told = _account(result.said)
+    if not answers or told is None:
+        raise ProgramError("the program told something else than answers: it is of another version", 0)
     if int(told["index_checksum"], 16) != int(hierarchy.manifest["index"]["checksum"], 16):
-        raise ReplacedError(f"{hierarchy.path}: another hierarchy has taken its place since it was opened: open it again")
-    return answers, told
+        raise replaced(hierarchy.path)
+    return answers[0], told
 
 
-def _send(stream: IO[bytes], rows: NDArray[Any]) -> None:
+def _account(said: Sequence[str]) -> Optional[dict[str, Any]]:
+    """What the program tells by --json beside what it writes to its output."""
+    text = "".join(said)
+    return json.loads(text[text.index("{") : text.rindex("}") + 1]) if "{" in text else None
+
+
+def _send(rows: NDArray[Any], stream: IO[bytes]) -> None:
     """Writes an array as a .npy, and no copy of it but a block."""
-    try:
-        with stream:
-            kind = "<f4" if rows.dtype == np.float32 else "<f8"
-            head = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {rows.shape}, }}".ljust(117) + "\n"
-            stream.write(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode())
-            for first in range(0, len(rows), 65536):
-                stream.write(np.ascontiguousarray(rows[first : first + 65536], kind).tobytes())
-    except OSError:
-        pass  # it ended, and says why
+    kind = "<f4" if rows.dtype == np.float32 else "<f8"
+    head = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {rows.shape}, }}".ljust(117) + "\n"
+    stream.write(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode())
+    for first in range(0, len(rows), 65536):
+        stream.write(np.ascontiguousarray(rows[first : first + 65536], kind).tobytes())
 
 
-def _receive(stream: IO[bytes]) -> Optional[NDArray[Any]]:
-    """Reads a .npy of records; None if it is not whole."""
+def _receive(stream: IO[bytes]) -> list[NDArray[Any]]:
+    """Reads a .npy of records; none if it is not whole."""
     front = stream.read(10)
     if len(front) < 10:
-        return None
+        return []
     head = ast.literal_eval(stream.read(int.from_bytes(front[8:10], "little")).decode("latin-1"))
     records: NDArray[Any] = np.empty(head["shape"], np.dtype(head["descr"]))
     room, filled = records.view(np.uint8).data, 0
     while filled < len(room):
         count = stream.readinto(room[filled:])  # type: ignore[attr-defined]
         if not count:
-            return None
+            return []
         filled += count
-    return records
-
-
-def _fail(said: str, code: int) -> NoReturn:
-    message = said.strip().removeprefix("meshhier: ") or f"the program ended with exit code {code}"
-    raise program_error(spoken(message, "query"), code if code > 0 else 128 - code)
+    return [records]
