@@ -12,9 +12,9 @@ Arrays are numpy's; coordinates and lengths are the input's.
 
 from __future__ import annotations
 
-import os
 from typing import Optional
 
+from .asked import Path
 from .errors import (
     BudgetError,
     BuildWarning,
@@ -48,7 +48,7 @@ from .tree import Node, NodeLike, Tree
 from .version import __version__
 
 
-def open(path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> Hierarchy:
+def open(path: Path, *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> Hierarchy:
     """Opens a hierarchy: a folder (`david.hier`), an archive (`david.3tz`), or the address of one ("https://example.org/david.3tz").
 
     Args:

@@ -3,17 +3,39 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import numbers
 import operator
 import os
 import secrets
 from contextlib import contextmanager
-from typing import BinaryIO, Iterator
+from typing import BinaryIO, Iterator, Union
 
 import numpy as np
 
 from .errors import ExistsError, UsageError
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def path_text(value: object) -> str:
+    """A path, or an address, as text. Raises UsageError for what is none."""
+    name = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(name, str):
+        raise UsageError(f"expected a path, found {value!r}")
+    return name
+
+
+def exists(path: str) -> ExistsError:
+    """What is raised where nobody said that a file may be replaced."""
+    return ExistsError(f"{path} is already there; force=True replaces it")
+
+
+def require_folder(path: str) -> None:
+    """Raises FileNotFoundError unless there is a folder for what is to be made."""
+    if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
+        raise FileNotFoundError(errno.ENOENT, "there is no folder for it", path)
 
 
 def whole(value: object, what: str) -> int:
@@ -34,11 +56,13 @@ def length(value: object, what: str) -> float:
 
 
 @contextmanager
-def new_file(path: str | os.PathLike[str], force: bool) -> Iterator[BinaryIO]:
+def new_file(path: Path, force: bool) -> Iterator[BinaryIO]:
     """A file to be written, which takes its place when all of it is there. Raises ExistsError if there is one and not `force`."""
-    if os.path.lexists(path) and not force:
-        raise ExistsError(f"{os.fspath(path)} is there already: give another name, or force=True to replace it")
-    place = os.path.realpath(path)
+    name = path_text(path)
+    if os.path.lexists(name) and not force:
+        raise exists(name)
+    require_folder(name)
+    place = os.path.realpath(name)
     if os.path.exists(place) and not os.path.isfile(place):  # a pipe or a device
         with open(place, "wb") as stream:
             yield stream
@@ -47,7 +71,7 @@ def new_file(path: str | os.PathLike[str], force: bool) -> Iterator[BinaryIO]:
     try:
         file = open(made, "xb")
     except OSError as error:
-        raise type(error)(error.errno, error.strerror, os.fspath(path)) from None
+        raise type(error)(error.errno, error.strerror, name) from None
     try:
         with file:
             yield file

@@ -14,6 +14,7 @@ from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Optional
 from urllib.parse import urlsplit
 
+from .asked import whole
 from .errors import CorruptError, UsageError, replaced
 from .kernel_files import kernel_address
 from .tree import Node
@@ -177,6 +178,7 @@ def _texts(hierarchy: Hierarchy, name: str, view: str, address: str, whence: str
 
 def make_cell(hierarchy: Hierarchy, *, height: int = 500, view: str = "", link: Optional[str] = None, size: int = _MOST_BYTES) -> Cell:
     """As Hierarchy.show() says."""
+    height, size = whole(height, "height is a number of pixels"), whole(size, "size is a number of bytes")
     address = kernel_address(hierarchy.path) if link is None else link
     if re.search(r"[\s;,'\"<>]", address):
         raise UsageError(f"no address: {address}")

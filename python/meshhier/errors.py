@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any, Optional
 
 
@@ -111,16 +110,10 @@ class BuildWarning(UserWarning):
 
 
 _BY_EXIT_CODE: dict[int, type[ProgramError]] = {3: InputError, 5: ExistsError, 6: BudgetError, 7: VerifyError, 8: BusyError, 9: StoppedBuildError}
-# Programs up to 1.0 end with 5 for three things.
-_MEANT_BY_5 = [(r"another (build|command) .*(at work|writing)", BusyError), (r" holds (the work of a build that was stopped|what a stopped build)", StoppedBuildError)]
 
 
 def program_error(message: str, exit_code: int) -> Error:
     """The error of a program that has ended so."""
     if exit_code == 2:
         return UsageError(message)
-    if exit_code == 5:
-        for pattern, kind in _MEANT_BY_5:
-            if re.search(pattern, message):
-                return kind(message, exit_code)
     return _BY_EXIT_CODE.get(exit_code, ProgramError)(message, exit_code)

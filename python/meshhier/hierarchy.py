@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .asked import length, whole
+from .asked import Path, length, path_text, whole
 from .boxes import Box
 from .checksum import checksum
 from .cut import FEW_TILES, MANY_TILES, CutPieces
@@ -40,8 +40,8 @@ class Hierarchy:
     Where a node is asked for, a Node, (level, index) and "LEVEL/INDEX" are one.
     """
 
-    def __init__(self, path: str | os.PathLike[str], *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> None:
-        asked = os.fspath(path)
+    def __init__(self, path: Path, *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> None:
+        asked = path_text(path)
         self._place = (asked if is_web_address(asked) else os.path.abspath(asked)), headers, cache_bytes
         self.path, self._files = open_place(asked, headers, cache_bytes)
         try:
@@ -72,7 +72,7 @@ class Hierarchy:
         return _reopened, (type(self), self._manifest.build, place, *how)
 
     def close(self) -> None:
-        """Closes it. Nothing can be read any more: UsageError."""
+        """Closes it. Nothing can be read any more: UsageError. Functions that run the program still take it, as the name of its place."""
         self._files.close()
 
     def _read_sealed(self, name: str, size: int, expected: int) -> bytes:
@@ -364,6 +364,10 @@ class Hierarchy:
         else:
             rows = self._index.check_cut(np.array([self._index.row(node) for node in nodes], np.int64))
         return CutPieces(self._manifest, self._index, self.read_tile, rows, with_ids, kept_tiles), self._region(box, polygon)
+
+
+Place = Union[Path, Hierarchy]
+"""What names a hierarchy: a path, an address, or an open one."""
 
 
 def _without_ids(piece: Mesh) -> Mesh:

@@ -17,6 +17,7 @@ from typing import Mapping, Optional, Sequence, Union
 from .errors import NetworkError, ReplacedError, UsageError
 from .http_connections import Connections, Origin, basic_credentials, target_of
 from .options import header_lines
+from .storage import closed
 from .version import __version__
 
 Headers = Union[Mapping[str, str], Sequence[str]]
@@ -221,7 +222,7 @@ class HttpClient:
         target, of_proxy = target_of(origin, path)
         while True:
             if self._connections.is_closed:
-                raise UsageError(f"{address.shown}: it is closed; open it again")
+                raise closed(address.shown)
             connection, is_new = self._connections.lease(origin)
             try:
                 # No Accept-Encoding: tiles that are stored as gzip come as they are.

@@ -11,6 +11,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Optional
 
 from .errors import Error
+from .http_client import is_web_address
 from .storage import Files, open_files
 
 _ADDRESS = re.compile(r"/([\w-]+)/((?:tiles/\d+/(?:\d+/)?\d+\.glb)|(?:[a-z_]+\.[a-z]+))(?:\?.*)?")
@@ -85,7 +86,7 @@ _server: Optional[_Server] = None
 def kernel_address(path: str) -> str:
     """Where a browser on this machine finds the hierarchy, until Python ends; a hierarchy on the web is where it is."""
     global _server
-    if re.match(r"https?://", path):
+    if is_web_address(path):
         return path
     whole = os.path.abspath(path)
     with _lock:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import os
+import pathlib
 from collections import deque
 from dataclasses import dataclass, field
 from operator import attrgetter
@@ -12,7 +12,7 @@ from typing import Any, Callable, Iterable, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from .asked import new_file
+from .asked import Path, new_file
 from .content import ByContent
 from .errors import UsageError
 from .tree import Node
@@ -209,8 +209,8 @@ class Mesh(ByContent):
 
         return glb_of(self)
 
-    def write_ply(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """A binary PLY with everything but pictures. Raises ExistsError, which is a FileExistsError, too, if there is a file of that
+    def write_ply(self, path: Path, *, force: bool = False) -> pathlib.Path:
+        """Makes a binary PLY with everything but pictures, and returns its path. Raises ExistsError, which is a FileExistsError, too, if there is a file of that
         name, unless `force` replaces it; the file is there when all of it is."""
         columns: list[tuple[str, NDArray[Any]]] = [(axis, self.positions[:, k]) for k, axis in enumerate("xyz")]
         if self.normals is not None:
@@ -238,6 +238,7 @@ class Mesh(ByContent):
             file.write("\n".join(header).encode("ascii"))
             file.write(rows.tobytes())
             file.write(faces.tobytes())
+        return pathlib.Path(path)
 
 
 _OF_VERTICES = ("positions", "normals", "colours", "texcoords")

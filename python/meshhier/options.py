@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Callable, Mapping, Optional, Sequence
 
+from .asked import path_text
 from .errors import UsageError
 from .polygons import rings_of
 
@@ -48,11 +49,10 @@ class Files:
 
 def path_word(path: Any) -> str:
     """A path as a word of a command: no option and no "-", whatever its first letter."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise ValueError("a path")
-    name = os.fspath(path)
-    if not isinstance(name, str):
-        raise ValueError("a path of text")
+    try:
+        name = path_text(path)
+    except UsageError:
+        raise ValueError("a path") from None
     return f"./{name}" if name.startswith("-") else name
 
 
@@ -84,12 +84,13 @@ def _flag(value: Any, _: Files) -> list[str]:
 
 
 def _numbers(separator: str, count: Optional[int] = None) -> Callable[[Any, Files], list[str]]:
-    """Several numbers in one word, (1, 2) as "1,2"; a text and a single number stay what they are."""
+    """Numbers in one word, (1, 2) as "1,2": so many, or one or several. A text stays what it is."""
 
     def write(value: Any, files: Files) -> list[str]:
-        if isinstance(value, str) or not hasattr(value, "__len__"):
+        is_one = not hasattr(value, "__len__")
+        if isinstance(value, str) or (is_one and count is None):
             return _text(value, files)
-        if count is not None and len(value) != count:
+        if count is not None and (is_one or len(value) != count):
             raise ValueError(f"{count} numbers")
         return [separator.join(_number(one) for one in value)]
 

@@ -11,16 +11,14 @@ import shutil
 import struct
 import tempfile
 import zlib
+from contextlib import nullcontext
 from dataclasses import dataclass
-from typing import BinaryIO, Iterator, Union
+from typing import BinaryIO, ContextManager, Iterator
 
-from .asked import new_file
+from .asked import Path, exists, new_file, path_text, require_folder
 from .errors import CorruptError, ExistsError, ReplacedError, UsageError
-from .hierarchy import Hierarchy
-from .http_client import is_web_address
-from .storage import Archive
-
-Path = Union[str, "os.PathLike[str]"]
+from .hierarchy import Hierarchy, Place
+from .storage import Archive, Folder
 
 _INDEX = "@3dtilesIndex1@"
 _DATE = 0x0021  # 1980-01-01
@@ -99,7 +97,7 @@ def _names(hierarchy: Hierarchy) -> Iterator[str]:
 
 
 def _tilesets(hierarchy: Hierarchy) -> list[str]:
-    folder = os.path.join(hierarchy.path, "tilesets")
+    folder = os.path.join(hierarchy._place[0], "tilesets")
     found = [f"tilesets/{level}/{name}" for level in (os.listdir(folder) if os.path.isdir(folder) else []) for name in os.listdir(os.path.join(folder, level))]
     names = ["tileset.json", *sorted(found, key=lambda name: (name.split("/")[1], len(name), name))]
     if len(names) != hierarchy.manifest.get("tileset", {}).get("files", len(names)):
@@ -107,33 +105,46 @@ def _tilesets(hierarchy: Hierarchy) -> list[str]:
     return names
 
 
-def pack(hierarchy: Path, output: Path, *, force: bool = False) -> pathlib.Path:
+def _opened(place: Place) -> ContextManager[Hierarchy]:
+    """A hierarchy, which stays open behind the block if it was before."""
+    if isinstance(place, Hierarchy):
+        return nullcontext(place)
+    return Hierarchy(place)
+
+
+def pack(hierarchy: Place, output: Path, *, force: bool = False) -> pathlib.Path:
     """Makes one file, NAME.3tz, of a directory, NAME.hier: with the bytes that a build of an archive has. Returns its path.
 
     Raises ExistsError if it is there already; CorruptError if the directory is not whole; ReplacedError if another build takes its
     place meanwhile.
     """
-    if is_web_address(os.fspath(hierarchy)) or not os.path.isdir(hierarchy):
-        raise UsageError(f"{os.fspath(hierarchy)}: expected a directory NAME.hier; unpack() makes one of an archive")
-    if not os.fspath(output).lower().endswith(".3tz"):
-        raise UsageError(f"{os.fspath(output)}: the name of an archive ends in .3tz")
-    with Hierarchy(hierarchy) as source, new_file(output, force) as file:
+    if not path_text(output).lower().endswith(".3tz"):
+        raise UsageError(f"{path_text(output)}: the name of an archive ends in .3tz")
+    with _opened(hierarchy) as source:
+        if not isinstance(source._files, Folder):
+            raise UsageError(f"{source.path}: expected a directory NAME.hier of this machine; unpack() makes one of an archive")
+        _pack(source, output, force)
+    return pathlib.Path(output)
+
+
+def _pack(source: Hierarchy, output: Path, force: bool) -> None:
+    with new_file(output, force) as file:
         writer = _ArchiveWriter(file)
         for name in _names(source):
             writer.add(name, source._files.read(name))
         writer.finish()
         if source._is_replaced():
             raise ReplacedError(f"{source.path}: another hierarchy has taken its place meanwhile: pack it again")
-    return pathlib.Path(output)
 
 
-def unpack(archive: Path, output: Path, *, force: bool = False) -> pathlib.Path:
-    """Makes a directory, NAME.hier, of an archive, NAME.3tz, also of one at an address. It is there complete or not at all. Returns its path.
+def unpack(archive: Place, output: Path, *, force: bool = False) -> pathlib.Path:
+    """Makes a directory, NAME.hier, of an archive, NAME.3tz, also of one at an address: an open one, if that needs headers. It is there
+    complete or not at all. Returns its path.
 
     Raises ExistsError if it is there already (`force` replaces a hierarchy, and nothing else); CorruptError, ReplacedError.
     """
-    place = os.path.abspath(output)
-    with Hierarchy(archive) as source:
+    place = os.path.abspath(path_text(output))
+    with _opened(archive) as source:
         if not isinstance(source._files, Archive):
             raise UsageError(f"{source.path}: expected an archive NAME.3tz; pack() makes one of a directory")
         _require_free(place, force)
@@ -151,9 +162,9 @@ def unpack(archive: Path, output: Path, *, force: bool = False) -> pathlib.Path:
 
 def _require_free(place: str, force: bool) -> None:
     if not os.path.lexists(place):
-        return
+        return require_folder(place)
     if not force:
-        raise ExistsError(f"{place} is there already: give another name, or force=True to replace it")
+        raise exists(place)
     if not os.path.isfile(os.path.join(place, "hierarchy.json")):
         raise ExistsError(f"{place} is no hierarchy, so force=True does not replace it")
 

@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING, Any, Callable, Literal, Mapping, NoReturn, Opt
 import numpy as np
 from numpy.typing import NDArray
 
+from .asked import Path
 from .errors import UsageError, VerifyError
-from .hierarchy import Hierarchy
+from .hierarchy import Hierarchy, Place
 from .http_client import Headers
 from .objects import ObjectRow
 from .options import Files, option_words, path_word
@@ -36,8 +37,6 @@ from .polygons import Polygon
 from .process import Listeners, ProgressCallback, Result, TextCallback, find_program, run_program
 from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Verification, comparison, record, verification
 
-Path = Union[str, "os.PathLike[str]"]
-Place = Union[Path, Hierarchy]
 Number = Union[float, str]
 Size = Union[int, str]
 NodeName = Union[str, Sequence[int]]

@@ -127,6 +127,7 @@ def _rows(given: ArrayLike, columns: int, name: str) -> NDArray[Any]:
 
 def _ask(hierarchy: Hierarchy, kind: str, rows: NDArray[Any], options: Mapping[str, Any]) -> tuple[NDArray[Any], dict[str, Any]]:
     """The answers of the program, and its account. `kind`: of the questions, --points or --rays."""
+    hierarchy._files.require_open()
     place, headers, _ = hierarchy._place
     answers: list[NDArray[Any]] = []
 

@@ -11,6 +11,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
+from .asked import whole
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ReplacedError, UsageError
 from .http_client import Address, Answer, Headers, HttpClient, is_web_address, unpacked, without_secrets
 from .storage import Archive, Files, closed, open_files
@@ -250,15 +251,14 @@ class RemoteFolder:
         return address, start
 
 
-def open_place(path: str | os.PathLike[str], headers: Optional[Headers], cache_bytes: int) -> tuple[str, Files]:
+def open_place(place: str, headers: Optional[Headers], cache_bytes: int) -> tuple[str, Files]:
     """A hierarchy's path as messages have it, and its files: on the disk, or at an address. Raises NotAHierarchyError if there is
     none; NetworkError, UsageError."""
-    place = os.fspath(path)
     if not is_web_address(place):
         if headers:
             raise UsageError(f"{place}: headers are for addresses, https://...")
         return place, open_files(place)
-    web = Web(place, without_secrets(place), headers, cache_bytes)
+    web = Web(place, without_secrets(place), headers, whole(cache_bytes, "cache_bytes are a whole number"))
     is_archive = urllib.parse.urlsplit(place).path.lower().endswith(".3tz")
     if is_archive:
         return web.shown, RemoteArchive(web)

@@ -79,7 +79,7 @@ class Archive:
         try:
             self._zip = self._read_directory()
         except (zipfile.BadZipFile, NotImplementedError, ValueError, EOFError, struct.error) as error:
-            raise NotAHierarchyError(f"{self._path}: not an archive: {error}") from error
+            raise NotAHierarchyError(f"{self._path}: not an archive: {error}; a hierarchy is a folder NAME.hier or an archive NAME.3tz") from error
         self._process = os.getpid()
 
     def _read_directory(self) -> zipfile.ZipFile:
@@ -122,9 +122,8 @@ class Archive:
         self._zip.close()
 
 
-def open_files(path: str | os.PathLike[str]) -> Files:
+def open_files(name: str) -> Files:
     """The files of a hierarchy. Raises NotAHierarchyError if there is none."""
-    name = os.fspath(path)
     if os.path.isdir(name):
         if not os.path.isfile(os.path.join(name, "hierarchy.json")):
             raise NotAHierarchyError(f"{name}: there is no hierarchy.json")

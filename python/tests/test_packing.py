@@ -77,10 +77,18 @@ def test_what_makes_no_sense(torus: str, built: Any, tmp_path: Path) -> None:
         lambda: meshhier.pack(archive, tmp_path / "a.3tz"),
         lambda: meshhier.pack(folder, tmp_path / "a.zip"),
         lambda: meshhier.unpack(folder, tmp_path / "a.hier"),
+        lambda: meshhier.pack(None, tmp_path / "a.3tz"),  # type: ignore[arg-type]
+        lambda: meshhier.pack(folder, b"a.3tz"),  # type: ignore[arg-type]
     ]
     for wrong in calls:
         with pytest.raises(meshhier.UsageError):
             wrong()
+    with pytest.raises(meshhier.NotAHierarchyError):
+        meshhier.pack(tmp_path / "none.hier", tmp_path / "a.3tz")
+    with pytest.raises(FileNotFoundError, match=r"none/a.3tz'$"):
+        meshhier.pack(folder, tmp_path / "none" / "a.3tz")
+    with pytest.raises(FileNotFoundError, match=r"none/a.hier'$"):
+        meshhier.unpack(archive, tmp_path / "none" / "a.hier")
     shutil.copytree(folder, tmp_path / "b.hier")
     (tmp_path / "b.hier" / "outline.glb").unlink()
     with pytest.raises(meshhier.CorruptError, match="outline.glb is missing"):
@@ -104,6 +112,16 @@ def test_an_archive_on_the_web(torus: str, built: Any, tmp_path: Path) -> None:
     with Host(archive.parent) as host:
         made = meshhier.unpack(f"{host.address}/{archive.name}", tmp_path / "a.hier")
     assert files_of(made) == files_of(archive.with_suffix(".hier"))
+
+
+def test_open_ones_stay_open(torus: str, built: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Path(built(torus, "packing0.hier"))
+    monkeypatch.chdir(folder.parent)
+    with meshhier.open(folder.name) as source:
+        monkeypatch.chdir(tmp_path)
+        with meshhier.open(meshhier.pack(source, "a.3tz")) as packed:
+            assert files_of(meshhier.unpack(packed, "a.hier")) == files_of(folder)
+            assert packed.cut(level=0) == source.cut(level=0)
 
 
 def test_damage_is_found(torus: str, built: Any, tmp_path: Path) -> None:
