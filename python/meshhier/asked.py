@@ -8,6 +8,7 @@ import math
 import numbers
 import operator
 import os
+import re
 import secrets
 from contextlib import contextmanager
 from typing import BinaryIO, Iterator, Union
@@ -24,6 +25,18 @@ def path_text(value: object) -> str:
     name = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
     if not isinstance(name, str):
         raise UsageError(f"expected a path, found {value!r}")
+    return name
+
+
+def is_web_address(text: str) -> bool:
+    return re.match(r"https?://", text, re.IGNORECASE) is not None
+
+
+def output_path(value: object) -> str:
+    """The path of what is to be made, as text. Raises UsageError for what is none, and for an address."""
+    name = path_text(value)
+    if is_web_address(name):
+        raise UsageError(f"expected a path on this machine to write to, found {name.partition('?')[0].rpartition('@')[2]!r}")
     return name
 
 
@@ -58,7 +71,7 @@ def length(value: object, what: str) -> float:
 @contextmanager
 def new_file(path: Path, force: bool) -> Iterator[BinaryIO]:
     """A file to be written, which takes its place when all of it is there. Raises ExistsError if there is one and not `force`."""
-    name = path_text(path)
+    name = output_path(path)
     if os.path.lexists(name) and not force:
         raise exists(name)
     require_folder(name)

@@ -186,10 +186,11 @@ def make_cell(hierarchy: Hierarchy, *, height: int = 500, view: str = "", link: 
     whence = "the kernel" if link is None else "this host" if is_path else urlsplit(address).netloc
     name = os.path.splitext(os.path.basename(hierarchy.path.rstrip("/")))[0]
     texts = _texts(hierarchy, name, view, address, whence)
-    filling = _Filling(hierarchy, size - len(_frame(_filled(texts), height, is_path)) - _MOST_TOLD)
+    frame = len(_frame(_filled(texts), height, is_path)) + _MOST_TOLD
+    filling = _Filling(hierarchy, size - frame)
     texts["poster"] = _poster(filling, name)
     if not filling.fill():
-        raise UsageError(f"{hierarchy.path}: a cell of {size} bytes has no room for the viewer and the root: give size={2 * size} or more")
+        raise UsageError(f"{hierarchy.path}: a cell of {size} bytes has no room for the viewer and the root: give a larger size=; the viewer has {frame} bytes")
     texts["told"] = html.escape(_told(filling, name))
     if filling.is_whole:
         texts.update(link="", reached="", left="")

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .asked import Path, length, path_text, whole
+from .asked import Path, is_web_address, length, path_text, whole
 from .boxes import Box
 from .checksum import checksum
 from .cut import FEW_TILES, MANY_TILES, CutPieces
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ProgramNotFoundError, UsageError, replaced
-from .http_client import Headers, is_web_address
+from .http_client import Headers
 from .index import Rows, TileIndex
 from .manifest import Scalar, read_manifest
 from .mesh import Mesh

@@ -72,10 +72,6 @@ class _Passing(Exception):
         self.status, self.wait = status, wait
 
 
-def is_web_address(text: str) -> bool:
-    return re.match(r"https?://", text, re.IGNORECASE) is not None
-
-
 def without_secrets(address: str) -> str:
     """An address without user, password, query and fragment."""
     parts = _split(address)
@@ -277,7 +273,7 @@ def _reason(error: Exception) -> str:
         return f"the host was silent for {SILENCE:g} s"
     if isinstance(error, http.client.IncompleteRead):
         return "the answer broke off"
-    return str(error) or type(error).__name__
+    return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 
 def _refusal(address: Address, response: http.client.HTTPResponse) -> Exception:

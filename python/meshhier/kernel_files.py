@@ -10,8 +10,8 @@ import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Optional
 
+from .asked import is_web_address
 from .errors import Error
-from .http_client import is_web_address
 from .storage import Files, open_files
 
 _ADDRESS = re.compile(r"/([\w-]+)/((?:tiles/\d+/(?:\d+/)?\d+\.glb)|(?:[a-z_]+\.[a-z]+))(?:\?.*)?")

@@ -15,7 +15,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import BinaryIO, ContextManager, Iterator
 
-from .asked import Path, exists, new_file, path_text, require_folder
+from .asked import Path, exists, new_file, output_path, require_folder
 from .errors import CorruptError, ExistsError, ReplacedError, UsageError
 from .hierarchy import Hierarchy, Place
 from .storage import Archive, Folder
@@ -118,8 +118,8 @@ def pack(hierarchy: Place, output: Path, *, force: bool = False) -> pathlib.Path
     Raises ExistsError if it is there already; CorruptError if the directory is not whole; ReplacedError if another build takes its
     place meanwhile.
     """
-    if not path_text(output).lower().endswith(".3tz"):
-        raise UsageError(f"{path_text(output)}: the name of an archive ends in .3tz")
+    if not output_path(output).lower().endswith(".3tz"):
+        raise UsageError(f"{output_path(output)}: the name of an archive ends in .3tz")
     with _opened(hierarchy) as source:
         if not isinstance(source._files, Folder):
             raise UsageError(f"{source.path}: expected a directory NAME.hier of this machine; unpack() makes one of an archive")
@@ -143,7 +143,7 @@ def unpack(archive: Place, output: Path, *, force: bool = False) -> pathlib.Path
 
     Raises ExistsError if it is there already (`force` replaces a hierarchy, and nothing else); CorruptError, ReplacedError.
     """
-    place = os.path.abspath(path_text(output))
+    place = os.path.abspath(output_path(output))
     with _opened(archive) as source:
         if not isinstance(source._files, Archive):
             raise UsageError(f"{source.path}: expected an archive NAME.3tz; pack() makes one of a directory")

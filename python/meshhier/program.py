@@ -23,11 +23,12 @@ import os
 import pathlib
 import sys
 from typing import TYPE_CHECKING, Any, Callable, Literal, Mapping, NoReturn, Optional, Sequence, Union, overload
+from urllib.parse import urlsplit
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .asked import Path
+from .asked import Path, is_web_address, output_path
 from .errors import UsageError, VerifyError
 from .hierarchy import Hierarchy, Place
 from .http_client import Headers
@@ -75,14 +76,26 @@ def _place(place: Place) -> str:
         raise UsageError(f"expected {error}, found {place!r}") from None
 
 
+def _output(output: Optional[Path]) -> list[str]:
+    return [] if output is None else [f"--output={path_word(output_path(output))}"]
+
+
+def _known_headers(places: Sequence[Place]) -> Optional[Headers]:
+    """Those of open hierarchies. Raises UsageError where they would go to another host, too: the program sends them to each."""
+    web = [place._place[:2] if isinstance(place, Hierarchy) else (place, None) for place in places if is_web_address(_place(place))]
+    known = next((headers for _, headers in web if headers), None)
+    if known and len({urlsplit(str(address)).netloc.rpartition("@")[2] for address, _ in web}) > 1:
+        raise UsageError("the headers of a hierarchy are for its own host, and here is another one: give headers= that both may have")
+    return known
+
+
 def _listeners(given: Mapping[str, Any]) -> Listeners:
     return Listeners(given.get("progress"), given.get("warning"), given.get("account"))
 
 
 def _run(command: str, places: Sequence[Place], given: Mapping[str, Any], *further: str, **how: Any) -> Result:
     """Runs a command with the keywords of a call."""
-    known = next((place._place[1] for place in places if isinstance(place, Hierarchy)), None)
-    given = {**given, "headers": given.get("headers") or known}
+    given = {**given, "headers": given.get("headers") or _known_headers(places)}
     with Files() as files:
         words = [command, *(_place(place) for place in places), *further, *option_words(command, given, files)]
         return run_program(words, _listeners(given), **how)
@@ -91,7 +104,7 @@ def _run(command: str, places: Sequence[Place], given: Mapping[str, Any], *furth
 def _make(command: str, hierarchy: Place, output: Optional[Path], given: Mapping[str, Any]) -> MadeFile:
     if output is None:
         return _run(command, [hierarchy], given, "--output=-", prints_data=True).output
-    _run(command, [hierarchy], given, f"--output={_place(output)}")
+    _run(command, [hierarchy], given, *_output(output))
     return pathlib.Path(output)
 
 
@@ -156,8 +169,7 @@ def build(
     Raises also StoppedBuildError.
     """
     given = locals()
-    to = [] if output is None else [f"--output={_place(output)}"]
-    result = _run("build", _several(mesh), given, *to, *(["--json"] if dry_run else []), prints_data=dry_run)
+    result = _run("build", _several(mesh), given, *_output(output), *(["--json"] if dry_run else []), prints_data=dry_run)
     if dry_run:
         told = result.json()
         return record(BuildPlan, told, json=told)
@@ -176,7 +188,7 @@ def plan(
 ) -> TaskStatus:
     """Cuts a build into tasks for many machines (docs/cluster.md): stages of up to `tasks` tasks, planned in the folder `work`."""
     given = locals()
-    _run("plan", _several(mesh), given, *([] if output is None else [f"--output={_place(output)}"]), tells_progress=False)
+    _run("plan", _several(mesh), given, *_output(output), tells_progress=False)
     return task_status(work)
 
 
@@ -318,8 +330,7 @@ def compare(
         transform: moves FROM first: a 4 x 4 matrix, rows first, or a file with one.
         objects: how many objects of FROM are listed, the farthest first; 20 if not given.
     """
-    to_file = [] if output is None else [f"--output={_place(output)}"]
-    return comparison(_run("compare", [from_, to], locals(), "--json", *to_file, prints_data=True, expected=(0, 1)).json())
+    return comparison(_run("compare", [from_, to], locals(), "--json", *_output(output), prints_data=True, expected=(0, 1)).json())
 
 
 def view(
@@ -516,7 +527,7 @@ def progressive(
     account: Optional[TextCallback] = None,
 ) -> pathlib.Path:
     """Makes a folder with a base and its details for weak clients: of all, or of one sector; one detail a level, or `steps`."""
-    _run("progressive", [hierarchy], locals(), f"--output={_place(output)}")
+    _run("progressive", [hierarchy], locals(), *_output(output))
     return pathlib.Path(output)
 
 

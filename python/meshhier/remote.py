@@ -11,9 +11,9 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
-from .asked import whole
+from .asked import is_web_address, whole
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ReplacedError, UsageError
-from .http_client import Address, Answer, Headers, HttpClient, is_web_address, unpacked, without_secrets
+from .http_client import Address, Answer, Headers, HttpClient, unpacked, without_secrets
 from .storage import Archive, Files, closed, open_files
 
 #: Small reads fetch whole blocks, so that many of them are few requests.
@@ -199,7 +199,7 @@ class RemoteFolder:
         try:
             manifest = self.read("hierarchy.json")
         except CorruptError:
-            raise NotAHierarchyError(f"{self._path}: there is no hierarchy.json on the host") from None
+            raise NotAHierarchyError(f"{self._path}: there is no hierarchy.json on the host; `meshhier serve` has models below /models/") from None
         if manifest.lstrip()[:1] != b"{":
             raise NotAHierarchyError(f"{self._path}: the host sends something else than a hierarchy.json; is this the address of the directory NAME.hier?")
         return manifest

@@ -379,6 +379,15 @@ def test_damage_is_something_else(own: Host) -> None:
 # Secrets.
 
 
+def test_headers_of_a_hierarchy_go_to_no_other_host(host: Host, root: Path) -> None:
+    with Host(root) as other, meshhier.open(f"{host.address}/a.hier", headers={"Authorization": "Bearer t0ken"}) as web:
+        with pytest.raises(meshhier.UsageError, match="for its own host"):
+            meshhier.compare(web, f"{other.address}/a.hier")
+        assert other.requests == []
+        assert meshhier.compare(web, f"{host.address}/a.hier").farthest == 0
+        assert meshhier.compare(web, root / "a.hier").farthest == 0
+
+
 def test_headers_users_and_queries(host: Host, root: Path, tmp_path: Path) -> None:
     with meshhier.open(f"{host.address}/a.hier?sig=s3cret&x=1", headers={"Authorization": "Bearer t0ken", "X-Key": "k"}) as web:
         web.cut(level=0)

@@ -415,6 +415,9 @@ def test_odd_arguments(hier: str, tmp_path: Path) -> None:
     for place in (None, 3, b"a.hier"):
         with pytest.raises(meshhier.UsageError, match="expected a path, found"):
             meshhier.open(place)  # type: ignore[arg-type]
+    for make in (meshhier.build, meshhier.export, meshhier.pack, meshhier.progressive):
+        with pytest.raises(meshhier.UsageError, match="on this machine to write to, found 'h/a.3tz'"):
+            make(hier, "https://user:s3cret@h/a.3tz?sig=s3cret")
     with pytest.raises(meshhier.UsageError, match="size: expected 2 numbers, found 64"):
         meshhier.preview(hier, size=64)  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="lvel"):
