@@ -23,7 +23,6 @@ from .viewer_files import viewer_file
 if TYPE_CHECKING:
     from .hierarchy import Hierarchy
 
-_MOST_BYTES = 3_000_000
 _INDEX_HEADER, _RECORD, _PAGE_RECORDS = 32, 120, 545  # docs/file_format.md, section 3; the viewer reads the index by such pages
 _MOST_TOLD = 500
 _POSTER_PART = 8  # of the room: a picture that is seen until scripts run may take no more
@@ -176,7 +175,7 @@ def _texts(hierarchy: Hierarchy, name: str, view: str, address: str, whence: str
     }
 
 
-def make_cell(hierarchy: Hierarchy, *, height: int = 500, view: str = "", link: Optional[str] = None, size: int = _MOST_BYTES) -> Cell:
+def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[str], size: int) -> Cell:
     """As Hierarchy.show() says."""
     height, size = whole(height, "height is a number of pixels"), whole(size, "size is a number of bytes")
     address = kernel_address(hierarchy.path) if link is None else link

@@ -83,9 +83,9 @@ def _split(address: str) -> urllib.parse.SplitResult:
         parts = urllib.parse.urlsplit(address)
         parts.port  # may raise
     except ValueError:
-        raise UsageError("the address is none: expected https://HOST/NAME.3tz") from None
+        raise UsageError("this is no address: expected https://HOST/NAME.3tz") from None
     if parts.scheme not in ("http", "https") or not parts.hostname or re.search(r"[\0-\x20\x7f]", address):
-        raise UsageError("the address is none: expected https://HOST/NAME.3tz, without blanks (%20)")
+        raise UsageError("this is no address: expected https://HOST/NAME.3tz, without blanks (%20)")
     return parts
 
 

@@ -13,11 +13,16 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Callable, Mapping, Optional, Sequence
 
+import numpy as np
+
 from .asked import path_text
+from .boxes import checked_box
 from .errors import UsageError
 from .polygons import rings_of
+from .tree import as_node
 
 _HELD = "meshhier-python-"
+_FARTHEST = 1e300  # of a box for the program, which takes no infinite ones
 
 
 class Files:
@@ -97,23 +102,22 @@ def _numbers(separator: str, count: Optional[int] = None) -> Callable[[Any, File
     return write
 
 
-def _places(size: int) -> Callable[[Any, Files], list[str]]:
-    """Two places of so many coordinates, a word each."""
+def _corner(numbers: Any) -> str:
+    return ",".join(_number(one) for one in numbers)
 
-    def write(value: Any, _: Files) -> list[str]:
-        if isinstance(value, str) or not hasattr(value, "__len__") or [getattr(one, "__len__", int)() for one in value] != [size, size]:
-            raise ValueError(f"two places of {size} numbers")
-        return [",".join(_number(one) for one in place) for place in value]
 
-    return write
+def _box(value: Any, _: Files) -> list[str]:
+    return [_corner(np.clip(corner, -_FARTHEST, _FARTHEST)) for corner in checked_box(value)]
+
+
+def _ends(value: Any, _: Files) -> list[str]:
+    if isinstance(value, str) or not hasattr(value, "__len__") or [getattr(one, "__len__", int)() for one in value] != [2, 2]:
+        raise ValueError("two places of 2 numbers")
+    return [_corner(place) for place in value]
 
 
 def _node(value: Any, _: Files) -> list[str]:
-    if isinstance(value, str):
-        return [value]
-    if not hasattr(value, "__len__") or len(value) != 2:
-        raise ValueError("a node (level, index)")
-    return [f"{_number(value[0])}/{_number(value[1])}"]
+    return [str(as_node(value))]
 
 
 def _scale(value: Any, _: Files) -> list[str]:
@@ -193,7 +197,7 @@ _WEB = {"headers": Option(_headers, "--header"), "limit_rate": TEXT}
 _SETTINGS = {"settings": Option(_setting, "--set", is_list=True)}
 _FORCE = {"force": FLAG}
 _MEMORY = {"memory_budget": TEXT}
-_PIECE = {"box": Option(_places(3)), "polygon": Option(_polygon), "crs": TEXT, "object": Option(_text, is_list=True), "where": TEXT}
+_PIECE = {"box": Option(_box), "polygon": Option(_polygon), "crs": TEXT, "object": Option(_text, is_list=True), "where": TEXT}
 _TILES = {"level": TEXT, "cut": Option(_cut), "error": TEXT}
 _FORMAT = {"format": TEXT}
 
@@ -220,7 +224,7 @@ COMMANDS: Mapping[str, Mapping[str, Option]] = {
         "background": TEXT, "attribute": TEXT, "colour_by": TEXT, "ramp": TEXT, "range": Option(_numbers(",", 2)),
     },
     "draw": {
-        **_WEB, **_MEMORY, **_FORCE, **_PIECE, **_FORMAT, "level": TEXT, "error": TEXT, "plan": FLAG, "elevation": TEXT, "section": Option(_places(2)),
+        **_WEB, **_MEMORY, **_FORCE, **_PIECE, **_FORMAT, "level": TEXT, "error": TEXT, "plan": FLAG, "elevation": TEXT, "section": Option(_ends),
         "plane": Option(_numbers(",", 4)), "cut_height": Option(_numbers(",")), "contours": TEXT, "scale": Option(_scale), "units": TEXT, "dpi": TEXT,
         "grid": Option(_is_true_or(_text)), "no_scale_bar": FLAG, "transparent": FLAG, "world_file": FLAG, "flat": FLAG,
     },
@@ -259,7 +263,7 @@ def option_words(command: str, given: Mapping[str, Any], files: Files) -> list[s
             try:
                 words += _one_option(option_name(keyword, option), option.write(one, files))
             except ValueError as error:
-                raise UsageError(f"{keyword}: expected {error}, found {'what is none' if keyword == 'headers' else repr(value)}") from None
+                raise UsageError(f"{keyword}: expected {error}, found {'something else' if keyword == 'headers' else repr(value)}") from None
     return words
 
 

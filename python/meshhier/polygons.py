@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from .errors import UsageError
 
 
-
 class Shape(Protocol):
     """A geometry of another library."""
 

@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .asked import Path, is_web_address, output_path
+from .boxes import Box
 from .errors import UsageError, VerifyError
 from .hierarchy import Hierarchy, Place
 from .http_client import Headers
@@ -37,11 +38,11 @@ from .options import Files, option_words, path_word
 from .polygons import Polygon
 from .process import Listeners, ProgressCallback, Result, TextCallback, find_program, run_program
 from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Verification, comparison, record, verification
+from .tree import NodeLike
 
 Number = Union[float, str]
 Size = Union[int, str]
-NodeName = Union[str, Sequence[int]]
-Nodes = Union[Path, Sequence[NodeName]]
+Nodes = Union[Path, Sequence[NodeLike]]
 Vector = Union[Sequence[float], NDArray[Any]]
 Rows = Union[Sequence[Vector], NDArray[Any]]
 Names = Union[str, Sequence[str]]
@@ -230,7 +231,7 @@ def inspect(
     hierarchy: Place,
     *,
     level: Optional[int] = None,
-    node: Optional[NodeName] = None,
+    node: Optional[NodeLike] = None,
     headers: Optional[Headers] = None,
     limit_rate: Optional[Size] = None,
 ) -> dict[str, Any]:
@@ -270,7 +271,7 @@ def verify(
     samples: Optional[int] = None,
     level: Optional[Union[int, Literal["all"]]] = None,
     cut: Optional[Nodes] = None,
-    box: Optional[Rows] = None,
+    box: Optional[Box] = None,
     polygon: Optional[Polygon] = None,
     crs: Optional[str] = None,
     object: Optional[Names] = None,
@@ -356,11 +357,11 @@ def export(
     output: Optional[Path] = None,
     *,
     level: Optional[int] = None,
-    node: Optional[NodeName] = None,
+    node: Optional[NodeLike] = None,
     cut: Optional[Nodes] = None,
     error: Optional[float] = None,
     outline: bool = False,
-    box: Optional[Rows] = None,
+    box: Optional[Box] = None,
     polygon: Optional[Polygon] = None,
     crs: Optional[str] = None,
     object: Optional[Names] = None,
@@ -411,7 +412,7 @@ def preview(
     colour_by: Optional[str] = None,
     ramp: Optional[str] = None,
     range: Optional[Union[str, Vector]] = None,
-    box: Optional[Rows] = None,
+    box: Optional[Box] = None,
     polygon: Optional[Polygon] = None,
     crs: Optional[str] = None,
     object: Optional[Names] = None,
@@ -460,7 +461,7 @@ def draw(
     format: Optional[str] = None,
     level: Optional[int] = None,
     error: Optional[float] = None,
-    box: Optional[Rows] = None,
+    box: Optional[Box] = None,
     polygon: Optional[Polygon] = None,
     crs: Optional[str] = None,
     object: Optional[Names] = None,
@@ -518,7 +519,7 @@ def progressive(
     hierarchy: Place,
     output: Path,
     *,
-    node: Optional[NodeName] = None,
+    node: Optional[NodeLike] = None,
     steps: Optional[int] = None,
     force: bool = False,
     memory_budget: Optional[Size] = None,
