@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Of the source tree the package gets the viewer's scripts, if they are built (npm run build in viewer/): what a notebook shows needs them."""
+"""The package gets the viewer's scripts from the source tree, if `npm run build` has made them in viewer/: notebooks need them."""
 
 import shutil
 from pathlib import Path
