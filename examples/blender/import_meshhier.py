@@ -90,12 +90,12 @@ def new_image(name: str, picture: bytes) -> Any:
 
 
 class Look:
-    """Makes materials: of pictures, of colours, of both, or plain."""
+    """Makes materials: of pictures, of colours, of both where colours tint pictures, or plain."""
 
-    def __init__(self, hierarchy: Any, has_colours: bool) -> None:
-        texture = hierarchy.manifest["storage"].get("texture") or {}
-        self.is_unlit = bool(texture.get("unlit"))
-        self.has_colours = has_colours
+    def __init__(self, cut: Any) -> None:
+        self.is_unlit = cut.conventions.unlit
+        self.has_colours = cut.colours is not None
+        self.tints = cut.conventions.tints
 
     def material(self, name: str, picture: bytes) -> Any:
         material = bpy.data.materials.new(name)
@@ -106,7 +106,7 @@ class Look:
             node = nodes.new("ShaderNodeTexImage")
             node.image = new_image(name, picture)
             sources.append(node.outputs["Color"])
-        if self.has_colours:
+        if self.has_colours and (self.tints or not picture):
             node = nodes.new("ShaderNodeVertexColor")
             node.layer_name = "colours"
             sources.append(node.outputs["Color"])
@@ -169,14 +169,13 @@ def make_object(hierarchy: Any, cut: Any, name: str) -> tuple[Any, int]:
     """Local coordinates are the input's less the hierarchy's origin: those of all parts of a hierarchy fit together, and 32 bits are enough."""
     mesh = bpy.data.meshes.new(name)
     make_faces(mesh, cut.positions - hierarchy.origin, cut.triangles)
-    attributes = hierarchy.manifest["source"]["attributes"]
     if cut.colours is not None:
         colours = mesh.color_attributes.new("colours", "FLOAT_COLOR", "POINT")
-        colours.data.foreach_set("color", light_of(cut.colours, bool(attributes.get("linear_colours"))).ravel())
+        colours.data.foreach_set("color", light_of(cut.colours, cut.conventions.linear_colours).ravel())
         mesh.color_attributes.active_color = colours
     set_texcoords(mesh, cut.texcoords, cut.triangles, bool(cut.images))
     set_attributes(mesh, cut)
-    unread = set_materials(mesh, cut, Look(hierarchy, cut.colours is not None), name)
+    unread = set_materials(mesh, cut, Look(cut), name)
     mesh.validate(clean_customdata=False)  # as Blender's own importers: simplified surfaces may have two faces of the same corners
     set_normals(mesh, cut.normals)
     return bpy.data.objects.new(name, mesh), unread

@@ -179,6 +179,12 @@ def check_pictures() -> None:
     thing = load(build("painted.obj", "blocks.hier", "texture.format=ktx2", "texture.quality=100"), by="LEVEL", level=0)
     assert all(node.type != "TEX_IMAGE" for material in thing.data.materials for node in material.node_tree.nodes)
     print("ok  pictures that Blender does not read")
+    lines = (WORK / "painted.obj").read_text().splitlines()
+    (WORK / "coloured.obj").write_text("\n".join(f"{line} 0.5 0.25 0" if line.startswith("v ") else line for line in lines) + "\n")
+    thing = load(build("coloured.obj", "coloured.hier", "texture.format=png"), by="LEVEL", level=0)
+    kinds = {node.type for material in thing.data.materials for node in material.node_tree.nodes}
+    assert "colours" in thing.data.attributes and "TEX_IMAGE" in kinds and "VERTEX_COLOR" not in kinds, kinds
+    print("ok  colours that do not tint pictures")
 
 
 def check_errors() -> None:
