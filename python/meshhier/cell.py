@@ -14,7 +14,7 @@ from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Optional
 from urllib.parse import urlsplit
 
-from .asked import whole
+from .asked import is_web_address, whole
 from .errors import CorruptError, UsageError, replaced
 from .kernel_files import kernel_address
 from .tree import Node
@@ -175,10 +175,15 @@ def _texts(hierarchy: Hierarchy, name: str, view: str, address: str, whence: str
     }
 
 
+def _address_of(hierarchy: Hierarchy) -> str:
+    """Where a browser finds the hierarchy, without secrets: where it is on the web, or at the kernel."""
+    return hierarchy.path if is_web_address(hierarchy.path) else kernel_address(hierarchy._place[0])
+
+
 def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[str], size: int) -> Cell:
     """As Hierarchy.show() says."""
     height, size = whole(height, "height is a number of pixels"), whole(size, "size is a number of bytes")
-    address = kernel_address(hierarchy.path) if link is None else link
+    address = _address_of(hierarchy) if link is None else link
     if re.search(r"[\s;,'\"<>]", address):
         raise UsageError(f"no address: {address}")
     is_path = address != "" and not urlsplit(address).netloc

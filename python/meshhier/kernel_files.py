@@ -10,7 +10,6 @@ import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Optional
 
-from .asked import is_web_address
 from .errors import Error
 from .storage import Files, open_files
 
@@ -84,16 +83,13 @@ _server: Optional[_Server] = None
 
 
 def kernel_address(path: str) -> str:
-    """Where a browser on this machine finds the hierarchy, until Python ends; a hierarchy on the web is where it is."""
+    """Where a browser on this machine finds the hierarchy of an absolute path, until Python ends."""
     global _server
-    if is_web_address(path):
-        return path
-    whole = os.path.abspath(path)
     with _lock:
         if _server is None or _server.process != os.getpid():  # a fork has no threads
             _server = _Server()
-        if whole not in _server.tokens:
+        if path not in _server.tokens:
             token = secrets.token_urlsafe(16)
-            _server.files[token] = open_files(whole)
-            _server.tokens[whole] = token
-        return f"http://127.0.0.1:{_server.server_address[1]}/{_server.tokens[whole]}"
+            _server.files[token] = open_files(path)
+            _server.tokens[path] = token
+        return f"http://127.0.0.1:{_server.server_address[1]}/{_server.tokens[path]}"

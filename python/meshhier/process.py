@@ -247,7 +247,7 @@ def _why(result: Result) -> str:
         return result.failure
     said = "".join(line for line in result.said if not line.startswith("Run with --help")).strip()
     name = "meshhier: "
-    return said[len(name) :] if said.startswith(name) else said or result.text.strip() or f"ended with exit code {result.code}"
+    return said[len(name) :] if said.startswith(name) else said or result.text.strip() or f"the program ended with exit code {result.code}"
 
 
 def _event(line: str) -> Optional[dict[str, Any]]:

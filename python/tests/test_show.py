@@ -110,6 +110,14 @@ def test_the_kernel_gives_files_of_an_archive_that_was_closed(built: Build, toru
     assert fetch(kernel_address(archive) + "/hierarchy.json") == (200, expected)
 
 
+def test_the_kernel_finds_it_from_another_folder(model: str, viewer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(Path(model).parent)
+    with meshhier.open(Path(model).name) as hierarchy:
+        monkeypatch.chdir(tmp_path)
+        found = re.search('data-link="([^"]+)"', page_of(hierarchy.show(size=len(viewer) + 150_000)))
+    assert found and fetch(found[1] + "/tiles.bin") == (200, (Path(model) / "tiles.bin").read_bytes())
+
+
 def test_no_name_ends_the_frame(model: str, tmp_path: Path) -> None:
     path = tmp_path / "a'\"&<b>{{files}}<!--.hier"
     shutil.copytree(model, path)
