@@ -45,6 +45,11 @@ def exists(path: str) -> ExistsError:
     return ExistsError(f"{path} is already there; force=True replaces it")
 
 
+def beside(place: str) -> str:
+    """A free name for what takes that place later."""
+    return os.path.join(os.path.dirname(place), f".{os.path.basename(place)[:200]}.{secrets.token_hex(4)}")
+
+
 def require_folder(path: str) -> None:
     """Raises FileNotFoundError unless there is a folder for what is to be made."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
@@ -80,7 +85,7 @@ def new_file(path: Path, force: bool) -> Iterator[BinaryIO]:
         with open(place, "wb") as stream:
             yield stream
         return
-    made = os.path.join(os.path.dirname(place), f".{os.path.basename(place)[:200]}.{secrets.token_hex(4)}")
+    made = beside(place)
     try:
         file = open(made, "xb")
     except OSError as error:

@@ -9,13 +9,12 @@ import pathlib
 import re
 import shutil
 import struct
-import tempfile
 import zlib
 from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import BinaryIO, ContextManager, Iterator
 
-from .asked import Path, exists, new_file, output_path, require_folder
+from .asked import Path, beside, exists, new_file, output_path, require_folder
 from .errors import CorruptError, ExistsError, ReplacedError, UsageError
 from .hierarchy import Hierarchy, Place
 from .storage import Archive, Folder
@@ -148,11 +147,11 @@ def unpack(archive: Place, output: Path, *, force: bool = False) -> pathlib.Path
         if not isinstance(source._files, Archive):
             raise UsageError(f"{source.path}: expected an archive NAME.3tz; pack() makes one of a directory")
         _require_free(place, force)
-        made = tempfile.mkdtemp(dir=os.path.dirname(place), prefix=f".{os.path.basename(place)}.")
+        made = beside(place)
+        os.mkdir(made)
         try:
             for name in source._files.names():
                 _unpack_file(source._files, name, made)
-            os.chmod(made, 0o777 & ~_mask())
             _put(made, place)
         except BaseException:
             shutil.rmtree(made, ignore_errors=True)
@@ -180,18 +179,12 @@ def _unpack_file(files: Archive, name: str, folder: str) -> None:
         file.write(files.read(name))
 
 
-def _mask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
 def _put(made: str, place: str) -> None:
     """Gives a directory its name; one that has it already is removed then."""
     if not os.path.lexists(place):
         os.rename(made, place)
         return
-    old = tempfile.mkdtemp(dir=os.path.dirname(place), prefix=f".{os.path.basename(place)}.")
+    old = beside(place)
     os.rename(place, old)
     os.rename(made, place)
     shutil.rmtree(old)

@@ -209,13 +209,12 @@ class Verification:
     Attributes:
         checks: a line for each kind of check, with numbers.
         levels: with `error=True`: what was measured.
-        problems: none, or verify() had raised.
+        problems: empty, as verify() raises them.
     """
 
     checks: list[str]
     levels: list[MeasuredLevel]
     json: Mapping[str, Any] = field(repr=False)
-
     problems: list[str]
 
 

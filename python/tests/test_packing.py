@@ -68,6 +68,7 @@ def test_nothing_is_replaced_by_chance(torus: str, built: Any, tmp_path: Path) -
     (tmp_path / "photos").mkdir()
     with pytest.raises(meshhier.ExistsError, match="no hierarchy"):
         meshhier.unpack(archive, tmp_path / "photos", force=True)
+    assert os.stat(tmp_path / "a.hier").st_mode == os.stat(tmp_path / "photos").st_mode
     assert sorted(os.listdir(tmp_path)) == ["a.3tz", "a.hier", "photos"]
 
 
