@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-/// Tells when a lost device is back: from then on it has nothing of what it was given.
+/// Tells when a device is lost, and when it is back: from then on it has nothing of what it was given.
 export class ContextWatch {
   private readonly canvases = new WeakSet<EventTarget>();
   private readonly ending = new AbortController();
 
-  constructor(private readonly restored: () => void) {}
+  constructor(private readonly lost: () => void, private readonly restored: () => void) {}
 
-  /// The renderer has listened before: it is ready when this tells.
+  /// The renderer has listened before: it knows of the loss, and is ready again, when this tells.
   drawnOn(canvas: EventTarget): void {
     if (this.canvases.has(canvas)) return;
     this.canvases.add(canvas);
-    canvas.addEventListener('webglcontextrestored', this.restored, { signal: this.ending.signal });
+    const { signal } = this.ending;
+    canvas.addEventListener('webglcontextlost', this.lost, { signal });
+    canvas.addEventListener('webglcontextrestored', this.restored, { signal });
   }
 
   stop(): void {

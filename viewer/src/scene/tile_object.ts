@@ -284,13 +284,16 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     return null;
   }
 
+  /// Lets go of what it has on the GPU, where it comes again once it is drawn.
+  leaveDevice(): void {
+    for (const part of [this, this.wires, this.points]) part?.geometry.dispose();
+    for (const each of [this.material, ...this.textures]) each.dispose();
+  }
+
   dispose(): void {
     this.setWires(false);
     this.setPoints(false);
-    this.geometry.dispose();
-    this.material.dispose();
-    this.painting.texture?.dispose();
-    this.painting.normals?.dispose();
+    this.leaveDevice();
     this.removeFromParent();
   }
 }

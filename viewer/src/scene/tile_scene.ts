@@ -41,7 +41,7 @@ export class TileScene extends Group {
       this.look = null;
       changed();
     }));
-    this.contexts = new ContextWatch(restored);
+    this.contexts = new ContextWatch(() => { this.leaveDevice(); }, restored);
   }
 
   /// The whole model's triangles show their backs to the outside.
@@ -145,6 +145,11 @@ export class TileScene extends Group {
     this.renderer = renderer;
     this.contexts.drawnOn(renderer.domElement);
     if (this.hasNormalMaps) this.programs.drawn(object, renderer, scene, camera);
+  }
+
+  /// While the device is lost: the one that comes back is not to be told to delete what it never had.
+  private leaveDevice(): void {
+    for (const object of this.objects.values()) object.leaveDevice();
   }
 
   /// The tile is no longer in memory.
