@@ -48,6 +48,7 @@ struct Opened {
         reader(files.files(), place.path) {}
 
   const BoundsD& box() const { return reader.manifest().source.bounds; }
+
   std::string name;
   storage::HierarchyFiles files;
   storage::HierarchyReader reader;
@@ -238,14 +239,13 @@ class Comparer {
       named.push_back({one.tile, one.triangle});
     const auto targets = shown_triangles(search_.trees(), target_.size(), named, cancel_);
     std::vector<double> most(loose.size());
-    execution::parallel_for(
-        (loose.size() + kSearchedPoints - 1) / kSearchedPoints, [&](std::size_t block) {
-          const std::size_t first = block * kSearchedPoints;
-          for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
-            for (const Vec3d corner : loose[order[i]].corners)
-              most[i] = std::max(most[i], squared_distance(corner, targets[i].corners));
-          }
-        });
+    execution::parallel_for(block_count(loose.size()), [&](std::size_t block) {
+      const std::size_t first = block * kSearchedPoints;
+      for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
+        for (const Vec3d corner : loose[order[i]].corners)
+          most[i] = std::max(most[i], squared_distance(corner, targets[i].corners));
+      }
+    });
     for (std::size_t i = 0; i < loose.size(); ++i) {
       bound_.add(std::sqrt(nearest[i].squared));
       bound_.add(loose[order[i]].corners, loose[order[i]].distances, std::sqrt(most[i]));

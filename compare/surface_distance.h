@@ -102,6 +102,7 @@ class SurfaceDistance {
 
   std::vector<Candidate> candidates(std::span<const Vec3d> block) const;
   std::uint32_t likely_tile(Vec3d point, std::span<const Candidate> candidates) const;
+
   const CutSurface& surface_;
   TreeCache trees_;
   double squared_size_;  ///< of the diagonal of the surface's box

@@ -147,6 +147,7 @@ void answer_queries(TreeCache& trees, std::span<const TileQuery> queries, Rule& 
     const BatchTrees held(trees, batch);
     std::vector<typename Rule::Answer> answers(batch.size());
     execution::parallel_for(block_count(batch.size()), [&](std::size_t block) {
+      cancel.check();
       const auto asked = block_of(std::span(batch), block);
       const auto results = block_of(std::span(answers), block);
       std::uint32_t hint = 0;
@@ -198,6 +199,7 @@ void look_up(TreeCache& trees, std::span<const TileQuery> queries,
     const std::vector<TileQuery> batch = take_batch(queries, [](const TileQuery&) { return true; });
     const BatchTrees held(trees, batch);
     execution::parallel_for(block_count(batch.size()), [&](std::size_t block) {
+      cancel.check();
       const std::size_t first = block * kSearchedPoints;
       for (std::size_t i = first; i < std::min(first + kSearchedPoints, batch.size()); ++i)
         look(held[batch[i]], before + i, batch[i]);

@@ -45,8 +45,6 @@ Bounds box_of(std::span<const SurfaceTriangle> triangles) {
 bool suits_floats(double squared) {
   return squared > 0x1p-80 && squared < 0x1p100;
 }
-/// At a distance of so many sizes, squared, floats still tell parts of the triangles apart.
-constexpr double kFarInSizes = 0x1p16;
 
 }  // namespace
 

@@ -21,12 +21,17 @@ inline double doubled_area(const SurfaceTriangle& triangle) {
 /// the segment or point that its corners span.
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle);
 
+/// Boxes are told apart in single precision at distances of up to so many sizes, squared.
+inline constexpr double kFarInSizes = 0x1p16;
+
 /// Returns a squared distance within which boxes lie whose triangles may measure no more than
 /// `squared`: what squared_distance() rounds off is less than 2^-46 of the size of the triangles,
 /// and of what is measured. `squared_size`: of the diagonal of a box around all.
 constexpr double with_rounding(double squared, double squared_size) {
-  // (d + e)^2 <= d^2 (1 + 2^-20) + e^2 (1 + 2^20)
-  return squared * (1 + 0x1p-20) + squared_size * 0x1p-71;
+  // (d + e)^2 <= d^2 (1 + 2^-20) + e^2 (1 + 2^20). From far away, 2^-20 of the distance would be as
+  // large as all triangles; the size is little beside it: (d + e)^2 <= d^2 (1 + 2^-44).
+  const double part = squared < kFarInSizes * squared_size ? 0x1p-20 : 0x1p-40;
+  return squared * (1 + part) + squared_size * 0x1p-71;
 }
 /// Returns the squared diagonal of a box; 0 if it is empty.
 double squared_diagonal(const Bounds& box);

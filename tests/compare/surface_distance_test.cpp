@@ -169,6 +169,33 @@ TEST(TriangleSearchTest, OfAnySizeAndHoweverFarItFindsWhatTryingAllFinds) {
   }
 }
 
+TEST(TriangleSearchTest, HoweverFarTheFirstOfNearestTrianglesIsThatOfTryingAll) {
+  std::vector<SurfaceTriangle> triangles = scattered(300, 0.2);
+  triangles.insert(triangles.end(), triangles.begin(), triangles.begin() + 100);
+  const TriangleSearch search(triangles);
+  for (const double away : {0.0, 200.0, 300.0, 5e4, 5e6, 1e9, 1e12, 1e15, 1e20}) {
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Vec3d point = noise_point(i, 21) * (1.5 + away) + Vec3d{away, 0, 0};
+      NearTriangle expected;
+      for (std::uint32_t k = 0; k < triangles.size(); ++k) {
+        if (const double squared = squared_distance(point, triangles[k]);
+            squared < expected.squared)
+          expected = {squared, k};
+      }
+      const auto hint = static_cast<std::uint32_t>(i % triangles.size());
+      const NearTriangle found = search.first_nearest(point, kInfinity, hint);
+      ASSERT_EQ(found.squared, expected.squared) << away;
+      ASSERT_EQ(found.triangle, expected.triangle) << away;
+    }
+  }
+}
+
+TEST(TriangleSearchTest, FromFarAwayRoundingIsLessThanATriangle) {
+  for (const double distance : {1.0, 100.0, 1e3, 1e6, 1e9})
+    EXPECT_LT(with_rounding(distance * distance, 1), (distance + 1e-3) * (distance + 1e-3))
+        << distance;
+}
+
 TEST(TriangleSearchTest, NeverExceedsTheLimit) {
   const TriangleSearch search(scattered(50, 0.1));
   std::uint32_t hint = 7;
