@@ -4,8 +4,10 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <iterator>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>

@@ -3,9 +3,12 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <cstring>
-#include <optional>
+#include <span>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>

@@ -32,7 +32,9 @@ namespace {
 constexpr std::uint64_t kFixedBytes = std::uint64_t{88} << 20;
 /// Rows that are looked up together at least: enough to make the trees of their surroundings worth
 /// building.
-constexpr std::size_t kLeastBatch = 65536;
+constexpr std::uint64_t kLeastBatch = 65536;
+/// Rows that are looked up together at most: their places in a batch have 32 bits.
+constexpr std::uint64_t kMostBatch = std::uint64_t{1} << 31;
 /// A row at work takes about a quarter of this; with its answer, and the tiles that it asks.
 constexpr std::uint64_t kSpareBytesPerRow = 1024;
 /// Names of objects that are kept: neighbours in a file often have the same.
@@ -91,7 +93,7 @@ class RowRun {
         curve_(box),
         progress_(progress),
         cancel_(cancel),
-        batch_(kLeastBatch + static_cast<std::size_t>(spare_bytes(options) / kSpareBytesPerRow)),
+        batch_(std::min(kLeastBatch + spare_bytes(options) / kSpareBytesPerRow, kMostBatch)),
         rows_(scratch, spare_bytes(options) / 8),
         answers_(scratch, spare_bytes(options) / 8) {}
 

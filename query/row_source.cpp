@@ -9,7 +9,9 @@
 #include "storage/io/output_file.h"
 #include "storage/io/stream.h"
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -42,9 +44,15 @@ std::uint64_t read_stream(StartOfStream& stream, const std::string& name, RowKin
                                 : read_text_rows(stream, name, kind, visit);
 }
 
+/// Whether bytes begin as a PLY does.
+bool is_ply(std::string_view start) {
+  return start.starts_with("ply\n") || start.starts_with("ply\r");
+}
+
 /// Reads the vertices of a PLY.
 std::uint64_t read_ply_rows(storage::FileSystem& files, const std::filesystem::path& path,
-                            RowKind kind, const RowVisitor& visit) {
+                            RowKind kind, const RowVisitor& visit,
+                            const std::function<void()>& check) {
   const auto source = mesh_io::open_mesh(files, path);
   const AttributeLayout& layout = source->description().attributes;
   const auto channels = static_cast<std::size_t>(layout.channels());
@@ -56,6 +64,7 @@ std::uint64_t read_ply_rows(storage::FileSystem& files, const std::filesystem::p
                             path.string()));
   std::vector<double> rows;
   source->read_vertices([&](const mesh_io::VertexBlock& block) {
+    check();
     const std::size_t count = std::max(block.positions.size(), block.exact.size());
     rows.clear();
     for (std::size_t i = 0; i < count; ++i) {
@@ -78,15 +87,15 @@ std::uint64_t read_rows(storage::FileSystem& files, const std::filesystem::path&
   if (path == storage::kStandardOutput) {
     StandardInput input(check);
     StartOfStream stream(input);
-    if (stream.start().starts_with("ply\n") || stream.start().starts_with("ply\r"))
+    if (is_ply(stream.start()))
       throw Error(ErrorCode::input, "a PLY cannot be read from standard input: name its file");
     return read_stream(stream, "standard input", kind, visit);
   }
   const auto file = files.open(path);
   const auto input = mesh_io::open_stream({*file, file->size()}, [&](std::uint64_t) { check(); });
   StartOfStream stream(*input);
-  if (stream.start().starts_with("ply\n") || stream.start().starts_with("ply\r"))
-    return read_ply_rows(files, path, kind, visit);
+  if (is_ply(stream.start()))
+    return read_ply_rows(files, path, kind, visit, check);
   return read_stream(stream, path.string(), kind, visit);
 }
 

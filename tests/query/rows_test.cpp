@@ -145,6 +145,20 @@ TEST_F(RowsTest, WhatIsWrongWithAnArrayIsTold) {
     EXPECT_NE(failure(whole.substr(0, size)), "") << size;
 }
 
+TEST_F(RowsTest, StopWhenTheyAreAskedTo) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+      "property double z\nend_header\n1 2 3\n";
+  for (const std::string& content : {ply, std::string("1 2 3\n")}) {
+    std::ofstream(path(), std::ios::binary) << content;
+    const auto ask_to_stop = [] { throw Error(ErrorCode::interrupted, "stop"); };
+    EXPECT_THROW(read_rows(
+                     *files_, path(), RowKind::points, [](std::span<const double>) {}, ask_to_stop),
+                 Error)
+        << content;
+  }
+}
+
 TEST_F(RowsTest, OfAPlyAreItsVerticesAndTheirNormals) {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
