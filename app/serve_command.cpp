@@ -1,34 +1,16 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "app/token_file.h"
-#include "app/viewer_place.h"
+#include "app/serve_arguments.h"
+#include "app/serving.h"
 #include "base/error.h"
 #include "base/named_value.h"
-#include "base/plain_text.h"
-#include "config/config.h"
 #include "server/health_question.h"
-#include "server/http_server.h"
-#include "server/log_text.h"
-#include "server/site.h"
-#include "server/uploads.h"
-#include "server/vitals.h"
-#include "server/watch.h"
-#include "storage/io/child_process.h"
-#include "storage/io/output_file.h"
-#include "storage/io/own_program.h"
 
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
+#include <cstdint>
+#include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <ostream>
 #include <string>
-#include <string_view>
-#include <thread>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -36,63 +18,6 @@
 namespace meshhier::app {
 
 namespace {
-
-struct ServeArguments {
-  std::string folder;
-  server::ServerOptions server;
-  bool open = false;
-  std::string viewer;
-  std::string cors;
-  std::string frame;
-  std::string inbox;
-  bool takes_uploads = false;
-  std::uint64_t upload_limit = server::UploadOptions().limit_bytes;
-  std::string token_file;
-  std::string metrics_token_file;
-  std::uint64_t disk_floor = server::ReadinessOptions{}.disk_floor;
-  server::LogFormat log_format = server::LogFormat::text;
-  std::optional<server::Health> question;  ///< asked of a server that runs
-  std::string config;
-  double settle_seconds = 2;
-  bool once = false;
-  bool verbose = false;
-  bool quiet = false;
-};
-
-/// Prints lines on standard error, whole ones from any thread.
-class Console {
- public:
-  Console(std::ostream& out, bool quiet, server::LogFormat format)
-      : out_(out), quiet_(quiet), format_(format) {}
-
-  void tell(server::LogLevel level, const std::string& message) {
-    if (!quiet_)
-      print(level, message);
-  }
-  void print(server::LogLevel level, const std::string& message) {
-    print_line(server::log_line(format_, std::chrono::system_clock::now(), level, message));
-  }
-  void print(const server::Served& served) {
-    print_line(server::log_line(format_, std::chrono::system_clock::now(), served));
-  }
-
- private:
-  void print_line(const std::string& line) {
-    const std::lock_guard lock(mutex_);
-    out_ << line << std::endl;
-  }
-
-  std::ostream& out_;
-  bool quiet_;
-  server::LogFormat format_;
-  std::mutex mutex_;
-};
-
-/// The inbox is looked at no more often, however soon files count as whole.
-constexpr std::chrono::milliseconds kShortestLook{50};
-
-/// Names of folders are cut there, and cleaned, before a terminal shows them.
-constexpr std::size_t kLongestFolderName = 200;
 
 void check_folder(const std::string& option, const std::string& folder, Environment& environment) {
   if (environment.files.is_directory(folder))
@@ -104,266 +29,12 @@ void check_folder(const std::string& option, const std::string& folder, Environm
   throw Error(ErrorCode::io, fmt::format("{} {}: there is no such directory", option, folder));
 }
 
-/// Checks the config of all builds to come, so that a mistake is told now, not with the first
-/// build. Returns the ending that hierarchies get.
-std::string suffix_of(const std::string& config, Environment& environment) {
-  const std::vector<std::string> settings{"input=mesh.ply", "output=mesh.hier"};
-  const config::Config checked = config.empty()
-                                     ? config::parse_config("{}", {"--set", {}}, settings)
-                                     : config::load_config(environment.files, config, settings);
-  return checked.storage.container == config::Container::archive ? ".3tz" : ".hier";
-}
-
-server::WatchOptions watch_options(const ServeArguments& arguments, Environment& environment) {
-  storage::FileSystem& files = environment.files;
-  server::WatchOptions options;
-  options.inbox = files.canonical(arguments.inbox);
-  options.folder = files.canonical(arguments.folder);
-  options.config =
-      arguments.config.empty() ? std::filesystem::path() : files.canonical(arguments.config);
-  options.suffix = suffix_of(arguments.config, environment);
-  options.program = storage::own_program();
-  if (arguments.takes_uploads)
-    options.folders = server::Inbox::Folders::taken;
-  options.settle = std::chrono::milliseconds(std::llround(arguments.settle_seconds * 1000));
-  options.look_every = std::min(options.look_every, std::max(options.settle, kShortestLook));
-  return options;
-}
-
-server::UploadOptions upload_options(const ServeArguments& arguments, Environment& environment) {
-  server::UploadOptions options;
-  options.inbox = environment.files.canonical(arguments.inbox);
-  options.limit_bytes = arguments.upload_limit;
-  options.suffix = suffix_of(arguments.config, environment);
-  options.is_loopback = server::is_loopback_host(arguments.server.host);
-  if (!arguments.token_file.empty())
-    options.token = read_token(environment.files, "--upload-token-file", arguments.token_file);
-  return options;
-}
-
-server::VitalsOptions vitals_options(const ServeArguments& arguments, Environment& environment) {
-  storage::FileSystem& files = environment.files;
-  server::VitalsOptions options;
-  options.readiness = {
-      .folder = files.canonical(arguments.folder),
-      .inbox = arguments.inbox.empty() ? std::filesystem::path() : files.canonical(arguments.inbox),
-      .takes_uploads = arguments.takes_uploads,
-      .disk_floor = arguments.disk_floor};
-  if (!arguments.metrics_token_file.empty())
-    options.token = read_token(files, "--metrics-token-file", arguments.metrics_token_file);
-  return options;
-}
-
-/// Opens the browser; the process is held until this one ends. It may be the browser itself, which
-/// logs without end.
-std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Console& console,
-                                                    storage::FileSystem& files) {
-  const char* const path = std::getenv("PATH");
-  std::string_view rest = path == nullptr ? "" : path;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(':'), rest.size());
-    const std::filesystem::path program = std::filesystem::path(rest.substr(0, end)) / "xdg-open";
-    if (files.exists(program))
-      return std::make_unique<storage::ChildProcess>(
-          std::vector<std::string>{program.string(), url}, storage::ChildProcess::Errors::dropped);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  console.print(server::LogLevel::warning,
-                "--open: there is no xdg-open here (package xdg-utils); open the URL by hand");
-  return nullptr;
-}
-
-void wait_for_end(const execution::CancelToken& cancel, const server::HttpServer& http) {
-  constexpr std::chrono::milliseconds kLook{50};
-  while (!cancel.cancelled() && !http.is_lost())
-    std::this_thread::sleep_for(kLook);
-}
-
-/// Returns the name of a folder for the page: whole paths stay on this machine, others get the last
-/// part.
-std::string place_name(const std::string& folder, bool stays_here, storage::FileSystem& files) {
-  if (folder.empty())
-    return {};
-  const std::filesystem::path path = files.canonical(folder);
-  return (stays_here ? path : path.filename()).string();
-}
-
-server::PlaceNames place_names(const ServeArguments& arguments, storage::FileSystem& files) {
-  const bool stays_here = server::is_loopback_host(arguments.server.host) && arguments.cors.empty();
-  return {place_name(arguments.folder, stays_here, files),
-          place_name(arguments.inbox, stays_here, files)};
-}
-
-std::string empty_text(const ServeArguments& arguments) {
-  const std::string folder = plain_text(arguments.folder, kLongestFolderName);
-  if (arguments.inbox.empty()) {
-    return fmt::format(
-        "there are no hierarchies in {} yet; those that \"meshhier build\" puts "
-        "there are shown at once",
-        folder);
-  }
-  return fmt::format(
-      "there are no hierarchies in {} yet; mesh files that are put into {} become some", folder,
-      plain_text(arguments.inbox, kLongestFolderName));
-}
-
-/// Probes of a service manager come every few seconds: those that went well are not told.
-bool is_told(const server::Served& served) {
-  const std::string path = served.target.substr(0, served.target.find('?'));
-  return served.status >= 400 || path.empty() ||
-         !server::Vitals::is_vital(std::string_view(path).substr(1));
-}
-
-constexpr const char* kNoUploads =
-    "no meshes are taken over the network: --host lets other machines in, and there is no "
-    "--upload-token-file; files that are put into the inbox are built as ever";
-
-/// All that runs. Members that others use come before them, so that they end after them.
-class Service {
- public:
-  Service(const ServeArguments& arguments, Environment& environment)
-      : environment_(environment),
-        console_(environment.messages, arguments.quiet, arguments.log_format),
-        tell_([this](server::LogLevel level, const std::string& message) {
-          console_.tell(level, message);
-        }),
-        warn_([this](const std::string& message) { tell_(server::LogLevel::warning, message); }),
-        complain_([this](const std::string& message) { tell_(server::LogLevel::error, message); }),
-        vitals_(
-            vitals_options(arguments, environment), environment.files, [this] { return figures(); },
-            tell_),
-        hierarchies_(storage::open_folder(arguments.folder), warn_) {
-    ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
-    if (!viewer.folder)
-      console_.print(server::LogLevel::warning, viewer.missing + ' ' + kServedWithoutPage);
-    if (!arguments.inbox.empty()) {
-      server::WatchOptions options = watch_options(arguments, environment);
-      options.on_new = [this] { site_->refresh(); };
-      watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
-    }
-    if (arguments.takes_uploads) {
-      uploads_.emplace(upload_options(arguments, environment), environment.files, complain_);
-      if (!uploads_->offer())
-        tell_(server::LogLevel::warning, kNoUploads);
-      views_.emplace(environment.files.canonical(arguments.folder), *uploads_, hierarchies_,
-                     environment.files, complain_);
-    }
-    site_.emplace(
-        server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
-                            server::is_loopback_host(arguments.server.host), arguments.cors,
-                            arguments.frame, place_names(arguments, environment.files),
-                            uploads_ ? &*uploads_ : nullptr, views_ ? &*views_ : nullptr, &vitals_},
-        hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), complain_);
-    http_.emplace(
-        arguments.server, [this](const server::Request& request) { return site_->answer(request); },
-        [this, is_verbose = arguments.verbose](const server::Served& served) {
-          vitals_.count(served);
-          if (is_verbose && is_told(served))
-            console_.print(served);
-        });
-  }
-
-  void run(const ServeArguments& arguments) {
-    http_->start();
-    const std::string url = server::url_of(arguments.server.host, http_->port());
-    environment_.out << url << std::endl;
-    tell_if_empty(arguments);
-    if (watch_)
-      watch_->start();
-    const auto browser = arguments.open ? open_browser(url, console_, environment_.files) : nullptr;
-    wait_for_end(environment_.cancel, *http_);
-    tell_(server::LogLevel::info, "stopping");
-    http_->stop();
-    if (watch_)
-      watch_->stop();
-    if (http_->is_lost())
-      throw Error(ErrorCode::io, "the system took the port away; start this again");
-  }
-
- private:
-  /// Tells if there are no hierarchies. A folder that cannot be listed now may be listed later.
-  void tell_if_empty(const ServeArguments& arguments) {
-    try {
-      if (hierarchies_.list().empty())
-        tell_(server::LogLevel::info, empty_text(arguments));
-    } catch (const Error& error) {
-      warn_(error.what());
-    }
-  }
-
-  server::Figures figures() {
-    server::Figures figures{.traffic = http_->traffic()};
-    try {
-      figures.models = site_->model_count();
-    } catch (const Error&) {  // the folder cannot be listed now, as /readyz tells
-    }
-    if (watch_)
-      figures.builds = watch_->counts();
-    if (uploads_)
-      figures.uploads = uploads_->counts();
-    return figures;
-  }
-
-  Environment& environment_;
-  Console console_;
-  server::Watch::Tell tell_;
-  server::Hierarchies::Tell warn_, complain_;
-  server::Vitals vitals_;  ///< asks the others, but only for http_
-  server::Hierarchies hierarchies_;
-  std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_
-  std::optional<server::Watch> watch_;
-  std::optional<server::Uploads> uploads_;
-  std::optional<server::ViewRequests> views_;
-  std::optional<server::HttpServer> http_;
-};
-
 /// Asks the server that was started with the same words; 0: its reply is what is hoped for.
 int ask_health(const ServeArguments& arguments, Environment& environment) {
   const server::HealthAnswer answer =
       server::ask_health(arguments.server.host, arguments.server.port, *arguments.question);
   (answer.is_well ? environment.out : environment.messages) << answer.text << std::endl;
   return answer.is_well ? 0 : 1;
-}
-
-/// Locks the folder against another one that does the same.
-std::unique_ptr<storage::FileLock> lock_once(const ServeArguments& arguments,
-                                             storage::FileSystem& files) {
-  auto lock =
-      files.try_lock(storage::output_lock_path(files.canonical(arguments.folder) / "serve-once"));
-  if (!lock) {
-    throw Error(ErrorCode::locked, fmt::format("another \"meshhier serve --once\" is at work on {}",
-                                               arguments.folder));
-  }
-  return lock;
-}
-
-std::string once_text(const server::Watch::Outcome& outcome) {
-  return fmt::format("{} built, {} up to date, {} failed, {} left for the next time\n",
-                     outcome.built, outcome.up_to_date, outcome.failed, outcome.left);
-}
-
-/// Builds what is in the inbox and due, without a server.
-int run_once(const ServeArguments& arguments, Environment& environment) {
-  constexpr std::chrono::milliseconds kLook{20};
-  const auto lock = lock_once(arguments, environment.files);
-  Console console(environment.messages, arguments.quiet, arguments.log_format);
-  const server::Watch::Tell tell = [&](server::LogLevel level, const std::string& message) {
-    console.tell(level, message);
-  };
-  server::Hierarchies hierarchies(
-      storage::open_folder(arguments.folder),
-      [&](const std::string& message) { tell(server::LogLevel::warning, message); });
-  server::WatchOptions options = watch_options(arguments, environment);
-  options.once = true;
-  server::Watch watch(std::move(options), environment.files, hierarchies, tell);
-  watch.start();
-  while (!environment.cancel.cancelled() && !watch.is_over())
-    std::this_thread::sleep_for(kLook);
-  watch.stop();
-  environment.out << once_text(watch.outcome()) << std::flush;
-  if (environment.cancel.cancelled())
-    throw Error(ErrorCode::interrupted, "interrupted; the same command goes on where it was");
-  return server::exit_code_of(watch.outcome().failures);
 }
 
 int run_serve(const ServeArguments& arguments, Environment& environment) {
@@ -373,9 +44,8 @@ int run_serve(const ServeArguments& arguments, Environment& environment) {
   if (!arguments.inbox.empty())
     check_folder(arguments.takes_uploads ? "--inbox" : "--watch", arguments.inbox, environment);
   if (arguments.once)
-    return run_once(arguments, environment);
-  Service service(arguments, environment);
-  service.run(arguments);
+    return build_inbox(arguments, environment);
+  serve_folder(arguments, environment);
   return 0;
 }
 
@@ -514,7 +184,7 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
       ->check(CLI::Range(0.0, 86400.0));
   CLI::Option* once = command.add_flag("--once", arguments.once,
                                        "Build what is there and due, and end; no page, no port");
-  for (const char* option : {"--host", "--port", "--cors", "--open", "--viewer"})
+  for (const char* option : {"--host", "--port", "--cors", "--frame", "--open", "--viewer"})
     once->excludes(command.get_option(option));
   add_upload_options(command, *inbox, arguments);
 }

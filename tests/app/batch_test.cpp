@@ -407,9 +407,11 @@ TEST_F(Once, WhatIsInTheInboxIsBuiltAndNoPortIsOpened) {
   EXPECT_THAT(broken.messages, HasSubstr("broken.ply: "));
   EXPECT_EQ(broken.out, "0 built, 1 up to date, 1 failed, 0 left for the next time\n");
   EXPECT_EQ(run({"serve", models(), "--once"}).code, kUsage) << "of which inbox?";
-  Arguments with_port = once();
-  with_port.insert(with_port.end(), {"--port", "0"});
-  EXPECT_EQ(run(with_port).code, kUsage);
+  for (const Arguments& page : {Arguments{"--port", "0"}, Arguments{"--frame", "*"}}) {
+    Arguments with_page = once();
+    with_page.insert(with_page.end(), page.begin(), page.end());
+    EXPECT_EQ(run(with_page).code, kUsage) << page.front();
+  }
 }
 
 TEST_F(Once, ASecondOneIsRefusedUntilTheFirstHasEnded) {
