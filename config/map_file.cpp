@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/small_letters.h"
 #include "base/text_mark.h"
+#include "base/trimmed.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
 
@@ -26,11 +27,6 @@ constexpr std::string_view kModelMetadata = "<ModelMetadata";
   throw Error(ErrorCode::usage, what);
 }
 
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
-
 /// Takes the first part off `text`, up to one of `separators`, which goes too.
 std::string_view take(std::string_view& text, std::string_view separators) {
   const std::size_t end = std::min(text.find_first_of(separators), text.size());
@@ -43,7 +39,7 @@ std::string_view take(std::string_view& text, std::string_view separators) {
 std::string_view take_line(std::string_view& text) {
   std::string_view line;
   while (line.empty() && !text.empty())
-    line = trimmed(take(text, "\r\n"));
+    line = trimmed(take(text, "\r\n"), kBlanks);
   return line;
 }
 
@@ -83,7 +79,7 @@ std::optional<std::string_view> find_element(std::string_view xml, const std::st
   const std::size_t end = xml.find("</" + name + '>');
   if (end == std::string_view::npos)
     refuse(fmt::format("<{}> has no end", name));
-  return trimmed(xml.substr(0, end));
+  return trimmed(xml.substr(0, end), kBlanks);
 }
 
 /// Replaces the five entities that every XML has by the characters that they stand for.
@@ -153,7 +149,7 @@ std::string crs_of_line(std::string_view line) {
   if (!line.starts_with(kUtm) || (!line.ends_with('N') && !line.ends_with('S')))
     return std::string(line);
   const std::string_view digits = line.substr(kUtm.size(), line.size() - kUtm.size() - 1);
-  const std::optional<std::int64_t> zone = mesh_io::parse_integer(trimmed(digits));
+  const std::optional<std::int64_t> zone = mesh_io::parse_integer(trimmed(digits, kBlanks));
   if (!zone || *zone < 1 || *zone > kMostZones)
     refuse("expected a zone of UTM from 1 to 60, found " + mesh_io::in_quotes(line));
   return fmt::format("EPSG:32{}{:02}", line.ends_with('N') ? '6' : '7', *zone);
@@ -175,7 +171,7 @@ MapFile parse_lines(std::string_view text) {
 }  // namespace
 
 MapFile parse_map_file(std::string_view text) {
-  text = trimmed(without_mark(text));
+  text = trimmed(without_mark(text), kBlanks);
   if (text.empty())
     refuse("expected a CRS or an offset, found an empty file");
   if (text.starts_with('<'))

@@ -4,6 +4,7 @@
 #include "base/number_text.h"
 #include "base/plain_text.h"
 #include "base/text_mark.h"
+#include "base/trimmed.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
@@ -16,19 +17,13 @@
 namespace meshhier::exporting {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos)
-    return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
+constexpr std::string_view kBlanks = " \t\r";
 
 NodeId parse_node(std::string_view text, const std::string& place) {
   const std::size_t slash = text.find('/');
   if (slash != std::string_view::npos) {
-    const auto level = parse_number<std::uint8_t>(trimmed(text.substr(0, slash)));
-    const auto index = parse_number<std::uint32_t>(trimmed(text.substr(slash + 1)));
+    const auto level = parse_number<std::uint8_t>(trimmed(text.substr(0, slash), kBlanks));
+    const auto index = parse_number<std::uint32_t>(trimmed(text.substr(slash + 1), kBlanks));
     if (level && index)
       return {static_cast<Level>(*level), *index};
   }
@@ -54,7 +49,7 @@ std::vector<NodeId> parse_json_nodes(std::string_view text, const std::string& n
       throw Error(ErrorCode::usage,
                   place + ": expected a node as a string \"level/index\", such as \"3/5\"");
     }
-    nodes.push_back(parse_node(trimmed(list[i].get_ref<const std::string&>()), place));
+    nodes.push_back(parse_node(trimmed(list[i].get_ref<const std::string&>(), kBlanks), place));
   }
   return nodes;
 }
@@ -70,7 +65,7 @@ std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name) 
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view whole = text.substr(0, end);
-    const std::string_view content = trimmed(whole.substr(0, whole.find('#')));
+    const std::string_view content = trimmed(whole.substr(0, whole.find('#')), kBlanks);
     if (!content.empty())
       nodes.push_back(parse_node(content, fmt::format("{}: line {}", name, line)));
     text.remove_prefix(std::min(end + 1, text.size()));

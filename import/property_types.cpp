@@ -1,6 +1,7 @@
 #include "import/property_types.h"
 
 #include "base/small_letters.h"
+#include "base/trimmed.h"
 #include "mesh_io/number_text.h"
 
 #include <algorithm>
@@ -13,13 +14,6 @@ namespace meshhier::importing {
 namespace {
 
 using mesh_io::RecordTexts;
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos)
-    return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 bool is_of_digits(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });

@@ -3,6 +3,7 @@
 #include "base/named_value.h"
 #include "base/small_letters.h"
 #include "base/text_mark.h"
+#include "base/trimmed.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_names.h"
 #include "mesh_io/text_chars.h"
@@ -20,18 +21,11 @@ namespace {
 
 constexpr std::string_view kHeaderBlanks = " \t\r\n\v\f";
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kHeaderBlanks);
-  if (first == std::string_view::npos)
-    return {};
-  return text.substr(first, text.find_last_not_of(kHeaderBlanks) - first + 1);
-}
-
 /// Takes the first word off `text`; empty if there is none.
 std::string_view take_word(std::string_view& text) {
-  text = trimmed(text);
+  text = trimmed(text, kHeaderBlanks);
   const std::string_view word = text.substr(0, text.find_first_of(kHeaderBlanks));
-  text = trimmed(text.substr(word.size()));
+  text = trimmed(text.substr(word.size()), kHeaderBlanks);
   return word;
 }
 
@@ -95,7 +89,7 @@ void HeaderParser::check_magic() {
   skip_to_magic();
   const std::size_t end = start_.find_first_of("\r\n", position_);
   const std::string_view first = start_.substr(position_, end - position_);
-  if (small_letters(trimmed(first)) != "ply") {
+  if (small_letters(trimmed(first, kHeaderBlanks)) != "ply") {
     const bool gzip = start_.starts_with("\x1f\x8b");
     fail_file(path_, fmt::format("expected a PLY file, which starts with the line 'ply', found {}",
                                  gzip ? "gzip data (unpack it first)" : in_quotes(first)));
@@ -104,7 +98,7 @@ void HeaderParser::check_magic() {
   const bool carriage_return_only =
       has_end && start_[end] == '\r' && (end + 1 == start_.size() || start_[end + 1] != '\n');
   line_end_ = carriage_return_only ? '\r' : '\n';
-  in_capitals_ = trimmed(first) != "ply";
+  in_capitals_ = trimmed(first, kHeaderBlanks) != "ply";
   header_.odd_lines += position_ > 0 || in_capitals_ ? 1 : 0;
   next_line();
 }

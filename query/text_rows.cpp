@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "base/small_letters.h"
+#include "base/trimmed.h"
 #include "mesh_io/number_text.h"
-#include "mesh_io/text_chars.h"
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,7 @@ constexpr std::size_t kMostLineBytes = std::size_t{1} << 16;
 constexpr std::size_t kReadBytes = std::size_t{1} << 20;
 constexpr std::size_t kLinesAtOnce = 16384;
 constexpr std::size_t kShownBytes = 60;
+constexpr std::string_view kBlanks = " \t\v\f";
 
 constexpr std::array kPointNames{"x"sv, "y"sv, "z"sv};
 constexpr std::array kRayNames{"x"sv, "y"sv, "z"sv, "dx"sv, "dy"sv, "dz"sv};
@@ -89,17 +90,9 @@ class Lines {
   std::uint64_t number_ = 0;
 };
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && mesh_io::is_blank(text.front()))
-    text.remove_prefix(1);
-  while (!text.empty() && mesh_io::is_blank(text.back()))
-    text.remove_suffix(1);
-  return text;
-}
-
 std::string_view without_quotes(std::string_view field) {
   const bool is_quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
-  return is_quoted ? trimmed(field.substr(1, field.size() - 2)) : field;
+  return is_quoted ? trimmed(field.substr(1, field.size() - 2), kBlanks) : field;
 }
 
 /// Returns the end of the field that begins at the front: a separator, not within quotes.
@@ -125,7 +118,7 @@ void split(std::string_view line, std::vector<std::string_view>& fields) {
     std::size_t end = end_of_field(line, separator);
     if (separator == ' ')
       end = std::min(end, line.find('\t'));
-    const std::string_view field = trimmed(line.substr(0, end));
+    const std::string_view field = trimmed(line.substr(0, end), kBlanks);
     if (separator != ' ' || !field.empty())
       fields.push_back(without_quotes(field));
     line.remove_prefix(std::min(end, line.size()));

@@ -1,6 +1,6 @@
 #include "server/byte_range.h"
 
-#include "server/text.h"
+#include "base/trimmed.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,6 +1,7 @@
 #include "server/conditions.h"
 
-#include "server/text.h"
+#include "base/small_letters.h"
+#include "base/trimmed.h"
 #include "storage/io/hash.h"
 
 #include <algorithm>
@@ -64,8 +65,8 @@ bool allows_gzip(std::string_view accept_encoding) {
   bool others = false;
   while (!accept_encoding.empty()) {
     std::string_view item = take_until(accept_encoding, ',');
-    const std::string coding = lower_case(take_until(item, ';'));
-    const bool is_allowed = !is_zero_weight(lower_case(trimmed(item)));
+    const std::string coding = small_letters(take_until(item, ';'));
+    const bool is_allowed = !is_zero_weight(small_letters(trimmed(item)));
     if (coding == "gzip" || coding == "x-gzip")
       return is_allowed;
     if (coding == "*")
@@ -76,7 +77,7 @@ bool allows_gzip(std::string_view accept_encoding) {
 
 bool is_loopback_name(std::string_view host) {
   const std::size_t colon = host.ends_with(']') ? host.size() : host.rfind(':');
-  const std::string name = lower_case(host.substr(0, colon));
+  const std::string name = small_letters(host.substr(0, colon));
   const std::string_view port = host.substr(std::min(name.size() + 1, host.size()));
   return is_port(port) && (name == "localhost" || name == "[::1]" || is_loopback_address(name));
 }

@@ -1,7 +1,7 @@
 #include "server/connection.h"
 
 #include "server/client_key.h"
-#include "server/text.h"
+#include "server/line_ends.h"
 
 #include <algorithm>
 #include <array>

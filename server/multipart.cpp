@@ -1,6 +1,8 @@
 #include "server/multipart.h"
 
-#include "server/text.h"
+#include "base/small_letters.h"
+#include "base/trimmed.h"
+#include "server/line_ends.h"
 
 #include <algorithm>
 #include <cstring>
@@ -40,7 +42,7 @@ std::optional<Parameters> parse_parameters(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (!text.starts_with(';') || equals == std::string_view::npos)
       return std::nullopt;
-    const std::string name = lower_case(trimmed(text.substr(1, equals - 1)));
+    const std::string name = small_letters(trimmed(text.substr(1, equals - 1)));
     text.remove_prefix(equals + 1);
     std::optional<std::string> value = take_value(text);
     if (!value || !parameters.emplace(name, std::move(*value)).second)
@@ -54,7 +56,7 @@ std::optional<Parameters> parse_parameters(std::string_view text) {
 std::optional<std::string> find_parameter(std::string_view value, std::string_view type,
                                           const std::string& name) {
   const std::size_t end = std::min(value.find(';'), value.size());
-  if (lower_case(trimmed(value.substr(0, end))) != type)
+  if (small_letters(trimmed(value.substr(0, end))) != type)
     return std::nullopt;
   auto parameters = parse_parameters(value.substr(end));
   const auto found = parameters ? parameters->find(name) : Parameters::iterator();
@@ -131,7 +133,7 @@ std::optional<std::string> MultipartReader::take_headers() {
     const std::string_view line = head.substr(0, head.find(kLineEnd));
     head.remove_prefix(line.size() + kLineEnd.size());
     const std::size_t colon = line.find(':');
-    if (lower_case(line.substr(0, colon)) != "content-disposition")
+    if (small_letters(line.substr(0, colon)) != "content-disposition")
       continue;
     if (name || colon == std::string_view::npos)
       return std::nullopt;

@@ -1,6 +1,8 @@
 #include "server/request_head.h"
 
-#include "server/text.h"
+#include "base/small_letters.h"
+#include "base/trimmed.h"
+#include "server/line_ends.h"
 
 #include <algorithm>
 #include <string>
@@ -59,7 +61,7 @@ std::optional<Header> parse_header(std::string_view line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos || !is_token(line.substr(0, colon)) || has_controls(line))
     return std::nullopt;
-  return Header{lower_case(line.substr(0, colon)), trimmed(line.substr(colon + 1))};
+  return Header{small_letters(line.substr(0, colon)), trimmed(line.substr(colon + 1))};
 }
 
 /// The headers that may be there once, and decide how the rest is read.
@@ -75,8 +77,9 @@ class Framing {
       has_body_ = true;
     else
       return true;
-    const bool is_clear = header.name == "content-length" ? take_length(header.value)
-                                                          : lower_case(header.value) == "chunked";
+    const bool is_clear = header.name == "content-length"
+                              ? take_length(header.value)
+                              : small_letters(header.value) == "chunked";
     return is_clear && ++lengths_ == 1;
   }
   bool has_body() const { return has_body_; }
@@ -120,7 +123,7 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
     if (header->name == "range") {
       head.range = header->value;
       ++ranges;
-    } else if (header->name == "expect" && lower_case(header->value) == "100-continue") {
+    } else if (header->name == "expect" && small_letters(header->value) == "100-continue") {
       head.expects_continue = true;
     } else {
       head.text.append(line).append(kLineEnd);

@@ -1,6 +1,7 @@
 #include "server/secret.h"
 
-#include "server/text.h"
+#include "base/small_letters.h"
+#include "base/trimmed.h"
 
 #include <cstddef>
 #include <string>
@@ -12,7 +13,7 @@ std::string_view bearer_of(const Request& request) {
   constexpr std::string_view kScheme = "bearer ";
   const std::string_view value =
       request.authorization ? std::string_view(*request.authorization) : std::string_view();
-  return lower_case(value.substr(0, kScheme.size())) == kScheme
+  return small_letters(value.substr(0, kScheme.size())) == kScheme
              ? trimmed(value.substr(kScheme.size()))
              : std::string_view();
 }

@@ -1,10 +1,10 @@
 #include "server/site.h"
 
 #include "base/error.h"
+#include "base/small_letters.h"
 #include "hierarchy/image_format.h"
 #include "server/conditions.h"
 #include "server/file_reply.h"
-#include "server/text.h"
 #include "server/url_path.h"
 #include "storage/io/system_failure.h"
 
@@ -41,7 +41,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{
 /// Returns the type of a file by its name, in the words of HTTP; "application/octet-stream" if
 /// nothing better is known.
 std::string_view content_type(std::string_view file_name) {
-  const std::string name = lower_case(file_name);
+  const std::string name = small_letters(file_name);
   for (const auto& [extension, type] : kTypes) {
     if (name.ends_with(extension))
       return type;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "base/small_letters.h"
 #include "execution/size_text.h"
 #include "mesh_io/formats.h"
 #include "mesh_io/other_formats.h"
@@ -10,7 +11,6 @@
 #include "server/multipart.h"
 #include "server/secret.h"
 #include "server/staged_upload.h"
-#include "server/text.h"
 #include "server/url_path.h"
 #include "storage/io/system_failure.h"
 
@@ -125,7 +125,7 @@ class FolderFiles {
       ++(mesh_io::may_be_picture(name) ? rasters_ : meshes_);
     if (meshes_ > 1)
       return text_reply(400, "There are several meshes among the files: send them one by one.");
-    if (!names_.insert(lower_case(name)).second)
+    if (!names_.insert(small_letters(name)).second)
       return text_reply(400, "Two files have the same name.");
     if (names_.size() > kMostFiles)
       return text_reply(400, fmt::format("There are more than {} files.", kMostFiles));

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "server/folder_scan.h"
-#include "server/text.h"
 #include "server/url_path.h"
 #include "storage/format/view_edit.h"
 #include "storage/format/view_keys.h"

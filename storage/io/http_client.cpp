@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number_text.h"
 #include "base/small_letters.h"
+#include "base/trimmed.h"
 
 #include <algorithm>
 #include <chrono>
@@ -55,13 +56,8 @@ bool may_pass(long status) {
   return status == 408 || status == 425 || status == 429 || (status >= 500 && status != 501);
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
-    text.remove_prefix(1);
-  while (!text.empty() && (text.back() == '\r' || text.back() == '\n' || text.back() == ' '))
-    text.remove_suffix(1);
-  return text;
-}
+/// What may be around the value of a header.
+constexpr std::string_view kBlanks = " \t\r\n";
 
 constexpr auto whole_number = parse_number<std::uint64_t>;
 
@@ -95,7 +91,7 @@ struct Head {
     if (colon == std::string_view::npos)
       return;
     const std::string name = small_letters(line.substr(0, colon));
-    const std::string_view value = trimmed(line.substr(colon + 1));
+    const std::string_view value = trimmed(line.substr(colon + 1), kBlanks);
     if (name == "etag")
       etag = value.starts_with("W/") ? value.substr(2) : value;
     else if (name == "last-modified")
@@ -146,7 +142,7 @@ std::size_t take_header(char* data, std::size_t size, std::size_t count, void* t
   const std::string_view line(data, size * count);
   head.add(line);
   head.bytes += line.size();
-  head.is_complete = trimmed(line).empty();
+  head.is_complete = trimmed(line, kBlanks).empty();
   return head.bytes > kMostHead ? 0 : line.size();
 }
 
