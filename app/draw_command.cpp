@@ -42,8 +42,8 @@ std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t
 
 /// Returns a number above 0.
 std::optional<double> positive_in(std::string_view text) {
-  const auto number = parse_number<double>(text);
-  return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
+  const auto number = parse_finite(text);
+  return number && *number > 0 ? number : std::nullopt;
 }
 
 /// Returns a length above 0.
@@ -54,17 +54,7 @@ std::optional<Length> length_in(std::string_view text) {
 
 /// Returns the heights of "1.2m,4m"; nothing if one of them is none.
 std::optional<std::vector<Length>> heights_in(std::string_view text) {
-  std::vector<Length> heights;
-  while (true) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const auto height = parse_length(text.substr(0, comma));
-    if (!height)
-      return std::nullopt;
-    heights.push_back(*height);
-    if (comma == text.size())
-      return heights;
-    text.remove_prefix(comma + 1);
-  }
+  return parse_list(text, parse_length);
 }
 
 /// Returns N of "1:N", of "N", or of "2:1", which is twice as large.

@@ -30,9 +30,9 @@ struct Length {
 /// Parses a finite number and perhaps a unit of kUnits behind it; nothing if it is anything else.
 inline std::optional<Length> parse_length(std::string_view text) {
   const std::size_t end = std::min(text.find_last_of("0123456789.") + 1, text.size());
-  const auto number = parse_number<double>(text.substr(0, end));
+  const auto number = parse_finite(text.substr(0, end));
   const auto unit = value_named(kUnits, text.substr(end));
-  if (!number || !std::isfinite(*number) || (end < text.size() && !unit))
+  if (!number || (end < text.size() && !unit))
     return std::nullopt;
   return Length(*number, unit);
 }
