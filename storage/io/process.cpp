@@ -2,12 +2,10 @@
 
 #include "base/error.h"
 #include "storage/io/open_files.h"
+#include "storage/io/process_state.h"
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <random>
@@ -27,25 +25,6 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
 }
 
-/// The line "VmHWM:   12345 kB" of /proc/self/status has the key "VmHWM:"; 0 where there is none.
-std::uint64_t status_bytes(std::string_view key) {
-  const int descriptor = ::open("/proc/self/status", O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0)
-    return 0;
-  std::array<char, 4096> buffer;  // the whole file has about 1400 bytes
-  const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
-  ::close(descriptor);
-  std::string_view text(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-  const std::size_t at = text.find(key);
-  if (at == std::string_view::npos)
-    return 0;
-  text.remove_prefix(at + key.size());
-  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-  std::uint64_t kibibytes = 0;
-  std::from_chars(text.data(), text.data() + text.size(), kibibytes);
-  return kibibytes * 1024;
-}
-
 }  // namespace
 
 ProcessUsage process_usage() {
@@ -53,14 +32,15 @@ ProcessUsage process_usage() {
   ::getrusage(RUSAGE_SELF, &usage);
   // Unlike ru_maxrss the high-water mark does not count what the process held before it became
   // this program.
-  ProcessUsage result{seconds(usage.ru_utime), seconds(usage.ru_stime), status_bytes("VmHWM:")};
+  ProcessUsage result{seconds(usage.ru_utime), seconds(usage.ru_stime),
+                      status_number("VmHWM:") * kStatusUnit};
   if (result.peak_resident_bytes == 0)
     result.peak_resident_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return result;
 }
 
 std::uint64_t resident_bytes() {
-  return status_bytes("VmRSS:");
+  return status_number("VmRSS:") * kStatusUnit;
 }
 
 std::uint64_t most_open_files() {

@@ -9,9 +9,6 @@
 namespace meshhier::storage {
 namespace {
 
-/// Sizes in /proc/self/status are in units of 1024 bytes, "VmRSS:   12345 kB".
-constexpr std::uint64_t kUnit = 1024;
-
 std::uint64_t count_open_files() {
   std::error_code error;
   const std::filesystem::directory_iterator files("/proc/self/fd", error);
@@ -21,18 +18,23 @@ std::uint64_t count_open_files() {
 
 }  // namespace
 
-ProcessState process_state() {
-  ProcessState state{.open_files = count_open_files()};
+std::uint64_t status_number(std::string_view key) {
   std::ifstream status("/proc/self/status");
-  for (std::string key; status >> key; status.ignore(kUnit, '\n')) {
-    if (key == "VmRSS:" && status >> state.resident_bytes)
-      state.resident_bytes *= kUnit;
-    else if (key == "VmSize:" && status >> state.virtual_bytes)
-      state.virtual_bytes *= kUnit;
-    else if (key == "Threads:")
-      status >> state.threads;
+  std::uint64_t number = 0;
+  for (std::string word; status >> word;) {
+    if (word == key) {
+      status >> number;
+      break;
+    }
   }
-  return state;
+  return number;
+}
+
+ProcessState process_state() {
+  return {.resident_bytes = status_number("VmRSS:") * kStatusUnit,
+          .virtual_bytes = status_number("VmSize:") * kStatusUnit,
+          .threads = status_number("Threads:"),
+          .open_files = count_open_files()};
 }
 
 }  // namespace meshhier::storage
