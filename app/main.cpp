@@ -61,7 +61,7 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes:
   0    done
-  1    compare: a vertex is farther than the tolerance
+  1    compare: a vertex is farther than the tolerance; serve --check: it is not so
   2    the command line or the config is wrong
   3    the input mesh is broken or not supported
   4    a file could not be read or written

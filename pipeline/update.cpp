@@ -10,13 +10,13 @@
 #include "storage/format/layout.h"
 #include "storage/format/noted_files.h"
 #include "storage/format/work_directory.h"
-#include "storage/io/json_text.h"
 
 #include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace meshhier::pipeline {
 namespace {

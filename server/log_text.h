@@ -2,7 +2,7 @@
 // can end a line or begin another one.
 //
 //   2026-11-30T05:07:20.123Z info 127.0.0.1 GET /models.json?count=120 200 5120
-//   2026-11-30T05:07:20.123Z warning scan.ply: a texture is missing
+//   2026-11-30T05:07:20.123Z warning scan.ply: a texture is lost
 //   {"time":"2026-11-30T05:07:20.123Z","level":"warning","message":"scan.ply: a texture is lost"}
 #pragma once
 

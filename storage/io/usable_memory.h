@@ -19,10 +19,10 @@ struct UsableMemory {
   MemoryBound bound = MemoryBound::machine;
 };
 
-/// Returns the least of the machine's memory, the limits of the process's address space and data
-/// without what it has mapped by now, and the limits of its control groups (versions 1 and 2) with
-/// all above them, as far as they can be read. `root`: the root of the system's files, another one
-/// in tests. Thread-safe.
+/// Returns the least of these, as far as they can be read: the machine's memory; what the limit of
+/// the process's address space leaves beside what it has mapped by now; the limit of its data; and
+/// the limits of its control groups (versions 1 and 2) with all above them. `root`: the root of the
+/// system's files, another one in tests. Thread-safe.
 UsableMemory usable_memory(const std::filesystem::path& root = "/");
 
 }  // namespace meshhier::storage
