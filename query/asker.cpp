@@ -25,6 +25,14 @@ Vec3d vector_at(std::span<const double> numbers, std::size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
+/// Squares of farther places, and their sums, are no numbers.
+constexpr double kFarthest = 1e150;
+
+bool is_place(Vec3d place) {
+  return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) <= kFarthest &&
+         is_finite(place);
+}
+
 void put_triangle(const CutSurface& surface, std::uint32_t tile, const ShownTriangle& triangle,
                   Answer& answer) {
   const NodeId node = surface.cut()[tile];
@@ -39,7 +47,7 @@ class PointAsker final : public Asker {
   PointAsker(const CutSurface& surface, const AskerOptions& options)
       : surface_(surface), options_(options), search_(surface, options.cache_bytes) {}
 
-  bool can_ask(std::span<const double> row) const override { return is_finite(vector_at(row, 0)); }
+  bool can_ask(std::span<const double> row) const override { return is_place(vector_at(row, 0)); }
   Vec3d start_of(std::span<const double> row, const BoundsD&) const override {
     return vector_at(row, 0) - options_.origin;
   }
@@ -90,7 +98,7 @@ class RayAsker final : public Asker {
         rays_(surface, trees_) {}
 
   bool can_ask(std::span<const double> row) const override {
-    return is_finite(vector_at(row, 0)) && is_finite(vector_at(row, 3)) &&
+    return is_place(vector_at(row, 0)) && is_finite(vector_at(row, 3)) &&
            vector_at(row, 3) != Vec3d{};
   }
   /// The place where the ray enters the box.

@@ -18,7 +18,8 @@ namespace meshhier::querying {
 class Asker {
  public:
   virtual ~Asker() = default;
-  /// Whether a row asks anything: its numbers are finite, and a direction leads somewhere.
+  /// Whether a row asks anything: its numbers are finite, its place is no farther than 1e150, and a
+  /// direction leads somewhere.
   virtual bool can_ask(std::span<const double> row) const = 0;
   /// Returns a place where the looking up begins, relative to the origin; `box`: of the surface.
   virtual Vec3d start_of(std::span<const double> row, const BoundsD& box) const = 0;

@@ -236,6 +236,15 @@ TEST_F(QueryTest, RowsThatAskNothingAreAnsweredByNan) {
   EXPECT_EQ(text_of(file("answers.csv")), "distance,x,y,z,level,index,triangle\n");
 }
 
+TEST_F(QueryTest, PlacesTooFarToSquareAreNotSaidToBeOnTheFirstTriangle) {
+  std::ofstream(file("points")) << "1e308 0 0\n0 -1e200 0\n0 0 1e155\n";
+  EXPECT_EQ(run({.rows = file("points")}).not_asked, 3U);
+  for (const std::vector<double>& row : answers())
+    EXPECT_EQ(row.back(), -1) << "triangle";
+  std::ofstream(file("rays")) << "1e308 0 0 -1 0 0\n";
+  EXPECT_EQ(run({.kind = RowKind::rays, .rows = file("rays")}).not_asked, 1U);
+}
+
 TEST_F(QueryTest, AnArrayHasTheNumbersOfTheCsv) {
   write("points", points());
   run({.rows = file("points")});
