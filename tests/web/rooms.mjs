@@ -8,7 +8,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { addStyle, collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { house, HOUSE, plyOf } from './house.mjs';
 import { withSite } from './site.mjs';
 
@@ -102,7 +102,7 @@ function surfaceAt(pixels, i) {
 async function checkPreview(visitor, decoder, draw) {
   for (const look of LOOKS) {
     const page = await visitor.open(`${ASIDE}&light=flat&cavities=off${look}`);
-    await page.addStyleTag({ content: '.top-bar, .bar, .busy, .tools, .tool-lasting { visibility: hidden !important }' });
+    await addStyle(page, '.top-bar, .bar, .busy, .tools, .tool-lasting { visibility: hidden !important }');
     if (look.includes('storey')) await until(page, () => page.evaluate(() => window.meshhier.view.plugins.cuts.length > 0));
     await visitor.settle(page);
     const shown = await decodePicture(decoder, await visitor.picture(page, `page${LOOKS.indexOf(look)}`));
