@@ -195,6 +195,22 @@ bool is_up_to_date(const BuildArguments& arguments, const config::Config& config
   return reason.empty();
 }
 
+/// Builds. What a stopped build of another config or input has left is kept, but from `--update`,
+/// which is to end with an output that is up to date.
+pipeline::BuildReport run_build(const BuildArguments& arguments, const config::Config& config,
+                                const pipeline::BuildEnvironment& environment) {
+  pipeline::BuildOptions options{arguments.force || arguments.update, arguments.restart,
+                                 others_of(arguments)};
+  try {
+    return pipeline::build_hierarchy(config, options, environment);
+  } catch (const Error& error) {
+    if (!arguments.update || error.code() != ErrorCode::other_work)
+      throw;
+  }
+  options.restart = true;
+  return pipeline::build_hierarchy(config, options, environment);
+}
+
 /// Checks the files that are to be written besides, and builds.
 int run_one(const BuildArguments& arguments, const config::Config& config,
             execution::ProgressMode mode, const Environment& environment) {
@@ -215,9 +231,8 @@ int run_one(const BuildArguments& arguments, const config::Config& config,
         "at most {} of memory, {}\n", execution::rounded_size_text(pipeline::memory_budget(config)),
         counted(pipeline::thread_count(config), "threads"));
   }
-  const pipeline::BuildReport report = pipeline::build_hierarchy(
-      config, {arguments.force || arguments.update, arguments.restart, others_of(arguments)},
-      {environment.files, *progress, environment.cancel});
+  const pipeline::BuildReport report =
+      run_build(arguments, config, {environment.files, *progress, environment.cancel});
   if (mode == execution::ProgressMode::json)
     tell_warnings(report.text, *progress);
   progress->finish(config.output.string());

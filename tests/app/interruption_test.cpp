@@ -259,6 +259,21 @@ TEST_F(Killed, SLOW_WorkTowardsAnotherResultIsKeptUnlessItIsToRestart) {
   EXPECT_THAT(anew.out, Not(HasSubstr("went on")));
 }
 
+TEST_F(Killed, SLOW_AnUpdateBeginsAnewWhereWorkTowardsAnotherResultWasLeft) {
+  write_mesh("a.ply");
+  write_config();
+  leave_work();
+  const std::string config = (work() / "a.json").string();
+  const Outcome anew = run({"build", config, "--set", "partition.vertices=400", "--update"});
+  EXPECT_EQ(anew.code, 0) << anew.messages;
+  EXPECT_THAT(anew.out, Not(HasSubstr("went on")));
+  std::filesystem::remove_all(hierarchy());
+  leave_work();
+  const Outcome same = run({"build", config, "--update"});
+  EXPECT_EQ(same.code, 0) << same.messages;
+  EXPECT_THAT(same.out, HasSubstr("went on"));
+}
+
 TEST_F(Killed, SLOW_AnInputThatIsAnotherMeanwhileIsReadAgain) {
   write_mesh("a.ply");
   write_config();
