@@ -1,13 +1,16 @@
 #include "server/build_target.h"
 
+#include "base/error.h"
+#include "base/plain_text.h"
 #include "mesh_io/formats.h"
+#include "server/url_path.h"
 #include "storage/format/layout.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace meshhier::server {
@@ -53,6 +56,13 @@ std::size_t longest_beside(const std::string& output) {
   return longest;
 }
 
+/// Returns by how many bytes the name of a hierarchy is too long for all that lies beside it; 0 if
+/// it is not.
+std::size_t excess_of_output(const std::string& output) {
+  const std::size_t longest = longest_beside(output);
+  return longest - std::min(longest, kLongestName);
+}
+
 bool is_taken(const storage::Folder& folder, const std::string& name) {
   const std::vector<storage::FolderEntry> entries = folder.entries("");
   return std::any_of(entries.begin(), entries.end(),
@@ -60,11 +70,6 @@ bool is_taken(const storage::Folder& folder, const std::string& name) {
 }
 
 }  // namespace
-
-std::size_t excess_of_output(const std::string& output) {
-  const std::size_t longest = longest_beside(output);
-  return longest - std::min(longest, kLongestName);
-}
 
 std::size_t excess_of_name(const std::string& name, const std::string& suffix) {
   return std::max(excess_of_output(stem_of(name) + suffix),
@@ -88,6 +93,25 @@ BuildTarget find_target(TargetFolder target, const std::string& name,
       return {Kind::build, output};
   }
   return {Kind::nowhere, by_name};
+}
+
+void check_target(const BuildTarget& target, const std::string& name,
+                  const std::filesystem::path& folder) {
+  if (decode_path('/' + encode_path(name)) != name) {
+    throw Error(ErrorCode::usage,
+                "the name of this file cannot be part of a URL: rename it, without control "
+                "characters and backslashes");
+  }
+  if (const std::size_t excess = excess_of_output(target.name); excess > 0) {
+    throw Error(ErrorCode::usage, fmt::format("the name of this file is too long by {} for the "
+                                              "files that are made of it: rename it",
+                                              counted(excess, "bytes")));
+  }
+  if (target.kind == BuildTarget::Kind::nowhere) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds something else of that name: rename this file, or that",
+                            (folder / target.name).string()));
+  }
 }
 
 }  // namespace meshhier::server

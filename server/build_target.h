@@ -5,6 +5,7 @@
 #include "storage/io/folder.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,10 +29,8 @@ struct TargetFolder {
   std::string suffix;  ///< ".hier"
 };
 
-/// Returns by how many bytes the name of a hierarchy is too long for all that lies beside it; 0 if
-/// it is not.
-std::size_t excess_of_output(const std::string& output);
-/// Returns the same for a mesh's file, whichever of the two names below its hierarchy gets.
+/// Returns by how many bytes the name of a hierarchy is too long for all that lies beside it,
+/// whichever of the two names below a mesh's file gets; 0 if neither is.
 std::size_t excess_of_name(const std::string& name, const std::string& suffix);
 
 /// Finds the place for the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to
@@ -42,5 +41,10 @@ std::size_t excess_of_name(const std::string& name, const std::string& suffix);
 BuildTarget find_target(TargetFolder target, const std::string& name,
                         const std::vector<std::string>& inbox,
                         const std::function<bool(const Model&)>& is_made_of);
+
+/// Throws Error(usage) if the name of the inbox's file cannot be part of a URL, or is too long;
+/// Error(exists) if `folder` has no place for its hierarchy.
+void check_target(const BuildTarget& target, const std::string& name,
+                  const std::filesystem::path& folder);
 
 }  // namespace meshhier::server

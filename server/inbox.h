@@ -55,6 +55,7 @@ class Inbox {
   /// Returns the folders of the last look that give no model, and why, once they have been so for
   /// as long as files settle. Those of hierarchies, and hidden ones, are not told.
   const std::map<std::string, std::string>& left_out() const { return left_out_; }
+  const std::filesystem::path& directory() const { return directory_; }
   /// Opens a file, without following it if it has become a link. Null if it is not there, or of
   /// another version. Throws Error(io).
   std::unique_ptr<storage::File> open(const std::string& name,

@@ -2,9 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
-#include "server/url_path.h"
 #include "storage/format/layout.h"
-#include "storage/io/file_checksum.h"
 #include "storage/io/system_failure.h"
 
 #include <algorithm>
@@ -41,14 +39,16 @@ constexpr const char* kGrowing = "waits until the file no longer changes";
 Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies, Tell tell)
     : options_(std::move(options)),
       files_(files),
-      inbox_files_(storage::make_posix_file_system({false, options_.inbox})),
       hierarchies_(hierarchies),
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
       notes_(files_, folder_),
-      inbox_(options_.inbox, {.settle = options_.settle,
-                              .folders = options_.folders,
-                              .mark = [this](const std::string& name) { return mark_of(name); }}) {}
+      inbox_(options_.inbox,
+             {.settle = options_.settle,
+              .folders = options_.folders,
+              .mark = [this](const std::string& name) { return sources_.mark(name); }}),
+      sources_(inbox_, notes_, cancel_,
+               [this](const std::string& message) { tell_(LogLevel::warning, message); }) {}
 
 Watch::~Watch() {
   stop();
@@ -173,7 +173,7 @@ void Watch::look() {
       return std::none_of(files.begin(), files.end(),
                           [&](const InboxFile& file) { return file.name == entry.first; });
     };
-    std::erase_if(known_, is_gone);
+    sources_.forget_all_but(files);
     {
       const std::lock_guard lock(mutex_);
       std::erase_if(entries_, is_gone);
@@ -209,22 +209,14 @@ void Watch::tell_left_out() {
 void Watch::drop_what_is_done() {
   for (const std::string& name : names_in(State::fresh)) {
     try {
-      const BuildTarget target = target_of(name, Unknown::is_another);
-      const bool is_done = target.kind == BuildTarget::Kind::done;
-      if (is_done)
-        keep_mark(name);
-      leave_fresh(name, is_done ? State::done : State::growing);
+      if (target_of(name, Sources::Unknown::is_another).kind == BuildTarget::Kind::done)
+        set_done(name);
+      else
+        set_state(name, State::growing, kGrowing);
     } catch (const std::exception& error) {
       keep_fresh(name, error.what());
     }
   }
-}
-
-void Watch::leave_fresh(const std::string& name, State state) {
-  const std::lock_guard lock(mutex_);
-  Entry& entry = entries_[name];
-  entry.state = state;
-  entry.job.message = kGrowing;
 }
 
 void Watch::keep_fresh(const std::string& name, const std::string& cause) {
@@ -274,12 +266,10 @@ std::string Watch::next_waiting() const {
 /// Builds the hierarchy of a file. A failure with one file does not keep the others waiting.
 void Watch::handle(const std::string& name) {
   try {
-    const BuildTarget target = target_of(name, Unknown::is_read);
-    if (target.kind == BuildTarget::Kind::done) {
-      keep_mark(name);
-      return set_state(name, State::done, "");
-    }
-    check_target(name, target);
+    const BuildTarget target = target_of(name, Sources::Unknown::is_read);
+    if (target.kind == BuildTarget::Kind::done)
+      return set_done(name);
+    check_target(target, name, options_.folder);
     if (is_in_hand(target))
       return put_off(name, "waits for another build that is at work on " + target.name, kLocked);
     build(name, target);
@@ -292,123 +282,17 @@ void Watch::handle(const std::string& name) {
   }
 }
 
-BuildTarget Watch::target_of(const std::string& name, Unknown unknown) {
-  return find_target({hierarchies_, *folder_, options_.suffix}, name, names_in(std::nullopt),
-                     [&](const Model& model) { return is_made_of(name, model, unknown); });
-}
-
-/// Only the mesh is known of a hierarchy that was built by hand.
-storage::InputNote Watch::note_of(const Model& model) const {
-  auto note = notes_.find(model.path);
-  if (note && note->content == model.source_checksum)
-    return *std::move(note);
-  return {model.source_checksum,
-          {{model.source, {.bytes = model.mesh_bytes}, model.mesh_checksum}},
-          {}};
-}
-
-bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unknown) {
-  storage::InputNote note = note_of(model);
-  Known& known = known_[name];
-  const storage::NotedFiles companions = companions_of(name);
-  known = {note, companions.mark(note)};
-  const storage::FileIdentity noted = note.files[0].identity;
-  if (!is_mesh_of(name, note.files[0], unknown))
-    return false;
-  const storage::NotedFiles::Comparison others =
-      companions.compare(note,
-                         {.from = 1,
-                          .may_read = unknown == Unknown::is_read,
-                          .gone = storage::NotedFiles::Gone::is_same},
-                         [&] { cancel_.check(); });
-  if (!others.other && (others.was_read || !is_untouched(noted, note.files[0].identity)))
-    keep_note(model.path, note);
-  return !others.other;
-}
-
-/// Returns the companions of a mesh, whose paths start at its folder.
-storage::NotedFiles Watch::companions_of(const std::string& name) const {
-  return {inbox_files_->input(), (options_.inbox / name).parent_path()};
-}
-
-/// Returns the mark of a mesh's companions; 0 until a hierarchy of it was looked at.
-std::uint64_t Watch::mark_of(const std::string& name) const {
-  const auto known = known_.find(name);
-  return known == known_.end() ? 0 : companions_of(name).mark(known->second.note);
-}
-
-/// Whether the mesh is the noted file; `noted` gets its times then.
-bool Watch::is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown) {
+BuildTarget Watch::target_of(const std::string& name, Sources::Unknown unknown) {
   const storage::FileVersion version = version_of(name).mesh;
-  const storage::FileIdentity now{version.bytes, version.modified_ns, version.changed_ns};
-  if (is_untouched(now, noted.identity))
-    return true;
-  if (unknown == Unknown::is_another || now.bytes != noted.identity.bytes ||
-      read_checksum(name, version) != noted.checksum)
-    return false;
-  noted.identity = now;
-  return true;
-}
-
-/// Keeps the present mark: from here on only changes after this look count.
-void Watch::keep_mark(const std::string& name) {
-  const auto known = known_.find(name);
-  const std::lock_guard lock(mutex_);
-  const auto entry = entries_.find(name);
-  if (known != known_.end() && entry != entries_.end())
-    entry->second.version.companions = known->second.mark;
-}
-
-/// Reads the checksum of a file in the inbox, as builds compute it.
-std::uint64_t Watch::read_checksum(const std::string& name, const storage::FileVersion& version) {
-  const auto file = inbox_.open(name, version);
-  const std::uint64_t checksum =
-      file ? storage::FileChecksum(version.bytes).complete(*file, [&] { cancel_.check(); }) : 0;
-  if (!is_still(name, version))
-    throw Error(ErrorCode::input, "it was changed while it was read; it is looked at again");
-  return checksum;
+  return find_target(
+      {hierarchies_, *folder_, options_.suffix}, name, names_in(std::nullopt),
+      [&](const Model& model) { return sources_.is_made_of(name, version, model, unknown); });
 }
 
 InputVersion Watch::version_of(const std::string& name) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
   return found == entries_.end() ? InputVersion() : found->second.version;
-}
-
-/// Whether the file is still of that version; false if nobody can tell.
-bool Watch::is_still(const std::string& name, const storage::FileVersion& version) const {
-  try {
-    return inbox_.open(name, version) != nullptr;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-/// Writes a note. A failure is told, and no more: without the note, files are only read once more.
-void Watch::keep_note(const std::string& hierarchy, const storage::InputNote& note) {
-  try {
-    notes_.write(hierarchy, note);
-  } catch (const Error& error) {
-    tell_(LogLevel::warning, error.what());
-  }
-}
-
-void Watch::check_target(const std::string& name, const BuildTarget& target) const {
-  if (decode_path('/' + encode_path(name)) != name) {
-    throw Error(ErrorCode::usage,
-                "the name of this file cannot be part of a URL: rename it, without control "
-                "characters and backslashes");
-  }
-  if (const std::size_t excess = excess_of_output(target.name); excess > 0) {
-    throw Error(ErrorCode::usage, fmt::format("the name of this file is too long by {} for the "
-                                              "files that are made of it: rename it",
-                                              counted(excess, "bytes")));
-  }
-  if (target.kind == BuildTarget::Kind::nowhere) {
-    throw Error(ErrorCode::exists,
-                fmt::format("{} holds something else of that name: rename this file, or that",
-                            (options_.folder / target.name).string()));
-  }
 }
 
 /// Whether another process builds there. A build would wait for it as well, but not as long.
@@ -514,8 +398,8 @@ void Watch::settle_built(const std::string& name, const BuildTarget& target,
                          const InputVersion& version, const std::vector<std::string>& warnings) {
   options_.on_new();
   const std::optional<Model> model = hierarchies_.look(target.name);
-  if (model && is_still(name, version.mesh) && is_made_of(name, *model, Unknown::is_another)) {
-    keep_mark(name);
+  if (model && sources_.is_still(name, version.mesh) &&
+      sources_.is_made_of(name, version.mesh, *model, Sources::Unknown::is_another)) {
     keep_warnings(name, *model, warnings);
     {
       const std::lock_guard lock(mutex_);
@@ -525,7 +409,7 @@ void Watch::settle_built(const std::string& name, const BuildTarget& target,
     tell_(LogLevel::info,
           name + ": done" +
               (warnings.empty() ? "" : ", with " + counted(warnings.size(), "warnings")));
-    return set_state(name, State::done, "");
+    return set_done(name);
   }
   tell_(LogLevel::info, name + ": it was changed while it was built; it is looked at again");
   set_state(name, State::growing, kGrowing);
@@ -536,17 +420,24 @@ void Watch::keep_warnings(const std::string& name, const Model& model,
                           const std::vector<std::string>& warnings) {
   if (warnings.empty())
     return;
-  storage::InputNote& note = known_[name].note;
-  note.warnings.clear();
+  std::vector<std::string> shown;
   for (const std::string& warning : warnings)
-    note.warnings.push_back(shown_text(warning));
-  keep_note(model.path, note);
+    shown.push_back(shown_text(warning));
+  sources_.keep_warnings(name, model, std::move(shown));
   options_.on_new();
 }
 
 std::string Watch::shown_text(const std::string& message) const {
   std::string shown = without(without(message, options_.inbox.string()), options_.folder.string());
   return options_.config.empty() ? shown : without(shown, options_.config.parent_path().string());
+}
+
+/// Settles a file that has its hierarchy: from here on only changes after the last look count.
+void Watch::set_done(const std::string& name) {
+  set_state(name, State::done, "");
+  const std::lock_guard lock(mutex_);
+  if (const auto found = entries_.find(name); found != entries_.end())
+    found->second.version.companions = sources_.mark_when_asked(name);
 }
 
 void Watch::set_state(const std::string& name, State state, const std::string& message) {

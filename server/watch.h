@@ -10,7 +10,7 @@
 #include "server/input_notes.h"
 #include "server/job.h"
 #include "server/log_text.h"
-#include "storage/format/noted_files.h"
+#include "server/sources.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
 
@@ -104,24 +104,10 @@ class Watch {
   void drop_what_is_done();
   void tell_left_out();
   void count(const BuildEnd& outcome, std::chrono::steady_clock::duration time);
-  void leave_fresh(const std::string& name, State state);
   void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
-  /// Whether a file is read whose times are not those that were noted.
-  enum class Unknown { is_read, is_another };
-  BuildTarget target_of(const std::string& name, Unknown unknown);
-  /// Returns the files that the hierarchy was made of, as far as anybody has noted them.
-  storage::InputNote note_of(const Model& model) const;
-  bool is_made_of(const std::string& name, const Model& model, Unknown unknown);
-  bool is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown);
-  storage::NotedFiles companions_of(const std::string& name) const;
-  std::uint64_t mark_of(const std::string& name) const;
-  std::uint64_t read_checksum(const std::string& name, const storage::FileVersion& version);
+  BuildTarget target_of(const std::string& name, Sources::Unknown unknown);
   InputVersion version_of(const std::string& name) const;
-  bool is_still(const std::string& name, const storage::FileVersion& version) const;
-  void keep_note(const std::string& hierarchy, const storage::InputNote& note);
-  void keep_mark(const std::string& name);
-  void check_target(const std::string& name, const BuildTarget& target) const;
   bool is_in_hand(const BuildTarget& target);
   void put_off(const std::string& name, const std::string& message, int code);
   void fail(const std::string& name, const std::string& message, int code);
@@ -133,6 +119,7 @@ class Watch {
                     const std::vector<std::string>& warnings);
   void keep_warnings(const std::string& name, const Model& model,
                      const std::vector<std::string>& warnings);
+  void set_done(const std::string& name);
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,
@@ -142,18 +129,12 @@ class Watch {
 
   WatchOptions options_;
   storage::FileSystem& files_;
-  std::unique_ptr<storage::FileSystem> inbox_files_;  ///< its input() leads nowhere else
   Hierarchies& hierarchies_;
   Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
   InputNotes notes_;
-  /// By mesh: the note of the hierarchy that was looked at last, and the mark of its files then.
-  struct Known {
-    storage::InputNote note;
-    std::uint64_t mark = 0;
-  };
-  std::map<std::string, Known> known_;
   Inbox inbox_;
+  Sources sources_;
   Time last_look_;
   std::string trouble_;                               ///< the failure of the last look, told once
   std::map<std::string, std::string> told_left_out_;  ///< folders of the inbox, and why
