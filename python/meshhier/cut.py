@@ -17,7 +17,6 @@ from .region import Region
 from .tile import Tile
 from .tree import Node
 
-_FINER = -1
 # Tiles in memory. Where neighbours are read, 205 tiles took 581 reads with 4, 350 with 12, 320 with 16 and 298 with 24 of them.
 FEW_TILES = 16
 MANY_TILES = 256
@@ -34,11 +33,15 @@ class CutPieces:
     copies; of a textured mesh all kinds, as its tiles share none.
     """
 
-    def __init__(self, manifest: Manifest, index: TileIndex, read: Callable[[Node], Tile], rows: Rows, with_ids: bool, kept_tiles: int) -> None:
-        """`rows`: the tiles of the cut from left to right; `kept_tiles`: how many are in memory."""
+    def __init__(
+        self, manifest: Manifest, index: TileIndex, read: Callable[[Node], Tile], expect: Callable[[Rows], None], rows: Rows, with_ids: bool, kept_tiles: int
+    ) -> None:
+        """`expect`: is told which tiles will be read next; `rows`: the tiles of the cut from left to right; `kept_tiles`: how many are in
+        memory."""
         self._manifest = manifest
         self._index = index
         self._rows = rows
+        self._expect = expect
         self._read = lru_cache(maxsize=kept_tiles)(lambda row: read(index.node(row)))
         self._with_ids = with_ids
         self._is_textured = manifest.is_textured
@@ -52,7 +55,8 @@ class CutPieces:
         """What each tile draws; with a region what touches it, of those tiles that have something there. Pieces have `ids`; those of
         other tiles' vertices are below 0, and known to this piece alone, if they were not asked for."""
         places = np.arange(len(self._rows)) if region is None else self._reaching(region)
-        for place in places:
+        for at, place in enumerate(places):
+            self._expect(self._rows[places[at:]])
             try:
                 piece = self._piece(int(place), region)
             except (IndexError, ValueError) as error:
@@ -132,10 +136,10 @@ class CutPieces:
         numbers and, of coarser neighbours, the looks of the vertices that they are there."""
         is_ours = np.ones(tile.own + tile.ghosts, bool)
         places = np.concatenate([base + np.arange(tile.own), np.full(tile.ghosts, -1)])
-        for neighbour, chain, first, end in zip(tile.neighbours, tile.chains, tile.own + tile.ghost_starts, tile.own + tile.ghost_starts[1:]):
-            node = Node(tile.node.level, int(neighbour))
-            up, row = self._find(node, chain.shape[1])
-            if row < 0 or (up == 0 and node.index < tile.node.index):
+        shown = [self._find(tile.node, int(neighbour), chain.shape[1]) for neighbour, chain in zip(tile.neighbours, tile.chains)]
+        self._expect(np.array([row for up, row in shown if row >= 0 and self._is_looked_up(row, up > 0)], np.int64))
+        for (up, row), chain, first, end in zip(shown, tile.chains, tile.own + tile.ghost_starts, tile.own + tile.ghost_starts[1:]):
+            if row < 0:
                 is_ours[first:end] = False
                 continue
             targets = chain[:, up]
@@ -147,13 +151,17 @@ class CutPieces:
             self._move(tile, ghosts, np.concatenate([targets, targets[tile.copy_of[copies] - first]]), row, up > 0, unsplit, ids)
         return is_ours, places
 
-    def _find(self, node: Node, levels: int) -> tuple[int, int]:
-        """How many levels up a neighbour is shown, and the row of that tile."""
+    def _find(self, node: Node, neighbour: int, levels: int) -> tuple[int, int]:
+        """How many levels up a neighbour of a tile is shown, and the row of that tile; -1 if it, or what is finer, draws what is between."""
         for up in range(levels):
-            row = self._index.find(self._manifest.tree.ancestor(node, node.level - up))
+            row = self._index.find(self._manifest.tree.ancestor(Node(node.level, neighbour), node.level - up))
             if row >= 0 and self._places[row] >= 0:
-                return up, row
-        return _FINER, -1
+                return up, -1 if up == 0 and neighbour < node.index else row
+        return 0, -1
+
+    def _is_looked_up(self, row: int, is_coarser: bool) -> bool:
+        """Whether ghosts get numbers or looks that their tile alone knows."""
+        return is_coarser or bool(self._with_ids and not self._is_textured and self._index.records["copies"][row] > 0)
 
     def _move(self, tile: Tile, ghosts: _Numbers, targets: _Numbers, row: int, is_coarser: bool, unsplit: _Numbers, ids: _Numbers) -> None:
         """Gives ghosts and their copies what the places `targets` of another tile have; at the same level they have it."""
@@ -161,7 +169,7 @@ class CutPieces:
         if not is_coarser and (self._is_textured or not self._with_ids):
             return
         vertices = targets
-        if is_coarser or record["copies"] > 0:
+        if self._is_looked_up(row, is_coarser):
             vertices = _nearest(tile, ghosts, self._read(row), targets, self._manifest.attributes["normals"])
         if not self._is_textured:
             ids[ghosts] = self._bases[self._places[row]] + np.where(vertices < record["own"], vertices, vertices - int(record["ghosts"]))

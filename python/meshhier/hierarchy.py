@@ -217,7 +217,16 @@ class Hierarchy:
         Each vertex of the cut is an own one of one tile. Triangles are not: those at seams, `tile.border`, are in every tile
         that they touch. What is summed over triangles is summed over `iter_parts()`.
         """
-        return map(self.read_tile, self.cut_nodes(error=error, level=level))
+        return self._each_tile(self._cut(error, level))
+
+    def _each_tile(self, rows: Rows) -> Iterator[Tile]:
+        for at, row in enumerate(rows):
+            self._expect(rows[at:])
+            yield self.read_tile(self._index.node(row))
+
+    def _expect(self, rows: Rows) -> None:
+        """Tells which tiles will be read next."""
+        self._files.expect((self._manifest.tile_name(self._index.node(row)), int(self._index.records["bytes"][row])) for row in rows)
 
     # Questions.
 
@@ -363,7 +372,7 @@ class Hierarchy:
             raise UsageError(f"nodes are a list, as [(1, 0), (1, 1)], not {nodes!r}")
         else:
             rows = self._index.check_cut(np.array([self._index.row(node) for node in nodes], np.int64))
-        return CutPieces(self._manifest, self._index, self.read_tile, rows, with_ids, kept_tiles), self._region(box, polygon)
+        return CutPieces(self._manifest, self._index, self.read_tile, self._expect, rows, with_ids, kept_tiles), self._region(box, polygon)
 
 
 Place = Union[Path, Hierarchy]

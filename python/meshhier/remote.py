@@ -7,9 +7,10 @@ import os
 import threading
 import urllib.parse
 import zipfile
-from collections import OrderedDict
+from collections import OrderedDict, deque
+from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 from .asked import is_web_address, whole
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ReplacedError, UsageError
@@ -24,6 +25,10 @@ _MOST_READ = 1 << 31
 _MOST_DIRECTORY = 1 << 28
 #: Bytes of parts that stay in memory, if nobody says how many.
 CACHE_BYTES = 64 << 20
+#: Files that come at once before they are wanted, as many as a browser asks of one host; and bytes of all that come before.
+_MOST_AT_ONCE = 6
+_MOST_AHEAD_BYTES = 16 << 20
+_LOCAL_HEADER = 30  # of a file in a zip archive, before its name
 
 
 @dataclass(frozen=True)
@@ -36,19 +41,31 @@ class Web:
     cache_bytes: int
 
 
+_Key = tuple[str, int]
+
+
 class Blocks:
-    """Blocks of files that have come, up to a budget; the ones used last stay. Thread-safe."""
+    """Blocks of files that have come, up to a budget, of which the ones used last stay; and those on their way, which are asked for
+    once, whoever wants them. Thread-safe."""
 
     def __init__(self, most_bytes: int) -> None:
         self._most, self._bytes = most_bytes, 0
-        self._blocks: OrderedDict[tuple[str, int], bytes] = OrderedDict()
+        self._blocks: OrderedDict[_Key, bytes] = OrderedDict()
+        self._coming: dict[_Key, Future[bytes]] = {}
         self._lock = threading.Lock()
 
-    def find(self, file: str, number: int) -> Optional[bytes]:
-        with self._lock:
-            if (file, number) in self._blocks:
-                self._blocks.move_to_end((file, number))
-            return self._blocks.get((file, number))
+    def get(self, file: str, numbers: Iterable[int], fetch: Callable[[int, int], Iterable[bytes]]) -> bytes:
+        """Ascending blocks of a file, one behind the other. `fetch(first, count)` returns blocks side by side of which nobody has asked
+        for any."""
+        wanted, own = self._claim(file, numbers)
+        try:
+            for first, count in _runs(own):
+                for number, data in enumerate(fetch(first, count), first):
+                    self.keep(file, number, data)
+        except BaseException as error:
+            self._give_up(file, own, error)
+            raise
+        return b"".join(block if isinstance(block, bytes) else block.result() for block in wanted)
 
     def keep(self, file: str, number: int, data: bytes) -> None:
         with self._lock:
@@ -56,6 +73,74 @@ class Blocks:
             self._blocks[file, number] = data
             while self._bytes > self._most and self._blocks:
                 self._bytes -= len(self._blocks.popitem(last=False)[1])
+            coming = self._coming.pop((file, number), None)
+        if coming is not None:
+            coming.set_result(data)
+
+    def _claim(self, file: str, numbers: Iterable[int]) -> tuple[list[Union[bytes, Future[bytes]]], list[int]]:
+        """Blocks, and the numbers of those that the caller has to bring."""
+        wanted: list[Union[bytes, Future[bytes]]] = []
+        own = []
+        with self._lock:
+            for key in ((file, number) for number in numbers):
+                if key in self._blocks:
+                    self._blocks.move_to_end(key)
+                elif key not in self._coming:
+                    self._coming[key] = Future()
+                    own.append(key[1])
+                wanted.append(self._blocks[key] if key in self._blocks else self._coming[key])
+        return wanted, own
+
+    def _give_up(self, file: str, numbers: Iterable[int], error: BaseException) -> None:
+        with self._lock:
+            left = [self._coming.pop((file, number), None) for number in numbers]
+        for coming in left:
+            if coming is not None:
+                coming.set_exception(error)
+
+
+def _runs(numbers: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Ascending numbers as runs: the first one, and how many."""
+    at = 0
+    while at < len(numbers):
+        count = next((i for i in range(1, len(numbers) - at) if numbers[at + i] != numbers[at] + i), len(numbers) - at)
+        yield numbers[at], count
+        at += count
+
+
+class Ahead:
+    """Begins to fetch files that will be wanted, a few at once, each in a thread that does not keep Python from ending. What fails is
+    tried again by who wants it."""
+
+    def __init__(self, fetch: Callable[[str], object], cache_bytes: int) -> None:
+        self._fetch = fetch
+        self._most_bytes = min(cache_bytes // 2, _MOST_AHEAD_BYTES)
+        self._begun: deque[str] = deque(maxlen=_MOST_AHEAD_BYTES >> 16)
+        self._free = threading.BoundedSemaphore(_MOST_AT_ONCE)
+
+    def begin(self, files: Iterable[tuple[str, int]]) -> None:
+        left = self._most_bytes
+        for name, size in files:
+            left -= size
+            if left < 0:
+                return
+            if name not in self._begun:
+                if not self._free.acquire(blocking=False):
+                    return
+                try:
+                    threading.Thread(target=self._bring, args=(name,), name="meshhier", daemon=True).start()
+                except RuntimeError:  # no threads are left: it comes when it is wanted
+                    self._free.release()
+                    return
+                self._begun.append(name)
+
+    def _bring(self, name: str) -> None:
+        try:
+            self._fetch(name)
+        except Exception:
+            pass
+        finally:
+            self._free.release()
 
 
 class RemoteFile:
@@ -75,7 +160,9 @@ class RemoteFile:
         if start.total is None:
             raise NetworkError(f"{address.shown}: the host does not tell how long it is (Content-Range)")
         self.size = start.total
-        self._keep(0, bytes(start.data))
+        for number, block in enumerate(_cut(bytes(start.data))):
+            if len(block) == BLOCK or number * BLOCK + len(block) == self.size:
+                blocks.keep(address.shown, number, block)
 
     def part(self, begin: int, end: int) -> bytes:
         """Bytes [begin, end), fewer at the end of the file. Raises NetworkError, ReplacedError."""
@@ -86,19 +173,12 @@ class RemoteFile:
             return self._whole[begin:end]
         self._require_small(end - begin)
         numbers = range(begin // BLOCK, (end - 1) // BLOCK + 1)
-        known = {number: self._blocks.find(self._address.shown, number) for number in numbers}
-        self._fetch_missing(known)
-        data = b"".join(known[number] or b"" for number in numbers)
+        data = self._blocks.get(self._address.shown, numbers, self._fetch_blocks)
         skipped = begin - numbers[0] * BLOCK
         return data[skipped : skipped + end - begin]
 
-    def _fetch_missing(self, known: dict[int, Optional[bytes]]) -> None:
-        """Fetches the blocks that are None, those side by side at once."""
-        missing = [number for number, data in known.items() if data is None]
-        while missing:
-            count = next((i for i in range(1, len(missing)) if missing[i] != missing[0] + i), len(missing))
-            first, missing = missing[0], missing[count:]
-            known.update(self._keep(first, self.fetch(first * BLOCK, min((first + count) * BLOCK, self.size))))
+    def _fetch_blocks(self, first: int, count: int) -> list[bytes]:
+        return _cut(self.fetch(first * BLOCK, min((first + count) * BLOCK, self.size)))
 
     def fetch(self, begin: int, end: int) -> bytes:
         """Bytes [begin, end) from the host."""
@@ -113,14 +193,6 @@ class RemoteFile:
     def _require_small(self, count: int) -> None:
         if count > self.most_bytes:
             raise NetworkError(f"{self._address.shown}: {count} bytes at once are more than any part of a hierarchy has")
-
-    def _keep(self, first: int, data: bytes) -> dict[int, bytes]:
-        """Keeps the whole blocks among bytes that begin with block `first`, and the last one of the file."""
-        whole = len(data) if first * BLOCK + len(data) == self.size else len(data) // BLOCK * BLOCK
-        blocks = {first + at // BLOCK: data[at : at + BLOCK] for at in range(0, whole, BLOCK)}
-        for number, block in blocks.items():
-            self._blocks.keep(self._address.shown, number, block)
-        return blocks
 
     # What `zipfile` asks of a file.
 
@@ -144,6 +216,10 @@ class RemoteFile:
 
     def close(self) -> None:
         pass
+
+
+def _cut(data: bytes) -> list[bytes]:
+    return [data[at : at + BLOCK] for at in range(0, len(data), BLOCK)]
 
 
 class RemoteArchive(Archive):
@@ -170,7 +246,16 @@ class RemoteArchive(Archive):
         file.most_bytes = _MOST_DIRECTORY
         archive = zipfile.ZipFile(file)  # type: ignore[call-overload]  # it reads, and no more
         file.most_bytes = _MOST_READ
+        self._file, self._ahead = file, Ahead(self._bring, self._web.cache_bytes)
         return archive
+
+    def expect(self, files: Iterable[tuple[str, int]]) -> None:
+        self.require_open()
+        self._ahead.begin(files)
+
+    def _bring(self, name: str) -> None:
+        facts = self._zip.getinfo(name)
+        self._file.part(facts.header_offset, facts.header_offset + _LOCAL_HEADER + len(facts.filename) + facts.compress_size)
 
     def __reduce__(self) -> tuple[Any, ...]:
         self.require_open()
@@ -206,6 +291,7 @@ class RemoteFolder:
 
     def _connect(self) -> None:
         self._client, self._blocks, self._process = HttpClient(self._web.headers), Blocks(self._web.cache_bytes), os.getpid()
+        self._ahead = Ahead(self.read, self._web.cache_bytes)
         self._known: dict[str, RemoteFile] = {}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -213,14 +299,22 @@ class RemoteFolder:
         return RemoteFolder, (self._web,)
 
     def read(self, name: str) -> bytes:
+        if name != "hierarchy.json":
+            return self._blocks.get(name, [0], lambda *_: [self._fetch(name)])
         manifest, self._manifest = self._manifest, None
-        if name == "hierarchy.json" and manifest is not None:
-            return manifest  # later it is asked for anew: it tells whether another build is there
+        return manifest or self._fetch(name)  # later it is asked for anew: it tells whether another build is there
+
+    def _fetch(self, name: str) -> bytes:
+        """All of a file."""
         address, start = self._start(name, _START)
         if start.is_whole:
             return bytes(start.data) if name.endswith(".glb") else unpacked(address, start)
         file = RemoteFile(self._client, address, start, Blocks(0), is_packed_itself=name.endswith(".glb"))
         return bytes(start.data) + file.fetch(len(start.data), file.size)
+
+    def expect(self, files: Iterable[tuple[str, int]]) -> None:
+        self.require_open()
+        self._ahead.begin(files)
 
     def part(self, name: str, begin: int, end: int) -> bytes:
         if name not in self._known:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import struct
 import zipfile
-from typing import Any, Protocol
+from typing import Any, Iterable, Protocol
 
 from .errors import CorruptError, NotAHierarchyError, UsageError
 
@@ -20,6 +20,10 @@ class Files(Protocol):
 
     def part(self, name: str, begin: int, end: int) -> bytes:
         """Bytes [begin, end) of a file; fewer where it ends before. Raises CorruptError if it is not there."""
+        ...
+
+    def expect(self, files: Iterable[tuple[str, int]]) -> None:
+        """Names and sizes of files that will be read soon: from afar they begin to come."""
         ...
 
     def require_open(self) -> None:
@@ -53,6 +57,9 @@ class Folder:
                 return file.read(end - begin if end >= 0 else -1)
         except FileNotFoundError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
+
+    def expect(self, files: Iterable[tuple[str, int]]) -> None:
+        """Files are near."""
 
     def require_open(self) -> None:
         if self._is_closed:
@@ -94,8 +101,6 @@ class Archive:
 
     def part(self, name: str, begin: int, end: int) -> bytes:
         self.require_open()
-        if self._process != os.getpid():
-            self._open()
         try:
             facts = self._zip.getinfo(name)
             if facts.compress_type != zipfile.ZIP_STORED or facts.flag_bits & 1:
@@ -108,6 +113,9 @@ class Archive:
         except (zipfile.BadZipFile, EOFError) as error:
             raise CorruptError(f"{self._path}: {name}: {error}") from error
 
+    def expect(self, files: Iterable[tuple[str, int]]) -> None:
+        """Files are near."""
+
     def names(self) -> list[str]:
         """Of all files, in their order."""
         self.require_open()
@@ -116,6 +124,8 @@ class Archive:
     def require_open(self) -> None:
         if self._is_closed:
             raise closed(self._path)
+        if self._process != os.getpid():
+            self._open()
 
     def close(self) -> None:
         self._is_closed = True
