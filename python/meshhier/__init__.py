@@ -20,9 +20,12 @@ from .errors import (
     BuildWarning,
     BusyError,
     CorruptError,
+    DefectError,
     Error,
     ExistsError,
+    FileError,
     InputError,
+    KilledError,
     NetworkError,
     NotAHierarchyError,
     ProgramError,
@@ -66,8 +69,10 @@ def open(path: Path, *, headers: Optional[Headers] = None, cache_bytes: int = CA
 
 
 __all__ = [
-    "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "Error", "ExistsError", "Hierarchy", "Hits", "InputError", "Leftover", "Mesh",
-    "Nearest", "NetworkError", "Node", "NodeLike", "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
-    "StoppedBuildError", "TaskStatus", "Tile", "Tree", "UsageError", "Verification", "VerifyError", "__version__", "build", "clean", "compare", "draw", "export",
-    "find_program", "inspect", "inspect_objects", "open", "pack", "page", "plan", "preview", "progressive", "reconstruct", "task", "task_status", "unpack", "verify", "view",
+    "BudgetError", "BuildPlan", "BuildWarning", "BusyError", "Comparison", "Conventions", "CorruptError", "DefectError", "Error", "ExistsError",
+    "FileError", "Hierarchy", "Hits", "InputError", "KilledError", "Leftover", "Mesh", "Nearest", "NetworkError", "Node", "NodeLike",
+    "NotAHierarchyError", "ObjectRow", "ObjectTable", "ProgramError", "ProgramNotFoundError", "Progress", "ReplacedError", "Scalar",
+    "StoppedBuildError", "TaskStatus", "Tile", "Tree", "UsageError", "Verification", "VerifyError", "__version__", "build", "clean", "compare",
+    "draw", "export", "find_program", "inspect", "inspect_objects", "open", "pack", "page", "plan", "preview", "progressive", "reconstruct", "task",
+    "task_status", "unpack", "verify", "view",
 ]  # fmt: skip

@@ -52,6 +52,13 @@ class InputError(ProgramError):
     """The mesh cannot be read, or holds what no hierarchy can."""
 
 
+class FileError(ProgramError, OSError):
+    """A file, or an address, could not be read or written: it is not there, or the disk is full. It is an OSError, too."""
+
+    def __init__(self, message: str, exit_code: int = 4) -> None:
+        super().__init__(message, exit_code)
+
+
 class BudgetError(ProgramError):
     """Memory or disk do not suffice."""
 
@@ -69,6 +76,15 @@ class BusyError(ProgramError):
 
 class StoppedBuildError(ProgramError):
     """A build of another config was stopped and left its work beside the output. `restart=True` throws that away."""
+
+
+class KilledError(ProgramError):
+    """The program was stopped from outside, by SIGTERM (130) or another signal (128 + n): SIGKILL, 137, may say that the system lacked memory.
+    The same build goes on where it was."""
+
+
+class DefectError(ProgramError):
+    """A defect in meshhier: please report it."""
 
 
 class VerifyError(ProgramError):
@@ -109,11 +125,13 @@ class BuildWarning(UserWarning):
     """What the program repaired, left out or could not use, and what else is to be known of a result."""
 
 
-_BY_EXIT_CODE: dict[int, type[ProgramError]] = {3: InputError, 5: ExistsError, 6: BudgetError, 7: VerifyError, 8: BusyError, 9: StoppedBuildError}
+_KINDS: dict[int, type[ProgramError]] = {
+    3: InputError, 4: FileError, 5: ExistsError, 6: BudgetError, 7: VerifyError, 8: BusyError, 9: StoppedBuildError, 70: DefectError,
+}  # fmt: skip
 
 
 def program_error(message: str, exit_code: int) -> Error:
     """The error of a program that has ended so."""
     if exit_code == 2:
         return UsageError(message)
-    return _BY_EXIT_CODE.get(exit_code, ProgramError)(message, exit_code)
+    return _KINDS.get(exit_code, KilledError if exit_code > 128 else ProgramError)(message, exit_code)

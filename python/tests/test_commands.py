@@ -8,6 +8,7 @@ import io
 import json
 import os
 import pickle
+import re
 import shutil
 import signal
 import subprocess
@@ -303,7 +304,8 @@ def test_what_is_there_is_an_error_of_files_too(torus: str, hier: str) -> None:
     "code, message, kind",
     [
         (3, "x", meshhier.InputError), (5, "x", meshhier.ExistsError), (6, "x", meshhier.BudgetError), (7, "x", meshhier.VerifyError),
-        (8, "x", meshhier.BusyError), (9, "x", meshhier.StoppedBuildError), (4, "x", meshhier.ProgramError), (70, "x", meshhier.ProgramError),
+        (8, "x", meshhier.BusyError), (9, "x", meshhier.StoppedBuildError), (4, "x", meshhier.FileError), (70, "x", meshhier.DefectError),
+        (130, "x", meshhier.KilledError), (137, "x", meshhier.KilledError), (10, "x", meshhier.ProgramError),
     ],
 )  # fmt: skip
 def test_exit_codes_are_types(code: int, message: str, kind: type[meshhier.ProgramError]) -> None:
@@ -311,6 +313,36 @@ def test_exit_codes_are_types(code: int, message: str, kind: type[meshhier.Progr
     assert type(error) is kind and str(error) == message
     for again in (pickle.loads(pickle.dumps(error)), copy.copy(error)):
         assert type(again) is kind and str(again) == message and again.exit_code == code
+
+
+def test_each_exit_code_of_the_manual_has_a_type() -> None:
+    manual = subprocess.run([meshhier.find_program(), "manual"], check=True, capture_output=True, text=True).stdout
+    told = {int(code): why for code, why in re.findall(r"^  (\d+) +(.+)", manual[manual.index("Exit codes:") :].partition(".fi")[0], re.MULTILINE)}
+    assert {2, 3, 130} < set(told)
+    for code, why in {0: "done", 1: "compare: a vertex is farther", 10: "build --each, serve --once: several"}.items():  # no function fails so
+        assert told.pop(code).replace("\\", "").startswith(why)
+    kinds = {code: type(program_error("x", code)) for code in told}
+    assert meshhier.ProgramError not in kinds.values() and len(set(kinds.values())) == len(told), kinds
+
+
+def test_a_file_that_cannot_be_written_is_an_error_of_files_too(hier: str, tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="nowhere") as failed:
+        meshhier.export(hier, tmp_path / "nowhere" / "a.ply", level=0)
+    assert type(failed.value) is meshhier.FileError and failed.value.exit_code == 4
+
+
+def test_a_build_that_somebody_kills_can_go_on(large: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[Any] = []
+
+    class Watched(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *words: Any, **how: Any) -> None:
+            super().__init__(*words, **how)
+            started.append(self)
+
+    monkeypatch.setattr(subprocess, "Popen", Watched)
+    with pytest.raises(meshhier.KilledError) as killed:
+        meshhier.build(large, tmp_path / "a.hier", progress=lambda _: started[0].terminate())
+    assert killed.value.exit_code in (130, 143)
 
 
 def test_a_build_in_tasks(torus: str, tmp_path: Path) -> None:
