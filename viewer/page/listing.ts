@@ -49,7 +49,7 @@ export interface Job {
 
 /// A listing is a part of a longer one, in an order and of a search that were asked for.
 export interface ListingPart {
-  /// Of the whole, and of those that a search finds.
+  /// All models of the whole listing; `found` counts those that the search finds.
   readonly total: number;
   readonly found: number;
   /// The number of the first model, of those that are found.

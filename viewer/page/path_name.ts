@@ -11,7 +11,7 @@ export function readable(text: string): string {
   }
 }
 
-/// Of a path whose parts have slashes between them.
+/// The name behind the last slash of a path.
 export function lastPart(path: string): string {
   return readable(withoutLastSlashes(path).replace(/^.*\//, ''));
 }

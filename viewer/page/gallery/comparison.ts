@@ -36,7 +36,7 @@ export class Comparison {
     this.buttons.get(model.path)?.setAttribute('aria-pressed', String(this.isChosen(model)));
   }
 
-  /// Of three the last two.
+  /// A third choice replaces the first one.
   private toggle(model: Model): void {
     const others = this.chosen.filter(({ path }) => path !== model.path);
     const before = this.chosen;

@@ -50,8 +50,7 @@ export function frameCode(shared: Shared): string {
   return `<iframe src="${address}" title="${escaped(shared.name)}" width="640" height="480" style="border: 0" loading="lazy" allow="fullscreen"></iframe>`;
 }
 
-/// With the script that lies beside the page.
-/// Of notes and stories the element knows nothing.
+/// Loads the script that lies beside the page. The element knows neither notes nor stories: they are left out.
 export function elementCode({ page, name, url, pose, choices }: Shared): string {
   const view = writeLink({ ...readLink(choices), notes: undefined, story: undefined });
   const camera = pose === null ? '' : ` camera="${[...pose.position, ...pose.target].join(',')}"`;

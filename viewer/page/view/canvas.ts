@@ -65,7 +65,7 @@ export class Canvas {
     return this.partner?.columns ?? 1;
   }
 
-  /// Of all that is in the picture.
+  /// Holds all that is in the picture.
   get box(): Box3 {
     return this.partner?.box ?? this.view.box;
   }

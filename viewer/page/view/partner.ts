@@ -7,7 +7,7 @@ import type { PointFinder } from '../../src/tools/point_finder.js';
 export interface Partner {
   /// Pictures beside each other.
   readonly columns: 1 | 2;
-  /// Of both, in the world.
+  /// Holds both views, in the world.
   readonly box: Box3;
   readonly points: PointFinder;
   readonly isSettled: boolean;

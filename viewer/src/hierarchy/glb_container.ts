@@ -31,9 +31,9 @@ export const HEAD_BYTES = 20;
 export const CHUNK_HEAD_BYTES = 8;
 const MOST_JSON_BYTES = 65536;
 
-/// The head says this, with that of the JSON chunk.
+/// The lengths that the head of the file and that of the JSON chunk say.
 export interface Head {
-  /// Of the whole file.
+  /// The whole file has so many.
   readonly bytes: number;
   readonly jsonBytes: number;
 }

@@ -23,12 +23,12 @@ export interface ObjectRow {
   readonly object: number;
   /// Empty: the faces of no object.
   readonly name: string;
-  /// Of each property.
+  /// One value a property.
   readonly values: readonly ObjectValue[];
-  /// Of its triangles, in the input's coordinates; null: it has none.
+  /// Holds its triangles, in the input's coordinates; null: it has none.
   readonly box: ObjectBox | null;
   readonly triangles: number;
-  /// Of its triangles, in the input's units.
+  /// Its triangles have this area together, in the input's units.
   readonly area: number;
 }
 

@@ -11,7 +11,7 @@ import { HierarchyProblem } from './problem.js';
 /// Blocks that are kept, of about 20 kB each.
 const KEPT_BLOCKS = 64;
 
-/// Of all blocks, so many bytes are fetched at once.
+/// All blocks are fetched in pieces of so many bytes.
 const PIECE_BYTES = 2 ** 20;
 
 /// Bytes [first, end) of the file, or all of it where a host knows no ranges.

@@ -5,7 +5,7 @@ import type { ObjectRow } from './object_blocks.js';
 import type { ObjectRange, ObjectTable } from './object_table.js';
 import { HierarchyProblem } from './problem.js';
 
-/// Of the first object, behind a word and a space.
+/// A row's name is a word, a space and so many digits: the row's first object.
 const FIRST_DIGITS = 6;
 const MOST_OBJECTS = 4096; // of a row
 /// A number has six bits in each letter, the lowest first; this bit says that it goes on.
@@ -16,7 +16,7 @@ const AT_ONCE = 8;
 /// Where the rows of a word are.
 export interface WordPlace {
   readonly asked: AskedWord;
-  /// Of each block.
+  /// One range a block.
   readonly ranges: readonly ObjectRange[];
 }
 

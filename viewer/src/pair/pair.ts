@@ -36,7 +36,7 @@ export interface PairOptions {
 export interface PairStats {
   readonly views: Both<Stats>;
   readonly settled: boolean;
-  /// Of both together; the most there ever were; and allowed.
+  /// Both views take so much together; the most that they ever took; and the most allowed.
   readonly residentBytes: number;
   readonly peakBytes: number;
   readonly memoryBudget: number;
@@ -261,7 +261,7 @@ export class Pair {
     renderer.setViewport(0, 0, size.x / ratio, size.y / ratio);
   }
 
-  /// Of the whole picture, however small a part of it is drawn.
+  /// Columns of the whole picture, however small a part of it is drawn.
   private columnsOf({ camera: { view } }: Frame, size: Vector2): readonly Column[] {
     const whole = view?.enabled === true ? view.fullWidth : size.x;
     const middle = Math.round(whole * (this.wished === 'side' ? 0.5 : this.divider));

@@ -127,7 +127,7 @@ export class PairPoints implements PointFinder {
     return this.pair.views.every(({ terrain }) => terrain?.upright === true);
   }
 
-  /// Of two terrains from above, else from the point to all sides; in the other one's tiles.
+  /// Looks for the point in the other view's tiles: between two terrains from above, else to all sides.
   private probeFor({ local }: PickedPoint, side: Side): TriangleProbe {
     const other = (1 - side) as Side;
     const view = this.pair.views[other];

@@ -34,7 +34,7 @@ export class ShownCut {
   state: Refined | null = null;
   /// Nothing else will come.
   isRootAll = false;
-  /// Of the root there is all but its normal map.
+  /// The root is there but for its normal map.
   isEarly = false;
   isFirstFrame = true;
   /// Resolves once there is a picture of the root.

@@ -33,7 +33,7 @@ export function vertexBytesOf(tile: Tile): number {
 
 /// Bytes that a texel takes on the GPU, of all that a tile shows there.
 export interface TexelBytes {
-  /// Of a tile without a normal map, and of one with it.
+  /// Holds for tiles without a normal map; `mapped` for those that have one.
   readonly plain: number;
   readonly mapped: number;
 }

@@ -113,7 +113,7 @@ export class TileScene extends Group {
     return true;
   }
 
-  /// Of wires and points.
+  /// Draw wires and points.
   private get partMaterials(): readonly Material[] {
     const { wires, points, dots } = this.materials;
     return [wires, points, dots.plain, dots.coloured];

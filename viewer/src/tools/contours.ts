@@ -17,7 +17,7 @@ export const MOST_HEIGHTS = 2000;
 
 /// A point's height is `dot(up, point) + shift`.
 export interface Heights {
-  /// Of length 1.
+  /// Has length 1.
   readonly up: Vector;
   readonly shift: number;
 }

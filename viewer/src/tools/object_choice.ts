@@ -3,7 +3,7 @@
 
 export interface ObjectChoice {
   readonly hidden: readonly string[];
-  /// Of these alone is drawn what is not hidden; none: of all.
+  /// Only these are drawn, unless they are hidden; none: all are.
   readonly only: readonly string[];
   /// Drawn although a shorter text hides them.
   readonly shown: readonly string[];

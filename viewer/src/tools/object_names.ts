@@ -14,7 +14,7 @@ const MOST_READ = 2 ** 14;
 const MOST_WORD_BLOCKS = 32;
 /// Blocks of names that are, of about 10 kB each.
 const MOST_NAME_BLOCKS = 32;
-/// Of them so many at once.
+/// So many blocks of names are read at once.
 const AT_ONCE = 4;
 /// Words that are looked for in the table; further ones are in the names.
 const MOST_WORDS = 32;
@@ -41,7 +41,7 @@ function plain(text: string): string {
 
 /// What is left of all objects.
 interface Candidates {
-  /// Of each object how many of the words it has: a candidate has all of them that were looked for.
+  /// Counts for each object how many of the words it has: a candidate has all that were looked for.
   readonly levels: Uint8Array;
   readonly level: number;
   /// Words that were not looked for yet.

@@ -37,7 +37,7 @@ export interface PaperRequest {
   readonly scale: number;
   /// Metres of a unit of the input.
   readonly metres: number;
-  /// Of the unit.
+  /// The unit's sign: "m".
   readonly sign: string;
   /// To the right and up.
   readonly axes: readonly [PaperAxis, PaperAxis];
@@ -66,7 +66,7 @@ export interface Paper {
   readonly mmPerUnit: number;
   readonly width: number;
   readonly height: number;
-  /// Of what is drawn, with the margin beside and above it.
+  /// Holds the drawing, with the margin beside and above it.
   readonly inner: { readonly width: number; readonly height: number };
   readonly margin: number;
   readonly grid: readonly PaperLine[];

@@ -33,7 +33,7 @@ const LEAST_PART = 0.12;
 const MAIN_PART = 0.5;
 /// Part of all area that the largest floor has; of a body that is round hardly any lies at one height.
 const LEAST_OF_ALL = 0.03;
-/// Of the height of rooms.
+/// A ceiling ends a storey only this part of a room's height above its floor.
 const LEAST_HEIGHT = 0.6;
 
 /// Sums of areas, and of areas times heights, by height.

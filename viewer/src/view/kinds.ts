@@ -37,7 +37,7 @@ function same(value: unknown): unknown {
   return value;
 }
 
-/// Of a key that stands in a link once.
+/// A key that stands in a link once is of this kind.
 function single<Value>(parse: (text: string) => Value | null, format: (value: Value) => string, read: Kind<Value>['read']): Kind<Value> {
   return { parse: ([text]) => (text === undefined ? null : parse(text)), format: (value) => [format(value)], read, toJson: same };
 }

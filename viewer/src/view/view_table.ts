@@ -28,7 +28,7 @@ export interface LightChoice {
 export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height', 'attribute'];
 /// Levels of a hierarchy: there are no more.
 export const MOST_LEVEL = 32;
-/// Of a measured path.
+/// A measured path has at most so many points.
 export const MOST_MEASURED = 64;
 
 const MOST_NAME = 100; // characters, of an attribute
