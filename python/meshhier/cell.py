@@ -5,26 +5,23 @@ the browser reaches the kernel."""
 from __future__ import annotations
 
 import base64
-import gzip
 import html
-import json
 import os
 import re
-from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Optional
 from urllib.parse import urlsplit
 
 from .asked import is_web_address, whole
-from .errors import CorruptError, UsageError, replaced
+from .cell_tiles import CellTiles, held_by, tiles_that_fit
+from .errors import CorruptError, UsageError
 from .kernel_files import kernel_address
-from .tree import Node
 from .viewer_files import viewer_file
 
 if TYPE_CHECKING:
     from .hierarchy import Hierarchy
 
-_INDEX_HEADER, _RECORD, _PAGE_RECORDS = 32, 120, 545  # docs/file_format.md, section 3; the viewer reads the index by such pages
-_MOST_TOLD = 500
+_MOST_TOLD = 1000
+_UNSEEN = "The model is not shown, as this notebook is not trusted, or shown by what runs no scripts: trust it, or run the cell."
 _POSTER_PART = 8  # of the room: a picture that is seen until scripts run may take no more
 
 
@@ -42,80 +39,6 @@ class Cell:
         return f"Cell({self._told}; {len(self.html)} bytes)"
 
 
-def _entry(name: str, data: bytes) -> str:
-    packed = gzip.compress(data, 6, mtime=0)
-    return f'"{name}":"{base64.b64encode(min(data, packed, key=len)).decode()}"'
-
-
-class _Filling:
-    """The entries of files that fit into a room of bytes: the root, then always the tiles below the one with the largest error."""
-
-    def __init__(self, hierarchy: Hierarchy, room: int) -> None:
-        self.hierarchy = hierarchy
-        self.room = room
-        self.tiles = 0
-        self.error = 0.0
-        self._entries = [_entry("hierarchy.json", hierarchy._files.read("hierarchy.json"))]
-        self._index = hierarchy._read_sealed("tiles.bin", hierarchy._manifest.index_bytes, hierarchy._manifest.index_checksum)
-        self._last_record = 0
-        self.room -= len(self._entries[0])
-        if hierarchy._is_replaced():
-            raise replaced(hierarchy.path)
-
-    def _index_bytes(self, record: int) -> int:
-        return min(len(self._index), _INDEX_HEADER + (record // _PAGE_RECORDS + 1) * _PAGE_RECORDS * _RECORD)
-
-    def _take(self, nodes: list[Node]) -> bool:
-        """All of these tiles, or none."""
-        last, entries = self._last_record, []
-        for node in nodes:
-            row = self.hierarchy._index.row(node)
-            record = self.hierarchy._index.records[row]
-            name = self.hierarchy._manifest.tile_name(node)
-            entries.append(_entry(name, self.hierarchy._read_sealed(name, int(record["bytes"]), int(record["checksum"]))))
-            last = max(last, row)
-        taken = sum(len(entry) + 1 for entry in entries)
-        if taken + self._index_bytes(last) * 4 // 3 + 100 > self.room:
-            return False
-        self._entries += entries
-        self.room -= taken
-        self.tiles += len(nodes)
-        self._last_record = last
-        return True
-
-    def fill(self) -> bool:
-        """False: not even the root fits."""
-        tree = self.hierarchy.tree
-        root = tree.tile(Node(0, 0))
-        if not self._take([root]):
-            return False
-        coarse = [(-self.hierarchy.error(root), root)]
-        while coarse:
-            children = tree.children(coarse[0][1])
-            if not self._take(children):
-                break
-            heappop(coarse)
-            for node in children:
-                if tree.children(node):
-                    heappush(coarse, (-self.hierarchy.error(node), node))
-        self.error = -coarse[0][0] if coarse else 0.0
-        return True
-
-    @property
-    def is_whole(self) -> bool:
-        return self.tiles == len(self.hierarchy._index)
-
-    def files(self) -> str:
-        return ",".join([*self._entries, _entry("tiles.bin", self._index[: self._index_bytes(self._last_record)])])
-
-
-def _told(filling: _Filling, name: str) -> str:
-    hierarchy = filling.hierarchy
-    if filling.is_whole:
-        return f"{name}: all of it, {hierarchy.triangles:,} triangles"
-    return f"{name}: {filling.tiles} of {len(hierarchy._index)} tiles, within {filling.error:.3g} {hierarchy.units or 'of the original'}"
-
-
 def _view_of(link: str) -> str:
     """What a link of the page says after its model; a link's part without one as it is."""
     if "#" not in link:
@@ -123,15 +46,18 @@ def _view_of(link: str) -> str:
     return link.partition("#")[2].partition("&")[2]
 
 
-def _poster(filling: _Filling, name: str) -> str:
+def _poster(hierarchy: Hierarchy, name: str, room: int) -> str:
     try:
-        picture = base64.b64encode(filling.hierarchy._files.read("preview.webp")).decode()
+        picture = base64.b64encode(hierarchy._files.read("preview.webp")).decode()
     except CorruptError:
         return ""
-    if len(picture) * _POSTER_PART > filling.room:
-        return ""
-    filling.room -= len(picture)
-    return f'<img alt="{html.escape(name)}" src="data:image/webp;base64,{picture}">'
+    return "" if len(picture) * _POSTER_PART > room else f'<img alt="{html.escape(name)}" src="data:image/webp;base64,{picture}">'
+
+
+def _told(hierarchy: Hierarchy, tiles: CellTiles, name: str) -> str:
+    if tiles.is_exact:
+        return f"{name}: all of it, {hierarchy.triangles:,} triangles"
+    return f"{name}: {tiles.count} of {len(hierarchy._index)} tiles, within {tiles.error:.3g} {hierarchy.units or 'of the original'}"
 
 
 def _origin(link: str) -> str:
@@ -151,16 +77,17 @@ def _filled(values: dict[str, str]) -> str:
     return page.replace("&", "&amp;").replace("'", "&#39;")
 
 
-def _frame(page: str, height: int, is_path: bool) -> str:
-    """Of a model that somebody else made no more than its picture comes out of the frame; a path of the notebook's host needs its cookies."""
+def _frame(page: str, height: int, is_path: bool, told: str) -> str:
+    """Of a model that somebody else made no more than its picture comes out of the frame; a path of the notebook's host needs its cookies.
+    Where notebooks are shown without what might run, only the words within the frame are left."""
     sandbox = "allow-scripts allow-same-origin" if is_path else "allow-scripts"
-    return f"<iframe sandbox=\"{sandbox}\" style=\"width: 100%; height: {height}px; border: 0\" srcdoc='{page}'></iframe>"
+    style = f"width: 100%; height: {height}px; border: 0"
+    return f"<iframe sandbox=\"{sandbox}\" style=\"{style}\" srcdoc='{page}'>{told}. {_UNSEEN}</iframe>"
 
 
 def _texts(hierarchy: Hierarchy, name: str, view: str, address: str, whence: str) -> dict[str, str]:
     return {
         "name": html.escape(name),
-        "json_name": json.dumps(name).replace("<", "\\u003c"),
         "view": html.escape(_view_of(view)),
         "link": html.escape(address),
         "asked": html.escape(address if address.endswith(".3tz") else f"{address.rstrip('/')}/hierarchy.json"),
@@ -171,7 +98,7 @@ def _texts(hierarchy: Hierarchy, name: str, view: str, address: str, whence: str
         "ktx2": viewer_file("meshhier-ktx2.js.gz") if _uses_ktx2(hierarchy) else "",
         "poster": "",
         "told": "",
-        "files": "",
+        "hierarchy": held_by(name, {}),
     }
 
 
@@ -190,13 +117,12 @@ def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[st
     whence = "the kernel" if link is None else "this host" if is_path else urlsplit(address).netloc
     name = os.path.splitext(os.path.basename(hierarchy.path.rstrip("/")))[0]
     texts = _texts(hierarchy, name, view, address, whence)
-    frame = len(_frame(_filled(texts), height, is_path)) + _MOST_TOLD
-    filling = _Filling(hierarchy, size - frame)
-    texts["poster"] = _poster(filling, name)
-    if not filling.fill():
+    frame = len(_frame(_filled(texts), height, is_path, "")) + _MOST_TOLD
+    texts["poster"] = _poster(hierarchy, name, size - frame)
+    tiles = tiles_that_fit(hierarchy, name, size - frame - len(texts["poster"]))
+    if tiles is None:
         raise UsageError(f"{hierarchy.path}: a cell of {size} bytes has no room for the viewer and the root: give a larger size=; the viewer has {frame} bytes")
-    texts["told"] = html.escape(_told(filling, name))
-    if filling.is_whole:
+    texts["told"], texts["hierarchy"] = html.escape(_told(hierarchy, tiles, name)), tiles.element
+    if tiles.is_exact:
         texts.update(link="", reached="", left="")
-    texts["files"] = filling.files()
-    return Cell(_frame(_filled(texts), height, is_path), texts["told"])
+    return Cell(_frame(_filled(texts), height, is_path, texts["told"]), texts["told"])

@@ -14,6 +14,7 @@ import urllib.request
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import meshhier
@@ -34,6 +35,11 @@ def viewer() -> str:
 @pytest.fixture
 def model(built: Build, torus: str) -> str:
     return built(torus, "shown.hier")
+
+
+@pytest.fixture
+def without_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MESHHIER", "/nowhere/meshhier")
 
 
 def page_of(cell: Any) -> str:
@@ -57,17 +63,69 @@ def fetch(address: str, **headers: str) -> tuple[int, bytes]:
         return answer.status, answer.read()
 
 
-def test_a_small_model_is_there_as_a_whole(model: str) -> None:
+def test_a_small_model_is_there_as_a_whole(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with meshhier.open(model) as hierarchy:
+        cells = [hierarchy.show()]
+        monkeypatch.setenv("MESHHIER", "/nowhere/meshhier")
+        cells.append(hierarchy.show())
+        for cell in cells:
+            assert "all of it, " in repr(cell) and f"{hierarchy.triangles:,} triangles" in page_of(cell)
+            assert len([name for name in embedded(cell) if name.startswith("tiles/")]) == len(list(hierarchy.tree.tiles()))
+            assert 'data-link=""' in page_of(cell)  # there is nothing to fetch
+    for name, data in embedded(cells[1]).items():
+        assert data == stored((Path(model) / name).read_bytes()), name
+
+
+def test_the_program_rounds_what_does_not_fit(built: Build, torus: str, viewer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More of it is there, it is a hierarchy, and as near to the original as the cell says."""
+    with meshhier.open(built(torus, "fine.hier", partition__vertices=500, storage__normals="smooth")) as hierarchy:
+        size = len(viewer) + 450_000
+        rounded = hierarchy.show(size=size)
+        monkeypatch.setenv("MESHHIER", "/nowhere/meshhier")
+        plain = hierarchy.show(size=size)
+        counts, errors = zip(*(map(float, re.search(r": (\d+) of \d+ tiles, within (\S+) of", repr(cell)).groups()) for cell in (rounded, plain)))  # type: ignore[union-attr]
+        assert counts[0] > counts[1] and errors[0] < errors[1] and max(len(rounded.html), len(plain.html)) <= size
+        files = embedded(rounded)
+        there = {name for name in files if name.startswith("tiles/")}
+        manifest = json.loads(files["hierarchy.json"])
+        for name in ("tiles.bin", "hierarchy.json", *there):
+            (tmp_path / "a.hier" / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / "a.hier" / name).write_bytes(files[name])
+        with meshhier.open(tmp_path / "a.hier") as held:
+            nodes = [held.tree.tile((0, 0))]
+            while any(held._manifest.tile_name(child) in there for node in nodes for child in held.tree.children(node)):
+                nodes = [leaf for node in nodes for leaf in _below(held, node, there)]
+            cut = held.cut(nodes=nodes)
+        monkeypatch.undo()
+        found = hierarchy.nearest(cut.positions)
+        rounding = manifest["storage"]["positions"]["worst_rounding"]
+        assert 0 < rounding < errors[0] and np.abs(found.distances).max() < 4 * errors[0]
+        assert len(cut.triangles) > hierarchy.triangles / 4
+
+
+def _below(hierarchy: meshhier.Hierarchy, node: meshhier.Node, there: set[str]) -> list[meshhier.Node]:
+    children = hierarchy.tree.children(node)
+    return children if children and all(hierarchy._manifest.tile_name(child) in there for child in children) else [node]
+
+
+def test_a_story_takes_no_room(model: str, tmp_path: Path) -> None:
+    shutil.copytree(model, tmp_path / "a.hier")
+    with meshhier.open(tmp_path / "a.hier") as hierarchy:
+        plain = hierarchy.show()
+        (tmp_path / "a.hier.story.json").write_text(json.dumps({"words": "x" * 2_000_000}))
+        told = hierarchy.show()
+    assert embedded(told) == embedded(plain) and "xxxxx" not in told.html
+
+
+def test_what_shows_no_frame_shows_words(model: str) -> None:
+    """As Jupyter of a notebook that is not trusted: what is within the element is shown in its place."""
     with meshhier.open(model) as hierarchy:
         cell = hierarchy.show()
-        assert "all of it, " in repr(cell) and f"{hierarchy.triangles:,} triangles" in page_of(cell)
-        files = embedded(cell)
-        assert len(files) == len(list(hierarchy.tree.tiles())) + 2
-    for name, data in files.items():
-        assert data == stored((Path(model) / name).read_bytes()), name
-    assert 'data-link=""' in page_of(cell)  # there is nothing to fetch
+    left = re.sub("<[^>]*>", "", re.sub("srcdoc='[^']*'", "", cell.html))
+    assert left.startswith("shown: all of it, ") and "trust it" in left
 
 
+@pytest.mark.usefixtures("without_program")
 def test_a_cell_holds_the_coarse_tiles_that_fit(model: str, viewer: str) -> None:
     with meshhier.open(model) as hierarchy:
         size = len(viewer) + sum(file.stat().st_size for file in Path(model).glob("tiles/**/*.glb")) // 2
@@ -123,7 +181,7 @@ def test_no_name_ends_the_frame(model: str, tmp_path: Path) -> None:
     shutil.copytree(model, path)
     with meshhier.open(path) as hierarchy:
         cell = hierarchy.show(view="'><script>", link="")
-    assert cell.html.count("'") == 2 and cell.html.endswith("'></iframe>")
+    assert cell.html.count("'") == 2 and cell.html.endswith("</iframe>")
     page = page_of(cell)
     assert "<b>" not in page and "<script>" not in page and len(embedded(cell)) > 3
 
