@@ -66,6 +66,16 @@ async function open(browser, address, content) {
   return { context, page, asked, complaints };
 }
 
+/// Comes so near that the finest tiles that can be had are shown.
+async function approach(page, frame) {
+  await frame.evaluate(() => {
+    const viewer = document.querySelector('meshhier-viewer');
+    const [position, target] = [viewer.camera.split(',').slice(0, 3).map(Number), viewer.camera.split(',').slice(3).map(Number)];
+    viewer.camera = [...position.map((value, k) => target[k] + (value - target[k]) / 3), ...target].join();
+  });
+  await page.waitForTimeout(500);
+}
+
 /// Returns the finest level that is shown once the camera has come near.
 async function checkCell(browser, report, pictures, { what, address, content, text, origins }) {
   const { context, page, asked, complaints } = await open(browser, address, content);
@@ -73,12 +83,7 @@ async function checkCell(browser, report, pictures, { what, address, content, te
   const shown = await shownIn(page, frame);
   writeFileSync(path.join(pictures, `notebook ${what}.png`), shown.picture);
   report.line(`notebook ${what}`, shown.drawn > 0.05 && shown.drawn < 0.9 && !shown.problem && shown.text.includes(text), `${(100 * shown.drawn).toFixed(0)} % of the cell are drawn: ${shown.text}`);
-  await frame.evaluate(() => {
-    const viewer = document.querySelector('meshhier-viewer');
-    const [position, target] = [viewer.camera.split(',').slice(0, 3).map(Number), viewer.camera.split(',').slice(3).map(Number)];
-    viewer.camera = [...position.map((value, k) => target[k] + (value - target[k]) / 3), ...target].join();
-  });
-  await page.waitForTimeout(500);
+  await approach(page, frame);
   const { finest } = await shownIn(page, frame);
   report.line(`notebook ${what} workers`, page.workers().length > 0, `${page.workers().length} decode tiles`);
   const others = [...asked].filter((origin) => origin !== 'null' && !origins.some((one) => origin.startsWith(one)));
@@ -87,6 +92,21 @@ async function checkCell(browser, report, pictures, { what, address, content, te
   report.line(`notebook ${what} console`, own.length === 0, own.join('; ') || 'no errors');
   await context.close();
   return finest;
+}
+
+/// The kernel ends while it is asked for tiles: what the cell holds is shown, from where one was.
+async function checkEnd(browser, report, what, { address }, end) {
+  const { context, page } = await open(browser, address);
+  const frame = page.frames()[1];
+  await shownIn(page, frame);
+  await end();
+  const camera = await frame.evaluate(() => document.querySelector('meshhier-viewer').camera);
+  await approach(page, frame);
+  await frame.waitForFunction(() => document.querySelector('p').innerText.includes('are not in this notebook'), null, { timeout: PATIENCE });
+  const { text, problem, drawn } = await shownIn(page, frame);
+  const now = await frame.evaluate(() => document.querySelector('meshhier-viewer').camera);
+  report.line(`notebook ${what}: the kernel's end`, !problem && drawn > 0.05 && now !== camera && text.endsWith('are not in this notebook'), text);
+  await context.close();
 }
 
 /// One model, shown in three places, the kernel's end between them.
@@ -99,7 +119,7 @@ async function checkKernel(browser, report, pictures, work, hierarchy) {
   const fine = await checkCell(browser, report, pictures, { what: name, ...own, text: 'finer ones come from the kernel' });
   const elsewhere = { address: 'https://notebooks.example/', content, origins: ['https://notebooks.example'] };
   const coarse = await checkCell(browser, report, pictures, { what: `${name} elsewhere`, ...elsewhere, text: 'finer ones are not in this notebook' });
-  await end();
+  await checkEnd(browser, report, name, own, end);
   const kept = await checkCell(browser, report, pictures, { what: `${name} kept`, ...own, text: 'finer ones are not in this notebook' });
   report.line(`notebook ${name} detail`, kept === coarse && coarse < fine, `level ${fine} from the kernel, ${coarse} elsewhere, ${kept} without it`);
 }
