@@ -43,8 +43,9 @@ class Console {
   Console(std::ostream& out, bool quiet, server::LogFormat format)
       : out_(out), quiet_(quiet), format_(format) {}
 
+  /// Errors even if it is quiet: somebody must hear of them.
   void tell(server::LogLevel level, const std::string& message) {
-    if (!quiet_)
+    if (!quiet_ || level == server::LogLevel::error)
       print(level, message);
   }
   void print(server::LogLevel level, const std::string& message) {
@@ -325,7 +326,8 @@ int build_inbox(const ServeArguments& arguments, Environment& environment) {
   while (!environment.cancel.cancelled() && !watch.is_over())
     std::this_thread::sleep_for(kLook);
   watch.stop();
-  environment.out << once_text(watch.outcome()) << std::flush;
+  const bool is_told = !arguments.quiet || !watch.outcome().failures.empty();
+  environment.out << (is_told ? once_text(watch.outcome()) : "") << std::flush;
   if (environment.cancel.cancelled())
     throw Error(ErrorCode::interrupted, "interrupted; the same command goes on where it was");
   return server::exit_code_of(watch.outcome().failures);

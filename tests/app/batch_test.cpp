@@ -414,6 +414,20 @@ TEST_F(Once, WhatIsInTheInboxIsBuiltAndNoPortIsOpened) {
   }
 }
 
+TEST_F(Once, QuietMeansThatOnlyFailuresAreTold) {
+  write_mesh("inbox/a.ply");
+  Arguments quiet = once();
+  quiet.push_back("--quiet");
+  const Outcome fine = run(quiet);
+  EXPECT_EQ(fine.code, 0);
+  EXPECT_EQ(fine.out + fine.messages, "");
+  write_mesh("inbox/broken.ply", 9999);
+  const Outcome broken = run(quiet);
+  EXPECT_EQ(broken.code, kInput);
+  EXPECT_THAT(broken.messages, AllOf(HasSubstr("error broken.ply: "), Not(HasSubstr(" info "))));
+  EXPECT_EQ(broken.out, "0 built, 1 up to date, 1 failed, 0 left for the next time\n");
+}
+
 TEST_F(Once, ASecondOneIsRefusedUntilTheFirstHasEnded) {
   write_mesh("inbox/a.ply");
   const pid_t first = start(once("60"));
