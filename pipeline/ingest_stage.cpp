@@ -117,6 +117,23 @@ void warn_of_rounding(double rounding, double median_edge, execution::Progress& 
       rounding, 100 * rounding / median_edge, median_edge));
 }
 
+/// Warns of a mesh that may have degrees beside metres: 1,000 times as high as it is wide.
+void warn_of_degrees(const BoundsD& box, execution::Progress& progress) {
+  constexpr double kSlimmest = 1e-3;
+  constexpr double kMost = 180;
+  const Vec3d size = box.max - box.min;
+  const auto is_angle = [&](double least, double most, double width) {
+    return least >= -kMost && most <= kMost && width > 0 && width < kSlimmest * size.z;
+  };
+  if (box.empty() || !is_angle(box.min.x, box.max.x, size.x) ||
+      !is_angle(box.min.y, box.max.y, size.y))
+    return;
+  progress.warn(fmt::format(
+      "the mesh is {:.2g} x {:.2g} wide and {:.2g} high: viewers show a line. If x and y are "
+      "longitude and latitude, bring it into a projected CRS, such as UTM, first",
+      size.x, size.y, size.z));
+}
+
 }  // namespace
 
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
@@ -274,6 +291,7 @@ void SourceMesh::choose_origin(const StageContext& context) {
   if (is_beyond(used.bounds, chosen.near))
     warn_of_far(used_outside(*this, chosen.near, context), context.progress);
   warn_of_rounding(rounding_of(sample, origin_), used.median_edge, context.progress);
+  warn_of_degrees(used.bounds, context.progress);
 }
 
 std::vector<partition::IdPoint> SourceMesh::take_sample(const importing::CopyList& copies) {

@@ -289,6 +289,24 @@ TEST_F(SourceMeshTest, AFewTrianglesThatReachFarDoNotMoveItMuchAndAreNamed) {
   }
 }
 
+TEST_F(SourceMeshTest, DegreesBesideMetresAreTold) {
+  const auto told = [&](double x, double step, double height) {
+    tests::Warnings warnings;
+    std::ofstream(path()) << std::setprecision(12)
+                          << text_header(3, 1,
+                                         "property double x\nproperty double y\n"
+                                         "property double z\n")
+                          << x << " 35.65 0\n"
+                          << x + step << " 35.65 " << height << '\n'
+                          << x << ' ' << 35.65 + step << " 0\n3 0 1 2\n";
+    open(path(), kInFlight, warnings);
+    return warnings.all;
+  };
+  EXPECT_THAT(told(139.7, 0.004, 60), ElementsAre(HasSubstr("longitude and latitude")));
+  EXPECT_THAT(told(139.7, 0.4, 60), testing::IsEmpty()) << "a tower";
+  EXPECT_THAT(told(639.7, 0.004, 60), testing::IsEmpty()) << "no longitude";
+}
+
 TEST_F(SourceMeshTest, WhatFloatsLoseOfAnEdgeIsTold) {
   const auto told = [&](const std::string& text) {
     tests::Warnings warnings;
