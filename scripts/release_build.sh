@@ -36,9 +36,17 @@ build_program() {
   cmake --build "$release" --target "$@"
 }
 
-# Prints the name of what reads OSGB, if it can be built.
+has_osg() {
+  grep -q '^OSG_FOUND:INTERNAL=1' "$release/CMakeCache.txt"
+}
+
+# Prints the name of what reads OSGB, if it can be built: also if OpenSceneGraph came after the build was set up.
 osgb_program() {
-  [[ ! -f $release/CMakeCache.txt ]] || ! grep -q '^OSG_FOUND:INTERNAL=1' "$release/CMakeCache.txt" || echo meshhier_osgb
+  [[ -f $release/CMakeCache.txt ]] || return 0
+  if [[ -z $sysroot ]] && ! has_osg && pkg-config --exists openscenegraph-osgDB; then
+    cmake "$release" >&2
+  fi
+  ! has_osg || echo meshhier_osgb
 }
 
 # Whether nothing in viewer/ is newer than what its build makes last.
@@ -70,7 +78,7 @@ require_page() {
   local missing
   missing=$(build_page)
   [[ -z $missing ]] || {
-    echo "without the viewer's page: $missing" >&2
+    echo "the viewer's page cannot be made: $missing; scripts/install_dependencies page installs what it needs" >&2
     return 1
   }
 }
