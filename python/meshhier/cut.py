@@ -56,7 +56,7 @@ class CutPieces:
         other tiles' vertices are below 0, and known to this piece alone, if they were not asked for."""
         places = np.arange(len(self._rows)) if region is None else self._reaching(region)
         for at, place in enumerate(places):
-            self._expect(self._rows[places[at:]])
+            self._expect(self._rows[places[at : at + MANY_TILES]])  # no more are fetched ahead
             try:
                 piece = self._piece(int(place), region)
             except (IndexError, ValueError) as error:
