@@ -14,7 +14,7 @@ export class ShareSheet {
   private readonly frame = new CopyField(words.share.frame, 4, this.status);
   private readonly element = new CopyField(words.share.element, 4, this.status);
   private readonly leftOut = element('p', { class: 'hint', hidden: true });
-  private readonly codes = element('div', { class: 'share' }, this.frame.root, this.element.root, element('p', { class: 'hint' }, words.share.elementHint));
+  private readonly codes = element('div', { class: 'share' }, this.frame.root, this.element.root, element('p', { class: 'hint' }, words.share.codesHint));
   private readonly first: FirstViewForm;
 
   constructor(private readonly parts: ViewParts) {

@@ -181,7 +181,7 @@ export const de: Words = {
     link: 'Link zu dieser Ansicht',
     frame: 'Rahmen für eine andere Seite',
     element: 'Element für eine andere Seite',
-    elementHint: 'Das Element braucht keinen Rahmen, aber dieser Server muss der anderen Seite das Laden erlauben (CORS).',
+    codesHint: 'Eine Seite eines anderen Servers zeigt den Rahmen nur, wenn dieser Server es erlaubt (meshhier serve --frame). Das Element braucht keinen Rahmen, aber dieser Server muss der anderen Seite das Laden erlauben (CORS; meshhier serve --cors).',
     copy: 'Kopieren',
     copied: 'Kopiert.',
     selected: 'Ausgewählt: Strg + C kopiert es.',

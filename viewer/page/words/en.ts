@@ -186,7 +186,7 @@ export const en = {
     link: 'Link to this view',
     frame: 'Frame for another page',
     element: 'Element for another page',
-    elementHint: 'The element needs no frame, but this host must allow that page to fetch from it (CORS).',
+    codesHint: 'A page of another host shows the frame only if this host allows it (meshhier serve --frame). The element needs no frame, but this host must allow that page to fetch from it (CORS; meshhier serve --cors).',
     copy: 'Copy',
     copied: 'Copied.',
     selected: 'Selected: press Ctrl + C to copy.',

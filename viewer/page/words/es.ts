@@ -181,7 +181,7 @@ export const es: Words = {
     link: 'Enlace a esta vista',
     frame: 'Marco para otra página',
     element: 'Elemento para otra página',
-    elementHint: 'El elemento no necesita marco, pero este servidor debe permitir que la otra página cargue de él (CORS).',
+    codesHint: 'Una página de otro servidor muestra el marco solo si este servidor lo permite (meshhier serve --frame). El elemento no necesita marco, pero este servidor debe permitir que la otra página cargue de él (CORS; meshhier serve --cors).',
     copy: 'Copiar',
     copied: 'Copiado.',
     selected: 'Seleccionado: pulse Ctrl + C para copiarlo.',
