@@ -151,6 +151,7 @@ void add_split(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember(names_of(bench::split_cases())))
       ->required();
   command->add_option("--degrees", arguments.split_degrees, "What bends more is a hard edge")
+      ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   command->footer(listing(bench::split_cases()));
 }

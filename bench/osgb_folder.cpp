@@ -271,7 +271,9 @@ class Maker {
   }
 
   static unsigned short packed(const osg::Vec4& colour) {
-    const auto bits = [&](int k, int most) { return static_cast<int>(colour[k] * most + 0.5F); };
+    const auto bits = [&](int k, int most) {
+      return static_cast<int>(colour[k] * static_cast<float>(most) + 0.5F);
+    };
     return static_cast<unsigned short>(bits(0, 31) << 11 | bits(1, 63) << 5 | bits(2, 31));
   }
 

@@ -1,5 +1,6 @@
 #include "bench/split.h"
 
+#include "base/angle.h"
 #include "base/error.h"
 #include "bench/noise.h"
 
@@ -39,7 +40,7 @@ Vec3d unit(Vec3d v) {
 class Splitter {
  public:
   Splitter(const LoadedMesh& mesh, double degrees)
-      : mesh_(mesh), least_cosine_(std::cos(degrees * std::numbers::pi / 180)) {
+      : mesh_(mesh), least_cosine_(turn_by(degrees * std::numbers::pi / 180).cosine) {
     for (const MeshTriangle& t : mesh.triangles)
       normals_.push_back(area_normal(mesh, t));
     for (const Vec3d& p : mesh.positions) {

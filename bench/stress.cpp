@@ -1,5 +1,6 @@
 #include "bench/stress.h"
 
+#include "base/angle.h"
 #include "base/error.h"
 #include "bench/block_writer.h"
 #include "bench/noise.h"
@@ -73,10 +74,16 @@ LoadedMesh points(const StressOptions& options) {
   return mesh;
 }
 
+/// Returns the turn by i parts of `count`.
+UnitTurn turn_of(std::uint64_t i, std::uint64_t count) {
+  return turn_by(2 * std::numbers::pi * static_cast<double>(i % count) /
+                 static_cast<double>(count));
+}
+
 /// Returns point i of `count` on a circle that is no circle.
 Vec3d ring_point(std::uint64_t i, std::uint64_t count) {
-  const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
-  return rounded_to_float(Vec3d{std::cos(angle), std::sin(angle), 0.2 * std::sin(7 * angle)});
+  const UnitTurn turn = turn_of(i, count);
+  return rounded_to_float(Vec3d{turn.cosine, turn.sine, 0.2 * turn_of(7 * i, count).sine});
 }
 
 /// A disc of one fan: every triangle has the vertex 0.
@@ -178,12 +185,12 @@ LoadedMesh moebius(const StressOptions& options) {
   const std::uint64_t length = 8 * width;
   LoadedMesh mesh;
   for (std::uint64_t i = 0; i < length; ++i) {
-    const double turn = std::numbers::pi * static_cast<double>(i) / static_cast<double>(length);
+    const UnitTurn around = turn_of(i, length), half = turn_of(i, 2 * length);
     for (std::uint64_t j = 0; j <= width; ++j) {
       const double off = static_cast<double>(j) / static_cast<double>(width) - 0.5;
-      const double radius = 1 + off * std::cos(turn);
-      mesh.positions.push_back(rounded_to_float(
-          Vec3d{radius * std::cos(2 * turn), radius * std::sin(2 * turn), off * std::sin(turn)}));
+      const double radius = 1 + off * half.cosine;
+      mesh.positions.push_back(
+          rounded_to_float(Vec3d{radius * around.cosine, radius * around.sine, off * half.sine}));
     }
   }
   const auto vertex = [&](std::uint64_t i, std::uint64_t j) {

@@ -277,7 +277,8 @@ class HttpServer::Library final : public httplib::Server {
         response.headers.erase("Content-Length");
     });
     if (log_)
-      set_logger([this](const auto& request, const auto& response) { log(request, response); });
+      set_logger(
+          [this](const auto& request, const auto& response) { log_request(request, response); });
   }
 
   void bind() {
@@ -291,7 +292,7 @@ class HttpServer::Library final : public httplib::Server {
     ::listen(svr_sock_, kBacklog);
   }
 
-  void log(const httplib::Request& request, const httplib::Response& response) {
+  void log_request(const httplib::Request& request, const httplib::Response& response) {
     log_({request.remote_addr, request.method, request.target, response.status,
           response.content_length_});
   }

@@ -166,6 +166,7 @@ TEST(GlobePlaceTest, IsThatOfTheEllipsoid) {
   EXPECT_NEAR(near->latitude, 48.856, 1e-2);
   EXPECT_NEAR(place_on_globe(Vec3d{0, 0, 6356752.3142})->latitude, 90, 1e-9);
   EXPECT_NEAR(place_on_globe(Vec3d{-6378137, 0, 0})->longitude, 180, 1e-9);
+  EXPECT_NEAR(place_on_globe(Vec3d{0, -6378137, 0})->longitude, -90, 1e-9);
   EXPECT_FALSE(place_on_globe(Vec3d{1, 2, 3}));
   EXPECT_FALSE(place_on_globe(Vec3d{std::nan(""), 0, 0}));
   for (double latitude = -90; latitude <= 90; latitude += 7.5) {
