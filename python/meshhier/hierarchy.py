@@ -40,6 +40,8 @@ class Hierarchy:
     Where a node is asked for, a Node, (level, index) and "LEVEL/INDEX" are one.
     """
 
+    path: str
+
     def __init__(self, path: Path, *, headers: Optional[Headers] = None, cache_bytes: int = CACHE_BYTES) -> None:
         asked = path_text(path)
         self._place = (asked if is_web_address(asked) else os.path.abspath(asked)), headers, cache_bytes

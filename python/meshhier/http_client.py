@@ -122,8 +122,8 @@ class HttpClient:
             raise UsageError(f"headers: expected {error}") from None
         self._headers = [(name, value.strip()) for name, _, value in (line.partition(":") for line in lines)]
         self._connections = Connections(SILENCE)
-        self.requests = 0  # so far, failed ones included
-        self.bytes = 0
+        self.requests: int = 0  # so far, failed ones included
+        self.bytes: int = 0
 
     def close(self) -> None:
         self._connections.close()

@@ -57,7 +57,7 @@ class Connections:
         self._idle: dict[Origin, list[http.client.HTTPConnection]] = {}
         self._lock = threading.Lock()
         self._tls: Optional[ssl.SSLContext] = None
-        self.is_closed = False
+        self.is_closed: bool = False
 
     def close(self) -> None:
         with self._lock:

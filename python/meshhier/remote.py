@@ -146,6 +146,8 @@ class Ahead:
 class RemoteFile:
     """A file on the web, as far as `zipfile` reads files. Thread-safe but for the place that seek() sets."""
 
+    size: int
+
     def __init__(self, client: HttpClient, address: Address, start: Answer, blocks: Blocks, *, is_packed_itself: bool = False) -> None:
         """`start`: its first bytes, or all. `is_packed_itself`: what the host calls its Content-Encoding is the file."""
         self._client, self._address, self._start, self._blocks = client, address, start, blocks

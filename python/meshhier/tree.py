@@ -47,7 +47,7 @@ class Tree:
 
     def __init__(self, partitions: int) -> None:
         self.partitions = partitions
-        self.depth = (partitions - 1).bit_length()
+        self.depth: int = (partitions - 1).bit_length()
 
     def node(self, name: NodeLike) -> Node:
         """The node of that name."""
