@@ -115,7 +115,7 @@ def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[st
         raise UsageError(f"no address: {address}")
     is_path = address != "" and not urlsplit(address).netloc
     whence = "the kernel" if link is None else "this host" if is_path else urlsplit(address).netloc
-    name = os.path.splitext(os.path.basename(hierarchy.path.rstrip("/")))[0]
+    name = os.fsencode(os.path.splitext(os.path.basename(hierarchy.path.rstrip("/")))[0]).decode("utf-8", "replace")
     texts = _texts(hierarchy, name, view, address, whence)
     frame = len(_frame(_filled(texts), height, is_path, "")) + _MOST_TOLD
     texts["poster"] = _poster(hierarchy, name, size - frame)

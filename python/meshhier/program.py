@@ -22,21 +22,20 @@ import json
 import os
 import pathlib
 import sys
-from typing import TYPE_CHECKING, Any, Callable, Literal, Mapping, NoReturn, Optional, Sequence, Union, overload
-from urllib.parse import urlsplit
+from typing import Any, Literal, Mapping, NoReturn, Optional, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .asked import Path, is_web_address, output_path
+from .asked import Path
 from .boxes import Box
-from .errors import UsageError, VerifyError
+from .calls import MadeFile, make, maker, output_words, run, several
+from .errors import VerifyError
 from .hierarchy import Hierarchy, Place
 from .http_client import Headers
 from .objects import ObjectRow
-from .options import Files, option_words, path_word
 from .polygons import Polygon
-from .process import Listeners, ProgressCallback, Result, TextCallback, find_program, run_program
+from .process import ProgressCallback, TextCallback, find_program
 from .results import BuildPlan, Comparison, Leftover, TaskStage, TaskStatus, Verification, comparison, record, verification
 from .tree import NodeLike
 
@@ -46,71 +45,6 @@ Nodes = Union[Path, Sequence[NodeLike]]
 Vector = Union[Sequence[float], NDArray[Any]]
 Rows = Union[Sequence[Vector], NDArray[Any]]
 Names = Union[str, Sequence[str]]
-MadeFile = Union[pathlib.Path, bytes]
-
-if TYPE_CHECKING:
-    from typing import Protocol
-
-    from typing_extensions import Concatenate, ParamSpec
-
-    Options = ParamSpec("Options")
-
-    class _Maker(Protocol[Options]):
-        """What makes a file: its path, or without an output its bytes."""
-
-        @overload
-        def __call__(self, hierarchy: Place, output: None = None, *args: Options.args, **options: Options.kwargs) -> bytes: ...
-        @overload
-        def __call__(self, hierarchy: Place, output: Path, *args: Options.args, **options: Options.kwargs) -> pathlib.Path: ...
-        def __call__(self, hierarchy: Place, output: Optional[Path] = None, *args: Options.args, **options: Options.kwargs) -> Any: ...
-
-
-def _maker(function: Callable[Concatenate[Place, Optional[Path], Options], MadeFile]) -> _Maker[Options]:
-    """Lets type checkers know that the result is bytes without an output, and else its path."""
-    return function  # type: ignore[return-value]
-
-
-def _place(place: Place) -> str:
-    try:
-        return path_word(place._place[0] if isinstance(place, Hierarchy) else place)
-    except ValueError as error:
-        raise UsageError(f"expected {error}, found {place!r}") from None
-
-
-def _output(output: Optional[Path]) -> list[str]:
-    return [] if output is None else [f"--output={path_word(output_path(output))}"]
-
-
-def _known_headers(places: Sequence[Place]) -> Optional[Headers]:
-    """Those of open hierarchies. Raises UsageError where they would go to another host, too: the program sends them to each."""
-    web = [place._place[:2] if isinstance(place, Hierarchy) else (place, None) for place in places if is_web_address(_place(place))]
-    known = next((headers for _, headers in web if headers), None)
-    if known and len({urlsplit(str(address)).netloc.rpartition("@")[2] for address, _ in web}) > 1:
-        raise UsageError("the headers of a hierarchy are for its own host, and here is another one: give headers= that both may have")
-    return known
-
-
-def _listeners(given: Mapping[str, Any]) -> Listeners:
-    return Listeners(given.get("progress"), given.get("warning"), given.get("account"))
-
-
-def _run(command: str, places: Sequence[Place], given: Mapping[str, Any], *further: str, **how: Any) -> Result:
-    """Runs a command with the keywords of a call."""
-    given = {**given, "headers": given.get("headers") or _known_headers(places)}
-    with Files() as files:
-        words = [command, *(_place(place) for place in places), *further, *option_words(command, given, files)]
-        return run_program(words, _listeners(given), **how)
-
-
-def _make(command: str, hierarchy: Place, output: Optional[Path], given: Mapping[str, Any]) -> MadeFile:
-    if output is None:
-        return _run(command, [hierarchy], given, "--output=-", prints_data=True).output
-    _run(command, [hierarchy], given, *_output(output))
-    return pathlib.Path(output)
-
-
-def _several(paths: Union[Path, Sequence[Path], None]) -> list[Path]:
-    return [] if paths is None else [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
 
 
 # Making hierarchies.
@@ -170,7 +104,7 @@ def build(
     Raises also StoppedBuildError.
     """
     given = locals()
-    result = _run("build", _several(mesh), given, *_output(output), *(["--json"] if dry_run else []), prints_data=dry_run)
+    result = run("build", several(mesh), given, *output_words(output), *(["--json"] if dry_run else []), prints_data=dry_run)
     if dry_run:
         told = result.json()
         return record(BuildPlan, told, json=told)
@@ -189,7 +123,7 @@ def plan(
 ) -> TaskStatus:
     """Cuts a build into tasks for many machines (docs/cluster.md): stages of up to `tasks` tasks, planned in the folder `work`."""
     given = locals()
-    _run("plan", _several(mesh), given, *_output(output), tells_progress=False)
+    run("plan", several(mesh), given, *output_words(output), tells_progress=False)
     return task_status(work)
 
 
@@ -208,19 +142,19 @@ def task(
 ) -> None:
     """Does tasks of a stage of a planned build: task `index`, with `of` also each of-th one after it. Without both those that the
     scheduler's variables name, or all. Tasks that are done end at once."""
-    _run("task", [work, stage], locals())
+    run("task", [work, stage], locals())
 
 
 def task_status(work: Path) -> TaskStatus:
     """How far a planned build is: its stages, with their tasks, and the next one."""
-    told = _run("task", [work], {"status": True}, "--json", prints_data=True).json()
+    told = run("task", [work], {"status": True}, "--json", prints_data=True).json()
     return record(TaskStatus, told, stages=[record(TaskStage, one) for one in told["stages"]], json=told)
 
 
 def clean(path: Path = ".", *, remove: bool = False) -> list[Leftover]:
     """Lists what stopped builds and killed commands left in a folder, or beside a hierarchy; with `remove` it is gone then. Builds at
     work are left alone."""
-    told = _run("clean", [path], {"remove": remove}, "--json", tells_progress=False, prints_data=True).json()
+    told = run("clean", [path], {"remove": remove}, "--json", tells_progress=False, prints_data=True).json()
     return [record(Leftover, one) for one in told["leftovers"]]
 
 
@@ -236,7 +170,7 @@ def inspect(
     limit_rate: Optional[Size] = None,
 ) -> dict[str, Any]:
     """What a hierarchy holds, as docs/command_line.md has it: source, parameters, totals, levels; with `level` or `node` its tiles."""
-    return dict(_run("inspect", [hierarchy], locals(), "--json", tells_progress=False, prints_data=True).json())
+    return dict(run("inspect", [hierarchy], locals(), "--json", tells_progress=False, prints_data=True).json())
 
 
 def inspect_objects(
@@ -251,7 +185,7 @@ def inspect_objects(
     """Objects, ascending by name: all, those whose names begin with `prefix` or have the words of `find`, and that meet the condition
     `where`, as SQL has them."""
     given = {**locals(), "prefix": prefix or (True if find is None else None)}
-    told = _run("inspect", [hierarchy], given, "--json", tells_progress=False, prints_data=True)
+    told = run("inspect", [hierarchy], given, "--json", tells_progress=False, prints_data=True)
     return [_object_row(json.loads(line)) for line in told.output.splitlines()]
 
 
@@ -293,7 +227,7 @@ def verify(
 
     Raises VerifyError with all problems.
     """
-    result = _run("verify", [hierarchy], locals(), "--json", prints_data=True, expected=(0, 7))
+    result = run("verify", [hierarchy], locals(), "--json", prints_data=True, expected=(0, 7))
     found = verification(result.json() if result.output else {"problems": [result.failure]})
     if result.code == 7:
         raise VerifyError("\n".join(found.problems), 7, tuple(found.problems))
@@ -331,7 +265,7 @@ def compare(
         transform: moves FROM first: a 4 x 4 matrix, rows first, or a file with one.
         objects: how many objects of FROM are listed, the farthest first; 20 if not given.
     """
-    return comparison(_run("compare", [from_, to], locals(), "--json", *_output(output), prints_data=True, expected=(0, 1)).json())
+    return comparison(run("compare", [from_, to], locals(), "--json", *output_words(output), prints_data=True, expected=(0, 1)).json())
 
 
 def view(
@@ -345,13 +279,13 @@ def view(
 ) -> dict[str, Any]:
     """How a hierarchy is shown first, {} if nobody said it; the keywords change it: `clear` forgets what is there, `link` takes what a
     link of the page says, `settings` change keys: {"view.attribute": "quality"}."""
-    return dict(_run("view", [hierarchy], locals(), tells_progress=False, prints_data=True).json())
+    return dict(run("view", [hierarchy], locals(), tells_progress=False, prints_data=True).json())
 
 
 # Making files of hierarchies. Without an output they return its bytes, else its path.
 
 
-@_maker
+@maker
 def export(
     hierarchy: Place,
     output: Optional[Path] = None,
@@ -389,12 +323,12 @@ def export(
     """
     given = locals()
     if output is None and dsm is not None:
-        _run("export", [hierarchy], given)
+        run("export", [hierarchy], given)
         return b""
-    return _make("export", hierarchy, output, given)
+    return make("export", hierarchy, output, given)
 
 
-@_maker
+@maker
 def preview(
     hierarchy: Place,
     output: Optional[Path] = None,
@@ -436,10 +370,10 @@ def preview(
         format: "png" (without an output also if it is not given) or "webp".
     """
     given = {**locals(), "format": format or ("png" if output is None else None)}
-    return _make("preview", hierarchy, output, given)
+    return make("preview", hierarchy, output, given)
 
 
-@_maker
+@maker
 def draw(
     hierarchy: Place,
     output: Optional[Path] = None,
@@ -485,10 +419,10 @@ def draw(
         level, error: lines or a picture of these tiles, not of the original.
     """
     given = {**locals(), "format": format or ("png" if output is None else None)}
-    return _make("draw", hierarchy, output, given)
+    return make("draw", hierarchy, output, given)
 
 
-@_maker
+@maker
 def page(
     hierarchy: Place,
     output: Optional[Path] = None,
@@ -512,7 +446,7 @@ def page(
         fetch_pictures: embeds the pictures of a story that lie on other hosts, too.
         viewer: the folder of the page, if not as installed.
     """
-    return _make("page", hierarchy, output, locals())
+    return make("page", hierarchy, output, locals())
 
 
 def progressive(
@@ -528,11 +462,11 @@ def progressive(
     account: Optional[TextCallback] = None,
 ) -> pathlib.Path:
     """Makes a folder with a base and its details for weak clients: of all, or of one sector; one detail a level, or `steps`."""
-    _run("progressive", [hierarchy], locals(), *_output(output))
+    run("progressive", [hierarchy], locals(), *output_words(output))
     return pathlib.Path(output)
 
 
-@_maker
+@maker
 def reconstruct(
     hierarchy: Place,
     output: Optional[Path] = None,
@@ -547,7 +481,7 @@ def reconstruct(
 ) -> MadeFile:
     """Rebuilds a PLY from what progressive() made, by so many details in their order, or all. With `stats` `account` gets what each
     file took."""
-    return _make("reconstruct", hierarchy, output, locals())
+    return make("reconstruct", hierarchy, output, locals())
 
 
 def main() -> NoReturn:

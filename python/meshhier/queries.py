@@ -108,10 +108,12 @@ def _field(answers: NDArray[Any], name: str) -> Optional[NDArray[Any]]:
     return answers[name] if name in (answers.dtype.names or ()) else None
 
 
-def _rows(given: ArrayLike, columns: int, name: str) -> NDArray[Any]:
-    """(n, columns) float64 or float32; one row may come without its list."""
+def _rows(given: Any, columns: int, name: str) -> NDArray[Any]:
+    """(n, columns) float64 or float32; one row may come without its list. What is masked is NaN, which nothing is near to."""
     try:
-        array = np.asarray(given)
+        array = np.asarray(np.ma.filled(given.astype(np.float64), np.nan) if isinstance(given, np.ma.MaskedArray) else given)
+        if array.dtype.kind == "b":
+            raise TypeError
         if array.dtype != np.float32:
             array = array.astype(np.float64, casting="same_kind" if array.dtype.kind not in "iu" else "unsafe", copy=False)
     except (TypeError, ValueError):

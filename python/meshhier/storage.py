@@ -139,5 +139,6 @@ def open_files(name: str) -> Files:
             raise NotAHierarchyError(f"{name}: there is no hierarchy.json")
         return Folder(name)
     if not os.path.exists(name):
-        raise NotAHierarchyError(f"{name}: there is no such file or folder")
+        hint = "; addresses are https:// and http://, files are named by their paths" if "://" in name else ""
+        raise NotAHierarchyError(f"{name}: there is no such file or folder{hint}")
     return Archive(name)

@@ -181,6 +181,12 @@ def test_a_zip_of_other_things_is_no_hierarchy(torus: str, built: Any, tmp_path:
         meshhier.open(tmp_path / "b.3tz")
 
 
+@pytest.mark.parametrize("name", ["file:///tmp/a.hier", "s3://bucket/a.3tz"])
+def test_addresses_of_other_kinds_are_named(name: str) -> None:
+    with pytest.raises(meshhier.NotAHierarchyError, match=f"{name}: there is no such file or folder; addresses are https:// and http://"):
+        meshhier.open(name)
+
+
 def test_nothing_is_replaced_in_silence(plain: meshhier.Hierarchy, tmp_path: Path) -> None:
     mesh, path = plain.cut(level=0), tmp_path / "a.ply"
     mesh.write_ply(path)

@@ -146,6 +146,8 @@ def test_rows_of_any_kind(torus: str, built: Build) -> None:
     odd = hierarchy.nearest([[np.nan, 0, 0], [0, 0, 3], [np.inf, 0, 0]])
     assert np.isnan(odd.distances).tolist() == [True, False, True] and odd.triangles[0] == -1 and odd.node(0) is None
     assert np.isnan(hierarchy.rays((0, 0, 9), (0, 0, 0)).distances[0])
+    masked = np.ma.masked_array([[1.5, 0.25, 0], [0, 0, 3]], mask=[[True, False, False], [False] * 3])
+    assert np.isnan(hierarchy.nearest(masked).distances).tolist() == [True, False], "what is masked is no number"
     many = np.random.default_rng(4).normal(size=(300000, 3))
     answers = hierarchy.nearest(many, memory_budget="100MiB")
     assert (answers.distances[::1000] == hierarchy.nearest(many[::1000]).distances).all()
@@ -153,7 +155,7 @@ def test_rows_of_any_kind(torus: str, built: Build) -> None:
 
 def test_what_makes_no_sense_is_told(torus: str, built: Build, tmp_path: Path) -> None:
     hierarchy = meshhier.open(built(torus, "torus.hier"))
-    for points in ([[1, 2]], [1, 2, 3, 4], "here", [["a", "b", "c"]], np.zeros((2, 3, 3)), [[1j, 0, 0]], None):
+    for points in ([[1, 2]], [1, 2, 3, 4], "here", [["a", "b", "c"]], np.zeros((2, 3, 3)), [[1j, 0, 0]], [[True, False, True]], None):
         with pytest.raises(meshhier.UsageError, match="points are an array"):
             hierarchy.nearest(points)  # type: ignore[arg-type]
     with pytest.raises(meshhier.UsageError, match="2 origins and 3 directions"):

@@ -7,6 +7,7 @@ import base64
 import gzip
 import html
 import json
+import os
 import re
 import shutil
 import urllib.error
@@ -184,6 +185,15 @@ def test_no_name_ends_the_frame(model: str, tmp_path: Path) -> None:
     assert cell.html.count("'") == 2 and cell.html.endswith("</iframe>")
     page = page_of(cell)
     assert "<b>" not in page and "<script>" not in page and len(embedded(cell)) > 3
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names are Unicode there")
+def test_a_name_that_is_no_text_is_shown(model: str, tmp_path: Path) -> None:
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.hier")
+    shutil.copytree(model, path)
+    with meshhier.open(path) as hierarchy:
+        cell = hierarchy.show()
+    assert "caf\ufffd: all of it" in cell.html and cell.html.encode("utf-8")
 
 
 @pytest.mark.parametrize("view", ["light=raking", "#shown.hier&light=raking", "http://localhost:8080/?x=1#a/b.hier&light=raking"])
