@@ -66,8 +66,7 @@ void choose_majority_labels(const BuildTile& joined, const AttributeRules& rules
   for (const PlacedValue& value : rules.values().values()) {
     std::vector<Vote> votes;
     for (std::uint32_t place = 0; value.is_label && place < joined.mesh.own_count; ++place) {
-      const double label = value_in(
-          value.type, joined.mesh.vertices.attributes_of(place).subspan(value.channel).data());
+      const double label = value.in(joined.mesh.vertices.attributes_of(place).data());
       if (!std::isnan(label))
         votes.push_back({contraction.parent_of[place], label, areas[place], place});
     }

@@ -43,8 +43,7 @@ std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const exporting::Dra
     const std::size_t vertex = raw(triangle[0]), places = mesh.vertices.size();
     const auto attributes = vertex < places ? mesh.vertices.attributes_of(vertex)
                                             : mesh.copies.vertices.attributes_of(vertex - places);
-    objects.push_back(
-        static_cast<std::uint32_t>(value_in(object.type, attributes.data() + object.channel)));
+    objects.push_back(static_cast<std::uint32_t>(object.in(attributes.data())));
   };
   for (const TileTriangle& triangle : numbers.numbered(mesh.interior, mesh.interior_wedges))
     add(triangle);

@@ -57,7 +57,7 @@ class AskedObjects {
 
   /// Whether a triangle with such a corner is asked for.
   bool has(std::span<const float> attributes) const {
-    const double object = value_in(place_.type, attributes.data() + place_.channel);
+    const double object = place_.in(attributes.data());
     return object >= 0 && object < static_cast<double>(asked_.size()) &&
            asked_[static_cast<std::size_t>(object)];
   }

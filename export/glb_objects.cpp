@@ -42,7 +42,7 @@ GlbObjects::GlbObjects(const PartsJob& job)
       scratch_(job.files, job.output.scratch(), pool_) {}
 
 std::uint32_t GlbObjects::object_of(std::span<const float> attributes) const {
-  const double object = value_in(place_.type, attributes.data() + place_.channel);
+  const double object = place_.in(attributes.data());
   if (!(object >= 0 && object < table_->size()))
     throw Error(ErrorCode::corrupt, "a tile has an object that the table of objects does not have");
   return static_cast<std::uint32_t>(object);

@@ -24,8 +24,7 @@ class NumberedVertices {
   }
   std::uint32_t object(TileVertex vertex) const {
     const auto [vertices, number] = found(vertex);
-    return static_cast<std::uint32_t>(
-        value_in(object_.type, vertices.attributes_of(number).data() + object_.channel));
+    return static_cast<std::uint32_t>(object_.in(vertices.attributes_of(number).data()));
   }
   std::vector<TileTriangle> interior() const {
     return numbers_.numbered(mesh_.interior, mesh_.interior_wedges);

@@ -17,6 +17,8 @@ struct PlacedValue {
   bool is_object = false;
 
   std::size_t channels() const { return static_cast<std::size_t>(channels_of(type)); }
+  /// Returns the value of the vertex whose channels begin at `vertex`.
+  double in(const float* vertex) const { return value_in(type, vertex + channel); }
 };
 
 /// In the order of layout.values.

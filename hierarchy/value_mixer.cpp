@@ -99,9 +99,7 @@ ValueMixer::ValueMixer(const AttributeLayout& layout)
 void ValueMixer::mix(std::span<const WeightedVertex> vertices, float* to) const {
   assert(!vertices.empty());
   for (const PlacedValue& value : values_) {
-    const auto of = [&](std::size_t i) {
-      return value_in(value.type, vertices[i].channels + value.channel);
-    };
+    const auto of = [&](std::size_t i) { return value.in(vertices[i].channels); };
     put_value(value.type, value.is_label ? label_of(vertices, of) : mean_of(vertices, of),
               to + value.channel);
   }
@@ -109,8 +107,7 @@ void ValueMixer::mix(std::span<const WeightedVertex> vertices, float* to) const 
 
 bool ValueMixer::have_equal_labels(const float* a, const float* b) const {
   return std::ranges::all_of(values_, [&](const PlacedValue& value) {
-    return !value.is_label ||
-           value_in(value.type, a + value.channel) == value_in(value.type, b + value.channel);
+    return !value.is_label || value.in(a) == value.in(b);
   });
 }
 

@@ -36,9 +36,7 @@ class ValueMixer {
   /// Whether two vertices have the same labels.
   bool have_equal_labels(const float* a, const float* b) const;
   /// Returns the object of a vertex; 0 if there are no objects.
-  double object_of(const float* channels) const {
-    return object_ ? value_in(object_->type, channels + object_->channel) : 0;
-  }
+  double object_of(const float* channels) const { return object_ ? object_->in(channels) : 0; }
 
  private:
   std::vector<PlacedValue> values_;  ///< of all kinds of quantities

@@ -76,7 +76,7 @@ void find_label_objects(const std::string& name, RawMesh& mesh, const ImportRoom
     rows.resize(corners.size() * channels);
     mesh.attributes.read(first * channels, rows);
     for (std::size_t i = 0; i < corners.size(); ++i)
-      corners[i] = {value_in(place.type, rows.data() + i * channels + place.channel), first + i};
+      corners[i] = {place.in(rows.data() + i * channels), first + i};
   };
   storage::RecordSpool<Triangle<std::uint32_t>> ordered(room.scratch, kImportSpoolBytes);
   LabelObjects objects(*mesh.objects);

@@ -195,7 +195,7 @@ void take_attributes(const AttributeLayout& layout, const VertexArray& vertices,
     if (texcoord.count > 0)
       part.texcoords.push_back({all[texcoord.first], all[texcoord.first + 1]});
     for (std::size_t i = 0; i < values.size(); ++i)
-      part.values[i].push_back(value_in(values[i].type, all.data() + values[i].channel));
+      part.values[i].push_back(values[i].in(all.data()));
   }
 }
 

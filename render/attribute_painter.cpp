@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
-#include "hierarchy/value_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,10 +38,9 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
   const auto found = std::ranges::find(given_.values, colours.attribute, &ScalarAttribute::name);
   if (found == given_.values.end())
     refuse_name(source, colours.attribute);
-  attribute_ = *found;
   const auto number = static_cast<std::size_t>(found - given_.values.begin());
   const ValueStatistics& values = source.values[number];
-  channel_ = placed_values(given_)[number].channel;
+  value_ = placed_values(given_)[number];
   const bool is_signed = values.min < 0 && values.max > 0;
   ramp_ = colours.ramp.value_or(is_signed ? ColourRamp::coolwarm : ColourRamp::viridis);
   range_ = colours.range.value_or(whole_range(values, ramp_));
@@ -55,9 +53,7 @@ AttributePainter::AttributePainter(const SourceSummary& source, const AttributeC
 
 AttributePainter::AttributePainter(const AttributeLayout& given, ObjectColour colour)
     : given_(given), object_colour_(std::move(colour)) {
-  const auto found = std::ranges::find_if(given_.values, &ScalarAttribute::is_object);
-  attribute_ = *found;
-  channel_ = placed_object(given_)->channel;
+  value_ = placed_object(given_).value();
   begin_painted();
 }
 
@@ -82,7 +78,7 @@ void AttributePainter::paint(VertexArray& vertices) const {
     const auto channels = vertices.attributes_of(v);
     const auto normal = given_.part(AttributeKind::normals).of(channels);
     painted.insert(painted.end(), normal.begin(), normal.end());
-    const Vec3f rgb = colour(value_in(attribute_.type, channels.subspan(channel_).data()));
+    const Vec3f rgb = colour(value_.in(channels.data()));
     painted.insert(painted.end(), {rgb.x, rgb.y, rgb.z});
   }
   vertices.attributes = std::move(painted);
@@ -94,7 +90,7 @@ Vec3f AttributePainter::colour(double value) const {
     return object_colour_(value).value_or(kNoValueColour);
   if (!std::isfinite(value))
     return kNoValueColour;
-  if (attribute_.is_label) {
+  if (value_.is_label) {
     if (std::ranges::find(hidden_, value) != hidden_.end())
       return {kHidden, kHidden, kHidden};
     const auto known = labels_.find(value);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "hierarchy/value_channels.h"
 #include "render/colour_ramp.h"
 #include "render/scene.h"
 
@@ -49,8 +50,7 @@ class AttributePainter {
   Vec3f colour(double value) const;
 
   AttributeLayout given_, painted_;
-  ScalarAttribute attribute_;
-  std::size_t channel_ = 0;  ///< the attribute's first channel
+  PlacedValue value_;
   ColourRamp ramp_{};
   std::array<double, 2> range_{};
   double tolerance_ = -1;

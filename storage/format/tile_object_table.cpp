@@ -178,8 +178,7 @@ std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const AttributeLayou
   std::vector<std::uint32_t> objects;
   for (const VertexArray* vertices : {&mesh.vertices, &mesh.copies.vertices}) {
     for (std::size_t v = 0; v < vertices->size(); ++v) {
-      const auto object = static_cast<std::uint32_t>(
-          value_in(place.type, vertices->attributes_of(v).data() + place.channel));
+      const auto object = static_cast<std::uint32_t>(place.in(vertices->attributes_of(v).data()));
       if (objects.empty() || objects.back() != object)
         objects.push_back(object);
     }

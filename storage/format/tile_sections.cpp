@@ -232,7 +232,7 @@ class Reader {
     const PlacedValue place = placed_object(plan_.layout()).value();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       const std::uint64_t row = feature(v);
-      const double object = value_in(place.type, vertices.attributes_of(v).data() + place.channel);
+      const double object = place.in(vertices.attributes_of(v).data());
       if (row >= shape->rows || objects.objects[row] != object)
         fail(fmt::format("vertex {} has row {} in the table of objects, which is not of its object",
                          v, row));

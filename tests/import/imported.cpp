@@ -57,8 +57,7 @@ std::vector<std::uint32_t> Imported::objects_of_triangles() const {
     std::array<std::uint32_t, 3> corners{};
     for (std::size_t k = 0; place && k < 3; ++k) {
       const std::size_t first = triangle[k] * static_cast<std::size_t>(layout.channels());
-      corners[k] = static_cast<std::uint32_t>(
-          value_in(place->type, attributes.data() + first + place->channel));
+      corners[k] = static_cast<std::uint32_t>(place->in(attributes.data() + first));
     }
     if (!place || corners[0] != corners[1] || corners[0] != corners[2])
       throw std::logic_error("the corners of a triangle have no object, or several");
@@ -97,7 +96,7 @@ std::vector<double> Imported::values(std::size_t attribute) const {
   std::vector<double> all;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const std::size_t first = v * static_cast<std::size_t>(layout.channels());
-    all.push_back(value_in(value.type, attributes.data() + first + value.channel));
+    all.push_back(value.in(attributes.data() + first));
   }
   return all;
 }
