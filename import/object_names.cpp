@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "import/row_bytes.h"
 #include "storage/io/hash.h"
 

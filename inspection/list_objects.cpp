@@ -1,7 +1,7 @@
 #include "inspection/list_objects.h"
 
 #include "base/plain_text.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "export/asked_objects.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/named_value.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/json_value.h"

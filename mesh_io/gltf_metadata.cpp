@@ -1,7 +1,7 @@
 #include "mesh_io/gltf_metadata.h"
 
 #include "base/named_value.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/json_value.h"
 #include "mesh_io/metadata_numbers.h"

@@ -1,6 +1,5 @@
 #include "mesh_io/record_table.h"
 
-#include "base/sound_utf8.h"
 #include "base/utf8.h"
 #include "mesh_io/gltf_json.h"
 #include "mesh_io/input_error.h"

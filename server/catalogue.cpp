@@ -3,7 +3,7 @@
 #include "base/named_value.h"
 #include "base/number_text.h"
 #include "base/percent_code.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 #include "server/url_path.h"
 #include "storage/format/folded_words.h"
 #include "storage/io/hash.h"

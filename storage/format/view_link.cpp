@@ -2,7 +2,7 @@
 
 #include "base/number_text.h"
 #include "base/percent_code.h"
-#include "base/sound_utf8.h"
+#include "base/utf8.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,3 @@
-#include "base/sound_utf8.h"
-
 #include "base/utf8.h"
 
 #include <algorithm>
