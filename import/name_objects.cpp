@@ -98,7 +98,7 @@ class Namer {
       const auto label = std::ranges::find(values, objects.choice.label, &ScalarAttribute::name);
       drop_value(mesh_, static_cast<std::size_t>(label - values.begin()), naming_.room);
     }
-    named_.imported = {text_of(objects.choice), naming_.to, list_.facts};
+    named_.imported = {naming_.to, list_.facts};
     return true;
   }
 
@@ -124,7 +124,7 @@ class Namer {
     const auto to = naming_.files.create(naming_.to);
     list_objects(objects, table ? &*table : nullptr, types, *to, list_, naming_.room);
     to->sync();  // a build that goes on later, and tasks, trust it
-    named_.imported = {text_of(objects.choice), naming_.to, list_.facts};
+    named_.imported = {naming_.to, list_.facts};
     if (table)
       tell(table->counts());
   }

@@ -17,7 +17,6 @@ namespace meshhier::importing {
 
 /// The table of a mesh's objects, as an import has written it.
 struct ImportedObjects {
-  std::string from;            ///< as the config says it: "node"; "auto"
   std::filesystem::path file;  ///< boxes, triangles and areas are not in it
   storage::ObjectTableFacts facts;
 };
