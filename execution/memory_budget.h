@@ -9,6 +9,10 @@
 
 namespace meshhier::execution {
 
+/// Returns the budget of those who set none: a quarter of what the process may use, from 512 MiB to
+/// 16 GiB, in whole MiB, and at most most_budget().
+std::uint64_t default_budget(const storage::UsableMemory& usable = storage::usable_memory());
+
 /// Returns the most that a budget should be: three quarters of what the process may use, in whole
 /// MiB. The rest is for what no budget counts: stacks of threads, what the allocator keeps, the
 /// program itself.

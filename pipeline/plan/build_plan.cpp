@@ -15,7 +15,6 @@
 #include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
 #include "storage/io/paths.h"
-#include "storage/io/usable_memory.h"
 
 #include <algorithm>
 
@@ -131,14 +130,9 @@ std::size_t thread_count(const config::Config& config) {
 }
 
 std::uint64_t memory_budget(const config::Config& config) {
-  constexpr std::uint64_t kLeast = std::uint64_t{512} << 20;
-  constexpr std::uint64_t kMost = std::uint64_t{16} << 30;
-  static const storage::UsableMemory usable = storage::usable_memory();
-  constexpr std::uint64_t kGrain = std::uint64_t{1} << 20;  // messages tell it: "6026MiB"
-  if (config.memory_budget)
-    return *config.memory_budget;
-  return std::min(std::clamp(usable.bytes / 4 / kGrain * kGrain, kLeast, kMost),
-                  execution::most_budget(usable));
+  // Asked once: plans of one build must agree.
+  static const std::uint64_t by_default = execution::default_budget();
+  return config.memory_budget.value_or(by_default);
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,

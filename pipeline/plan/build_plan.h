@@ -48,8 +48,8 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
 /// Returns the number of threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);
 
-/// Returns the bytes of memory that it may use. If the config does not say, that is a quarter of
-/// what the process may use, but 512 MiB at least and 16 GiB at most.
+/// Returns the bytes of memory that it may use: execution::default_budget() if the config does not
+/// say.
 std::uint64_t memory_budget(const config::Config& config);
 
 /// Throws Error(usage) if a file of the input lies where the output will be: a replaced output is

@@ -22,6 +22,14 @@ TEST(MemoryBudgetTest, LeavesAQuarterToWhatNoBudgetCounts) {
   EXPECT_EQ(most_budget({UINT64_MAX}) % kTestMiB, 0U);
 }
 
+TEST(MemoryBudgetTest, IsAQuarterByDefaultWithinItsLimits) {
+  EXPECT_EQ(default_budget({8192 * kTestMiB}), 2048 * kTestMiB);
+  EXPECT_EQ(default_budget({24107 * kTestMiB + 4095}), 6026 * kTestMiB) << "whole MiB";
+  EXPECT_EQ(default_budget({1024 * kTestMiB}), 512 * kTestMiB);
+  EXPECT_EQ(default_budget({600 * kTestMiB}), 450 * kTestMiB) << "three quarters of what there is";
+  EXPECT_EQ(default_budget({UINT64_MAX}), 16384 * kTestMiB);
+}
+
 TEST(MemoryBudgetTest, WarnsBeyondTheLimitWithWhatToSet) {
   EXPECT_THAT(budget_warning("memory_budget", 512 * kTestMiB, {512 * kTestMiB}), IsEmpty());
   EXPECT_THAT(budget_warning("memory_budget", 512 * kTestMiB + 1,
