@@ -92,15 +92,14 @@ class Inflater {
   std::uint64_t at_ = 0;
 };
 
-class InflatedFile final : public storage::File {
+class InflatedFile final : public storage::ReadOnlyFile {
  public:
   InflatedFile(std::unique_ptr<storage::File> packed, std::uint64_t bytes)
-      : File(packed->path()), packed_(std::move(packed)), bytes_(bytes) {
+      : ReadOnlyFile(packed->path()), packed_(std::move(packed)), bytes_(bytes) {
     states_.push_back(std::make_unique<Inflater>());
   }
 
   std::uint64_t size() const override { return bytes_; }
-  void sync() override {}
 
  protected:
   std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
@@ -113,9 +112,6 @@ class InflatedFile final : public storage::File {
     if (live_->at() == bytes_)
       live_->require_end(*packed_, block_);
     return count;
-  }
-  std::size_t write_some(std::uint64_t /*offset*/, std::span<const std::byte> /*bytes*/) override {
-    throw Error(ErrorCode::internal, path().string() + " is to be read only");
   }
 
  private:

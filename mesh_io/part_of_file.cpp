@@ -1,6 +1,5 @@
 #include "mesh_io/part_of_file.h"
 
-#include "base/error.h"
 #include "mesh_io/input_stream.h"
 
 #include <algorithm>
@@ -15,13 +14,12 @@ namespace {
 /// Reads up to so many bytes at an offset, fewer only at the end.
 using ReadWithin = std::function<std::size_t(std::uint64_t, std::span<std::byte>)>;
 
-class FileWithin final : public storage::File {
+class FileWithin final : public storage::ReadOnlyFile {
  public:
   FileWithin(std::filesystem::path path, std::uint64_t bytes, ReadWithin read)
-      : File(std::move(path)), bytes_(bytes), read_(std::move(read)) {}
+      : ReadOnlyFile(std::move(path)), bytes_(bytes), read_(std::move(read)) {}
 
   std::uint64_t size() const override { return bytes_; }
-  void sync() override {}
 
  protected:
   std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
@@ -29,9 +27,6 @@ class FileWithin final : public storage::File {
       return 0;
     const std::uint64_t most = std::min<std::uint64_t>(bytes.size(), bytes_ - offset);
     return read_(offset, bytes.first(static_cast<std::size_t>(most)));
-  }
-  std::size_t write_some(std::uint64_t /*offset*/, std::span<const std::byte> /*bytes*/) override {
-    throw Error(ErrorCode::internal, path().string() + " is to be read only");
   }
 
  private:

@@ -11,11 +11,11 @@ namespace meshhier::storage {
 namespace {
 
 /// A part of another file.
-class ArchivedFile final : public File {
+class ArchivedFile final : public ReadOnlyFile {
  public:
   ArchivedFile(std::filesystem::path path, std::shared_ptr<const File> archive,
                Archive::Place place)
-      : File(std::move(path)), archive_(std::move(archive)), place_(place) {}
+      : ReadOnlyFile(std::move(path)), archive_(std::move(archive)), place_(place) {}
 
   std::uint64_t size() const override { return place_.bytes; }
   FileVersion version() const override {
@@ -23,8 +23,6 @@ class ArchivedFile final : public File {
     version.bytes = place_.bytes;
     return version;
   }
-  void sync() override {}
-  using File::sync;
 
  protected:
   std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
@@ -32,10 +30,6 @@ class ArchivedFile final : public File {
       return 0;
     const std::size_t count = std::min<std::uint64_t>(bytes.size(), place_.bytes - offset);
     return archive_->read_at(place_.offset + offset, bytes.first(count));
-  }
-  std::size_t write_some(std::uint64_t, std::span<const std::byte>) override {
-    throw Error(ErrorCode::io,
-                fmt::format("cannot write {}: it lies in an archive", path().string()));
   }
 
  private:

@@ -415,6 +415,11 @@ void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   }
 }
 
+std::size_t ReadOnlyFile::write_some(std::uint64_t /*offset*/,
+                                     std::span<const std::byte> /*bytes*/) {
+  throw Error(ErrorCode::io, fmt::format("cannot write {}: it can only be read", path().string()));
+}
+
 std::unique_ptr<FileSystem> make_posix_file_system(const InputRule& input) {
   if (input.follows_links && !input.within)
     return std::make_unique<PosixFileSystem>();

@@ -86,6 +86,20 @@ class File {
   std::filesystem::path path_;
 };
 
+/// A file that is only read: it lies within another one, or on the web. write_at() throws
+/// Error(io).
+class ReadOnlyFile : public File {
+ public:
+  using File::sync;
+  void sync() final {}
+
+ protected:
+  explicit ReadOnlyFile(std::filesystem::path path) : File(std::move(path)) {}
+
+ private:
+  std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) final;
+};
+
 /// The state of a named file as far as it can be told without reading it.
 struct FileIdentity {
   std::uint64_t bytes = 0;

@@ -22,14 +22,12 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kStart = std::uint64_t{1} << 20;
 constexpr std::uint64_t kArchiveStart = std::uint64_t{1} << 16;
 
-class RemoteFile final : public File {
+class RemoteFile final : public ReadOnlyFile {
  public:
   RemoteFile(fs::path path, std::shared_ptr<RemoteContent> content, std::shared_ptr<IoCounters> use)
-      : File(std::move(path)), content_(std::move(content)), use_(std::move(use)) {}
+      : ReadOnlyFile(std::move(path)), content_(std::move(content)), use_(std::move(use)) {}
 
   std::uint64_t size() const override { return content_->size(); }
-  void sync() override {}
-  using File::sync;
   void will_read(std::span<const Range> ranges) const override { content_->will_read(ranges); }
 
  protected:
@@ -37,9 +35,6 @@ class RemoteFile final : public File {
     const std::size_t count = content_->read(offset, bytes);
     use_->bytes_read += count;
     return count;
-  }
-  std::size_t write_some(std::uint64_t, std::span<const std::byte>) override {
-    throw Error(ErrorCode::io, fmt::format("cannot write {}: it is on the web", path().string()));
   }
 
  private:

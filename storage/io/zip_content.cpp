@@ -22,25 +22,18 @@ constexpr std::uint64_t kMostKept = std::uint64_t{16} << 20;
 /// Levels up to 19 take windows of up to 8 MiB.
 constexpr int kWindowLog = 23;
 
-/// A file that cannot be written.
-class ZippedFile : public File {
+class ZippedFile : public ReadOnlyFile {
  public:
   ZippedFile(std::filesystem::path path, std::shared_ptr<const File> archive, const ZipRange& range)
-      : File(std::move(path)), archive_(std::move(archive)), range_(range) {}
+      : ReadOnlyFile(std::move(path)), archive_(std::move(archive)), range_(range) {}
   std::uint64_t size() const override { return range_.bytes; }
   FileVersion version() const override {
     FileVersion version = archive_->version();
     version.bytes = range_.bytes;
     return version;
   }
-  void sync() override {}
-  using File::sync;
 
  protected:
-  std::size_t write_some(std::uint64_t, std::span<const std::byte>) override {
-    throw Error(ErrorCode::io,
-                fmt::format("cannot write {}: it lies in an archive", path().string()));
-  }
   const File& archive() const { return *archive_; }
   const ZipRange& range() const { return range_; }
 

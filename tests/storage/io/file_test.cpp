@@ -152,6 +152,25 @@ TEST_F(FileTest, AWriteThatMakesNoProgressEnds) {
   EXPECT_NO_THROW(file.write_at(0, {}));
 }
 
+TEST_F(FileTest, AFileThatIsOnlyReadRefusesWrites) {
+  class Zeros final : public ReadOnlyFile {
+   public:
+    Zeros() : ReadOnlyFile("zeros") {}
+    std::uint64_t size() const override { return 8; }
+
+   private:
+    std::size_t read_some(std::uint64_t, std::span<std::byte> bytes) const override {
+      std::ranges::fill(bytes, std::byte{});
+      return bytes.size();
+    }
+  };
+  Zeros file;
+  const Error error = error_of([&] { file.write_at(0, pattern(1)); });
+  EXPECT_EQ(error.code(), ErrorCode::io);
+  EXPECT_THAT(error.what(), HasSubstr("zeros: it can only be read"));
+  EXPECT_NO_THROW(file.sync([] {}));
+}
+
 TEST_F(FileTest, FailedCallsReachTheCaller) {
   FaultyFileSystem files;
   write_file(files, path_, pattern(10));
