@@ -27,14 +27,8 @@ constexpr double kAlongBorder = 0.98;
 
 }  // namespace
 
-/// Collects the links, the edges opposite the two ends, and puts them in order along a closed or
-/// open ring. False if they make neither.
-bool FanGapMeter::order_links(const StarCollapse& c) {
-  struct Link {
-    std::uint32_t start, end, triangle;
-    std::uint8_t is_of_to;
-  };
-  std::array<Link, kMostLinks> found;
+/// Collects the links, the edges opposite the two ends. False if they cannot make a ring.
+bool FanGapMeter::collect_links(const StarCollapse& c, Links& found) {
   size_ = 0;
   edge_triangle_count_ = 0;
   if (c.around_from.size() + c.around_to.size() > kMostLinks)
@@ -42,6 +36,7 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
   bool twice[2] = {false, false};
   // Triangles turn counter-clockwise, so a link that runs from next to previous does so around its
   // end, too. Two edge triangles with `to` on the same side of `from`: orientations disagree.
+  // Around `from` the links run from apexes_[0] to apexes_[1], around `to` from there back.
   for (const CollapseMesh::Fan& fan : c.around_from) {
     if (!fan.is_at(c.to)) {
       found[size_++] = {fan.next, fan.previous, fan.triangle, 0};
@@ -59,10 +54,14 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
       found[size_++] = {fan.next, fan.previous, fan.triangle, 1};
   }
   if (edge_triangle_count_ == 1 && twice[1])  // the only one comes first
-    std::swap(apexes_[0], apexes_[1]), std::swap(edge_triangles_[0], edge_triangles_[1]);
-  if (size_ == 0 || edge_triangle_count_ == 0)
-    return false;
+    swap_edge_triangles();
+  return size_ > 0 && edge_triangle_count_ > 0;
+}
 
+/// Puts links in order along a closed or open ring. False if they make neither.
+bool FanGapMeter::order_links(std::span<const Link> found) {
+  // The link that starts there. A number beyond the links: none does, or several, which no ring
+  // has.
   const auto starting_at = [&](std::uint32_t vertex) {
     std::uint32_t at = kMostLinks;
     for (std::uint32_t i = 0; i < size_; ++i) {
@@ -71,16 +70,12 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     }
     return at;
   };
-  const auto is_end = [&](std::uint32_t vertex) {
-    return std::count_if(found.begin(), found.begin() + size_,
-                         [&](const Link& link) { return link.end == vertex; });
-  };
   // A link that no other one ends at begins an open ring. Two of them, or two links that end at one
   // vertex, make no single ring.
   std::uint32_t at = 0;
   bool open = false;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const auto ends = is_end(found[i].start);
+    const auto ends = std::ranges::count(found, found[i].start, &Link::end);
     if (ends > 1 || (ends == 0 && open))
       return false;
     if (ends == 0) {
@@ -103,52 +98,63 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
   return open ? at == kMostLinks : at < size_ && found[at].start == vertices_[0];
 }
 
-/// Finds which end has which links. False if the owner changes anywhere but at the edge's
-/// triangles.
+void FanGapMeter::swap_edge_triangles() {
+  std::swap(apexes_[0], apexes_[1]);
+  std::swap(edge_triangles_[0], edge_triangles_[1]);
+}
+
+/// Returns where the run of links of one owner ends that begins at `i`.
+std::uint32_t FanGapMeter::run_end(std::uint32_t i) const {
+  std::uint32_t j = i;
+  while (j < size_ && is_of_to_[j] == is_of_to_[i])
+    ++j;
+  return j;
+}
+
+void FanGapMeter::name_ends(const StarCollapse& c, bool first_is_to) {
+  first_.vertex = first_is_to ? c.to : c.from;
+  second_.vertex = first_is_to ? c.from : c.to;
+  if (first_is_to && edge_triangle_count_ == 2)
+    swap_edge_triangles();
+}
+
+/// Finds which end has which links. False if the owner changes anywhere but at the third corners of
+/// the edge's triangles: the old triangles of both ends fill one ring only if they meet there
+/// alone.
 bool FanGapMeter::find_shape(const StarCollapse& c) {
-  const auto turn_vertices = [&](std::uint32_t i) { return vertices_[i]; };
-  const auto run_end = [&](std::uint32_t i) {
-    std::uint32_t j = i;
-    while (j < size_ && is_of_to_[j] == is_of_to_[i])
-      ++j;
-    return j;
-  };
-  const auto take = [&](bool first_is_to) {
-    first_.vertex = first_is_to ? c.to : c.from;
-    second_.vertex = first_is_to ? c.from : c.to;
-    if (first_is_to && edge_triangle_count_ == 2) {
-      std::swap(apexes_[0], apexes_[1]);
-      std::swap(edge_triangles_[0], edge_triangles_[1]);
-    }
-  };
-  if (shape_ == Shape::closed) {
-    if (edge_triangle_count_ != 2)
-      return false;
-    // The ring shall begin where the links of `from` do.
-    std::uint32_t start = 0;
-    while (start < size_ && !(is_of_to_[start] == 0 && is_of_to_[(start + size_ - 1) % size_] == 1))
-      ++start;
-    if (start == size_)
-      return false;
-    std::rotate(vertices_.begin(), vertices_.begin() + start, vertices_.begin() + size_);
-    std::rotate(is_of_to_.begin(), is_of_to_.begin() + start, is_of_to_.begin() + size_);
-    std::rotate(triangles_.begin(), triangles_.begin() + start, triangles_.begin() + size_);
-    vertices_[size_] = vertices_[0];
-    turn_ = run_end(0);
-    head_ = 0;
-    take(false);
-    return run_end(turn_) == size_ && apexes_[0] == turn_vertices(0) &&
-           apexes_[1] == turn_vertices(turn_);
-  }
-  if (edge_triangle_count_ == 1) {
-    // An end may have no other triangle: then its border goes on along the edge's one.
-    shape_ = Shape::border_edge;
-    head_ = 0;
-    turn_ = apexes_[0] == vertices_[0] ? 0 : run_end(0);
-    take((is_of_to_[0] == 1) == (turn_ > 0));
-    return (turn_ == size_ || run_end(turn_) == size_) && apexes_[0] == turn_vertices(turn_);
-  }
-  // Two edge triangles on an open ring: one end is inside, and its links are one run in the middle.
+  if (shape_ == Shape::closed)
+    return edge_triangle_count_ == 2 && find_closed(c);
+  return edge_triangle_count_ == 1 ? find_border_edge(c) : find_border_end(c);
+}
+
+bool FanGapMeter::find_closed(const StarCollapse& c) {
+  // The ring shall begin where the links of `from` do.
+  std::uint32_t start = 0;
+  while (start < size_ && !(is_of_to_[start] == 0 && is_of_to_[(start + size_ - 1) % size_] == 1))
+    ++start;
+  if (start == size_)
+    return false;
+  std::rotate(vertices_.begin(), vertices_.begin() + start, vertices_.begin() + size_);
+  std::rotate(is_of_to_.begin(), is_of_to_.begin() + start, is_of_to_.begin() + size_);
+  std::rotate(triangles_.begin(), triangles_.begin() + start, triangles_.begin() + size_);
+  vertices_[size_] = vertices_[0];
+  turn_ = run_end(0);
+  head_ = 0;
+  name_ends(c, false);
+  return run_end(turn_) == size_ && apexes_[0] == vertices_[0] && apexes_[1] == vertices_[turn_];
+}
+
+bool FanGapMeter::find_border_edge(const StarCollapse& c) {
+  // An end may have no other triangle: then its border goes on along the edge's one.
+  shape_ = Shape::border_edge;
+  head_ = 0;
+  turn_ = apexes_[0] == vertices_[0] ? 0 : run_end(0);
+  name_ends(c, (is_of_to_[0] == 1) == (turn_ > 0));
+  return (turn_ == size_ || run_end(turn_) == size_) && apexes_[0] == vertices_[turn_];
+}
+
+/// Two edge triangles on an open ring: one end is inside, and its links are one run in the middle.
+bool FanGapMeter::find_border_end(const StarCollapse& c) {
   shape_ = Shape::border_end;
   for (const bool inner_is_to : {false, true}) {
     std::uint32_t begin = 0;
@@ -159,12 +165,11 @@ bool FanGapMeter::find_shape(const StarCollapse& c) {
     const std::uint32_t end = run_end(begin);
     const std::uint32_t rest = end == size_ ? size_ : run_end(end);
     const std::size_t side = inner_is_to ? 1 : 0;
-    if (rest != size_ || apexes_[side] != turn_vertices(begin) ||
-        apexes_[1 - side] != turn_vertices(end))
+    if (rest != size_ || apexes_[side] != vertices_[begin] || apexes_[1 - side] != vertices_[end])
       continue;
     head_ = begin;
     turn_ = end;
-    take(inner_is_to);
+    name_ends(c, inner_is_to);
     return true;
   }
   return false;
@@ -215,7 +220,9 @@ void FanGapMeter::lay_nearest(End& end, std::uint32_t begin, std::uint32_t until
     if (nearest.squared_distance >= least)
       continue;
     least = nearest.squared_distance;
-    // The same shares of the ring's two vertices make the point in space and in the plane.
+    // The same shares of the ring's two vertices make the point in space and in the plane. Rounding
+    // may push them out of the triangle; clamped and used for both, they still name one point of
+    // the fan, so the distance is that of a real map, if not of the nearest point.
     const double xb = dot(nearest.point, frame.ab);
     const double xc = dot(nearest.point, frame.ac);
     const double area = frame.bb * frame.cc - frame.bc * frame.bc;
@@ -288,6 +295,9 @@ bool FanGapMeter::lies_flat() const {
     case Shape::border_end:
       break;
   }
+  // b lies on the new vertex: its triangles beyond first_'s links lie on new ones, which unfold()
+  // has found to have an area. The two at the edge may be flat: their corners lie on a new edge
+  // then.
   return run_lies_flat(first_, head_, turn_) && turn(flat_[head_], a) >= 0 &&
          turn(a, flat_[turn_]) >= 0;
 }
@@ -362,6 +372,8 @@ void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double deviat
 void FanGapMeter::cross_between_ends() {
   const bool forth = turn(first_.flat, second_.flat) > 0;
   const double deviation = std::max(edge_deviation_[0], edge_deviation_[1]);
+  // `ray` counts sectors here, and a sector begins at the ray of its number. Forth, the ray that is
+  // crossed begins the sector that is entered; back, the one that is left.
   std::uint32_t ray = first_.sector;
   for (std::uint32_t steps = 0; ray != second_.sector && steps <= size_; ++steps) {
     if (forth)
@@ -375,7 +387,8 @@ void FanGapMeter::cross_between_ends() {
 /// Lays the new vertex over the old disc. False if rounding hides where.
 bool FanGapMeter::lay_middle() {
   if (shape_ == Shape::border_end) {
-    // second_ lies there. Its triangles outside of first_'s links are each under one new triangle.
+    // second_ lies there. Its triangles outside of first_'s links are each under one new triangle,
+    // and are booked. The two at the edge may lie under any between r[head] and r[turn].
     const double gap = length(second_.place);
     overlap_all(0, gap);
     for (std::uint32_t i = head_; i < turn_; ++i)
@@ -390,6 +403,8 @@ bool FanGapMeter::lay_middle() {
     overlap_all(edge_deviation_[0], length(first_.place + along * part));
     return true;
   }
+  // The new vertex is the origin: what the corners of a triangle turn around it are, doubled, its
+  // barycentric coordinates there. All new triangles have that corner, so all get the distance.
   const auto lay = [&](double deviation, Flat a, Vec3d at_a, Flat b, Vec3d at_b, Flat c,
                        Vec3d at_c) {
     const double wa = turn(b, c);
@@ -423,6 +438,7 @@ void FanGapMeter::lay_edges() {
   };
   const bool closed = shape_ == Shape::closed;
   overlap(first_.sector, first_.deviation, length(first_.place - first_.image));
+  // At the edge a border has a triangle on one side only, edge_triangles_[0], which is at r[turn].
   const double first_edge = shape_ == Shape::border_edge ? 0 : edge_deviation_[0];
   const double last_edge = shape_ == Shape::border_edge ? edge_deviation_[0] : edge_deviation_[1];
   // Along the border the old edge to r[0] lies on a ray and crosses none.
@@ -443,8 +459,9 @@ void FanGapMeter::lay_edges() {
 std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
                                             std::span<const float> deviations,
                                             const StarCollapse& collapse) {
-  if (!order_links(collapse) || !find_shape(collapse) || !unfold(positions, collapse) ||
-      !lay_ends(positions, collapse))
+  Links links;
+  if (!collect_links(collapse, links) || !order_links(std::span(links).first(size_)) ||
+      !find_shape(collapse) || !unfold(positions, collapse) || !lay_ends(positions, collapse))
     return std::nullopt;
   look_up(deviations);
   if (!lay_middle())
@@ -452,7 +469,10 @@ std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
   lay_edges();
   DiscGap result;
   for (std::uint32_t i = 0; i < size_; ++i) {
+    // A point of the new triangle is at most gap_ from a point of an old one, whose deviation is at
+    // most fresh_.
     const double deviation = fresh_[i] + gap_[i] + kFanRounding * radius_;
+    // The cast may round down, by at most 2^-24 of the number: made larger first, it stays a bound.
     deviations_[i] = static_cast<float>(deviation * (1 + 0x1p-22));
     if (!std::isfinite(deviations_[i]))
       return std::nullopt;

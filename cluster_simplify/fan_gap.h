@@ -112,8 +112,22 @@ class FanGapMeter {
                   ///< others
   };
 
-  bool order_links(const StarCollapse& c);
+  /// An edge opposite to an end of the collapsing one, in a triangle at that end.
+  struct Link {
+    std::uint32_t start, end, triangle;
+    std::uint8_t is_of_to;
+  };
+  using Links = std::array<Link, kMostLinks>;
+
+  bool collect_links(const StarCollapse& c, Links& found);
+  bool order_links(std::span<const Link> found);
+  void swap_edge_triangles();
+  std::uint32_t run_end(std::uint32_t i) const;
+  void name_ends(const StarCollapse& c, bool first_is_to);
   bool find_shape(const StarCollapse& c);
+  bool find_closed(const StarCollapse& c);
+  bool find_border_edge(const StarCollapse& c);
+  bool find_border_end(const StarCollapse& c);
   bool unfold(std::span<const Vec3f> positions, const StarCollapse& c);
   void lay_nearest(End& end, std::uint32_t begin, std::uint32_t until);
   void lay_on_ray(End& end, std::uint32_t ray, std::uint32_t sector);

@@ -5,6 +5,7 @@
 #include "cluster_simplify/wedges.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 
@@ -131,6 +132,8 @@ template BuildTile resolve(SimplifiedTile, std::span<const GhostRef>, bool, std:
 
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary) {
   const auto& ghosts = tile.mesh.ghosts;
+  // Ghosts ascend by name, so one neighbour's are a run. Taken neighbour by neighbour, ghost i
+  // becomes vertex own_count + i, as border triangles number it.
   auto ghost = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{neighbour, 0});
   std::vector<std::uint32_t> named;
   for (; ghost != ghosts.end() && ghost->tile == neighbour; ++ghost) {
@@ -142,97 +145,118 @@ void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& bound
   fill_ghost_copies(tile.mesh, boundary);
 }
 
-BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
-               std::uint32_t second_index) {
-  const TileMesh& a = first.mesh;
-  const TileMesh& b = second.mesh;
-  const std::uint32_t own_count = a.own_count + b.own_count;
-  BuildTile joined;
-  TileMesh& mesh = joined.mesh;
-  mesh.own_count = own_count;
-  mesh.vertices.channels = a.vertices.channels;
-  mesh.vertices.reserve(own_count + a.ghosts.size() + b.ghosts.size());
-  mesh.vertices.append(a.vertices, 0, a.own_count);
-  mesh.vertices.append(b.vertices, 0, b.own_count);
-  joined.history.weights = first.history.weights;
-  joined.history.weights.insert(joined.history.weights.end(), second.history.weights.begin(),
-                                second.history.weights.end());
+namespace {
 
-  // Ghosts that belong to neither of the two stay ghosts; one that both have becomes one.
+/// One of two tiles that are joined.
+struct JoinedSide {
+  const TileMesh& mesh;
+  std::uint32_t sibling;         ///< the other one's index
+  std::uint32_t offset;          ///< number of its first own vertex in the joined tile
+  std::uint32_t sibling_offset;  ///< of the other one's
+};
+
+/// Appends the ghosts that belong to neither of the two; one that both have becomes one.
+void append_ghosts(const JoinedSide& a, const JoinedSide& b, TileMesh& joined) {
   struct Outside {
     GhostRef ref;
-    const BuildTile* tile;
+    const TileMesh* tile;
     std::uint32_t vertex;
   };
   std::vector<Outside> outside;
-  const auto collect = [&](const BuildTile& tile, std::uint32_t sibling) {
-    for (std::uint32_t i = 0; i < tile.mesh.ghosts.size(); ++i) {
-      if (tile.mesh.ghosts[i].tile != sibling)
-        outside.push_back({tile.mesh.ghosts[i], &tile, tile.mesh.own_count + i});
+  for (const JoinedSide* side : {&a, &b}) {
+    const TileMesh& tile = side->mesh;
+    for (std::uint32_t i = 0; i < tile.ghosts.size(); ++i) {
+      if (tile.ghosts[i].tile != side->sibling)
+        outside.push_back({tile.ghosts[i], &tile, tile.own_count + i});
     }
-  };
-  collect(first, second_index);
-  collect(second, first_index);
+  }
+  // Both read it from the same neighbour's boundary, so the first one's is as good as the other's.
   std::stable_sort(outside.begin(), outside.end(),
                    [](const Outside& x, const Outside& y) { return x.ref < y.ref; });
   outside.erase(std::unique(outside.begin(), outside.end(),
                             [](const Outside& x, const Outside& y) { return x.ref == y.ref; }),
                 outside.end());
   for (const Outside& ghost : outside) {
-    mesh.ghosts.push_back(ghost.ref);
-    mesh.vertices.append(ghost.tile->mesh.vertices, ghost.vertex, ghost.vertex + 1);
+    joined.ghosts.push_back(ghost.ref);
+    joined.vertices.append(ghost.tile->vertices, ghost.vertex, ghost.vertex + 1);
   }
+}
 
-  // The numbers of a tile's vertices in the joined one. A ghost in the sibling is a boundary vertex
-  // there, and those are its first own vertices: its index is its number.
-  const auto place_of = [&](const TileMesh& tile, std::uint32_t offset, std::uint32_t sibling,
-                            std::uint32_t sibling_offset) {
-    std::vector<TileVertex> place(tile.vertices.size());
-    for (std::uint32_t i = 0; i < tile.own_count; ++i)
-      place[i] = static_cast<TileVertex>(offset + i);
-    for (std::uint32_t i = 0; i < tile.ghosts.size(); ++i) {
-      const GhostRef& ref = tile.ghosts[i];
-      const auto found = std::lower_bound(mesh.ghosts.begin(), mesh.ghosts.end(), ref);
-      place[tile.own_count + i] = static_cast<TileVertex>(
-          ref.tile == sibling
-              ? sibling_offset + ref.index
-              : own_count + static_cast<std::uint32_t>(found - mesh.ghosts.begin()));
-    }
-    return place;
-  };
+/// Returns the numbers of a tile's vertices in the joined one. A ghost in the sibling is a boundary
+/// vertex there, and those are its first own vertices: its index is its number.
+std::vector<TileVertex> joined_numbers(const JoinedSide& side, const TileMesh& joined) {
+  const TileMesh& tile = side.mesh;
+  std::vector<TileVertex> numbers(tile.vertices.size());
+  for (std::uint32_t i = 0; i < tile.own_count; ++i)
+    numbers[i] = static_cast<TileVertex>(side.offset + i);
+  for (std::uint32_t i = 0; i < tile.ghosts.size(); ++i) {
+    const GhostRef& ref = tile.ghosts[i];
+    const auto found = std::lower_bound(joined.ghosts.begin(), joined.ghosts.end(), ref);
+    numbers[tile.own_count + i] = static_cast<TileVertex>(
+        ref.tile == side.sibling
+            ? side.sibling_offset + ref.index
+            : joined.own_count + static_cast<std::uint32_t>(found - joined.ghosts.begin()));
+  }
+  return numbers;
+}
+
+/// Appends interior triangles, whose corners move by as much as the tiles before have.
+void append_interior(const JoinedSide& side, bool has_copies, TileMesh& joined) {
+  const TileMesh& tile = side.mesh;
+  for (const TileTriangle& t : tile.interior)
+    joined.interior.push_back(
+        mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(raw(v) + side.offset); }));
+  if (has_copies)
+    append_wedges(tile.interior.size(), tile.interior_wedges, joined.interior_wedges);
+}
+
+/// Appends border triangles. One between the two alone has own corners only by now: nobody else
+/// needs it to stay as it is, and the contraction may change it as any other.
+void append_border(const JoinedSide& side, bool has_copies, TileMesh& joined) {
+  const std::vector<TileVertex> numbers = joined_numbers(side, joined);
+  for (std::size_t i = 0; i < side.mesh.border.size(); ++i) {
+    const TileTriangle placed =
+        mapped(side.mesh.border[i], [&](TileVertex v) { return numbers[raw(v)]; });
+    // A triangle that touches both is a border triangle of both: it came with the first tile.
+    if (std::ranges::any_of(placed, [&](TileVertex v) { return raw(v) < side.offset; }))
+      continue;
+    const bool inside =
+        std::ranges::all_of(placed, [&](TileVertex v) { return raw(v) < joined.own_count; });
+    (inside ? joined.interior : joined.border).push_back(placed);
+    if (has_copies)
+      (inside ? joined.interior_wedges : joined.border_wedges)
+          .push_back(joined_wedges(side.mesh, i, placed, joined));
+  }
+}
+
+}  // namespace
+
+BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
+               std::uint32_t second_index) {
+  const TileMesh& a = first.mesh;
+  const TileMesh& b = second.mesh;
+  BuildTile joined;
+  TileMesh& mesh = joined.mesh;
+  mesh.own_count = a.own_count + b.own_count;
+  mesh.vertices.channels = a.vertices.channels;
+  mesh.vertices.reserve(mesh.own_count + a.ghosts.size() + b.ghosts.size());
+  mesh.vertices.append(a.vertices, 0, a.own_count);
+  mesh.vertices.append(b.vertices, 0, b.own_count);
+  joined.history.weights = first.history.weights;
+  joined.history.weights.insert(joined.history.weights.end(), second.history.weights.begin(),
+                                second.history.weights.end());
+
+  const std::array<JoinedSide, 2> sides{JoinedSide{a, second_index, 0, a.own_count},
+                                        JoinedSide{b, first_index, a.own_count, 0}};
+  append_ghosts(sides[0], sides[1], mesh);
   const bool has_copies = !a.copies.empty() || !b.copies.empty();
   if (has_copies)
     join_copies(a, second_index, b, first_index, mesh);
-  const std::vector<TileVertex> place_a = place_of(a, 0, second_index, a.own_count);
-  const std::vector<TileVertex> place_b = place_of(b, a.own_count, first_index, 0);
-
   mesh.interior.reserve(a.interior.size() + b.interior.size() + a.border.size());
-  mesh.interior = a.interior;
-  for (const TileTriangle& t : b.interior)  // own corners move by as much as the first tile has
-    mesh.interior.push_back(
-        mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(raw(v) + a.own_count); }));
-  if (has_copies) {
-    append_wedges(a.interior.size(), a.interior_wedges, mesh.interior_wedges);
-    append_wedges(b.interior.size(), b.interior_wedges, mesh.interior_wedges);
-  }
-  const auto add_border = [&](const TileMesh& tile, std::size_t i, const TileTriangle& placed) {
-    const bool inside =
-        std::all_of(placed.begin(), placed.end(), [&](TileVertex v) { return raw(v) < own_count; });
-    (inside ? mesh.interior : mesh.border).push_back(placed);
-    if (has_copies)
-      (inside ? mesh.interior_wedges : mesh.border_wedges)
-          .push_back(joined_wedges(tile, i, placed, mesh));
-  };
-  for (std::size_t i = 0; i < a.border.size(); ++i)
-    add_border(a, i, mapped(a.border[i], [&](TileVertex v) { return place_a[raw(v)]; }));
-  for (std::size_t i = 0; i < b.border.size(); ++i) {
-    const TileTriangle placed = mapped(b.border[i], [&](TileVertex v) { return place_b[raw(v)]; });
-    // A triangle that touches both is a border triangle of both: it came with the first tile.
-    const bool known = std::any_of(placed.begin(), placed.end(),
-                                   [&](TileVertex v) { return raw(v) < a.own_count; });
-    if (!known)
-      add_border(b, i, placed);
-  }
+  for (const JoinedSide& side : sides)
+    append_interior(side, has_copies, mesh);
+  for (const JoinedSide& side : sides)
+    append_border(side, has_copies, mesh);
   if (has_copies) {
     drop_degenerate(mesh.interior, mesh.interior_wedges);
     drop_degenerate(mesh.border, mesh.border_wedges);
@@ -242,7 +266,8 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
 
 namespace {
 
-/// New numbers for representatives: those of border triangles first, order kept otherwise.
+/// New numbers for representatives: those of border triangles first, order kept otherwise. First,
+/// because other tiles name them: names and the files' parts that they read stay short.
 std::vector<std::uint32_t> boundary_first(const std::vector<TileTriangle>& border,
                                           std::uint32_t count, std::uint32_t& boundary_count) {
   std::vector<std::uint32_t> place(count, kUnset);
@@ -269,11 +294,39 @@ std::vector<FinerGhost> one_level_up(const std::vector<GhostRef>& ghosts) {
   return foreign;
 }
 
+/// A vertex weighs as many of the input's as it stands for: sums keep the total, level by level.
+std::vector<float> summed_weights(std::span<const float> weights,
+                                  std::span<const std::uint16_t> parent_map, std::uint32_t count) {
+  std::vector<float> sums(count, 0);
+  for (std::size_t i = 0; i < parent_map.size(); ++i)
+    sums[parent_map[i]] += weights[i];
+  return sums;
+}
+
+/// Puts the representatives in their new order, and what is known of each.
+void take_representatives(Contraction contraction, std::span<const std::uint32_t> place,
+                          ContractedTile& result) {
+  SimplifiedTile& tile = result.tile;
+  tile.vertices.channels = contraction.representatives.channels;
+  tile.copies.vertices.channels = tile.vertices.channels;
+  result.deviation = std::move(contraction.deviation);
+  std::vector<std::uint32_t> old_of(place.size());
+  std::vector<float> around(place.size());
+  for (std::uint32_t i = 0; i < place.size(); ++i) {
+    old_of[place[i]] = i;
+    around[place[i]] = result.deviation.around[i];
+  }
+  tile.vertices.append(contraction.representatives, old_of);
+  result.deviation.around = std::move(around);
+  result.fallbacks = contraction.fallbacks;
+}
+
 }  // namespace
 
 ContractedTile apply(const BuildTile& joined, Contraction contraction, ContractedWedges wedges) {
   const TileMesh& mesh = joined.mesh;
   const auto count = static_cast<std::uint32_t>(contraction.representatives.size());
+  // Two such tiles join to 65,536 places at most, which a parent map numbers with 16 bits.
   assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count &&
          contraction.deviation.around.size() == count);
 
@@ -287,6 +340,8 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
   });
   // Only now is it known which representatives the border still uses; those get the first numbers.
   const std::vector<std::uint32_t> place = boundary_first(tile.border, count, tile.boundary_count);
+  // The map leads through both changes at once. Neighbours name corners by it in resolve(), so that
+  // they never need to know what this contraction did.
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
     result.parent_map[i] = static_cast<std::uint16_t>(place[contraction.parent_of[i]]);
@@ -309,6 +364,8 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     if (!tile.copies.empty())
       tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
   }
+  // Equal triangles go, on the border too. A neighbour that has them keeps them until resolve(),
+  // where the corners that became one here become one for it.
   // Triangles that differ by their wedges wait for resolve(), which knows all corners' names.
   normalize_triangles(tile.border, tile.border_wedges, tile.border_wedges.empty());
   drop_equal(tile.border, tile.border_wedges);
@@ -317,22 +374,8 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
   if (has_wedges)
     tile.interior_wedges.resize(tile.interior.size());  // without copies the first of each place
 
-  tile.vertices.channels = contraction.representatives.channels;
-  tile.copies.vertices.channels = tile.vertices.channels;
-  std::vector<std::uint32_t> old_of(count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    old_of[place[i]] = i;
-  tile.vertices.append(contraction.representatives, old_of);
-
-  tile.history.weights.assign(count, 0);
-  for (std::uint32_t i = 0; i < mesh.own_count; ++i)
-    tile.history.weights[result.parent_map[i]] += joined.history.weights[i];
-  result.deviation = std::move(contraction.deviation);
-  std::vector<float> around(count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    around[place[i]] = result.deviation.around[i];
-  result.deviation.around = std::move(around);
-  result.fallbacks = contraction.fallbacks;
+  tile.history.weights = summed_weights(joined.history.weights, result.parent_map, count);
+  take_representatives(std::move(contraction), place, result);
   return result;
 }
 
