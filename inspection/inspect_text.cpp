@@ -1,22 +1,17 @@
-#include "inspection/inspect.h"
-
-#include "base/error.h"
 #include "base/plain_text.h"
 #include "execution/size_text.h"
 #include "hierarchy/attributes.h"
 #include "hierarchy/cut.h"
 #include "images/formats.h"
 #include "import/import_input.h"
-#include "storage/format/archive_files.h"
-#include "storage/format/hierarchy_reader.h"
-#include "storage/format/layout.h"
+#include "inspection/inspect.h"
+#include "inspection/inspected.h"
 #include "storage/format/level_summary.h"
 #include "storage/format/source_values.h"
 #include "storage/format/view_keys.h"
 #include "storage/io/json_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -28,63 +23,11 @@
 namespace meshhier::inspection {
 namespace {
 
-using storage::HierarchyReader;
 using Json = nlohmann::ordered_json;
-
-HierarchyReader open_checked(storage::FileSystem& files, const std::filesystem::path& directory,
-                             const InspectOptions& options) {
-  HierarchyReader reader(files, directory);
-  try {
-    if (options.level)
-      require_level(reader.tree(), *options.level);
-    if (options.node)
-      require_node(reader.tree(), *options.node);
-  } catch (const Error& error) {
-    throw error.within(directory.string());
-  }
-  return reader;
-}
-
-std::span<const TileRecord> records_of(const HierarchyReader& reader, Level level) {
-  const auto& records = reader.records();
-  const auto before = [](const TileRecord& r, Level l) { return r.node.level < l; };
-  const auto begin = std::lower_bound(records.begin(), records.end(), level, before);
-  const auto end = std::lower_bound(begin, records.end(), finer(level), before);
-  return {begin, end};
-}
-
-storage::SizeSummary partition_sizes(const HierarchyReader& reader) {
-  return storage::summarize_sizes(records_of(reader, reader.tree().depth()), reader.tile_format());
-}
-
-storage::ForcedCollapses forced_collapses_of(const HierarchyReader& reader) {
-  return storage::summarize_forced_collapses(reader.records(), reader.manifest().source.places);
-}
-
-storage::SizeSummary all_sizes(const HierarchyReader& reader) {
-  return storage::summarize_sizes(reader.records(), reader.tile_format());
-}
-
-std::uint64_t tile_bytes(std::span<const storage::LevelSummary> levels) {
-  std::uint64_t sum = 0;
-  for (const storage::LevelSummary& level : levels)
-    sum += level.bytes_total;
-  return sum;
-}
 
 double ratio(std::uint64_t a, std::uint64_t b) {
   return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
-
-/// Bytes of the archive, or of the whole directory: what the manifest counts, and itself.
-std::uint64_t bytes_on_disk(const storage::HierarchyFiles& place, const HierarchyReader& reader) {
-  if (place.archive() != nullptr)
-    return place.archive()->file().size();
-  const auto manifest = place.files().open(storage::manifest_path(reader.directory()));
-  return reader.manifest().total_bytes + manifest->size();
-}
-
-// As text.
 
 /// Returns "1,234,567".
 std::string grouped(std::uint64_t number) {
@@ -111,13 +54,6 @@ std::string vertices_text(const SourceSummary& source) {
   return source.places == source.vertices
              ? vertices
              : fmt::format("{} at {}", vertices, grouped(source.places, "places"));
-}
-
-/// Returns where the tiles' normals come from.
-std::string_view normals_of(const storage::Manifest& manifest) {
-  return manifest.source.attributes.normals ? "given"
-         : manifest.computed_normals        ? "computed"
-                                            : "none";
 }
 
 /// Returns a text about the input's textures.
@@ -273,14 +209,6 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
          "forced: without care for the surface, to reach the count\n";
 }
 
-/// Returns the bytes of a texel in the memory of a graphics device that knows blocks, with smaller
-/// and smaller copies.
-template <class Format>
-double gpu_bytes(const Format& format) {
-  constexpr double kCopies = 4.0 / 3;
-  return kCopies * images::costs_of(format).device_bytes;
-}
-
 std::string gpu_text(double texel, const storage::PictureSummary& pictures) {
   return fmt::format(
       "{} of graphics memory each",
@@ -415,134 +343,18 @@ std::string tile_text(const TileRecord& r) {
       r.bounds.max.x, r.bounds.max.y, r.bounds.max.z);
 }
 
-// As JSON.
-
-Json textures_json(const std::optional<SourceTextures>& t) {
-  if (!t)
-    return nullptr;
-  return {{"materials", t->materials},
-          {"images", t->images},
-          {"missing_images", t->missing_images},
-          {"texels", t->texels}};
-}
-
-Json source_json(const storage::Manifest& manifest) {
-  const SourceSummary& s = manifest.source;
-  const auto corner = [](Vec3d p) { return Json::array({p.x, p.y, p.z}); };
-  Json files = Json::array();
-  for (const SourceFile& file : s.files)
-    files.push_back({{"name", file.name}, {"format", file.format}, {"bytes", file.bytes}});
-  Json counts = Json::object();
-  for (const SourceCount& count : s.counts)
-    counts[count.name] = count.count;
-  return {{"file_name", s.file_name},
-          {"file_bytes", s.file_bytes},
-          {"vertices", s.vertices},
-          {"places", s.places},
-          {"triangles", s.triangles},
-          {"faces", s.faces},
-          {"degenerate_triangles", s.degenerate_triangles},
-          {"unreferenced_vertices", s.unreferenced_vertices},
-          {"bounds", {{"min", corner(s.bounds.min)}, {"max", corner(s.bounds.max)}}},
-          {"double_precision", s.double_precision},
-          {"origin", corner(manifest.origin)},
-          {"attributes", attribute_names(s.attributes)},
-          {"values", storage::source_values_json(s)},
-          {"textures", textures_json(s.textures)},
-          {"imported_files", files},
-          {"counts", counts},
-          {"unused", s.unused}};
-}
-
-Json objects_json(const storage::ObjectsSummary& objects) {
-  Json properties = Json::array();
-  for (const auto& [name, type] : objects.table.properties)
-    properties.push_back({{"name", name}, {"type", name_of(type)}});
-  return {{"count", objects.table.objects},
-          {"bytes", objects.table.bytes},
-          {"properties", std::move(properties)},
-          {"shown", objects.shown},
-          {"in_tiles", objects.are_in_tiles}};
-}
-
-Json partitions_json(const storage::LevelSummary& last,
-                     const storage::CompactnessSummary& compactness) {
-  return {{"count", last.tiles},
-          {"vertices_min", last.vertices.min},
-          {"vertices_mean", last.vertices.mean},
-          {"vertices_max", last.vertices.max},
-          {"compactness_count", compactness.count},
-          {"compactness_mean", compactness.mean},
-          {"compactness_median", compactness.median},
-          {"compactness_p95", compactness.p95}};
-}
-
-Json storage_json(const storage::Manifest& manifest) {
-  Json json = {{"compression", storage::row_of(manifest.compression).name},
-               {"positions", nullptr},
-               {"normals", normals_of(manifest)},
-               {"texture", nullptr}};
-  if (const auto& maps = manifest.normal_maps) {
-    json["normal_map"] = {{"format", row_of(maps->format).name},
-                          {"quality", maps->quality},
-                          {"gpu_bytes_a_texel", gpu_bytes(*maps)}};
-  }
-  if (const auto& textures = manifest.textures) {
-    json["texture"] = {{"format", row_of(textures->format).name},
-                       {"quality", textures->quality},
-                       {"unlit", textures->unlit},
-                       {"gpu_bytes_a_texel", gpu_bytes(*textures)}};
-  }
-  if (const auto& q = manifest.quantization) {
-    json["positions"] = {{"bits", q->lattice.bits},
-                         {"step", q->lattice.step},
-                         {"worst_rounding", q->worst_rounding}};
-  }
-  return json;
-}
-
-Json outline_json(const storage::Manifest& manifest) {
-  const OutlineReport& o = manifest.outline;
-  return {{"bytes", manifest.outline_bytes},      {"sector_level", o.sector_level},
-          {"sector_count", o.sector_count},       {"tolerance", o.tolerance},
-          {"polylines_found", o.polylines_found}, {"polylines_dropped", o.polylines_dropped}};
-}
-
-Json preview_json(const storage::Manifest& manifest) {
-  if (!manifest.preview)
-    return nullptr;
-  const storage::Preview& p = *manifest.preview;
-  return {{"bytes", p.bytes}, {"width", p.width}, {"height", p.height}};
-}
-
-Json first_view_json(const storage::Manifest& manifest) {
-  if (!manifest.first_view)
-    return nullptr;
-  const auto& [azimuth, elevation] = *manifest.first_view;
-  return {{"azimuth", azimuth}, {"elevation", elevation}};
-}
-
-Json tileset_json(const storage::Manifest& manifest) {
-  return {{"files", manifest.tileset_files},
-          {"bytes", manifest.tileset_bytes},
-          {"up", name_of(manifest.up)},
-          {"units", manifest.units ? Json(name_of(*manifest.units)) : Json()},
-          {"transform", manifest.transform ? Json(*manifest.transform) : Json()},
-          {"licence", manifest.licence}};
-}
-
 }  // namespace
 
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
                          const InspectOptions& options) {
-  const storage::HierarchyFiles place(files, directory);
-  const HierarchyReader reader = open_checked(place.files(), directory, options);
+  const Inspected inspected(files, directory, options);
+  const storage::HierarchyReader& reader = inspected.reader();
   if (options.node)
     return tile_text(reader.record(*options.node));
-  const auto levels = storage::summarize_levels(reader.tree(), reader.records());
+  const auto levels = inspected.levels();
   if (options.level) {
     std::string text = level_table(levels, options.level);
-    for (const TileRecord& record : records_of(reader, *options.level))
+    for (const TileRecord& record : inspected.records_of(*options.level))
       text += tile_text(record);
     return text;
   }
@@ -554,66 +366,23 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += source_text(manifest);
   text += fmt::format("parameters   {}\n", parameters);
   text += storage_text(manifest);
-  text += fmt::format("sizes        {}; {}\n", sizes_text("partitions", partition_sizes(reader)),
-                      sizes_text("all tiles", all_sizes(reader)));
-  text += tile_sizes_text(all_sizes(reader).tile_bytes);
+  text +=
+      fmt::format("sizes        {}; {}\n", sizes_text("partitions", inspected.partition_sizes()),
+                  sizes_text("all tiles", inspected.all_sizes()));
+  text += tile_sizes_text(inspected.all_sizes().tile_bytes);
   if (manifest.textures)
-    text += pictures_text(*manifest.textures, storage::summarize_pictures(reader.records()));
+    text += pictures_text(*manifest.textures, inspected.pictures());
   if (manifest.normal_maps)
     text += normal_maps_text(*manifest.normal_maps, reader.records());
-  text += partitions_text(levels.back(),
-                          storage::summarize_compactness(reader.tree(), reader.records()));
+  text += partitions_text(levels.back(), inspected.compactness());
   text += outline_text(manifest);
   text += preview_text(manifest);
   text += first_view_text(manifest);
   text += view_line(manifest);
   text += tileset_text(manifest);
-  text += totals_text(manifest, levels, bytes_on_disk(place, reader));
+  text += totals_text(manifest, levels, inspected.bytes_on_disk());
   text += "\n" + level_table(levels, std::nullopt);
-  return text + storage::forced_collapses_text(forced_collapses_of(reader));
-}
-
-Json inspect_json(storage::FileSystem& files, const std::filesystem::path& directory,
-                  const InspectOptions& options) {
-  const storage::HierarchyFiles place(files, directory);
-  const HierarchyReader reader = open_checked(place.files(), directory, options);
-  const storage::Manifest& manifest = reader.manifest();
-  const auto levels = storage::summarize_levels(reader.tree(), reader.records());
-  Json json = {
-      {"generator", manifest.generator},
-      {"source", source_json(manifest)},
-      {"parameters", manifest.config},
-      {"partitions", partitions_json(levels.back(), storage::summarize_compactness(
-                                                        reader.tree(), reader.records()))},
-      {"levels", Json::array()},
-      {"storage", storage_json(manifest)},
-      {"sizes",
-       {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
-      {"outline", outline_json(manifest)},
-      {"preview", preview_json(manifest)},
-      {"first_view", first_view_json(manifest)},
-      {"tileset", tileset_json(manifest)},
-      {"pictures", storage::to_json(storage::summarize_pictures(reader.records()))},
-      {"forced_collapses", storage::to_json(forced_collapses_of(reader))},
-      {"tile_bytes", tile_bytes(levels)},
-      {"total_bytes", bytes_on_disk(place, reader)}};
-  if (!manifest.view.empty())
-    json["view"] = storage::view_json(manifest.view);
-  if (manifest.objects)
-    json["objects"] = objects_json(*manifest.objects);
-  for (const storage::LevelSummary& s : levels) {
-    if (!options.level || s.level == *options.level)
-      json["levels"].push_back(storage::to_json(s));
-  }
-  if (options.level) {
-    json["tiles"] = Json::array();
-    for (const auto& record : records_of(reader, *options.level)) {
-      json["tiles"].push_back(storage::to_json(record));
-    }
-  }
-  if (options.node)
-    json["tile"] = storage::to_json(reader.record(*options.node));
-  return json;
+  return text + storage::forced_collapses_text(inspected.forced_collapses());
 }
 
 }  // namespace meshhier::inspection
